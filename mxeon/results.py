@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a conformance run leaves behind: plain data, from `conformance` to `report`."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from mxeon.hosts import Identity
+
+PASSED, FAILED, NOT_RUN = "passed", "failed", "not run"
+
+
+@dataclass(frozen=True)
+class Control:
+    """The deliberately wrong variant of a check, run on the same host; it has to fail.
+
+    Attributes
+    ----------
+    variant : str
+        What was made wrong.
+    figure : float
+        What the check measured on it.
+    caught : bool
+        Whether the check failed on it, as it must.
+    """
+
+    variant: str
+    figure: float
+    caught: bool
+
+
+@dataclass(frozen=True)
+class Result:
+    """The outcome of one check of one subject on one host.
+
+    Attributes
+    ----------
+    check, claim : str
+        Key of the check's row and the sentence it tests.
+    subject : str
+        What was judged: a node and its flag, or a document and its element.
+    host, library : str
+        Where it ran, and whose data library it used.
+    verdict : str
+        PASSED, FAILED or NOT_RUN.
+    figure, tolerance : float or None
+        Measured and allowed, in `unit`; a check passes at figure <= tolerance.
+    unit, derivation : str
+        Unit of both, and where the tolerance comes from.
+    worst : dict of str to list of float
+        The inputs and values at the worst point, by name.
+    diagnosis : str
+        The nearest known model with its distance, or what else explains a failure.
+    control : Control or None
+        None only where the check did not run.
+    reason : str
+        Why it did not run.
+    """
+
+    check: str
+    claim: str
+    subject: str
+    host: str
+    library: str
+    verdict: str
+    figure: float | None = None
+    unit: str = ""
+    tolerance: float | None = None
+    derivation: str = ""
+    worst: dict = field(default_factory=dict)
+    diagnosis: str = ""
+    control: Control | None = None
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One host's picture of one element, and the reference's where the models can express it.
+
+    Attributes
+    ----------
+    document, element, host, library, scene : str
+        What is shown, by whom, under which light.
+    image : ndarray, shape (size, size, 3), float32
+        Linear radiance; see `mxeon.scene` for its scale.
+    reference : ndarray or None
+        The same from the NumPy models, or None where the material has other lobes.
+    metadata : dict of str to str
+        What made it: version, host, device, library, document, element, scene.
+    """
+
+    document: str
+    element: str
+    host: str
+    library: str
+    scene: str
+    image: np.ndarray
+    reference: np.ndarray | None
+    metadata: dict
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Directional albedo over the cosine, measured on a host beside its closed form.
+
+    Attributes
+    ----------
+    subject, host, library : str
+        What was measured, where.
+    rho : tuple of 3 floats
+    roughness : float
+    mu : ndarray, shape (N,)
+    measured, expected : ndarray, shape (N, 3)
+    """
+
+    subject: str
+    host: str
+    library: str
+    rho: tuple
+    roughness: float
+    mu: np.ndarray
+    measured: np.ndarray
+    expected: np.ndarray
+
+
+@dataclass(frozen=True)
+class Run:
+    """Everything one `mxeon check` found.
+
+    Attributes
+    ----------
+    version : str
+        Of mxeon.
+    software : dict of str to str
+        Versions of what took part (Python, NumPy, MaterialX, ...).
+    hosts : tuple of Identity
+    results : tuple of Result
+    pictures : tuple of Picture
+    curves : tuple of Curve
+    notes : tuple of str
+        Warnings a reader has to see, e.g. what a host cannot express.
+    documents : tuple of Path
+    """
+
+    version: str
+    software: dict
+    hosts: tuple[Identity, ...]
+    results: tuple[Result, ...]
+    pictures: tuple[Picture, ...] = ()
+    curves: tuple[Curve, ...] = ()
+    notes: tuple[str, ...] = ()
+    documents: tuple[Path, ...] = ()

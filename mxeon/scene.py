@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a picture shows: one unit sphere, seen orthographically along -z, and the light on it.
+
+World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
+[-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this page and nothing else.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A light on the sphere.
+
+    Attributes
+    ----------
+    name : str
+        One lower-case word, used in file names.
+    light : tuple of 3 floats or None
+        Unit vector towards a distant light whose irradiance is pi, so that a pixel holds
+        pi f cos(theta_i), and a white Lambertian facing the light holds 1.
+    environment : float, Path or None
+        Radiance of a uniform surrounding, or a latitude-longitude image.
+    size : int
+        Width and height in pixels.
+    """
+
+    name: str
+    light: tuple[float, float, float] | None = None
+    environment: float | Path | None = None
+    size: int = 256
+
+
+def _towards(azimuth, polar):
+    """Unit vector at `polar` degrees from the viewer, `azimuth` degrees from x, as a tuple."""
+    polar, azimuth = np.radians(polar), np.radians(azimuth)
+    return (
+        float(np.sin(polar) * np.cos(azimuth)),
+        float(np.sin(polar) * np.sin(azimuth)),
+        float(np.cos(polar)),
+    )
+
+
+FRONT = Scene("front", light=(0.0, 0.0, 1.0))
+SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
+BACK = Scene("back", light=_towards(azimuth=160, polar=130))
+FURNACE = Scene("furnace", environment=1.0)
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """The visible points of the sphere, one per pixel centre.
+
+    Attributes
+    ----------
+    mask : ndarray of bool, shape (size, size)
+        Where the pixel centre lies on the sphere.
+    normal : ndarray, shape (size, size, 3)
+        Outward unit normal, which is also the position; on the rim's circle outside the mask.
+    texcoord : ndarray, shape (size, size, 2)
+        Latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards.
+    """
+
+    mask: np.ndarray
+    normal: np.ndarray
+    texcoord: np.ndarray
+
+
+def sphere(size, margin=0):
+    """The points of the unit sphere under the pixel centres of a `size` x `size` picture.
+
+    A `margin` adds as many rows and columns of pixel centres around the frame.
+    """
+    axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
+    x, y = np.meshgrid(axis, -axis)
+    radius = np.hypot(x, y)
+    mask = radius < 1.0
+    scale = np.where(mask, 1.0, 1.0 / radius)
+    z = np.sqrt(np.maximum(0.0, 1.0 - radius * radius))
+    normal = np.stack([x * scale, y * scale, z], axis=-1)
+    u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
+    v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
+    return Sphere(mask, normal, np.stack([u, v], axis=-1))
