@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shader source from a MaterialX document: `generate`, for every target MaterialX has."""
+
+import re
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenGlsl as mx_glsl
+import MaterialX.PyMaterialXGenMdl as mx_mdl
+import MaterialX.PyMaterialXGenMsl as mx_msl
+import MaterialX.PyMaterialXGenOsl as mx_osl
+import MaterialX.PyMaterialXGenShader as mx_gen
+import MaterialX.PyMaterialXGenSlang as mx_slang
+
+from mxeon.document import DocumentError, label, read_document
+
+GENERATORS = {
+    "glsl": mx_glsl.GlslShaderGenerator,
+    "essl": mx_glsl.EsslShaderGenerator,
+    "vulkan": mx_glsl.VkShaderGenerator,
+    "wgsl": mx_glsl.WgslShaderGenerator,
+    "msl": mx_msl.MslShaderGenerator,
+    "slang": mx_slang.SlangShaderGenerator,
+    "osl": mx_osl.OslShaderGenerator,
+    "mdl": mx_mdl.MdlShaderGenerator,
+}
+TARGETS = tuple(GENERATORS)
+STAGES = ("pixel", "vertex")
+
+# Calls of the Cycles profile's closure, whose last two arguments are the flag and the result.
+CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;]*?(\w+), *\w+\);")
+
+
+class ApproximationWarning(UserWarning):
+    """A shader that has to use the nearest thing its renderer offers."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """A public input of a generated shader.
+
+    Attributes
+    ----------
+    name : str
+        The variable in the source.
+    type : str
+        MaterialX type word.
+    value : float, int, bool, str, tuple of float or None
+        The default.
+    path : str
+        The element of the document that it comes from.
+    """
+
+    name: str
+    type: str
+    value: object
+    path: str
+
+
+@dataclass(frozen=True)
+class Shader:
+    """Generated source.
+
+    Attributes
+    ----------
+    name : str
+        Valid as an identifier and a file name; unique within the document.
+    element : str
+        Name path of the renderable element.
+    target : str
+        One of TARGETS.
+    stages : mapping of str to str
+        Source text under "pixel" and, for targets with rasterisation, "vertex".
+    inputs : tuple of Input
+    document : MaterialX.Document
+        What it was generated from, with its data library.
+    """
+
+    name: str
+    element: str
+    target: str
+    stages: Mapping[str, str]
+    inputs: tuple[Input, ...]
+    document: mx.Document = field(repr=False, compare=False)
+
+
+def generate(document, target, element=None, *, library="eonlib", profile=None, lights=False):
+    """The shaders of a document, one for each renderable element.
+
+    Parameters
+    ----------
+    document : path-like, str or MaterialX.Document
+        A file, XML text, or a document; see `mxeon.document.read_document`.
+    target : str
+        glsl, essl, vulkan, wgsl, msl, slang, osl or mdl.
+    element : str or None
+        Name or name path of one renderable element; None for all.
+    library : str
+        "eonlib", or "stock" for MaterialX as it comes.
+    profile : str or None
+        "cycles" makes osl for Blender's Cycles.
+    lights : bool
+        Whether a rasterised shader gets MaterialX's directional light, as light type 1.
+
+    Returns
+    -------
+    tuple of Shader
+
+    Raises
+    ------
+    ValueError
+        If the target, the library, the profile or the element is unknown; lists the known ones.
+    DocumentError
+        If no shader can be made from the document.
+
+    Warns
+    -----
+    ApproximationWarning
+        If the profile cannot express a model that the document asks for.
+
+    Examples
+    --------
+    >>> text = '''<materialx version="1.39">
+    ...   <eon_diffuse_bsdf name="clay" type="BSDF"/>
+    ...   <surface name="shading" type="surfaceshader">
+    ...     <input name="bsdf" type="BSDF" nodename="clay"/>
+    ...   </surface>
+    ...   <surfacematerial name="look" type="material">
+    ...     <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
+    ...   </surfacematerial>
+    ... </materialx>'''
+    >>> [shader.name for shader in generate(text, "osl")]
+    ['look']
+    """
+    if target not in GENERATORS:
+        raise ValueError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
+    document = read_document(document, library, profile)
+    generator, context = _generator(document, target, lights)
+    shaders = tuple(
+        _generate(document, found, target, generator, context)
+        for found in renderable(document, element)
+    )
+    if profile == "cycles" and target == "osl":
+        _warn_of_approximation(shaders)
+    return shaders
+
+
+def renderable(document, element=None):
+    """The renderable elements of a document, or the one that is called `element`.
+
+    Raises
+    ------
+    DocumentError
+        If there is none.
+    ValueError
+        If there is none of that name or name path; lists the known ones.
+    """
+    found = mx_gen.findRenderableElements(document)
+    if not found:
+        raise DocumentError(
+            f"{label(document)}: must contain a renderable element (a surfacematerial, a surface "
+            "shader or an output of one); there is none"
+        )
+    if element is None:
+        return found
+    chosen = [each for each in found if element in (each.getName(), each.getNamePath())]
+    if not chosen:
+        known = ", ".join(each.getNamePath() for each in found)
+        raise ValueError(f"element must be one of {known}; got {element!r}")
+    return chosen
+
+
+def _generator(document, target, lights):
+    """A generator with colour and unit systems, and a context of its own.
+
+    A context remembers implementations by name, so it must not outlive its document.
+    """
+    generator = GENERATORS[target].create()
+    context = mx_gen.GenContext(generator)
+    context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+    generator.registerTypeDefs(document)
+
+    colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
+    colors.loadLibrary(document)
+    generator.setColorManagementSystem(colors)
+
+    units = mx_gen.UnitSystem.create(generator.getTarget())
+    converters = mx.UnitConverterRegistry.create()
+    for name in ("distance", "angle"):
+        definition = document.getUnitTypeDef(name)
+        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
+    units.loadLibrary(document)
+    units.setUnitConverterRegistry(converters)
+    generator.setUnitSystem(units)
+    context.getOptions().targetDistanceUnit = "meter"
+
+    if lights:
+        light = document.getNodeDef("ND_directional_light")
+        mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
+    return generator, context
+
+
+def _generate(document, element, target, generator, context):
+    name = mx.createValidName(element.getNamePath())
+    try:
+        shader = generator.generate(name, element, context)
+    except (mx.Exception, LookupError) as error:
+        reason = str(error).strip().splitlines()[0]
+        raise DocumentError(
+            f'{label(document)}: element "{name}" must give a {target} shader; {reason}'
+        ) from None
+    stages = {stage: shader.getSourceCode(stage) for stage in STAGES if shader.hasStage(stage)}
+    return Shader(
+        name, element.getNamePath(), target, MappingProxyType(stages), _inputs(shader), document
+    )
+
+
+def _inputs(shader):
+    blocks = shader.getStage("pixel").getUniformBlocks()
+    return tuple(
+        Input(port.getVariable(), port.getType().getName(), _plain(port.getValue()), port.getPath())
+        for name, block in blocks.items()
+        if name != "PrivateUniforms"
+        for port in block
+        if port.getPath() and not port.getType().isClosure()
+    )
+
+
+def _plain(value):
+    """A MaterialX value as a number, a string or a tuple of numbers."""
+    data = value.getData() if value else None
+    return data if isinstance(data, (type(None), bool, int, float, str)) else tuple(data)
+
+
+def _warn_of_approximation(shaders):
+    for shader in shaders:
+        values = {each.name: each.value for each in shader.inputs}
+        flags = CYCLES_CALL.findall(shader.stages["pixel"])
+        if not all(values.get(flag, flag == "1") for flag in flags):
+            warnings.warn(
+                f"{shader.element}: Cycles has no qualitative Oren-Nayar closure; where "
+                "energy_compensation is false, back-lit pairs are darker than the model",
+                ApproximationWarning,
+                stacklevel=3,
+            )
