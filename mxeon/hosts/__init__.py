@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Things that execute a shader, one module each; all offer the same verbs.
+
+    identity()                                   -> Identity
+    picture(shader, scene)                       -> ndarray (size, size, 3) float32, linear, 0 off the sphere
+    evaluate(shader, wo, wi, inputs, branch)     -> ndarray (N, 3), f cos(theta_i) in 1/sr, or the albedo
+    call(function, *arguments)                   -> ndarray (N, 3), a function of the shader twins
+
+each as far as that host can. A host that cannot do something here raises NotRun with the reason.
+"""
+
+from dataclasses import dataclass
+from importlib import import_module
+
+
+class NotRun(RuntimeError):
+    """Something could not be executed here; the message says what and why, in one line."""
+
+
+class ShaderError(RuntimeError):
+    """A shader that the host's compiler refuses; the message holds the compiler's own words."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Who executed: the host's name, its version and the device it ran on."""
+
+    name: str
+    version: str
+    device: str
+
+
+# Name on the command line -> module of this package with a class `Host`.
+HOSTS = ("gl", "cycles", "reference")
+
+
+def open_host(name):
+    """The host called `name`, started.
+
+    Raises
+    ------
+    ValueError
+        If there is no such host; lists the known ones.
+    NotRun
+        If it cannot run on this machine.
+    """
+    if name not in HOSTS:
+        raise ValueError(f"host must be one of {', '.join(HOSTS)}; got {name!r}")
+    return import_module(f"mxeon.hosts.{name}").Host()

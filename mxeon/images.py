@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Images that go into shaders: textures, surroundings and what a surrounding sends to a surface.
+
+Read with OpenImageIO, as float32 arrays (height, width, channels), linear or as stored: colour
+transforms are the shader's business.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
+RADIANCE_SIZE = 64  # rows from which it is summed
+
+
+def read_image(path):
+    """Pixels of an image file, row 0 at the top.
+
+    Raises
+    ------
+    OSError
+        If OpenImageIO cannot read it; in OpenImageIO's words.
+    """
+    import OpenImageIO as oiio
+
+    pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+    if pixels is None or not pixels.size:
+        raise OSError(f"{path}: must be an image that OpenImageIO reads; {oiio.geterror()}")
+    return pixels
+
+
+def read_texture(path):
+    """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0."""
+    return read_image(path)[::-1]
+
+
+def read_latlong(environment):
+    """Radiance of a surrounding as a latitude-longitude map, row 0 upwards (+y).
+
+    Parameters
+    ----------
+    environment : None, float or Path
+        Nothing, a uniform radiance, or an image file.
+    """
+    if isinstance(environment, (str, Path)):
+        return read_image(environment)[..., :3]
+    return np.full((1, 1, 3), environment or 0.0, dtype=np.float32)
+
+
+def irradiance(radiance):
+    """Irradiance over pi for every surface normal, as a latitude-longitude map.
+
+        (1 / pi) integral of L(omega) max(0, n . omega) d omega
+
+    A uniform surrounding gives its own radiance, exactly.
+    """
+    if radiance.shape[:2] == (1, 1):
+        return radiance
+    step = max(1, radiance.shape[0] // RADIANCE_SIZE)
+    rows, columns = (size // step for size in radiance.shape[:2])
+    blocks = radiance[: rows * step, : columns * step].reshape(rows, step, columns, step, -1)
+    coarse = blocks.mean(axis=(1, 3)).reshape(rows * columns, -1)
+    incoming, solid_angle = _directions(rows, columns)
+    normals, _ = _directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
+    weights = np.maximum(0.0, normals @ incoming.T) * solid_angle
+    weights /= weights.sum(axis=1, keepdims=True)
+    return (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1).astype(np.float32)
+
+
+def _directions(rows, columns):
+    """Directions and solid angles of a latitude-longitude map's pixels, as MaterialX maps them."""
+    polar = np.pi * (np.arange(rows) + 0.5) / rows
+    azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5)
+    polar, azimuth = np.meshgrid(polar, azimuth, indexing="ij")
+    x, z = np.sin(polar) * np.sin(azimuth), -np.sin(polar) * np.cos(azimuth)
+    directions = np.stack([x, np.cos(polar), z], axis=-1).reshape(-1, 3)
+    return directions, np.sin(polar).reshape(-1)
