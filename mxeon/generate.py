@@ -31,7 +31,7 @@ TARGETS = tuple(GENERATORS)
 STAGES = ("pixel", "vertex")
 
 # Calls of the Cycles profile's closure, whose last two arguments are the flag and the result.
-CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;]*?(\w+), *\w+\);")
+CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\);")
 
 
 class ApproximationWarning(UserWarning):
@@ -196,6 +196,8 @@ def _generator(document, target, lights):
     units.setUnitConverterRegistry(converters)
     generator.setUnitSystem(units)
     context.getOptions().targetDistanceUnit = "meter"
+    # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
+    context.getOptions().fileTextureVerticalFlip = target == "osl"
 
     if lights:
         light = document.getNodeDef("ND_directional_light")
