@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The report page: one HTML file with everything inside. Needs the `report` extra."""
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from mxeon.pictures import difference, difference_scale, srgb_encoded
+from mxeon.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
+from mxeon.results import FAILED, NOT_RUN, PASSED, Result
+from mxeon.verdict import summarize
+
+# Hosts in plots, in order: matplotlib's marker, and the character that looks like it.
+MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
+# How each verdict looks: its CSS class and its mark, for those who do not see the colour.
+LOOKS = {PASSED: ("passed", "✓"), FAILED: ("failed", "✗"), NOT_RUN: ("not-run", "–")}
+
+
+@dataclass(frozen=True)
+class Check:
+    """One row of the table of checks on one host with one library.
+
+    Attributes
+    ----------
+    key : str
+    anchor : str
+        Its identifier in the page.
+    results : tuple of Result
+        At least one, of different subjects.
+    """
+
+    key: str
+    anchor: str
+    results: tuple[Result, ...]
+
+    @property
+    def claim(self):
+        """What it tests, the same in all its results."""
+        return self.results[0].claim
+
+    @property
+    def verdict(self):
+        """The worst of its results."""
+        found = {result.verdict for result in self.results}
+        return next(verdict for verdict in (FAILED, NOT_RUN, PASSED) if verdict in found)
+
+    @property
+    def tightest(self):
+        """The result closest to its tolerance or furthest beyond, None if none ran."""
+        ran = [result for result in self.results if result.figure is not None]
+        return max(ran, key=share, default=None)
+
+    def distinct(self, attribute, verdict=None):
+        """The different non-empty values of `attribute`, of results with `verdict` or of all."""
+        found = [one for one in self.results if verdict in (None, one.verdict)]
+        return [value for value in dict.fromkeys(getattr(one, attribute) for one in found) if value]
+
+
+def share(result):
+    """Figure over tolerance; infinite where the figure is no finite number."""
+    if not math.isfinite(result.figure):
+        return math.inf
+    if not result.tolerance:
+        return math.inf if result.figure > 0.0 else 0.0
+    return result.figure / result.tolerance
+
+
+def number(value, digits=3):
+    """A number as text, or a dash for None.
+
+    Examples
+    --------
+    >>> number(2.3456e-07), number(0.25), number(None)
+    ('2.35e-7', '0.25', '–')
+    """
+    return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
+
+
+def vector(values):
+    """One or more numbers as text.
+
+    Examples
+    --------
+    >>> vector([1.0]), vector((0.5, 0.25))
+    ('1', '(0.5, 0.25)')
+    """
+    words = [number(float(value), 4) for value in np.ravel(values)]
+    return words[0] if len(words) == 1 else f"({', '.join(words)})"
+
+
+def checks_by_place(results):
+    """Mapping of (host, library) to the Checks made there, in order of appearance."""
+    found = {}
+    for result in results:
+        place = found.setdefault((result.host, result.library), {})
+        place.setdefault(result.check, []).append(result)
+    return {
+        place: [
+            Check(key, f"check-{column}-{row}", tuple(members))
+            for row, (key, members) in enumerate(rows.items())
+        ]
+        for column, (place, rows) in enumerate(found.items())
+    }
+
+
+def matrix(places):
+    """Rows of (key, Check or None in each place), one for each check made anywhere."""
+    columns = [{check.key: check for check in checks} for checks in places.values()]
+    keys = dict.fromkeys(key for column in columns for key in column)
+    return [(key, [column.get(key) for column in columns]) for key in keys]
+
+
+def reasons(results):
+    """Mapping of each reason for not running to the Results that it stopped."""
+    found = {}
+    for result in results:
+        if result.verdict == NOT_RUN:
+            found.setdefault(result.reason, []).append(result)
+    return found
+
+
+def materials(pictures):
+    """Mapping of (document, element) to mappings of scene to panels for the page."""
+    found = {}
+    for picture in pictures:
+        scenes = found.setdefault((picture.document, picture.element), {})
+        scenes.setdefault(picture.scene, []).append(picture)
+    return {
+        name: {scene: panels(members) for scene, members in scenes.items()}
+        for name, scenes in found.items()
+    }
+
+
+def panels(pictures):
+    """Panels of one scene: the reference if there is one, then pictures and differences."""
+    references = [one.reference for one in pictures if one.reference is not None]
+    found = []
+    if references:
+        found.append(_panel("reference", "reference", "float64", srgb_encoded(references[0])))
+    for one in pictures:
+        found.append(_panel("image", one.host, one.library, srgb_encoded(one.image)))
+        if one.reference is not None:
+            apart = difference(one.image, one.reference)
+            scale = difference_scale(apart)
+            note = f"{one.host}, max {number(apart.max(), 2)}"
+            pixels = difference_pixels(apart, scale)
+            found.append(_panel("difference", "difference", note, pixels) | {"scale": scale})
+    return found
+
+
+def _panel(kind, title, note, pixels):
+    return {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
+
+
+def plots(curves):
+    """A plot for each subject, library, rho and roughness, with all its hosts."""
+    hosts = list(dict.fromkeys(curve.host for curve in curves))
+    marks = {host: MARKERS[row % len(MARKERS)] for row, host in enumerate(hosts)}
+    found = {}
+    for curve in curves:
+        key = (curve.subject, curve.library, tuple(curve.rho), curve.roughness)
+        found.setdefault(key, []).append(curve)
+    return [_plot(members, marks, f"plot-{row}-") for row, members in enumerate(found.values())]
+
+
+def _plot(curves, marks, prefix):
+    svg = albedo_plot(curves, [marks[curve.host][0] for curve in curves], prefix)
+    legend = [
+        (marks[curve.host][1], curve.host, np.abs(curve.measured - curve.expected).max())
+        for curve in curves
+    ]
+    return {"curve": curves[0], "svg": Markup(svg), "legend": legend}
+
+
+def render(run):
+    """The page for `run`, an `mxeon.results.Run`.
+
+    Returns
+    -------
+    str
+        HTML that loads nothing and runs nothing. All that comes from documents, shaders and
+        hosts is escaped.
+    """
+    places = checks_by_place(run.results)
+    environment = Environment(
+        loader=PackageLoader("mxeon"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"number": number, "vector": vector}
+    environment.filters |= {"share": share, "look": LOOKS.__getitem__}
+    return environment.get_template("report.html.jinja").render(
+        run=run,
+        summary=summarize(run.results),
+        places=places,
+        matrix=matrix(places),
+        identities={identity.name: identity for identity in run.hosts},
+        reasons=reasons(run.results),
+        materials=materials(run.pictures),
+        gradient=Markup(difference_gradient()),
+        plots=plots(run.curves),
+        FAILED=FAILED,
+    )

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The verdict on a whole run, in a word, in numbers and in a sentence."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+from mxeon.results import FAILED, NOT_RUN, PASSED
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The verdict on a whole run.
+
+    Attributes
+    ----------
+    verdict : str
+        FAILED if any check failed, else NOT_RUN if any or all did not run, else PASSED.
+    counts : dict of str to int
+        How many checks ended as PASSED, FAILED, NOT_RUN.
+    sentence : str
+        The same for a reader.
+    """
+
+    verdict: str
+    counts: dict
+    sentence: str
+
+
+def summarize(results):
+    """Verdict on `results`, a sequence of `mxeon.results.Result`, as a Summary.
+
+    Examples
+    --------
+    >>> summarize(()).sentence
+    'No check ran.'
+    """
+    tally = Counter(result.verdict for result in results)
+    counts = {verdict: tally[verdict] for verdict in (PASSED, FAILED, NOT_RUN)}
+    total = len(results)
+    if counts[FAILED]:
+        where = Counter(place(result) for result in results if result.verdict == FAILED)
+        listed = "; ".join(f"{count} on {name}" for name, count in where.items())
+        return Summary(FAILED, counts, f"{counts[FAILED]} of {total} checks failed: {listed}.")
+    if not counts[PASSED]:
+        return Summary(NOT_RUN, counts, "No check ran.")
+    if counts[NOT_RUN]:
+        sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} checks did not run."
+        return Summary(NOT_RUN, counts, sentence)
+    hosts = " and ".join(dict.fromkeys(place(result) for result in results))
+    return Summary(PASSED, counts, f"All {total} checks passed on {hosts}.")
+
+
+def place(record):
+    """Where a Result, Picture or Curve comes from, in words: host and library."""
+    return f"{record.host} with {record.library}"
