@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong variants of EON that renderers in the field implement, to recognise them by."""
+
+import numpy as np
+
+from mxeon import formulas
+from mxeon.geometry import cosines, evaluate
+
+
+def eon_clamped_brdf(wo, wi, rho, roughness):
+    """Reflection of EON with dot(wo, wi) kept above 1e-8 before s is formed.
+
+        s = max(dot(wo, wi), 1e-8) - mu_o mu_i
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too bright where dot(wo, wi) < 0, and right elsewhere.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    MaterialX's GLSL node clamps the product, for the needs of other nodes, and passes it on.
+
+    Examples
+    --------
+    >>> eon_clamped_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.2, 0.8], 1.0).round(6)
+    array([0.033311, 0.156407])
+    """
+    return evaluate(_eon_clamped, wo, wi, rho, roughness=roughness)
+
+
+def eon_rho_cubed_brdf(wo, wi, rho, roughness):
+    """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too dark, and right where rho is 0 or 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The OSL closure of Blender's Cycles applies its albedo weight to the lobe once too often.
+
+    Examples
+    --------
+    >>> eon_rho_cubed_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.2, 0.8], 1.0).round(6)
+    array([0.018131, 0.095069])
+    """
+    return evaluate(_eon_rho_cubed, wo, wi, rho, roughness=roughness)
+
+
+def fon_white_lobe_brdf(wo, wi, rho, roughness):
+    """Reflection of FON plus the multiple-scattering lobe of a white surface.
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too bright, and right where rho is 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The MDL target forgets to tint the lobe: a black surface reflects 0.22 at roughness 1.
+
+    Examples
+    --------
+    >>> fon_white_lobe_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.0, 0.8], 1.0).round(6)
+    array([0.048519, 0.119705])
+    """
+    return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
+
+
+def _eon_clamped(wo, wi, rho, r):
+    mu_o, mu_i, s = cosines(wo, wi)
+    s = np.maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
+    return formulas.eon_of(mu_o, mu_i, s, rho, r, formulas.multiple_weight(rho, r))
+
+
+def _eon_rho_cubed(wo, wi, rho, r):
+    return formulas.eon_of(*cosines(wo, wi), rho, r, rho * formulas.multiple_weight(rho, r))
+
+
+def _fon_white_lobe(wo, wi, rho, r):
+    mu_o, mu_i, _ = cosines(wo, wi)
+    lost = formulas.loss(mu_o) * formulas.loss(mu_i)
+    white = r / (np.pi * formulas.fon_d(r) * (formulas.C1 - formulas.C2)) * lost
+    return formulas.fon(wo, wi, rho, r) + white

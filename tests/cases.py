@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Directions for tests: fixed seeds, grazing included."""
+
+import numpy as np
+
+
+def direction(mu, phi):
+    """Unit vector at azimuth phi whose cosine with the normal is mu."""
+    mu, phi = np.broadcast_arrays(np.asarray(mu, float), np.asarray(phi, float))
+    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1)
+
+
+def pairs(count, seed):
+    """`wo`, `wi`, `rho` of three channels and a number in [0, 1]; half the cosines near grazing."""
+    rng = np.random.default_rng(seed)
+    mu = rng.random((2, count))
+    grazing = rng.random((2, count)) < 0.5
+    mu = np.where(grazing, 10.0 ** rng.uniform(-9.0, 0.0, (2, count)), mu)
+    wo, wi = direction(mu, rng.uniform(0.0, 2.0 * np.pi, (2, count)))
+    return wo, wi, rng.random((count, 3)), rng.random(count)
+
+
+def parameter(row, fraction):
+    """Arguments after rho of the functions of a row, at a fraction of the parameter's interval."""
+    if row.parameter is None:
+        return ()
+    low, high = row.interval
+    return (low + (high - low) * fraction,)
