@@ -30,6 +30,18 @@ GENERATORS = {
 TARGETS = tuple(GENERATORS)
 STAGES = ("pixel", "vertex")
 
+# What OSL or MDL does not take as the name of a shader.
+RESERVED = frozenset(
+    "and auto bool break bsdf bsdf_measurement case cast char class closure color const continue "
+    "default delete displacement do double edf else emit enum export extern false float float2 "
+    "float3 float4 for friend goto hair_bsdf if illuminance illuminate import in inline int int2 "
+    "int3 int4 intensity_mode let light_profile long material matrix mdl module mutable new normal "
+    "not operator or output package point private protected public return shader short signed "
+    "sizeof static string struct surface switch template texture_2d this throw true try typedef "
+    "typename uniform union unsigned using varying vdf vector virtual void volatile volume while"
+    .split()
+)
+
 # Calls of the Cycles profile's closure, whose last two arguments are the flag and the result.
 CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\);")
 
@@ -139,8 +151,9 @@ def generate(document, target, element=None, *, library="eonlib", profile=None, 
         raise ValueError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
     document = read_document(document, library, profile)
     generator, context = _generator(document, target, lights)
+    names = _names(renderable(document))
     shaders = tuple(
-        _generate(document, found, target, generator, context)
+        _generate(document, found, names[found.getNamePath()], target, generator, context)
         for found in renderable(document, element)
     )
     if profile == "cycles" and target == "osl":
@@ -205,23 +218,35 @@ def _generator(document, target, lights):
     return generator, context
 
 
-def _generate(document, element, target, generator, context):
-    name = mx.createValidName(element.getNamePath())
+def _names(elements):
+    """Names for shaders by name path: identifiers in every language, no two alike."""
+    names = {}
+    for element in elements:
+        name = re.sub(r"\W", "_", element.getNamePath(), flags=re.ASCII)
+        if name[0].isdigit() or name in RESERVED:
+            name = f"shader_{name}"
+        while name in names.values():
+            name = mx.incrementName(name)
+        names[element.getNamePath()] = name
+    return names
+
+
+def _generate(document, element, name, target, generator, context):
+    path = element.getNamePath()
     try:
         shader = generator.generate(name, element, context)
     except (mx.Exception, LookupError) as error:
         reason = str(error).strip().splitlines()[0]
         raise DocumentError(
-            f'{label(document)}: element "{name}" must give a {target} shader; {reason}'
+            f'{label(document)}: element "{path}" must give {target}; {reason}'
         ) from None
     stages = {stage: shader.getSourceCode(stage) for stage in STAGES if shader.hasStage(stage)}
-    return Shader(
-        name, element.getNamePath(), target, MappingProxyType(stages), _inputs(shader), document
-    )
+    return Shader(name, path, target, MappingProxyType(stages), _inputs(shader), document)
 
 
 def _inputs(shader):
-    blocks = shader.getStage("pixel").getUniformBlocks()
+    stage = shader.getStage("pixel")
+    blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
     return tuple(
         Input(port.getVariable(), port.getType().getName(), _plain(port.getValue()), port.getPath())
         for name, block in blocks.items()

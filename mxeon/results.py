@@ -140,6 +140,8 @@ class Run:
     curves : tuple of Curve
     notes : tuple of str
         Warnings a reader has to see, e.g. what a host cannot express.
+    errors : tuple of str
+        One line for each document that could not be judged.
     documents : tuple of Path
     """
 
@@ -150,4 +152,5 @@ class Run:
     pictures: tuple[Picture, ...] = ()
     curves: tuple[Curve, ...] = ()
     notes: tuple[str, ...] = ()
+    errors: tuple[str, ...] = ()
     documents: tuple[Path, ...] = ()

@@ -14,7 +14,6 @@ from mxeon.images import irradiance, read_latlong, read_texture
 from mxeon.scene import sphere
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
-WIDTH = 1024  # pixels in a row of an evaluation
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
 
 
@@ -71,7 +70,7 @@ class Host:
         parameters = twins.signature("glsl", function)
         source = twins.source("glsl")
         pixel, named = fragment.function_evaluation(source, function, parameters, arguments)
-        return self._evaluate(fragment.VERTEX, pixel, named)
+        return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, named)
 
     def close(self):
         """Give the context back; the host is of no use afterwards."""
@@ -79,9 +78,8 @@ class Host:
 
     def _evaluate(self, vertex, pixel, arguments):
         """One pixel per element, as many as the longest argument has."""
-        count = max(map(len, arguments.values()))
-        size = WIDTH, -(-count // WIDTH)
-        textures = {name: _texels(values, size) for name, values in arguments.items()}
+        count, size = fragment.frame(arguments)
+        textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         textures |= {"u_envRadiance": WHITE, "u_envIrradiance": WHITE}
         program = self._program(vertex, pixel)
         return self._draw(program, textures, _triangle(), size).reshape(-1, 3)[:count]
@@ -163,11 +161,3 @@ def _triangle():
     corners = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
     normals = np.tile(np.array([[0, 0, 1]], dtype="f4"), (3, 1))
     return {"i_position": corners, "i_normal": normals}, np.arange(3, dtype="u4")
-
-
-def _texels(values, size):
-    """Values, one row per element or one for all, laid out over a frame of `size`."""
-    width, height = size
-    texels = np.zeros((width * height, values.shape[1]), dtype=np.float32)
-    texels[: len(values) if len(values) > 1 else None] = values
-    return texels.reshape(height, width, -1)

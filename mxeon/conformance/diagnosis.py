@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a host computes instead: the known model, or known defect, that its values are nearest to."""
+
+import numpy as np
+
+from mxeon import reference
+
+
+def nearest_value(probe):
+    """The model nearest to the probe's values, in words.
+
+    Its root-mean-square distance is given in units of pi f cos, with that of the next one.
+    """
+    batches = [_clipped(batch) for batch in probe.few]
+    return _nearest(
+        reference.MODELS + reference.DEFECTS,
+        [probe.direct(batch) for batch in batches],
+        lambda row: [batch.expected(row.name) for batch in batches],
+    )
+
+
+def nearest_albedo(probe):
+    """The model whose directional albedo is nearest to the probe's environment branch, in words."""
+    batches = [_clipped(batch) for batch in probe.cosines]
+    rows = [row for row in reference.MODELS + reference.DEFECTS if row.albedo_dir]
+    return _nearest(
+        rows,
+        [probe.albedo(batch) for batch in batches],
+        lambda row: [_albedo(row, batch) for batch in batches],
+    )
+
+
+def _albedo(row, batch):
+    parameter = [batch.inputs["roughness"]] if row.parameter else []
+    return row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], *parameter)
+
+
+def _clipped(batch):
+    """The batch with roughness in [0, 1], where every model takes it."""
+    return batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
+
+
+def _nearest(rows, measured, expected):
+    measured = np.concatenate(measured)
+    if not np.isfinite(measured).all():
+        return "values that are not finite: no model is near"
+    distances = {
+        row.title: np.sqrt(np.mean((measured - np.concatenate(expected(row))) ** 2)) for row in rows
+    }
+    first, second = sorted(distances, key=distances.get)[:2]
+    return (
+        f"nearest known model: {first} (rms {distances[first]:.2g}), "
+        f"then {second} ({distances[second]:.2g})"
+    )

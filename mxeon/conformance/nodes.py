@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of checks applied: a node on a host, with its controls and, on failure, a diagnosis."""
+
+import numpy as np
+
+from mxeon.conformance.checks import CHECKS
+from mxeon.conformance.diagnosis import nearest_albedo, nearest_value
+from mxeon.conformance.measures import integrated
+from mxeon.conformance.probes import FLAG, PairProbe
+from mxeon.hosts import NotRun, ShaderError
+from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
+
+CURVE = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
+CURVE_COSINES = np.linspace(0.05, 1.0, 20)
+
+
+def judge_subject(probe):
+    """Results of every check that applies to a node, as its host can be asked.
+
+    Returns
+    -------
+    tuple of Result
+    """
+    place = {
+        "subject": probe.subject.title,
+        "host": probe.host.name,
+        "library": probe.library,
+    }
+    return tuple(
+        _judge(check, probe, place, _diagnose)
+        for check in CHECKS
+        if probe.subject.model in check.models
+        and probe.host.name in check.tolerances
+        and not (check.key == "flag" and FLAG not in probe.subject.inputs)
+        and not (check.key == "environment" and not probe.cosines)
+    )
+
+
+def judge_twins(host, library):
+    """Results of the checks of the shader twins, which are the same whatever library is judged."""
+    place = {"subject": "shader twins", "host": host.name, "library": library}
+    return tuple(
+        _judge(check, host.call, place, lambda check, probe: "")
+        for check in CHECKS
+        if not check.models and host.name in check.tolerances
+    )
+
+
+def judge_curve(probe):
+    """The node's directional albedo over the cosine, integrated from its values.
+
+    Returns
+    -------
+    tuple of Curve
+        Empty where the host cannot be asked for free pairs.
+    """
+    if not isinstance(probe, PairProbe):
+        return ()
+    measured, expected = integrated(probe, CURVE_COSINES, CURVE["color"], CURVE["roughness"])
+    return (
+        Curve(
+            probe.subject.title,
+            probe.host.name,
+            probe.library,
+            CURVE["color"],
+            CURVE["roughness"],
+            CURVE_COSINES,
+            measured,
+            expected,
+        ),
+    )
+
+
+def _judge(check, probe, place, diagnose):
+    tolerance = check.tolerances[place["host"]]
+    try:
+        found = check.measure(probe, tolerance.error)
+        wrong = check.measure(check.control(probe), tolerance.error)
+    except NotRun as reason:
+        return Result(check.key, check.claim, **place, verdict=NOT_RUN, reason=str(reason))
+    except ShaderError as error:
+        return Result(check.key, check.claim, **place, verdict=FAILED, diagnosis=str(error))
+    right, caught = found.figure <= tolerance.limit, wrong.figure > tolerance.limit
+    return Result(
+        check.key,
+        check.claim,
+        **place,
+        verdict=PASSED if right and caught else FAILED,
+        figure=found.figure,
+        unit=tolerance.unit,
+        tolerance=tolerance.limit,
+        derivation=tolerance.derivation,
+        worst=found.worst,
+        diagnosis="" if right else diagnose(check, probe),
+        control=Control(check.variant, wrong.figure, caught),
+    )
+
+
+def _diagnose(check, probe):
+    return nearest_albedo(probe) if check.key in ("environment", "furnace") else nearest_value(probe)

@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a check asks of a host: values and albedos of one node over batches of pairs.
+
+A host that evaluates gets free pairs, a host that only makes pictures gets the points of a sphere;
+both answer in the same form, so a check is written once.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from mxeon import reference
+from mxeon.generate import generate
+from mxeon.hosts.reference import local_directions
+from mxeon.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
+
+SEED = 1
+PAIRS = 1 << 20
+FEW = 1 << 16  # pairs of the checks that do not ask for a million
+GRAZING = 1e-6  # smallest cosine of the random pairs
+RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
+
+# Colours and roughnesses of the pictures that stand for a node on hosts that only make pictures.
+PICTURE_INPUTS = (
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
+)
+PICTURE_SIZE = 128
+
+# Host and model where no closure gives the model for s < 0: such pairs are not judged.
+FRONT_LIT_ONLY = (("cycles", "qon"),)
+
+NODE_DOCUMENT = """<?xml version="1.0"?>
+<materialx version="1.39">
+  <constant name="shading_normal" type="vector3">
+    <input name="value" type="vector3" value="{normal}" />
+  </constant>
+  <{node} name="lobe" type="BSDF">
+{inputs}
+  </{node}>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe" />
+  </surface>
+  <surfacematerial name="{node}" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>
+"""
+FLAG = "energy_compensation"
+TYPES = {
+    "weight": "float",
+    "color": "color3",
+    "roughness": "float",
+    "normal": "vector3",
+    FLAG: "boolean",
+}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A node as it is judged: with the flag it is used with and the model it has to be.
+
+    Attributes
+    ----------
+    node : str
+        Node category.
+    flag : bool or None
+        energy_compensation, or None where the node has no such input.
+    model : str
+        Name of a row of `mxeon.reference.MODELS`.
+    """
+
+    node: str
+    flag: bool | None
+    model: str
+
+    @property
+    def stock(self):
+        """Whether MaterialX has this node as it comes."""
+        return self.node != "eon_diffuse_bsdf"
+
+    @property
+    def title(self):
+        """How reports call it."""
+        flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
+        return self.node + flag
+
+    @property
+    def inputs(self):
+        """Names of the node's inputs."""
+        return tuple(name for name in TYPES if self.flag is not None or name != FLAG)
+
+    def with_flag(self, inputs):
+        """Inputs with the subject's flag, unless they set it."""
+        return inputs if self.flag is None else {FLAG: self.flag, **inputs}
+
+    def document(self, inputs=None):
+        """MaterialX text of a material that is this node alone, with the inputs given."""
+        given = self.with_flag(inputs or {})
+        lines = "\n".join(
+            f'    <input name="{name}" type="{TYPES[name]}" {_source(name, value)} />'
+            for name, value in given.items()
+        )
+        normal = _text(given.get("normal", (0.0, 0.0, 1.0)))
+        return NODE_DOCUMENT.format(node=self.node, inputs=lines, normal=normal)
+
+
+SUBJECTS = (
+    Subject("oren_nayar_diffuse_bsdf", True, "eon"),
+    Subject("oren_nayar_diffuse_bsdf", False, "qon"),
+    Subject("eon_diffuse_bsdf", None, "eon"),
+)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Pairs of directions and the node's inputs for them.
+
+    Attributes
+    ----------
+    wo, wi : ndarray, shape (N, 3)
+        Local frame; float32 numbers, so that a float32 host sees the same pairs.
+    inputs : mapping of str to array
+        Node inputs, (N, ...) or constant.
+    scene : Scene or None
+        The picture whose points these are.
+    """
+
+    wo: np.ndarray
+    wi: np.ndarray
+    inputs: Mapping
+    scene: Scene | None = None
+
+    def altered(self, **inputs):
+        """The same pairs with other inputs."""
+        return replace(self, inputs={**self.inputs, **inputs})
+
+    def first(self, count):
+        """The first pairs of the batch."""
+        inputs = {name: values[:count] for name, values in self.inputs.items()}
+        return replace(self, wo=self.wo[:count], wi=self.wi[:count], inputs=inputs)
+
+    def expected(self, model):
+        """pi f cos(theta_i) of a model or a known defect, (N, 3)."""
+        row = reference.model(model)
+        parameter = [self.inputs["roughness"]] if row.parameter else []
+        value = row.brdf(self.wo, self.wi, self.inputs["color"], *parameter)
+        return np.pi * value * self.wi[..., 2:]
+
+
+@dataclass(frozen=True)
+class PairProbe:
+    """A node on a host that evaluates any pairs."""
+
+    host: object
+    subject: Subject
+    library: str
+
+    @cached_property
+    def _shader(self):
+        profile = self.host.profile
+        document = self.subject.document()
+        return generate(document, self.host.target, library=self.library, profile=profile)[0]
+
+    @cached_property
+    def batches(self):
+        """One batch of PAIRS random pairs; a quarter of each direction grazes the surface."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
+        return (Batch(wo, wi, random_inputs(rng, PAIRS, reference.model(self.subject.model))),)
+
+    @cached_property
+    def few(self):
+        """FEW of them."""
+        return tuple(batch.first(FEW) for batch in self.batches)
+
+    @property
+    def cosines(self):
+        """Directions for the environment branch, which takes no heed of `wi`."""
+        return self.few
+
+    def direct(self, batch):
+        """pi f cos(theta_i), (N, 3)."""
+        return np.pi * self._evaluate(batch, "direct")
+
+    def albedo(self, batch):
+        """What the environment branch makes of a uniform surrounding of radiance 1, (N, 3)."""
+        return self._evaluate(batch, "environment")
+
+    def call(self, function, *arguments):
+        """A function of the shader twins."""
+        return self.host.call(function, *arguments)
+
+    def _evaluate(self, batch, branch):
+        inputs = self.subject.with_flag(batch.inputs)
+        values = self.host.evaluate(self._shader, batch.wo, batch.wi, inputs, branch)
+        return values.astype(np.float64)
+
+
+@dataclass(frozen=True)
+class PictureProbe:
+    """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
+
+    host: object
+    subject: Subject
+    library: str
+
+    @cached_property
+    def batches(self):
+        """The lit points away from rim and terminator, for each light and PICTURE_INPUTS."""
+        batches = (
+            self._batch(replace(scene, size=PICTURE_SIZE), inputs)
+            for scene in (SIDE, FRONT, BACK)
+            for inputs in PICTURE_INPUTS
+        )
+        return tuple(batch for batch in batches if len(batch.wo))
+
+    @property
+    def few(self):
+        """The same: they are few."""
+        return self.batches
+
+    @cached_property
+    def cosines(self):
+        """The points in a white surrounding."""
+        if (self.host.name, self.subject.model) in FRONT_LIT_ONLY:
+            return ()
+        scene = replace(FURNACE, size=PICTURE_SIZE)
+        return tuple(self._batch(scene, inputs) for inputs in PICTURE_INPUTS)
+
+    def direct(self, batch):
+        """pi f cos(theta_i), (N, 3)."""
+        return self._picture(batch)
+
+    albedo = direct
+
+    def call(self, function, *arguments):
+        """A function of the shader twins."""
+        return self.host.call(function, *arguments)
+
+    def _batch(self, scene, inputs):
+        wo, wi, chosen = picture_pairs(scene)
+        chosen &= self._expressible(wo, wi)
+        return Batch(wo[chosen], wi[chosen], inputs, scene)
+
+    def _expressible(self, wo, wi):
+        """Pairs for which the host has a closure that can be the model."""
+        if (self.host.name, self.subject.model) not in FRONT_LIT_ONLY:
+            return np.ones(len(wo), dtype=bool)
+        return wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0
+
+    def _picture(self, batch):
+        text = self.subject.document(batch.inputs)
+        profile = self.host.profile
+        shader = generate(text, self.host.target, library=self.library, profile=profile)[0]
+        image = self.host.picture(shader, batch.scene)[sphere(batch.scene.size).mask]
+        wo, wi, chosen = picture_pairs(batch.scene)
+        return image[chosen & self._expressible(wo, wi)].astype(np.float64)
+
+
+PROBES = {"gl": PairProbe, "cycles": PictureProbe}
+
+
+def picture_pairs(scene):
+    """Directions at the points of the sphere, and which points are judged.
+
+    Returns
+    -------
+    wo, wi : ndarray, shape (N, 3)
+        One row per pixel on the sphere; wi is wo where there is no distant light.
+    chosen : ndarray of bool, shape (N,)
+        Both cosines at least RIM.
+    """
+    points = sphere(scene.size)
+    normal = points.normal[points.mask]
+    wo = local_directions(normal, (0.0, 0.0, 1.0))
+    wi = wo if scene.light is None else local_directions(normal, scene.light)
+    return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
+
+
+def directions(rng, count):
+    """Random directions: cosines uniform, a quarter of them log-uniform down to GRAZING."""
+    mu = rng.random(count)
+    mu[: count // 4] = GRAZING ** rng.random(count // 4)
+    rng.shuffle(mu)
+    mu = mu.astype(np.float32).astype(np.float64)
+    radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
+    return _float32([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+
+
+def random_inputs(rng, count, row):
+    """Random colours and roughnesses; an eighth of each lies on either end of its range."""
+    largest = row.interval[1] if row.parameter else 1.0
+    color, roughness = rng.random((count, 3)), rng.random(count)
+    color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
+    roughness = largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
+    roughness = np.minimum(roughness.astype(np.float32), np.nextafter(np.float32(largest), 0))
+    return {"color": _float32(color.T), "roughness": roughness.astype(np.float64)}
+
+
+def _float32(columns):
+    """Columns as rows of float32 numbers in float64."""
+    return np.stack(columns, axis=-1).astype(np.float32).astype(np.float64)
+
+
+def _source(name, value):
+    """Where an input comes from. MaterialX drops the value of a normal that is not connected."""
+    return 'nodename="shading_normal"' if name == "normal" else f'value="{_text(value)}"'
+
+
+def _text(value):
+    if isinstance(value, bool):
+        return str(value).lower()
+    return ", ".join(repr(float(each)) for each in np.ravel(value))
