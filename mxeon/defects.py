@@ -99,6 +99,38 @@ def fon_white_lobe_brdf(wo, wi, rho, roughness):
     return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
 
 
+def qon_fitted_albedo_dir(mu, rho, sigma):
+    """Directional albedo of QON as MaterialX fits it: a quotient of polynomials.
+
+    Parameters
+    ----------
+    mu : array_like, shape (...)
+        Cosine of the polar angle, dimensionless, in [0, 1].
+    rho : array_like, shape (..., C)
+        Reflectance per channel, dimensionless, in [0, 1].
+    sigma : array_like, shape (...)
+        In radian, in [0, pi/2].
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Dimensionless; off by up to 0.063 at rho 1.
+
+    Notes
+    -----
+    Coefficients of MaterialX 1.39.5, `mx_microfacet_diffuse.glsl`.
+
+    Examples
+    --------
+    >>> qon_fitted_albedo_dir(0.5, [0.5, 1.0], 1.0).round(6)
+    array([0.426535, 0.85307 ])
+    """
+    mu, sigma = np.asarray(mu), np.asarray(sigma)
+    over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma**2
+    under = 1.0 - 0.6076 * sigma - 0.4993 * mu * sigma + 2.0315 * sigma**2
+    return (over / under)[..., np.newaxis] * rho
+
+
 def _eon_clamped(wo, wi, rho, r):
     mu_o, mu_i, s = cosines(wo, wi)
     s = np.maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i

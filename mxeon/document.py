@@ -6,7 +6,9 @@ contains itself. Everything of that kind is refused here, in one line, before ge
 """
 
 import math
+import os
 from pathlib import Path
+from textwrap import shorten
 
 import MaterialX as mx
 
@@ -14,11 +16,15 @@ from mxeon.library import load_library
 
 NUMERIC = ("float", "color3", "color4", "vector2", "vector3", "vector4", "matrix33", "matrix44")
 TEXT = "document text"
+LONGEST = 1000  # characters of a message, which may quote the document
 DIFFUSE_NODES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
 class DocumentError(ValueError):
     """A document that no shader can be made from; names the place, the rule and the value."""
+
+    def __init__(self, message):
+        super().__init__(shorten(message, LONGEST))
 
 
 def read_document(source, library="eonlib", profile=None):
@@ -39,8 +45,9 @@ def read_document(source, library="eonlib", profile=None):
     Raises
     ------
     DocumentError
-        If it cannot be read, is not MaterialX, comes from a later version, contains a number that
-        is not finite or out of range, names a file that does not exist, or contains itself.
+        If it cannot be read, is not MaterialX or not valid by its rules, comes from a later version,
+        contains a number that is not finite or out of range, names a file that does not exist, or
+        contains itself.
     """
     data = load_library(library, profile)
     document = mx.createDocument()
@@ -49,13 +56,12 @@ def read_document(source, library="eonlib", profile=None):
         document.setSourceUri(source.getSourceUri())
     elif str(source).lstrip().startswith("<"):
         _parse(mx.readFromXmlString, document, str(source), TEXT)
-    elif Path(source).is_file():
+    elif os.path.isfile(source):
         _parse(mx.readFromXmlFile, document, str(source), str(source))
         document.setSourceUri(str(source))
     else:
-        raise DocumentError(f"{source}: must be a readable file; there is none of that name")
-    folder = Path(document.getSourceUri()).resolve().parent
-    mx.flattenFilenames(document, mx.FileSearchPath(str(folder)))
+        raise DocumentError(f"document must be a readable file; got {str(source)!r}")
+    mx.flattenFilenames(document, mx.FileSearchPath(str(_folder(document))))
     document.setDataLibrary(data)
     _check(document)
     return document
@@ -64,6 +70,12 @@ def read_document(source, library="eonlib", profile=None):
 def label(document):
     """How messages call a document: the file it was read from, or a word for text."""
     return document.getSourceUri() or TEXT
+
+
+def _folder(document):
+    """Where relative file names start: at the document's file, or the working folder for text."""
+    file = document.getSourceUri()
+    return Path(file).resolve().parent if file else Path.cwd()
 
 
 def _parse(read, document, source, place):
@@ -86,28 +98,21 @@ def _check(document):
     for element in document.traverseTree():
         if element.isA(mx.ValueElement) and element.getValueString():
             _check_value(element)
+    _check_validity(document)
 
 
 def _check_value(element):
     place = f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
     kind, text = element.getType(), element.getValueString()
+    if element.getValue() is None:
+        numbers = " of finite numbers" if kind in NUMERIC else ""
+        raise DocumentError(f"{place} must be a valid {kind}{numbers}; got {text}")
     if kind in NUMERIC:
-        values = _numbers(text, place)
         low, high = _range(element)
-        if not all(low <= value <= high for value in values):
+        if not all(low <= float(value) <= high for value in text.split(",")):
             raise DocumentError(f"{place} must lie in [{low:g}, {high:.6g}]; got {text}")
-    elif kind == "filename" and "<" not in text and not Path(text).is_file():
+    elif kind == "filename" and "<" not in text and not os.path.isfile(text):
         raise DocumentError(f"{place} must name a file that exists; got {text}")
-
-
-def _numbers(text, place):
-    try:
-        values = [float(part) for part in text.split(",")]
-    except ValueError:
-        values = [math.nan]
-    if not all(map(math.isfinite, values)):
-        raise DocumentError(f"{place} must be finite numbers; got {text}")
-    return values
 
 
 def _range(element):
@@ -140,3 +145,14 @@ def _check_recursion(document):
                 raise DocumentError(f'{label(document)}: nodedef "{name}" must not contain itself')
             seen |= parts
             waiting.extend(parts)
+
+
+def _check_validity(document):
+    """Refuse what breaks MaterialX's own rules: it would fall back to a default in silence."""
+    try:
+        valid, message = document.validate()
+    except (mx.Exception, LookupError) as error:
+        valid, message = False, str(error)
+    if not valid:
+        reason = message.strip().splitlines()[0]
+        raise DocumentError(f"{label(document)}: must be a valid MaterialX document; {reason}")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures as files: linear EXR, sRGB PNG, and the difference of two pictures."""
 
+from pathlib import Path
+
 import numpy as np
 import OpenImageIO as oiio
 
@@ -90,6 +92,23 @@ def difference_scale(difference_map):
     # Read as decimals, so that the bounds are the printed numbers and not products of them.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
     return next((step for step in steps if nearly_all <= step), steps[-1])
+
+
+def write_picture(path, image, metadata):
+    """Writes a linear picture as what the ending of `path` says; see `write_exr`, `write_png`.
+
+    Raises
+    ------
+    ValueError
+        If the ending is neither .exr nor .png.
+    OSError
+        If the file cannot be written.
+    """
+    writers = {".exr": write_exr, ".png": write_png}
+    ending = Path(path).suffix.lower()
+    if ending not in writers:
+        raise ValueError(f"output must end in {' or '.join(writers)}; got {str(path)!r}")
+    writers[ending](path, image, metadata)
 
 
 def write_exr(path, image, metadata):

@@ -112,4 +112,11 @@ DEFECTS = (
     Model("eon_clamped", "EON with clamped dot(wo, wi)", defects.eon_clamped_brdf, "roughness"),
     Model("eon_rho_cubed", "EON with rho^3", defects.eon_rho_cubed_brdf, "roughness"),
     Model("fon_white_lobe", "FON + white lobe", defects.fon_white_lobe_brdf, "roughness"),
+    Model(
+        "qon_fitted",
+        "QON with MaterialX's fit of its albedo",
+        models.qon_brdf,
+        "sigma",
+        defects.qon_fitted_albedo_dir,
+    ),
 )

@@ -48,6 +48,26 @@ FRONT = Scene("front", light=(0.0, 0.0, 1.0))
 SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
 BACK = Scene("back", light=_towards(azimuth=160, polar=130))
 FURNACE = Scene("furnace", environment=1.0)
+SCENES = (FRONT, SIDE, BACK, FURNACE)
+
+
+def scene(name):
+    """The scene of SCENES that is called `name`.
+
+    Raises
+    ------
+    ValueError
+        If there is none; lists the known ones.
+
+    Examples
+    --------
+    >>> scene("furnace").environment
+    1.0
+    """
+    known = {each.name: each for each in SCENES}
+    if name not in known:
+        raise ValueError(f"scene must be one of {', '.join(known)}; got {name!r}")
+    return known[name]
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shader twins as text: the model family in GLSL and in OSL, and its functions' signatures."""
+"""The shader twins as text: models and sampling in GLSL and in OSL, and the functions' signatures."""
 
 import re
 
@@ -7,10 +7,12 @@ from mxeon.library import data_folder
 
 LANGUAGES = ("glsl", "osl")
 FAMILY = "oren_nayar_family"
+# Includes all the others.
+ALL = "eon_sampling"
 INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
 
 
-def source(language, stem=FAMILY):
+def source(language, stem=ALL):
     """Text of a twin with its own includes put in place.
 
     Parameters

@@ -10,7 +10,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.document import read_document
-from mxeon.generate import generate
+from mxeon.generation import generate
 from mxeon.library import examples_folder
 
 DOCUMENTS = sorted(examples_folder().glob("*.mtlx"))

@@ -19,7 +19,7 @@ from tolerances import (
     TWIN_VALUE,
 )
 
-from mxeon.generate import ApproximationWarning, generate
+from mxeon.generation import ApproximationWarning, generate
 from mxeon.hosts import NotRun, ShaderError, cycles, cycles_process
 from mxeon.hosts.reference import Host as Reference
 from mxeon.models import eon_brdf

@@ -20,9 +20,10 @@ from mxeon import albedo, formulas, models, twins
 from mxeon.hosts import NotRun, open_host
 from mxeon.library import data_folder
 
-STEMS = ("eon", twins.FAMILY)
+STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling")
 WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan", "osl": "glsl"}
 MODELS = ("lambert", "oren_nayar", "qon", "fon", "eon")
+SAMPLERS = ("uniform", "cosine", "ltc0", "ltc", "cltc")
 VALUES = (
     models.lambert_brdf,
     models.oren_nayar_brdf,
@@ -98,10 +99,10 @@ def test_osl_twin_with_four_words_replaced_is_the_glsl_twin(stem):
 
 
 @by_stem
-def test_twins_keep_constants_in_macros_and_functions_under_model_names(stem):
+def test_twins_keep_constants_in_macros_and_functions_under_names_of_models_and_samplers(stem):
     outside = [line for line in code(stem).splitlines() if line and line[0] not in " {}"]
-    function = rf"(float|vec3) ({'|'.join(MODELS)})_\w+\(.*\)"
-    allowed = re.compile(rf"#define EON_\w+ .*|#include \"eon.glsl\"|{function}")
+    function = rf"(float|vec3) ({'|'.join(MODELS + SAMPLERS)})_\w+\(.*\)"
+    allowed = re.compile(rf"#define EON_\w+ .*|#include \"\w+.glsl\"|{function}")
     assert [line for line in outside if not allowed.fullmatch(line)] == []
 
 
@@ -114,7 +115,8 @@ def test_twins_use_no_word_or_number_that_one_language_lacks(stem):
 
 @by_stem
 def test_twins_take_components_of_directions_only(stem):
-    assert set(re.findall(r"(\w+)\.[a-z]\w*", re.sub(r'".*"', "", code(stem)))) <= {"wo", "wi"}
+    found = set(re.findall(r"(\w+)\.[a-z]\w*", re.sub(r'".*"', "", code(stem))))
+    assert found <= {"wo", "wi", "wh", "back", "turn"}
 
 
 @pytest.mark.parametrize("function", VALUES + ALBEDOS, ids=name_of)

@@ -63,7 +63,7 @@ def check(files=(), hosts=("gl",), library="eonlib", progress=list):
             raise ValueError(f"host must be one of {', '.join(PROBES)}; got {host!r}")
     if library not in LIBRARIES:
         raise ValueError(f"library must be one of {', '.join(LIBRARIES)}; got {library!r}")
-    files = [Path(file) for file in files] or sorted(examples_folder().glob("*.mtlx"))
+    files = [Path(file) for file in files] or _examples(library)
     subjects = [subject for subject in SUBJECTS if subject.stock or library != "stock"]
     steps = [lambda: Findings(results=check_sources(subjects, library))]
     identities = []
@@ -85,6 +85,13 @@ def check(files=(), hosts=("gl",), library="eonlib", progress=list):
         documents=tuple(files),
         **{name: sum((getattr(part, name) for part in parts), ()) for name in vars(Findings())},
     )
+
+
+def _examples(library):
+    """The bundled documents, but for those with a node that the library lacks."""
+    files = sorted(examples_folder().glob("*.mtlx"))
+    lacking = [subject.node for subject in SUBJECTS if library == "stock" and not subject.stock]
+    return [file for file in files if not any(node in file.read_text() for node in lacking)]
 
 
 def _steps(host, judge, subjects, files, library):

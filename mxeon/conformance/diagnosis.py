@@ -12,8 +12,9 @@ def nearest_value(probe):
     Its root-mean-square distance is given in units of pi f cos, with that of the next one.
     """
     batches = [_clipped(batch) for batch in probe.few]
+    rows = {row.brdf: row for row in reference.DEFECTS + reference.MODELS}
     return _nearest(
-        reference.MODELS + reference.DEFECTS,
+        rows.values(),
         [probe.direct(batch) for batch in batches],
         lambda row: [batch.expected(row.name) for batch in batches],
     )

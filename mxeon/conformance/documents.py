@@ -9,7 +9,7 @@ import mxeon
 from mxeon.conformance.checks import ROUNDING
 from mxeon.conformance.measures import absolute
 from mxeon.conformance.probes import picture_pairs
-from mxeon.generate import ApproximationWarning, generate
+from mxeon.generation import ApproximationWarning, generate
 from mxeon.hosts import NotRun, ShaderError
 from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.scene import BACK, FURNACE, SIDE, sphere

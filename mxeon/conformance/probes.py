@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from mxeon import reference
-from mxeon.generate import generate
+from mxeon.generation import generate
 from mxeon.hosts.reference import local_directions
 from mxeon.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
 

@@ -3,7 +3,7 @@
 
 import re
 
-from mxeon.generate import TARGETS, generate
+from mxeon.generation import TARGETS, generate
 from mxeon.results import FAILED, PASSED, Control, Result
 
 COUNT = "a count"

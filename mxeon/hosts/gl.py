@@ -72,6 +72,39 @@ class Host:
         pixel, named = fragment.function_evaluation(source, function, parameters, arguments)
         return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, named)
 
+    def accumulate(self, pixel, uniforms, size, passes):
+        """The sum over passes of what a fragment shader draws; the uniform `tracer_pass` counts them.
+
+        Parameters
+        ----------
+        pixel : str
+            Fragment shader.
+        uniforms : mapping of str to value
+            Those that the shader does not use are left out.
+        size : tuple of int
+            Width and height.
+        passes : iterable of int
+            What `tracer_pass` is in each.
+
+        Returns
+        -------
+        ndarray, shape (height, width, 4), float32
+            Row 0 at the bottom.
+        """
+        context, program = self._context, self._program(fragment.VERTEX, pixel)
+        _set(program, uniforms)
+        vertices, indices = _triangle()
+        corners = [(context.buffer(vertices["i_position"]), "3f", "i_position")]
+        triangle = context.vertex_array(program, corners, context.buffer(indices))
+        frame = self._frame(size)
+        context.enable(context.BLEND)
+        context.blend_func = context.ONE, context.ONE
+        for each in passes:
+            program["tracer_pass"].value = each
+            triangle.render()
+        context.disable(context.BLEND)
+        return _pixels(frame, size)
+
     def close(self):
         """Give the context back; the host is of no use afterwards."""
         self._context.release()

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """WebGL2 in a headless Chromium: generated ESSL as a browser runs it, in float32.
 
-Playwright drives the browser that is installed. The page, `webgl.js`, draws one frame per request;
+Playwright drives the browser that is installed. The page, `webgl.js`, draws a frame per request;
 numbers go there in a file, bit for bit, and come back as text. No host name resolves in this
-browser, so nothing leaves the machine.
+browser: nothing leaves the machine.
 """
 
 import base64
 import os
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,8 +19,12 @@ import numpy as np
 from mxeon import twins
 from mxeon.hosts import Identity, NotRun, ShaderError, fragment
 
-PROGRAM = "MXEON_CHROMIUM"  # environment variable that names another program
-INSTALL = "pip install 'mxeon[webgl]'; on Debian also: apt-get install chromium"
+try:
+    from playwright import sync_api
+except ImportError:
+    sync_api = None
+
+PROGRAM = "MXEON_CHROMIUM"  # environment variable that names the browser
 FLAGS = (
     "--use-gl=angle",
     "--use-angle=swiftshader",  # Chromium's own software driver, alike on every machine
@@ -30,7 +35,7 @@ FLAGS = (
 PAGE = "<input type='file'><script>{}</script>"
 IDENTITY = np.eye(4).ravel().tolist()
 
-# ESSL gives uniforms no initial values, as GLSL does.
+# ESSL gives uniforms no initial values.
 UNIFORMS = {
     "u_worldMatrix": IDENTITY,
     "u_viewProjectionMatrix": IDENTITY,
@@ -45,10 +50,12 @@ WHITE = np.ones((1, 1, 3), dtype=np.float32)
 class Host:
     """A browser, started anew after it died.
 
+    Playwright wants a thread without an event loop, and always the same: it gets one of its own.
+
     Parameters
     ----------
     limit : float
-        Seconds that one frame may take.
+        Seconds that a frame may take.
 
     Raises
     ------
@@ -61,13 +68,29 @@ class Host:
     profile = None
 
     def __init__(self, limit=300.0):
+        if sync_api is None:
+            raise NotRun("webgl: Playwright is not installed; pip install 'mxeon[webgl]'")
+        self._program = _program()
         self._limit = 1000.0 * limit
+        self._page = None
         self._stack = ExitStack()
-        self._start()
+        self._thread = ThreadPoolExecutor(max_workers=1)
+        self._ask("identify")
 
     def identity(self):
         """Version and device as the browser names them."""
-        return Identity(self.name, f"Chromium {self._version}, WebGL2", self._device)
+        found = self._ask("identify")
+        return Identity(self.name, f"Chromium {found['version']}, WebGL2", found["device"])
+
+    def picture(self, shader, scene):
+        """Nothing: free pairs tell more.
+
+        Raises
+        ------
+        NotRun
+            Always.
+        """
+        raise NotRun("webgl: there are no pictures here; compare values instead")
 
     def evaluate(self, shader, wo, wi, inputs, branch):
         """The shader's own BSDF function for pairs of directions; see `mxeon.hosts`."""
@@ -83,31 +106,77 @@ class Host:
         )
         return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, named)
 
-    def picture(self, shader, scene):
-        """Nothing: pairs tell what a picture would.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("webgl: there are no pictures here; compare values instead")
-
     def close(self):
-        """End the browser and remove the temporary file."""
-        self._stack.close()
-        self._page = None
+        """End the browser; the next request starts another."""
+        self._thread.submit(self._stop).result()
+
+    def _evaluate(self, vertex, pixel, arguments):
+        """One pixel per element, as many as the longest argument has."""
+        count, size = fragment.frame(arguments)
+        textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
+        textures |= {"u_envRadiance": WHITE, "u_envIrradiance": WHITE}
+        with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
+            numbers = Path(folder, "numbers")
+            job = {"vertex": vertex, "pixel": pixel, "size": size, "uniforms": UNIFORMS}
+            job |= {"attributes": TRIANGLE, "textures": _write(numbers, textures)}
+            answer = self._ask("draw", job, numbers)
+        if "refused" in answer:
+            raise ShaderError(f"webgl: {answer['refused'].strip()}")
+        pixels = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
+        return pixels.reshape(-1, 4)[:count, :3]
+
+    def _ask(self, function, job=None, numbers=None):
+        """What a function of the page returns; a browser that dies or hangs is ended."""
+        answer = self._thread.submit(self._answer, function, job, numbers).result()
+        if "failed" in answer:
+            raise NotRun(f"webgl: {answer['failed']}")
+        return answer
+
+    def _answer(self, function, job, numbers):
+        try:
+            if self._page is None:
+                self._start()
+            if numbers is not None:
+                self._page.set_input_files("input", numbers)
+            handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
+            return handle.json_value() | {"version": self._page.context.browser.version}
+        except sync_api.Error as error:
+            self._stop()
+            return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
 
     def _start(self):
-        """A page with a WebGL2 context and a file for the numbers."""
-        launch = _playwright()
-        try:
-            playwright = self._stack.enter_context(launch())
-            browser = self._stack.enter_context(
-                playwright.chromium.launch(
-                    executable_path=_program(), args=FLAGS, chromium_sandbox=os.geteuid() != 0
-                )
+        playwright = self._stack.enter_context(sync_api.sync_playwright())
+        browser = self._stack.enter_context(
+            playwright.chromium.launch(
+                executable_path=self._program, args=FLAGS, chromium_sandbox=os.geteuid() != 0
             )
-            self._page = browser.new_page()
-            self._page.set_content(PAGE.format(_script()))
-            found = self._page.evaluate("identify()")
+        )
+        self._page = browser.new_page()
+        self._page.set_content(PAGE.format(Path(__file__).with_suffix(".js").read_text("utf-8")))
+
+    def _stop(self):
+        self._page = None
+        self._stack.close()
+
+
+def _program():
+    """The browser to drive."""
+    named = os.environ.get(PROGRAM)
+    found = shutil.which(named or "chromium")
+    if found is None:
+        raise NotRun(
+            f"webgl: no program {named or 'chromium'!r}; on Debian: apt-get install chromium, "
+            f"or name another Chromium in {PROGRAM}"
+        )
+    return found
+
+
+def _write(path, textures):
+    """Write texels one after the other; their layout in the file, by name."""
+    layout, offset = {}, 0
+    with path.open("wb") as file:
+        for name, texels in textures.items():
+            height, width, components = texels.shape
+            layout[name] = dict(width=width, height=height, components=components, offset=offset)
+            offset += file.write(texels.tobytes())
+    return layout

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `mxeon`: arguments in, exit status out.
+
+Modules are imported by the sub-command that needs them, so that `mxeon --help` answers at once.
+"""
+
+import argparse
+import json
+import os
+import sys
+from pathlib import Path
+
+import mxeon
+
+PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3
+TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
+STATUS = "Exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run."
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line."""
+
+    def error(self, message):
+        self.exit(MISUSE, f"{self.prog}: {message}\n")
+
+
+def main(arguments=None):
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str or None
+        Without the program's name; None for those of the process.
+
+    Returns
+    -------
+    int
+        0 all passed, 1 a check failed, 2 misuse, 3 something did not run.
+    """
+    options = _parser().parse_args(arguments)
+    try:
+        return options.run(options)
+    except KeyboardInterrupt:
+        return _fail(130, "interrupted")
+    except BrokenPipeError:  # who read our output has had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return PASSED
+    except OSError as error:
+        return _fail(MISUSE, f"{error.filename or 'file'}: must be accessible; {error.strerror or error}")
+    except (ValueError, ImportError) as error:
+        return _fail(MISUSE, error)
+    except RuntimeError as error:
+        return _fail(NOT_RUN if type(error).__name__ == "NotRun" else FAILED, error)
+
+
+def _fail(status, error):
+    print(f"mxeon: {error}", file=sys.stderr)
+    return status
+
+
+def _parser():
+    parser = _Parser(prog="mxeon", description=mxeon.__doc__.splitlines()[0], epilog=STATUS)
+    parser.add_argument("--version", action="version", version=f"mxeon {mxeon.__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    check = _command(commands, "check", _check, "run the checks and compare pictures")
+    check.add_argument("files", nargs="*", metavar="FILE", help="documents; none: the examples")
+    check.add_argument("--host", action="append", help="gl (the default), cycles; may be repeated")
+    check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
+    _library(check)
+    _json(check)
+
+    generate = _command(commands, "generate", _generate, "write shader sources")
+    generate.add_argument("files", nargs="+", metavar="FILE", help="MaterialX documents")
+    generate.add_argument("--target", action="append", required=True, help=", ".join(TARGETS))
+    generate.add_argument("--element", metavar="NAME", help="one renderable element; none: all")
+    generate.add_argument("--profile", help="cycles: osl for Blender's Cycles")
+    generate.add_argument("--outputPath", metavar="DIR", required=True, help="where to write")
+    _library(generate)
+    _json(generate)
+
+    render = _command(commands, "render", _render, "make a picture of a material on a sphere")
+    render.add_argument("file", metavar="FILE", help="a MaterialX document")
+    render.add_argument("--host", default="gl", help="gl, cycles, reference")
+    render.add_argument("--element", metavar="NAME", help="needed where there are several")
+    render.add_argument("--output", metavar="OUT", required=True, help="linear .exr or sRGB .png")
+    render.add_argument("--scene", default="side", help="front, side, back, furnace")
+    render.add_argument("--environment", metavar="IMAGE", help="a latitude-longitude image instead")
+    render.add_argument("--size", type=int, default=512, help="width and height in pixels")
+    _library(render)
+
+    library = _command(commands, "library", _show_library, "say where eonlib lies, for other hosts")
+    library.add_argument("--verify", action="store_true", help="list what each target finds")
+
+    invert = _command(commands, "invert", _invert, "find the color input for a colour to be seen")
+    invert.add_argument("color", nargs=3, type=float, metavar=("R", "G", "B"))
+    invert.add_argument("--roughness", type=float, required=True)
+    invert.add_argument("--average", action="store_true", help="seen on average, not head-on")
+    return parser
+
+
+def _command(commands, name, run, summary):
+    command = commands.add_parser(name, help=summary, description=summary, epilog=STATUS)
+    command.set_defaults(run=run)
+    return command
+
+
+def _library(command):
+    command.add_argument("--library", default="eonlib", help="eonlib (the default) or stock")
+
+
+def _json(command):
+    command.add_argument("--json", action="store_true", help="print JSON for machines")
+
+
+def _check(options):
+    from tqdm import tqdm
+
+    from mxeon import report
+    from mxeon.conformance import check
+    from mxeon.verdict import summarize
+
+    def progress(steps):
+        return tqdm(steps, desc="mxeon check", unit="step", disable=None, leave=False)
+
+    run = check(options.files, options.host or ("gl",), options.library, progress)
+    page = report.write(run, options.report) if options.report else None
+    if options.json:
+        print(report.to_json(run))
+    else:
+        _print_run(run, summarize(run.results), page)
+    for error in run.errors:
+        _fail(MISUSE, error)
+    if run.errors:
+        return MISUSE
+    return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[summarize(run.results).verdict]
+
+
+def _print_run(run, summary, page):
+    for result in run.results:
+        if result.verdict == "passed":
+            continue
+        figure = "" if result.figure is None else f" {result.figure:.3g} > {result.tolerance:.3g}"
+        why = "; ".join(filter(None, (result.reason, result.diagnosis)))
+        print(f"{result.verdict}: {result.host}, {result.check}, {result.subject}:{figure} {why}")
+    for note in run.notes:
+        print(f"note: {note}")
+    print(summary.sentence)
+    if page:
+        print(f"report: {page}")
+
+
+def _generate(options):
+    from mxeon.generation import generate
+    from mxeon.writing import write_text
+
+    written, errors = [], []
+    for file in map(Path, options.files):
+        for target in options.target:
+            try:
+                shaders = generate(
+                    file,
+                    target,
+                    options.element,
+                    library=options.library,
+                    profile=options.profile,
+                )
+            except ValueError as error:
+                errors.append(str(error))
+                continue
+            for shader in shaders:
+                for stage, text in shader.stages.items():
+                    path = Path(options.outputPath) / _file_name(file.stem, shader, stage)
+                    write_text(path, text)
+                    written.append(str(path))
+    print(json.dumps({"files": written, "errors": errors}) if options.json else "\n".join(written))
+    for error in errors:
+        _fail(MISUSE, error)
+    return MISUSE if errors else PASSED
+
+
+def _file_name(stem, shader, stage):
+    """As generateshader calls them, with the document in front: its elements may share names."""
+    ending = {"pixel": ".frag", "vertex": ".vert"}[stage] if len(shader.stages) > 1 else ""
+    return f"{stem}.{shader.name}.{shader.target}{ending}"
+
+
+def _render(options):
+    from dataclasses import replace
+
+    from mxeon import scene as scenes
+    from mxeon.generation import generate
+    from mxeon.hosts import open_host
+    from mxeon.pictures import write_picture
+
+    scene = scenes.scene(options.scene)
+    if options.environment:
+        scene = scenes.Scene("environment", environment=Path(options.environment))
+    host = open_host(options.host)
+    found = generate(
+        options.file,
+        host.target,
+        options.element,
+        library=options.library,
+        profile=host.profile,
+        lights=host.target == "glsl",
+    )
+    if len(found) > 1:
+        known = ", ".join(shader.element for shader in found)
+        raise ValueError(f"--element must name one of {known}; got none")
+    image = host.picture(found[0], replace(scene, size=options.size))
+    identity = host.identity()
+    write_picture(
+        options.output,
+        image,
+        {
+            "version": mxeon.__version__,
+            "host": f"{identity.name} {identity.version}",
+            "device": identity.device,
+            "library": options.library,
+            "document": options.file,
+            "element": found[0].element,
+            "scene": scene.name,
+        },
+    )
+    host.close()
+    return PASSED
+
+
+def _show_library(options):
+    from mxeon.library import assert_ours, eonlib_folder, implementations, load_library
+
+    folder = eonlib_folder()
+    if not options.verify:
+        print(folder)
+        print(f"generateshader   --library {folder}")
+        print(f"USD              PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
+        print(f'C++              loadLibraries({{"{folder}", "libraries"}}, searchPath, document)')
+        return PASSED
+    document = load_library()
+    for found in implementations(document):
+        print(f"{found.node:30} {found.target:10} {found.name:40} {found.document}")
+    assert_ours(document)
+    return PASSED
+
+
+def _invert(options):
+    from mxeon.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+
+    invert = eon_rho_from_albedo_avg if options.average else eon_rho_from_albedo_normal
+    print(*(f"{float(rho):.9g}" for rho in invert(options.color, options.roughness)))
+    return PASSED
