@@ -42,12 +42,30 @@ RESERVED = frozenset(
     .split()
 )
 
+CYCLES_APPROXIMATION = (
+    "Cycles has no closure for qualitative Oren-Nayar; where energy_compensation is false, pairs "
+    "with s < 0 are darker than the model"
+)
+
 # Calls of the Cycles profile's closure, whose last two arguments are the flag and the result.
 CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\);")
 
 
 class ApproximationWarning(UserWarning):
-    """A shader that has to use the nearest thing its renderer offers."""
+    """A shader that has to use the nearest thing its renderer offers.
+
+    Attributes
+    ----------
+    element : str
+        Name path of the renderable element.
+    approximation : str
+        What is used in place of what.
+    """
+
+    def __init__(self, element, approximation):
+        super().__init__(f"{element}: {approximation}")
+        self.element = element
+        self.approximation = approximation
 
 
 @dataclass(frozen=True)
@@ -267,9 +285,4 @@ def _warn_of_approximation(shaders):
         values = {each.name: each.value for each in shader.inputs}
         flags = CYCLES_CALL.findall(shader.stages["pixel"])
         if not all(values.get(flag, flag == "1") for flag in flags):
-            warnings.warn(
-                f"{shader.element}: Cycles has no qualitative Oren-Nayar closure; where "
-                "energy_compensation is false, back-lit pairs are darker than the model",
-                ApproximationWarning,
-                stacklevel=3,
-            )
+            warnings.warn(ApproximationWarning(shader.element, CYCLES_APPROXIMATION), stacklevel=3)

@@ -16,7 +16,7 @@ RANGES = {
     "roughness": (0.0, 1.0, "[0, 1]"),
     "sigma": (0.0, 0.5 * np.pi, "[0, pi/2]"),
     "color": (0.0, 1.0, "[0, 1]"),
-    "u": (0.0, 1.0, "[0, 1]"),
+    "u": (0.0, np.nextafter(1.0, 0.0), "[0, 1)"),
 }
 
 # Largest error of the squared length of a direction: directions rounded to float32 pass.

@@ -6,6 +6,7 @@ World frame: x to the right, y up, z towards the viewer. The frame of the pictur
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -89,6 +90,7 @@ class Sphere:
     texcoord: np.ndarray
 
 
+@lru_cache(maxsize=8)
 def sphere(size, margin=0):
     """The points of the unit sphere under the pixel centres of a `size` x `size` picture.
 
@@ -103,4 +105,7 @@ def sphere(size, margin=0):
     normal = np.stack([x * scale, y * scale, z], axis=-1)
     u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
-    return Sphere(mask, normal, np.stack([u, v], axis=-1))
+    points = Sphere(mask, normal, np.stack([u, v], axis=-1))
+    for array in vars(points).values():
+        array.flags.writeable = False  # shared by all who ask for this size
+    return points

@@ -78,12 +78,13 @@ def check(files=(), hosts=("gl",), library="eonlib", progress=list):
             else:
                 steps += _steps(host, judge, subjects, files, library)
         parts = [step() for step in progress(steps)]
+    found = {name: sum((getattr(part, name) for part in parts), ()) for name in vars(Findings())}
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version()} | {each: version(each) for each in SOFTWARE},
         hosts=tuple(identities),
         documents=tuple(files),
-        **{name: sum((getattr(part, name) for part in parts), ()) for name in vars(Findings())},
+        **found | {"notes": _grouped(found["notes"])},
     )
 
 
@@ -112,6 +113,14 @@ def _document(file, host, judge, library):
     except ValueError as error:
         return Findings(errors=(str(error),))
     return Findings(results=results, pictures=pictures, notes=notes)
+
+
+def _grouped(notes):
+    """One line for each text, with all its places."""
+    places = {}
+    for text, place in notes:
+        places.setdefault(text, []).append(place)
+    return tuple(f"{text}: {', '.join(found)}" for text, found in places.items())
 
 
 def _not_run(name, library, reason):

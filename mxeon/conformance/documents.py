@@ -47,8 +47,8 @@ def judge_document(file, host, judge, library):
 
     Returns
     -------
-    tuple of Result, tuple of Picture, tuple of str
-        The last are notes on what the host cannot express.
+    tuple of Result, tuple of Picture, tuple of (str, str)
+        The last are what the host approximates, and where.
 
     Raises
     ------
@@ -59,13 +59,14 @@ def judge_document(file, host, judge, library):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ApproximationWarning)
         shaders = generate(file, host.target, **options)
-    notes = tuple(f"{host.name}: {file}: {each.message}" for each in caught)
+    approximated = {each.message.element: each.message.approximation for each in caught}
     results, pictures = [], []
     for shader in shaders:
-        front_lit = any(str(each.message).startswith(f"{shader.element}:") for each in caught)
+        front_lit = shader.element in approximated
         result, shown = _judge_material(file, shader, host, judge, library, front_lit)
         results.append(result)
         pictures += shown
+    notes = tuple((text, f"{file.name}: {place}") for place, text in approximated.items())
     return tuple(results), tuple(pictures), notes
 
 

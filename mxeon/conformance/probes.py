@@ -5,14 +5,15 @@ A host that evaluates gets free pairs, a host that only makes pictures gets the 
 both answer in the same form, so a check is written once.
 """
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from mxeon import reference
-from mxeon.generation import generate
+from mxeon.generation import ApproximationWarning, generate
 from mxeon.hosts.reference import local_directions
 from mxeon.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
 
@@ -242,7 +243,7 @@ class PictureProbe:
 
     def _batch(self, scene, inputs):
         wo, wi, chosen = picture_pairs(scene)
-        chosen &= self._expressible(wo, wi)
+        chosen = chosen & self._expressible(wo, wi)
         return Batch(wo[chosen], wi[chosen], inputs, scene)
 
     def _expressible(self, wo, wi):
@@ -254,7 +255,9 @@ class PictureProbe:
     def _picture(self, batch):
         text = self.subject.document(batch.inputs)
         profile = self.host.profile
-        shader = generate(text, self.host.target, library=self.library, profile=profile)[0]
+        with warnings.catch_warnings():  # what is approximated is not judged: see _expressible
+            warnings.simplefilter("ignore", ApproximationWarning)
+            shader = generate(text, self.host.target, library=self.library, profile=profile)[0]
         image = self.host.picture(shader, batch.scene)[sphere(batch.scene.size).mask]
         wo, wi, chosen = picture_pairs(batch.scene)
         return image[chosen & self._expressible(wo, wi)].astype(np.float64)
@@ -263,6 +266,7 @@ class PictureProbe:
 PROBES = {"gl": PairProbe, "cycles": PictureProbe}
 
 
+@lru_cache(maxsize=8)
 def picture_pairs(scene):
     """Directions at the points of the sphere, and which points are judged.
 
