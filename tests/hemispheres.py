@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Views, random numbers, and a quadrature of the hemisphere, for the tests of the samplers."""
+
+import numpy as np
+import pytest
+
+from mxeon.sampling import SAMPLERS
+
+COSINES = (1.0, 0.9, 0.5, 0.1, 1e-3, 0.0)
+ROUGHNESS = (0.0, 0.01, 0.4, 1.0)
+SCENES = [(mu, r) for mu in COSINES for r in ROUGHNESS]
+BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
+
+every_sampler = pytest.mark.parametrize("sampler", SAMPLERS, ids=lambda sampler: sampler.name)
+every_scene = pytest.mark.parametrize(("mu", "roughness"), SCENES)
+
+
+def view(mu, azimuth=0.0):
+    """Direction with cosine `mu`."""
+    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return np.array([S * np.cos(azimuth), S * np.sin(azimuth), mu])
+
+
+def rule(edges, count):
+    """Nodes and weights of Gauss-Legendre between each two edges, shape (panels, count)."""
+    x, w = np.polynomial.legendre.leggauss(count)
+    edges = np.asarray(edges)[:, np.newaxis]
+    half = 0.5 * np.diff(edges, axis=0)
+    return edges[:-1] + half * (1.0 + x), half * w
+
+
+def directions(theta, phi):
+    """Unit vectors on the grid of the two angles, shape (*theta, *phi, 3)."""
+    theta = theta.reshape(theta.shape + (1,) * phi.ndim)
+    parts = (np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0.0 * phi)
+    return np.stack(parts, axis=-1)
+
+
+def hemisphere(mu, count=64):
+    """Directions and weights in solid angle, exact across the kinks of EON for this `mu`."""
+    theta, dtheta = rule(np.unique([0.0, np.arccos(mu), 0.5 * np.pi]), count)
+    phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
+    weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
+    return directions(theta, phi).reshape(-1, 3), weights.ravel()
+
+
+def uniforms(count, seed):
+    """Random numbers, shape (count, 2)."""
+    return np.random.default_rng(seed).random((count, 2))

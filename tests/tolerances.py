@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every tolerance of the tests, with its derivation and its scale."""
+
+# Unit roundoff of float64.
+ROUNDING = 2.0**-53
+
+# --- models and albedos, float64 -------------------------------------------------------------
+
+# Value of a BRDF, in units of the largest of its terms: 1 / pi, or 1 / pi times the largest |s / t|
+# at the same cosines. The longest formula (full Oren-Nayar) has 60 roundings and four functions of
+# the C library of 1 ulp (2 roundings) or less: 68 in all, 7.6e-15; the next power of ten.
+BRDF = 1e-14
+
+# FON's loss H(mu) and albedos, relative: sums of two positive terms that each see at most 8
+# roundings; the root and the arc tangent are of 1 ulp or less. 9 roundings.
+LOSS = 1e-15
+
+# Closed-form albedo against quadrature, absolute, albedos <= 1.05. The integrand is analytic
+# between the kinks, so that 64 nodes leave rounding alone: 128 x 128 terms whose weights add up to
+# 1 and carry 20 roundings each, and whose sum adds one for each of at most 128 partial sums:
+# 150 roundings, 1.7e-14. Nodes and weights of NumPy's rule are good to 1e-14. Sixty times the sum.
+QUADRATURE = 1e-12
+
+# One rounding of a number in [1/2, 1].
+ONE_ROUNDING = 2.0 * ROUNDING
+
+# Turning a pair about the normal rounds each component three times, so s moves by 9 roundings of
+# S_o S_i and the value by as much of the largest |s / t|, beside the roundings of BRDF.
+ROTATION = BRDF + 12.0 * ROUNDING
+
+# eon_brdf_approx against eon_brdf, in 1 / pi: [Portsmouth2025], Eq. (14) is off by up to 6.0e-4 in
+# H; rho^2 r A (1 + c2 r) / ((c1 - c2) D) <= 3.61 stands before H H, each H <= c1 = 0.288, and both
+# err: 2 x 3.61 x 0.288 x 6.0e-4 = 1.25e-3.
+QUARTIC_BRDF = 1.25e-3
+
+# fon_albedo_dir_approx against fon_albedo_dir: 6.0e-4 times r A <= 1 / (1 + c1) = 0.777.
+QUARTIC_FON_ALBEDO = 4.7e-4
+
+# eon_albedo_dir_approx against eon_albedo_dir: 6.0e-4 times rho (1 - rho) r / D <= 0.213.
+QUARTIC_EON_ALBEDO = 1.3e-4
+
+# eon_brdf_approx against Listing 1 at roughness >= 1e-5, in 1 / pi. The listing keeps 1 - E above
+# 1e-7, so a factor moves by at most that; the rest of the lobe, (1 - E) / (1 - <E>), is at most
+# c1 / (c1 - c2) = 1.34, and 1 - <E> > 1.6e-6: 1.34e-7 once, 1e-14 / 1.6e-6 where both factors move.
+LISTING_EPSILON = 1.4e-7
+
+# --- shader twins, float32 against float64 ---------------------------------------------------
+
+# The two figures that stand beside the coefficients of fon_loss, last digit rounded up.
+FIT_LOSS = 2.7e-7
+FIT_LOSS_32 = 4.9e-7
+
+# Relative error of H: the fit's 2.7e-7, and at most 12 roundings on the way, 7.2e-7.
+TWIN_LOSS = 1e-6
+
+# An albedo is at most 1.02. Its longest chain has 12 roundings, 7.3e-7; the fit's error enters
+# times H <= 0.29, with 0.8e-7.
+TWIN_ALBEDO = 1e-6
+
+# pi f cos is at most 2, in units of which its longest chain of 14 roundings is 8.4e-7: 1.7e-6. Two
+# fits enter times the multiple-scattering part, at most 0.5: 2.7e-7.
+TWIN_VALUE = 2e-6
+
+# Cycles, float32. A point of the sphere is a ray's origin plus its length, both at most 2: three
+# roundings of 2^-23 together, and of a ray that grazes, with error e / mu, the test takes e.
+CYCLES_NORMAL = 3 * 2.0**-23
+
+# OSL's atan2 is a polynomial: 1.2e-5 rad off (measured), 4e-6 after division by pi.
+CYCLES_TEXCOORD = 5e-6
+
+# A normal, and with it cos(theta_i), is off by CYCLES_NORMAL / cos(theta_o), and in relation to
+# itself by 3.6e-7 / 0.1^2 where both cosines exceed 0.1. The profile takes a roughness below 1e-5
+# for 0: another 1e-5.
+CYCLES_RIM = 0.1
+CYCLES_EON_RELATIVE = 5e-5
+
+# At roughness 1 a pixel of 256 samples is off by 2e-3 rms, so 3e-5 in the mean of the 3200 pixels
+# of a sphere were they independent; their samples are not, hence the factor of 10.
+CYCLES_FURNACE_MEAN = 3e-4
+
+# --- sampling twins, float32 against float64 ---------------------------------------------------
+
+# A component of a direction has 16 roundings or fewer on its way, 1e-6. Stretching a random number
+# over a part of length l divides its rounding by l, and a root near the pole takes it to its half
+# power: where that exceeds a factor of 10 lies less than a thousandth of the samples.
+TWIN_DIRECTION = 1e-5
+TWIN_DIRECTION_SHARE = 1e-3
+
+# Squared length of a sample: cosine and sine of drivers are off by 4e-7 (measured) each, and what
+# is turned is multiplied by another such pair.
+TWIN_LENGTH = 2e-6
+
+# pi times a density, at most 10: |M^-1 wi|^-4 takes the 8 roundings of an entry of M four times.
+TWIN_PDF = 2e-5
+
+# --- sampling and inversion, float64 ---------------------------------------------------------
+
+# A density against the product or the sum that it stands for, relative: no more than 20 roundings
+# lie between the two; the sum in which FON may cancel is the same in both.
+PDF = 20.0 * ROUNDING
+
+# Components and squared lengths of sampled directions, absolute: each of three components <= 1 has
+# at most 12 roundings on its way, and its square twice as many: 36 for one, 72 for the square.
+DIRECTION = 72.0 * ROUNDING
+
+# A density at the sample against that where the direction is given, relative. Both have a length
+# or its square to the third or fourth power, 6 roundings each, over det M, a difference of terms
+# <= 1.6 that is 0.91 or more: 4 x (6 + 6) + 6 x 1.8 + 20 others, twice. Near the line where CLTC
+# ends its density is a difference, exact to DIRECTION absolutely.
+SAMPLE_PDF = 160.0 * ROUNDING
+
+# Side of the lune, absolute: z is the root of a difference of squares, so that it is off by at most
+# the root of 4 roundings, and by less where z is larger.
+LUNE = 2.2e-8
+
+# Integral of a density with a kink, absolute. The line where CLTC ends, at most pi long, crosses
+# Gauss panels whose nodes are h <= pi/2 / 64 apart; the slope jumps by at most 1 per steradian and
+# radian: h^2 / 12 x pi = 1.6e-4.
+KINK_QUADRATURE = 1.6e-4
+
+# Relative error of the density of exact samples: the figure that fits/eon_sampling.py prints for
+# the worse fit, 1.27e-5, last digit rounded up. The next two are what the project promises.
+EON_DENSITY = 1.3e-5
+EON_WEIGHT = 5e-5
+EON_VARIANCE = 1e-9
+
+# Largest variances and weights against the figures of two or three digits known for them: half a
+# unit of 0.0087 is 0.6 %, that of 0.009 is 6 %, and between 51 angles at most 1 % is missed.
+FIGURE = 0.02
+
+# Coefficients made again: HiGHS meets its constraints to 1e-7, and they depend on each coefficient
+# with a slope of 0.1 or more.
+REFIT = 1e-6
+
+# Inverse of an albedo, relative: 11 roundings on the longest chain. There and back: 1e-14, with
+# the albedo's own 9 roundings and rho's twice, since an albedo grows at most twice as fast as rho.
+RHO = 11.0 * ROUNDING
+ROUND_TRIP = 1e-14
+
+# Largest errors of the polynomials for rho, absolute; last digit rounded up.
+EQUATION_32 = 4.41e-3
+EQUATION_34 = 2.84e-3
+NORMAL_REFIT = 2.96e-3
+AVERAGE_REFIT = 1.86e-3
+
+# Value times cosine over density: two sums of the same positive parts by different roads, of 14
+# roundings each, 1.7e-6.
+TWIN_WEIGHT = 2e-6
+
+# --- shader sources ----------------------------------------------------------------------------
+
+# The tint of MDL against rho_ms, relative: 12 roundings in one form and 10 in the other, of which
+# none is magnified: both denominators are at least 0.78 of their larger term.
+MDL_TINT = 32.0 * ROUNDING
+
+# --- path tracer -------------------------------------------------------------------------------
+
+# Mean of a picture of the unit sphere: 64 x 64 pixels with 64 random points each, against a grid of
+# 512 x 512. The disk's rim is off by at most its 3200 cells, half of them on average and with both
+# signs, times a value of 1: 56 cells in 2^18, 2.2e-4. The random points, stratified in pixels, leave
+# the noise of the 200 pixels on the rim, 0.3 / 8 x sqrt(200) / 4096 = 1.3e-4. Four times both.
+TRACER_GRID = 1e-3
+
+# Energy that 50 reflections leave in the opened ball, measured once: 2.4e-3 of the picture.
+FURNACE_LEFT = 4e-3
