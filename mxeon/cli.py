@@ -90,6 +90,7 @@ def _parser():
     _library(render)
 
     library = _command(commands, "library", _show_library, "say where eonlib lies, for other hosts")
+    library.add_argument("--folder", action="store_true", help="print the folder alone")
     library.add_argument("--verify", action="store_true", help="list what each target finds")
 
     invert = _command(commands, "invert", _invert, "find the color input for a colour to be seen")
@@ -231,8 +232,11 @@ def _show_library(options):
     from mxeon.library import assert_ours, eonlib_folder, implementations, load_library
 
     folder = eonlib_folder()
-    if not options.verify:
+    if options.folder:
         print(folder)
+        return PASSED
+    if not options.verify:
+        print(f"folder           {folder}")
         print(f"generateshader   --library {folder}")
         print(f"USD              PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
         print(f'C++              loadLibraries({{"{folder}", "libraries"}}, searchPath, document)')
