@@ -123,7 +123,7 @@ def qon_fitted_albedo_dir(mu, rho, sigma):
     Examples
     --------
     >>> qon_fitted_albedo_dir(0.5, [0.5, 1.0], 1.0).round(6)
-    array([0.426535, 0.85307 ])
+    array([0.374198, 0.748396])
     """
     mu, sigma = np.asarray(mu), np.asarray(sigma)
     over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma**2

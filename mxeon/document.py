@@ -45,7 +45,7 @@ def read_document(source, library="eonlib", profile=None):
     Raises
     ------
     DocumentError
-        If it cannot be read, is not MaterialX or not valid by its rules, comes from a later version,
+        If it cannot be read, is not MaterialX or breaks its rules, comes from a later version,
         contains a number that is not finite or out of range, names a file that does not exist, or
         contains itself.
     """
@@ -104,10 +104,9 @@ def _check(document):
 def _check_value(element):
     place = f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
     kind, text = element.getType(), element.getValueString()
-    if element.getValue() is None:
-        numbers = " of finite numbers" if kind in NUMERIC else ""
-        raise DocumentError(f"{place} must be a valid {kind}{numbers}; got {text}")
     if kind in NUMERIC:
+        if element.getValue() is None:
+            raise DocumentError(f"{place} must be a valid {kind} of finite numbers; got {text}")
         low, high = _range(element)
         if not all(low <= float(value) <= high for value in text.split(",")):
             raise DocumentError(f"{place} must lie in [{low:g}, {high:.6g}]; got {text}")

@@ -45,7 +45,8 @@ class Implementation:
     @property
     def ours(self):
         """Whether it lies in one of eonlib's folders."""
-        return bool(self.document) and data_folder() in Path(self.document).resolve().parents
+        folders = {eonlib_folder(), data_folder() / "profiles"}
+        return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
 
 
 def data_folder():

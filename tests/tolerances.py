@@ -161,5 +161,6 @@ MDL_TINT = 32.0 * ROUNDING
 # the noise of the 200 pixels on the rim, 0.3 / 8 x sqrt(200) / 4096 = 1.3e-4. Four times both.
 TRACER_GRID = 1e-3
 
-# Energy that 50 reflections leave in the opened ball, measured once: 2.4e-3 of the picture.
-FURNACE_LEFT = 4e-3
+# A pixel of the opened ball in a white furnace: the product of the weights of a path, which has 20
+# reflections on average in the hollow (measured), each within TWIN_WEIGHT of 1.
+FURNACE_OPENED = 20 * TWIN_WEIGHT

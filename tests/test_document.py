@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bad documents: each ends in one line that names the place, the rule and the value."""
+
+from math import pi
+
+import MaterialX as mx
+import pytest
+from documents import EON, FLAG, connected, lobe, material
+
+from mxeon.document import LONGEST, DocumentError, read_document
+from mxeon.generation import generate
+
+INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
+DEFINED = '<nodedef name="ND_{0}" node="{0}"><output name="out" type="BSDF"/></nodedef>'
+INNER = '<{} name="inner" type="BSDF"/><output name="out" type="BSDF" nodename="inner"/>'
+INSIDE = '<nodegraph name="NG_{}" nodedef="ND_{}">' + INNER + "</nodegraph>"
+LINKED = f"""<nodegraph name="NG_a">{INNER.format("a")}</nodegraph>
+    <implementation name="IM_a" nodedef="ND_a" nodegraph="NG_a"/>"""
+CYCLE = (
+    '<add name="a" type="color3"><input name="in1" type="color3" nodename="b"/></add>'
+    '<add name="b" type="color3"><input name="in1" type="color3" nodename="a"/></add>'
+)
+IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
+A = '<a name="lobe" type="BSDF"/>'
+
+# What a file holds, and what is said of it.
+FILES = {
+    "empty": ("", "must be a MaterialX document; XML parse error"),
+    "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
+    "binary": ("".join(map(chr, range(256))), "must be a MaterialX document; XML parse error"),
+    "cut short": (material(lobe())[:150], "must be a MaterialX document; XML parse error"),
+    "html": ("<html><body/></html>", "must be a MaterialX document; No root MaterialX element"),
+    "too deep": (material("<a>" * 1000 + "</a>" * 1000), "Maximum tree depth exceeded"),
+    "future": ('<materialx version="1.99"/>', "version must be at most 1.39; got 1.99"),
+    "next": ('<materialx version="2"/>', "version must be at most 1.39; got 2.0"),
+    "no version": ('<materialx version="x"/>', "Unsupported document version: <materialx version="),
+    "no include": (INCLUDE.format('<xi:include href="none.mtlx"/>'), "none.mtlx"),
+    "own include": (INCLUDE.format('<xi:include href="bad.mtlx"/>'), "XInclude cycle detected"),
+    "lobe alone": (f'<materialx version="1.39">{lobe()}</materialx>', "must contain a renderable"),
+    "nothing": ('<materialx version="1.39"/>', "must contain a renderable element"),
+    "look alone": (
+        '<materialx version="1.39"><surfacematerial name="look" type="material"/></materialx>',
+        "must contain a renderable element",
+    ),
+    "idle output": (
+        '<materialx version="1.39"><output name="out" type="surfaceshader"/></materialx>',
+        "must contain a renderable element",
+    ),
+}
+
+# Values of inputs of the lobe, and what is said of them.
+VALUES = (
+    ({"color": "nan, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got n'),
+    ({"color": "red"}, 'input "lobe/color" must be a valid color3 of finite numbers; got red'),
+    ({"color": "1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got 1, 1'),
+    ({"color": "1, 1, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got 1'),
+    ({"color": "0.5, -0.1, 0.5"}, 'input "lobe/color" must lie in [0, 1]; got 0.5, -0.1, 0.5'),
+    ({"color": "0.5, 1.1, 0.5"}, 'input "lobe/color" must lie in [0, 1]; got 0.5, 1.1, 0.5'),
+    ({"color": "0,&#10;2,&#10;0"}, 'input "lobe/color" must lie in [0, 1]; got 0, 2, 0'),
+    ({"weight": "-1"}, 'input "lobe/weight" must lie in [0, 1]; got -1'),
+    ({"roughness": "inf"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
+    ({"roughness": "1e999"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
+    ({"roughness": "-0.1"}, 'input "lobe/roughness" must lie in [0, 1.5708]; got -0.1'),
+    ({"roughness": "1.6"}, 'input "lobe/roughness" must lie in [0, 1.5708]; got 1.6'),
+    ({"roughness": "1.2"} | FLAG, 'input "lobe/roughness" must lie in [0, 1]; got 1.2'),
+    ({"energy_compensation": "x"}, 'Invalid value: <input name="energy_compensation"'),
+)
+
+# Nodes around the lobe, and what is said of them.
+NODES = {
+    "unknown node": ('<nosuch_bsdf name="lobe" type="BSDF"/>', "Could not find a nodedef for node"),
+    "no implementation": (DEFINED.format("a") + A, "Could not find a matching implementation"),
+    "no source file": (
+        DEFINED.format("a") + '<implementation name="IM_a" nodedef="ND_a" file="none.glsl"/>' + A,
+        "Failed to get source code from file 'none.glsl' used by implementation 'IM_a'",
+    ),
+    "circle": (CYCLE + connected(color='nodename="a"'), 'cycle at element: <add name="a"'),
+    "circle of lobes": (
+        '<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="lobe"/></add>',
+        'cycle at element: <add name="lobe"',
+    ),
+    "circle of inheritance": (
+        DEFINED.format("a").replace("node=", 'inherit="ND_a" node=') + A,
+        'cycle at element: <nodedef name="ND_a"',
+    ),
+    "own part": (
+        DEFINED.format("a") + INSIDE.format("a", "a", "a") + A,
+        'nodedef "ND_a" must not contain itself',
+    ),
+    "own part, linked": (DEFINED.format("a") + LINKED + A, "must not contain itself"),
+    "parts of each other": (
+        "".join(map(DEFINED.format, "ab")) + "".join(map(INSIDE.format, "ab", "ab", "ba")) + A,
+        'nodedef "ND_a" must not contain itself',
+    ),
+    "missing texture": (
+        IMAGE.format("none.png") + connected(color='nodename="image"'),
+        'input "image/file" must name a file that exists; got none.png',
+    ),
+    "name too long": (
+        IMAGE.format("n" * 5000) + connected(color='nodename="image"'),
+        'input "image/file" must name a file that exists; got [...]',
+    ),
+    "folder for a texture": (
+        IMAGE.format("/") + connected(color='nodename="image"'),
+        'input "image/file" must name a file that exists; got /',
+    ),
+    "unconnected node": (connected(color='nodename="none"'), "Invalid port connection: <input"),
+    "unconnected graph": (
+        connected(color='nodegraph="none" output="out"'),
+        'Invalid port connection: <input name="color"',
+    ),
+    "unconnected interface": (
+        connected(color='interfacename="none"'),
+        'Interface name not found in referenced declaration: <input name="color"',
+    ),
+    "another type": (
+        '<constant name="a" type="float"/>' + connected(color='nodename="a"'),
+        'Mismatched types in port connection: <input name="color"',
+    ),
+    "unknown input": (
+        connected(color="").replace('name="color"', 'name="colour"'),
+        "Input 'colour' doesn't match declaration",
+    ),
+    "odd name": (lobe(name="l o;b"), 'Invalid element name: <oren_nayar_diffuse_bsdf name="l o;b"'),
+    "node without name": (lobe(name=""), 'Invalid port connection: <input name="bsdf"'),
+    "name of a type": (
+        lobe(name="float") + '<add name="lobe" type="BSDF">'
+        '<input name="in1" type="BSDF" nodename="float"/></add>',
+        'Invalid port connection: <input name="in1"',
+    ),
+}
+
+
+def refusal(source, target="glsl"):
+    """What is said of a document, which has to be one line."""
+    with pytest.raises(DocumentError) as refused:
+        generate(source, target)
+    message = str(refused.value)
+    assert message and "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize("content, rule", FILES.values(), ids=FILES)
+def test_a_bad_file_is_refused_by_its_name(tmp_path, content, rule):
+    path = tmp_path / "bad.mtlx"
+    path.write_text(content, encoding="latin-1")
+    message = refusal(path)
+    assert message.startswith(f"{path}: ")
+    assert rule in message
+
+
+@pytest.mark.parametrize("name", ["", "none.mtlx", ".", "/dev/null", "n" * 5000, "n\0n"])
+def test_what_is_no_file_is_refused(name):
+    assert refusal(name).startswith("document must be a readable file; got ")
+
+
+@pytest.mark.parametrize("inputs, rule", VALUES, ids=[str(inputs) for inputs, _ in VALUES])
+def test_a_bad_value_is_refused_with_its_place_and_its_range(inputs, rule):
+    assert rule in refusal(material(lobe(**inputs)))
+
+
+@pytest.mark.parametrize("nodes, rule", NODES.values(), ids=NODES)
+@pytest.mark.parametrize("target", ["glsl", "osl"])
+def test_bad_nodes_are_refused_with_their_names(nodes, rule, target):
+    assert rule in refusal(material(nodes), target)
+
+
+@pytest.mark.parametrize(
+    "inputs", [{"roughness": str(pi / 2)}, {"roughness": "1"} | FLAG, {"color": "0, 1, 0"}], ids=str
+)
+def test_the_ends_of_a_range_are_accepted(inputs):
+    assert generate(material(lobe(**inputs)), "glsl")
+
+
+def test_roughness_of_the_eon_node_is_at_most_1():
+    assert "must lie in [0, 1]; got 1.2" in refusal(material(lobe(EON, roughness="1.2")))
+
+
+def test_a_message_quotes_no_more_than_a_screenful():
+    assert len(refusal(material(lobe(color=", ".join("1" * 5000))))) <= LONGEST
+
+
+def test_a_value_of_a_type_made_of_others_is_no_fault():
+    pair = '<typedef name="pair"><member name="a" type="float" value="1"/></typedef>'
+    node = DEFINED.format("a").replace(
+        "<output", '<input name="p" type="pair" value="{1}"/><output'
+    )
+    assert generate(material(pair + node + lobe()), "glsl")
+
+
+def test_a_circle_that_no_material_uses_is_no_fault():
+    assert generate(material(CYCLE + lobe()), "glsl")
+
+
+def test_a_texture_set_is_not_looked_for():
+    nodes = IMAGE.format("tile.&lt;UDIM&gt;.png") + connected(color='nodename="image"')
+    assert generate(material(nodes), "glsl")
+
+
+def test_an_older_document_is_read_as_todays():
+    older = f'<materialx version="1.37">{lobe()}</materialx>'
+    assert read_document(older).getVersionString() == "1.39"
+
+
+def test_relative_names_start_at_the_file(tmp_path, monkeypatch):
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / "albedo.png").touch()
+    nodes = IMAGE.format("maps/albedo.png") + connected(color='nodename="image"')
+    (tmp_path / "nodes.mtlx").write_text(f'<materialx version="1.39">{nodes}</materialx>')
+    file = tmp_path / "look.mtlx"
+    file.write_text(INCLUDE.format('<xi:include href="nodes.mtlx"/>'))
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    image = read_document(file).getDescendant("image/file")
+    assert image.getValueString() == str(tmp_path / "maps" / "albedo.png")
+
+
+def test_relative_names_of_a_text_start_at_the_working_folder(tmp_path, monkeypatch):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    (tmp_path / "albedo.png").touch()
+    (inside / "albedo.png").touch()
+    monkeypatch.chdir(inside)
+    nodes = IMAGE.format("albedo.png") + connected(color='nodename="image"')
+    image = read_document(material(nodes)).getDescendant("image/file")
+    assert image.getValueString() == str(inside / "albedo.png")
+
+
+def test_a_document_is_copied_and_stays_as_it_is():
+    document = mx.createDocument()
+    mx.readFromXmlString(document, material(lobe()))
+    before = mx.writeToXmlString(document)
+    read = read_document(document)
+    read.getNode("lobe").setName("other")
+    assert mx.writeToXmlString(document) == before
+    assert document.getDataLibrary() is None

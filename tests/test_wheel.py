@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The wheel and the sdist: what they hold, and that they work outside the checkout."""
+
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import MaterialX as mx
+import pytest
+from documents import EON, lobe, material
+
+import mxeon
+
+CHECKOUT = Path(__file__).parents[1]
+DATA = ("eonlib", "genglsl", "genosl", "profiles", "examples")
+SUFFIXES = (".mtlx", ".glsl", ".osl", ".png")
+SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
+
+LOAD = """
+import mxeon
+from mxeon.document import read_document
+from mxeon.library import assert_ours, data_folder, examples_folder, load_library
+print(data_folder())
+assert_ours(load_library())
+assert_ours(load_library(profile="cycles"))
+for path in sorted(examples_folder().glob("*.mtlx")):
+    print(path.name, len(mxeon.generate(path, "glsl")))
+"""
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """Folder of the sdist and of the wheel that was built from it."""
+    folder = tmp_path_factory.mktemp("dist")
+    build = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, CHECKOUT]
+    done = subprocess.run(build, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(built):
+    [path] = built.glob("*.whl")
+    return path
+
+
+@pytest.fixture(scope="module")
+def environment(wheel, tmp_path_factory):
+    """A fresh environment that holds the wheel, and sees the dependencies of this one."""
+    folder = tmp_path_factory.mktemp("fresh")
+    run([sys.executable, "-m", "venv", "--without-pip", folder], folder)
+    python = folder / "bin" / "python"
+    pip = [sys.executable, "-m", "pip", "--python", python]
+    run([*pip, "install", "--no-deps", "--no-index", wheel], folder)
+    [packages] = folder.glob("lib/python*/site-packages")
+    (packages / "dependencies.pth").write_text(str(Path(mx.__file__).parents[1]))
+    return folder
+
+
+def run(command, folder):
+    """What a command prints, run from a folder; it has to succeed."""
+    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    done = subprocess.run(
+        command, cwd=folder, env=clean, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def contents(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        return archive.namelist()
+
+
+def test_the_wheel_holds_the_data_of_the_checkout(wheel):
+    files = {name for name in contents(wheel) if name.startswith("mxeon/data/")}
+    assert {name.split("/")[2] for name in files} == set(DATA)
+    for folder in DATA:
+        source = CHECKOUT / ("libraries" if folder == "eonlib" else folder)
+        sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
+        names = {f"mxeon/data/{folder}/{path.relative_to(source).as_posix()}" for path in sources}
+        assert names and names <= files
+
+
+def test_no_folder_of_the_wheel_hides_materialxs_libraries(wheel):
+    assert [name for name in contents(wheel) if "libraries" in name.split("/")] == []
+
+
+def test_the_wheel_holds_the_package_alone(wheel):
+    roots = {name.split("/")[0] for name in contents(wheel)}
+    assert roots == {"mxeon", f"mxeon-{mxeon.__version__}.dist-info"}
+    assert [name for name in contents(wheel) if "__pycache__" in name or "/test" in name] == []
+
+
+def test_the_sdist_holds_what_the_tests_need_and_nothing_made(built):
+    [path] = built.glob("*.tar.gz")
+    with tarfile.open(path) as archive:
+        names = [name.partition("/")[2] for name in archive.getnames()]
+    assert {"run", "pyproject.toml", "LICENSE", "README.md", "tests/test_wheel.py"} <= set(names)
+    hidden = (".venv", ".venv-cycles", ".git", "out", "dist", "build")
+    assert [name for name in names if name.split("/")[0] in hidden or "__pycache__" in name] == []
+
+
+def test_the_installed_package_loads_and_generates_outside_the_checkout(environment, tmp_path):
+    folder, *made = run([environment / "bin" / "python", "-I", "-c", LOAD], tmp_path).splitlines()
+    assert Path(folder).is_relative_to(environment)
+    examples = sorted(path.name for path in (CHECKOUT / "examples").glob("*.mtlx"))
+    assert [line.split()[0] for line in made] == examples
+
+
+def test_the_installed_command_answers(environment, tmp_path):
+    answer = run([environment / "bin" / "mxeon", "--version"], tmp_path)
+    assert answer == f"mxeon {mxeon.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "options", [("--path", "{}", "--library", "eonlib"), ("--library", "{}/eonlib")], ids="_".join
+)
+def test_generateshader_finds_the_installed_library(environment, tmp_path, options):
+    [data] = environment.glob("lib/python*/site-packages/mxeon/data")
+    options = [option.format(data) for option in options]
+    (tmp_path / "clay.mtlx").write_text(material(lobe(EON)))
+    command = [sys.executable, SCRIPT, *options, "--outputPath", tmp_path, tmp_path / "clay.mtlx"]
+    run(command, tmp_path)
+    assert "void eon_diffuse_bsdf(ClosureData" in (tmp_path / "look.glsl.frag").read_text()
