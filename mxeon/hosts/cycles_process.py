@@ -101,8 +101,10 @@ class Worker:
         killer.start()
         line = self._process.stdout.readline()
         killer.cancel()
-        if line:
+        if line.endswith("}\n"):
             return json.loads(line)
+        if line:  # an answer cut short: the process is on its way out
+            self._process.kill()
         status = self._process.wait()
         if time.monotonic() - begin >= self.limit:
             end = f"no answer within {self.limit:g} s"

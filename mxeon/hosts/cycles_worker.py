@@ -12,10 +12,13 @@ import os
 import sys
 from pathlib import Path
 
-import bpy
-import _cycles
-from mathutils import Vector
+# Blender prints on standard output as soon as it is imported: that goes to standard error.
+REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
+os.dup2(2, 1)
 
+import bpy  # noqa: E402
+import _cycles  # noqa: E402
+from mathutils import Vector  # noqa: E402
 
 # Script nodes read their sockets with `oslquery`, which lies in Blender's own Python folder.
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
@@ -127,11 +130,9 @@ def render(shader, output, size, samples, radius, light, environment):
 
 def main():
     """Serve requests until standard input ends."""
-    replies = os.fdopen(os.dup(1), "w", buffering=1)
-    os.dup2(2, 1)
-    print(json.dumps({"version": bpy.app.version_string}), file=replies)
+    print(json.dumps({"version": bpy.app.version_string}), file=REPLIES)
     for line in sys.stdin:
-        print(json.dumps(render(**json.loads(line))), file=replies)
+        print(json.dumps(render(**json.loads(line))), file=REPLIES)
 
 
 if __name__ == "__main__":
