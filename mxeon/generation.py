@@ -5,6 +5,7 @@ import re
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from types import MappingProxyType
 
 import MaterialX as mx
@@ -16,6 +17,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 import MaterialX.PyMaterialXGenSlang as mx_slang
 
 from mxeon.document import DocumentError, label, read_document
+from mxeon.library import load_library
 
 GENERATORS = {
     "glsl": mx_glsl.GlslShaderGenerator,
@@ -168,11 +170,12 @@ def generate(document, target, element=None, *, library="eonlib", profile=None, 
     if target not in GENERATORS:
         raise ValueError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
     document = read_document(document, library, profile)
-    generator, context = _generator(document, target, lights)
-    names = _names(renderable(document))
+    generator, context = _generator(document, target, lights, _systems(target, library, profile))
+    found = renderable(document)
+    names = _names(found)
     shaders = tuple(
-        _generate(document, found, names[found.getNamePath()], target, generator, context)
-        for found in renderable(document, element)
+        _generate(document, each, names[each.getNamePath()], target, generator, context)
+        for each in _chosen(found, element)
     )
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
@@ -195,6 +198,11 @@ def renderable(document, element=None):
             f"{label(document)}: must contain a renderable element (a surfacematerial, a surface "
             "shader or an output of one); there is none"
         )
+    return _chosen(found, element)
+
+
+def _chosen(found, element):
+    """Those of the renderable elements that are called `element`; None for all."""
     if element is None:
         return found
     chosen = [each for each in found if element in (each.getName(), each.getNamePath())]
@@ -204,7 +212,23 @@ def renderable(document, element=None):
     return chosen
 
 
-def _generator(document, target, lights):
+@lru_cache(maxsize=None)
+def _systems(target, library, profile):
+    """Colour and unit systems of a target, which depend on the data library alone."""
+    data, target = load_library(library, profile), GENERATORS[target].create().getTarget()
+    colors = mx_gen.DefaultColorManagementSystem.create(target)
+    colors.loadLibrary(data)
+    units = mx_gen.UnitSystem.create(target)
+    converters = mx.UnitConverterRegistry.create()
+    for name in ("distance", "angle"):
+        definition = data.getUnitTypeDef(name)
+        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
+    units.loadLibrary(data)
+    units.setUnitConverterRegistry(converters)
+    return colors, units
+
+
+def _generator(document, target, lights, systems):
     """A generator with colour and unit systems, and a context of its own.
 
     A context remembers implementations by name, so it must not outlive its document.
@@ -213,18 +237,8 @@ def _generator(document, target, lights):
     context = mx_gen.GenContext(generator)
     context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
     generator.registerTypeDefs(document)
-
-    colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
-    colors.loadLibrary(document)
+    colors, units = systems
     generator.setColorManagementSystem(colors)
-
-    units = mx_gen.UnitSystem.create(generator.getTarget())
-    converters = mx.UnitConverterRegistry.create()
-    for name in ("distance", "angle"):
-        definition = document.getUnitTypeDef(name)
-        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
-    units.loadLibrary(document)
-    units.setUnitConverterRegistry(converters)
     generator.setUnitSystem(units)
     context.getOptions().targetDistanceUnit = "meter"
     # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.

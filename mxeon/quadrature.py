@@ -54,12 +54,12 @@ def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
     parameter = [np.broadcast_to(value, lead) for value in parameter]
     albedo = np.empty(rho.shape)
     for index in np.ndindex(lead):
-        wo, wi, weights = _hemisphere_nodes(mu[index], nodes)
+        wo, wi, weights = hemisphere_nodes(mu[index], nodes)
         albedo[index] = weights @ brdf(wo, wi, rho[index], *(value[index] for value in parameter))
     return albedo
 
 
-def _hemisphere_nodes(mu, nodes):
+def hemisphere_nodes(mu, nodes):
     """wo at azimuth 0, wi in half the hemisphere, and their shares of the projected hemisphere."""
     x, weight = np.polynomial.legendre.leggauss(nodes)
     x, weight = 0.5 * (1.0 + x), 0.5 * weight

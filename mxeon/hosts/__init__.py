@@ -31,7 +31,7 @@ class Identity:
 
 
 # Name on the command line -> module of this package with a class `Host`.
-HOSTS = ("gl", "cycles", "reference")
+HOSTS = ("gl", "webgl", "vulkan", "slang", "cycles", "reference")
 
 
 def open_host(name):

@@ -91,19 +91,24 @@ class Host:
         ndarray, shape (height, width, 4), float32
             Row 0 at the bottom.
         """
-        context, program = self._context, self._program(fragment.VERTEX, pixel)
+        context = self._context
+        program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
         _set(program, uniforms)
         vertices, indices = _triangle()
         corners = [(context.buffer(vertices["i_position"]), "3f", "i_position")]
         triangle = context.vertex_array(program, corners, context.buffer(indices))
-        frame = self._frame(size)
+        frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
+        frame.use()
+        frame.clear()
         context.enable(context.BLEND)
         context.blend_func = context.ONE, context.ONE
         for each in passes:
             program["tracer_pass"].value = each
             triangle.render()
+            context.finish()
         context.disable(context.BLEND)
-        return _pixels(frame, size)
+        image = np.frombuffer(frame.read(components=4, dtype="f4"), dtype=np.float32)
+        return image.reshape(size[1], size[0], 4)
 
     def close(self):
         """Give the context back; the host is of no use afterwards."""
@@ -163,6 +168,11 @@ def _set_light(program, scene):
             "u_lightData[0].color": (1.0, 1.0, 1.0),
             "u_lightData[0].intensity": np.pi,
         }
+    _set(program, values)
+
+
+def _set(program, values):
+    """Gives the uniforms that the program has their values."""
     for name, value in values.items():
         if name in program:
             program[name].value = value

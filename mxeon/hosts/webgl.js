@@ -2,11 +2,11 @@
 // One triangle over a float32 frame in WebGL2, its texture coordinates being the pixels themselves.
 
 const gl = document.createElement("canvas").getContext("webgl2");
+const floats = gl && gl.getExtension("EXT_color_buffer_float");
 
-// Version and device, or why there can be no frame.
+// The device, or why there can be no frame.
 function identify() {
-    if (!gl) return { missing: "WebGL2" };
-    if (!gl.getExtension("EXT_color_buffer_float")) return { missing: "EXT_color_buffer_float" };
+    if (!floats) return { failed: "the browser has no WebGL2 with float32 frames" };
     const info = gl.getExtension("WEBGL_debug_renderer_info");
     return { device: gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER) };
 }
@@ -24,8 +24,8 @@ function link(vertex, pixel) {
     stages.forEach((stage) => gl.attachShader(program, stage));
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
-        const logs = [...stages.map((stage) => gl.getShaderInfoLog(stage)), gl.getProgramInfoLog(program)];
-        throw new Error(logs.filter(Boolean).join(" | "));
+        const logs = stages.map((stage) => gl.getShaderInfoLog(stage));
+        throw new Error([...logs, gl.getProgramInfoLog(program)].filter(Boolean).join(" | "));
     }
     stages.forEach((stage) => gl.deleteShader(stage));
     return program;
@@ -108,5 +108,6 @@ async function draw(job) {
     const pixels = render(program, job, data);
     gl.deleteProgram(program);
     const code = gl.getError();
-    return code ? { failed: `WebGL error 0x${code.toString(16)}` } : { pixels: await encode(pixels) };
+    if (code) return { failed: `WebGL error 0x${code.toString(16)}` };
+    return { pixels: await encode(pixels) };
 }

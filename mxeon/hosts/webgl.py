@@ -75,7 +75,11 @@ class Host:
         self._page = None
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
-        self._ask("identify")
+        try:
+            self._ask("identify")
+        except NotRun:
+            self.close()
+            raise
 
     def identity(self):
         """Version and device as the browser names them."""

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The browser as a host: what is missing is said, and a browser that fails is replaced."""
+
+import numpy as np
+import pytest
+
+from mxeon.hosts import NotRun, webgl
+
+MU = np.array([0.5])
+
+
+def started(**options):
+    try:
+        return webgl.Host(**options)
+    except NotRun as reason:
+        pytest.skip(str(reason))
+
+
+def test_a_missing_playwright_is_not_run_and_names_the_remedy(monkeypatch):
+    monkeypatch.setattr(webgl, "sync_api", None)
+    with pytest.raises(NotRun, match=r"Playwright is not installed; pip install 'mxeon\[webgl\]'"):
+        webgl.Host()
+
+
+def test_a_missing_browser_is_not_run_and_names_the_remedy(monkeypatch):
+    monkeypatch.setenv("MXEON_CHROMIUM", "no-such-browser")
+    with pytest.raises(NotRun, match="no program 'no-such-browser'; .* apt-get install chromium"):
+        webgl.Host()
+
+
+def test_a_program_that_is_no_browser_is_not_run(monkeypatch):
+    if webgl.sync_api is None:
+        pytest.skip("webgl: Playwright is not installed")
+    monkeypatch.setenv("MXEON_CHROMIUM", "true")
+    with pytest.raises(NotRun, match="webgl: the browser fails; "):
+        webgl.Host()
+
+
+def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():
+    host = started(limit=5.0)
+    with pytest.raises(NotRun, match="webgl: the browser fails; .*[Tt]imeout"):
+        host._ask("() => { for (;;); }")
+    assert host.call("fon_albedo_dir", MU, np.array([0.0])).tolist() == [[1.0, 1.0, 1.0]]
+    host.close()
+
+
+def test_two_browsers_work_side_by_side():
+    first, second = started(), started()
+    values = [each.call("fon_a", MU) for each in (first, second)]
+    np.testing.assert_array_equal(*values)
+    first.close()
+    second.close()
+
+
+def test_no_name_resolves_in_the_browser():
+    host = started()
+    script = """async () => {
+        const found = await fetch("https://example.org/").then(() => "found", () => "nothing");
+        return { found };
+    }"""
+    assert host._ask(script)["found"] == "nothing"
+    host.close()
+
+
+def test_there_are_no_pictures():
+    host = started()
+    with pytest.raises(NotRun, match="webgl: there are no pictures here"):
+        host.picture(None, None)
+    host.close()
