@@ -65,7 +65,7 @@ def _parser():
 
     check = _command(commands, "check", _check, "run the checks and compare pictures")
     check.add_argument("files", nargs="*", metavar="FILE", help="documents; none: the examples")
-    check.add_argument("--host", action="append", help="gl (the default), cycles; may be repeated")
+    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles; may be repeated")
     check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
     _library(check)
     _json(check)

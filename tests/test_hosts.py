@@ -9,7 +9,8 @@ import pytest
 from tolerances import TWIN_ALBEDO, TWIN_VALUE
 
 from mxeon import reference
-from mxeon.conformance.probes import SUBJECTS, PairProbe
+from mxeon.conformance.probes import PairProbe
+from mxeon.conformance.subjects import SUBJECTS
 from mxeon.generation import generate
 from mxeon.hosts import NotRun, ShaderError
 

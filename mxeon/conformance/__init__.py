@@ -12,9 +12,10 @@ from importlib.metadata import version
 from pathlib import Path
 
 import mxeon
-from mxeon.conformance.documents import judge_document
+from mxeon.conformance.documents import SCENES, judge_document
 from mxeon.conformance.nodes import judge_curve, judge_subject, judge_twins
-from mxeon.conformance.probes import PROBES, SUBJECTS
+from mxeon.conformance.probes import PROBES
+from mxeon.conformance.subjects import SUBJECTS
 from mxeon.conformance.sources import check_sources
 from mxeon.hosts import NotRun, open_host
 from mxeon.library import LIBRARIES, examples_folder
@@ -42,7 +43,7 @@ def check(files=(), hosts=("gl",), library="eonlib", progress=list):
     files : sequence of path-like
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
-        Who is judged: "gl", "cycles".
+        Who is judged; `mxeon.conformance.probes.PROBES` has them.
     library : str
         "eonlib", or "stock" for MaterialX as it comes.
     progress : callable (list) -> iterable
@@ -102,8 +103,8 @@ def _steps(host, judge, subjects, files, library):
         probe = PROBES[host.name](host, subject, library)
         steps.append(lambda probe=probe: Findings(results=judge_subject(probe)))
         steps.append(lambda probe=probe: Findings(curves=judge_curve(probe)))
-    for file in files:
-        steps.append(partial(_document, file, host, judge, library))
+    if host.name in SCENES:
+        steps += [partial(_document, file, host, judge, library) for file in files]
     return steps
 
 

@@ -7,7 +7,8 @@ from itertools import product
 import numpy as np
 
 from mxeon import albedo, reference
-from mxeon.conformance.probes import FLAG, GRAZING, SEED, Batch, directions, random_inputs
+from mxeon.conformance.probes import GRAZING, SEED, Batch, directions, random_inputs
+from mxeon.conformance.subjects import FLAG
 from mxeon.quadrature import albedo_dir_quadrature
 
 CHANGES = {

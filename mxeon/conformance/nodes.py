@@ -6,7 +6,8 @@ import numpy as np
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import nearest_albedo, nearest_value
 from mxeon.conformance.measures import integrated
-from mxeon.conformance.probes import FLAG, PairProbe
+from mxeon.conformance.probes import PROBES, PairProbe
+from mxeon.conformance.subjects import FLAG
 from mxeon.hosts import NotRun, ShaderError
 from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
 
@@ -27,10 +28,10 @@ def judge_subject(probe):
         "library": probe.library,
     }
     return tuple(
-        _judge(check, probe, place, _diagnose)
+        _judge(check, probe, check.tolerances[probe.kind], place, _diagnose)
         for check in CHECKS
         if probe.subject.model in check.models
-        and probe.host.name in check.tolerances
+        and probe.kind in check.tolerances
         and not (check.key == "flag" and FLAG not in probe.subject.inputs)
         and not (check.key == "environment" and not probe.cosines)
     )
@@ -39,10 +40,12 @@ def judge_subject(probe):
 def judge_twins(host, library):
     """Results of the checks of the shader twins, which are the same whatever library is judged."""
     place = {"subject": "shader twins", "host": host.name, "library": library}
+    kind = PROBES[host.name].kind
     return tuple(
-        _judge(check, host.call, place, lambda check, probe: "")
+        _judge(check, host.call, tolerance, place, lambda check, probe: "")
         for check in CHECKS
-        if not check.models and host.name in check.tolerances
+        if not check.models
+        for tolerance in [check.tolerances.get(host.name, check.tolerances[kind])]
     )
 
 
@@ -71,8 +74,7 @@ def judge_curve(probe):
     )
 
 
-def _judge(check, probe, place, diagnose):
-    tolerance = check.tolerances[place["host"]]
+def _judge(check, probe, tolerance, place, diagnose):
     try:
         found = check.measure(probe, tolerance.error)
         wrong = check.measure(check.control(probe), tolerance.error)

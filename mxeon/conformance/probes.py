@@ -13,6 +13,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from mxeon import reference
+from mxeon.conformance.subjects import Subject
 from mxeon.generation import ApproximationWarning, generate
 from mxeon.hosts.reference import local_directions
 from mxeon.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
@@ -32,87 +33,6 @@ PICTURE_SIZE = 128
 
 # Host and model where no closure gives the model for s < 0: such pairs are not judged.
 FRONT_LIT_ONLY = (("cycles", "qon"),)
-
-NODE_DOCUMENT = """<?xml version="1.0"?>
-<materialx version="1.39">
-  <constant name="shading_normal" type="vector3">
-    <input name="value" type="vector3" value="{normal}" />
-  </constant>
-  <{node} name="lobe" type="BSDF">
-{inputs}
-  </{node}>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-  <surfacematerial name="{node}" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>
-"""
-FLAG = "energy_compensation"
-TYPES = {
-    "weight": "float",
-    "color": "color3",
-    "roughness": "float",
-    "normal": "vector3",
-    FLAG: "boolean",
-}
-
-
-@dataclass(frozen=True)
-class Subject:
-    """A node as it is judged: with the flag it is used with and the model it has to be.
-
-    Attributes
-    ----------
-    node : str
-        Node category.
-    flag : bool or None
-        energy_compensation, or None where the node has no such input.
-    model : str
-        Name of a row of `mxeon.reference.MODELS`.
-    """
-
-    node: str
-    flag: bool | None
-    model: str
-
-    @property
-    def stock(self):
-        """Whether MaterialX has this node as it comes."""
-        return self.node != "eon_diffuse_bsdf"
-
-    @property
-    def title(self):
-        """How reports call it."""
-        flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
-        return self.node + flag
-
-    @property
-    def inputs(self):
-        """Names of the node's inputs."""
-        return tuple(name for name in TYPES if self.flag is not None or name != FLAG)
-
-    def with_flag(self, inputs):
-        """Inputs with the subject's flag, unless they set it."""
-        return inputs if self.flag is None else {FLAG: self.flag, **inputs}
-
-    def document(self, inputs=None):
-        """MaterialX text of a material that is this node alone, with the inputs given."""
-        given = self.with_flag(inputs or {})
-        lines = "\n".join(
-            f'    <input name="{name}" type="{TYPES[name]}" {_source(name, value)} />'
-            for name, value in given.items()
-        )
-        normal = _text(given.get("normal", (0.0, 0.0, 1.0)))
-        return NODE_DOCUMENT.format(node=self.node, inputs=lines, normal=normal)
-
-
-SUBJECTS = (
-    Subject("oren_nayar_diffuse_bsdf", True, "eon"),
-    Subject("oren_nayar_diffuse_bsdf", False, "qon"),
-    Subject("eon_diffuse_bsdf", None, "eon"),
-)
 
 
 @dataclass(frozen=True)
@@ -154,6 +74,8 @@ class Batch:
 @dataclass(frozen=True)
 class PairProbe:
     """A node on a host that evaluates any pairs."""
+
+    kind = "pairs"
 
     host: object
     subject: Subject
@@ -203,6 +125,8 @@ class PairProbe:
 @dataclass(frozen=True)
 class PictureProbe:
     """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
+
+    kind = "pictures"
 
     host: object
     subject: Subject
@@ -263,7 +187,13 @@ class PictureProbe:
         return image[chosen & self._expressible(wo, wi)].astype(np.float64)
 
 
-PROBES = {"gl": PairProbe, "cycles": PictureProbe}
+PROBES = {
+    "gl": PairProbe,
+    "webgl": PairProbe,
+    "vulkan": PairProbe,
+    "slang": PairProbe,
+    "cycles": PictureProbe,
+}
 
 
 @lru_cache(maxsize=8)
@@ -307,14 +237,3 @@ def random_inputs(rng, count, row):
 def _float32(columns):
     """Columns as rows of float32 numbers in float64."""
     return np.stack(columns, axis=-1).astype(np.float32).astype(np.float64)
-
-
-def _source(name, value):
-    """Where an input comes from. MaterialX drops the value of a normal that is not connected."""
-    return 'nodename="shading_normal"' if name == "normal" else f'value="{_text(value)}"'
-
-
-def _text(value):
-    if isinstance(value, bool):
-        return str(value).lower()
-    return ", ".join(repr(float(each)) for each in np.ravel(value))

@@ -67,7 +67,6 @@ class Host:
     name = "cycles"
     target = "osl"
     profile = "cycles"
-    front_lit_only = ("qon",)  # models that Cycles can express only where s >= 0
 
     def __init__(self, sources=None, limit=300.0):
         python = interpreter()

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The scenes of the kit in USD's text form, written without USD."""
+
+import numpy as np
+
+MESH = """#usda 1.0
+(
+    defaultPrim = "sphere"
+    metersPerUnit = 1
+    upAxis = "Y"
+)
+
+def Mesh "sphere"
+{{
+    int[] faceVertexCounts = [{counts}]
+    int[] faceVertexIndices = [{indices}]
+    point3f[] points = [{points}]
+    normal3f[] normals = [{points}] (
+        interpolation = "vertex"
+    )
+    float3[] extent = [(-1, -1, -1), (1, 1, 1)]
+    uniform token subdivisionScheme = "none"
+}}
+"""
+
+SCENE = """#usda 1.0
+(
+    defaultPrim = "world"
+    doc = "{name}: one picture of the mxeon kit, {size} x {size} pixels"
+    metersPerUnit = 1
+    upAxis = "Y"
+)
+
+def Xform "world"
+{{
+    def Camera "camera"
+    {{
+        token projection = "orthographic"
+        # Tenths of a unit: the frame is the square [-1, 1]^2.
+        float horizontalAperture = 20
+        float verticalAperture = 20
+        float2 clippingRange = (0.1, 100)
+        double3 xformOp:translate = (0, 0, 4)
+        uniform token[] xformOpOrder = ["xformOp:translate"]
+    }}
+
+    def "sphere" (
+        prepend apiSchemas = ["MaterialBindingAPI"]
+        references = @../sphere.usda@
+    )
+    {{
+        rel material:binding = </world/material>
+    }}
+
+{light}
+
+    def Material "material"
+    {{
+        token outputs:mtlx:surface.connect = </world/material/surface.outputs:out>
+
+        def Shader "surface"
+        {{
+            uniform token info:id = "ND_surface"
+            token inputs:bsdf.connect = </world/material/lobe.outputs:out>
+            token outputs:out
+        }}
+
+        def Shader "lobe"
+        {{
+            uniform token info:id = "ND_oren_nayar_diffuse_bsdf"
+            color3f inputs:color = {color}
+            float inputs:roughness = {roughness!r}
+            bool inputs:energy_compensation = {flag:d}
+            token outputs:out
+        }}
+    }}
+}}
+
+def Scope "Render"
+{{
+    def RenderSettings "settings"
+    {{
+        rel camera = </world/camera>
+        int2 resolution = ({size}, {size})
+        bool instantaneousShutter = 1
+    }}
+}}
+"""
+
+DISTANT = """    def DistantLight "light"
+    {{
+        # Irradiance pi on a surface that faces the light, which stands in +z of its own frame.
+        float inputs:angle = 0
+        float inputs:intensity = {irradiance!r}
+        bool inputs:normalize = 1
+        matrix4d xformOp:transform = ( {rows}, (0, 0, 0, 1) )
+        uniform token[] xformOpOrder = ["xformOp:transform"]
+    }}"""
+
+DOME = """    def DomeLight "light"
+    {{
+        float inputs:intensity = {radiance!r}
+    }}"""
+
+
+def mesh_layer(mesh):
+    """The sphere as a layer of its own, which the scenes refer to."""
+    return MESH.format(
+        counts=", ".join(["3"] * len(mesh.triangles)),
+        indices=", ".join(map(str, mesh.triangles.ravel())),
+        points=", ".join(f"({x:.9f}, {y:.9f}, {z:.9f})" for x, y, z in mesh.vertices),
+    )
+
+
+def scene_layer(shot):
+    """The scene of one picture."""
+    material, scene = shot.material, shot.scene
+    if scene.light is None:
+        light = DOME.format(radiance=scene.environment)
+    else:
+        rows = ", ".join(str((*row, 0.0)) for row in _frame(scene.light).tolist())
+        light = DISTANT.format(irradiance=float(np.pi), rows=rows)
+    return SCENE.format(
+        name=shot.name,
+        size=scene.size,
+        light=light,
+        color=material.color,
+        roughness=material.roughness,
+        flag=material.energy_compensation,
+    )
+
+
+def _frame(direction):
+    """Rows x, y, z of a right-handed frame whose z is `direction`."""
+    z = np.array(direction)
+    helper = np.eye(3)[np.abs(z).argmin()]
+    x = np.cross(helper, z)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z])
