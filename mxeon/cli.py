@@ -8,6 +8,7 @@ import argparse
 import json
 import os
 import sys
+import warnings
 from pathlib import Path
 
 import mxeon
@@ -39,7 +40,9 @@ def main(arguments=None):
     """
     options = _parser().parse_args(arguments)
     try:
-        return options.run(options)
+        with warnings.catch_warnings():
+            warnings.showwarning = _warn
+            return options.run(options)
     except KeyboardInterrupt:
         return _fail(130, "interrupted")
     except BrokenPipeError:  # who read our output has had enough
@@ -56,6 +59,10 @@ def main(arguments=None):
 def _fail(status, error):
     print(f"mxeon: {error}", file=sys.stderr)
     return status
+
+
+def _warn(message, *_, **__):
+    print(f"mxeon: warning: {message}", file=sys.stderr)
 
 
 def _parser():

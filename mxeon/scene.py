@@ -26,13 +26,22 @@ class Scene:
     environment : float, Path or None
         Radiance of a uniform surrounding, or a latitude-longitude image.
     size : int
-        Width and height in pixels.
+        Width and height in pixels, at least 1.
+
+    Raises
+    ------
+    ValueError
+        If there is no pixel.
     """
 
     name: str
     light: tuple[float, float, float] | None = None
     environment: float | Path | None = None
     size: int = 256
+
+    def __post_init__(self):
+        if self.size < 1:
+            raise ValueError(f"size must be at least 1; got {self.size}")
 
 
 def _towards(azimuth, polar):
@@ -100,7 +109,7 @@ def sphere(size, margin=0):
     x, y = np.meshgrid(axis, -axis)
     radius = np.hypot(x, y)
     mask = radius < 1.0
-    scale = np.where(mask, 1.0, 1.0 / radius)
+    scale = 1.0 / np.maximum(radius, 1.0)
     z = np.sqrt(np.maximum(0.0, 1.0 - radius * radius))
     normal = np.stack([x * scale, y * scale, z], axis=-1)
     u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)

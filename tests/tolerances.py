@@ -164,3 +164,9 @@ TRACER_GRID = 1e-3
 # A pixel of the opened ball in a white furnace: the product of the weights of a path, which has 20
 # reflections on average in the hollow (measured), each within TWIN_WEIGHT of 1.
 FURNACE_OPENED = 20 * TWIN_WEIGHT
+
+# --- Pictures on OpenGL ----------------------------------------------------------------------
+
+# Error times cos(theta_o): 16 roundings of float32 in the place of a pixel's point, whose normal
+# changes by the inverse of that cosine from pixel to pixel, and 32 in the value.
+PICTURE = 48 * 2.0**-24

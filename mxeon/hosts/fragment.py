@@ -205,17 +205,15 @@ def columns(arguments):
 
 def _find_call(text, closure, element):
     """The statements that evaluate the BSDF for a closure type, its result and its arguments."""
-    pattern = (
-        rf"ClosureData closureData = makeClosureData\({closure}[^;]*;\s*"
-        r"BSDF (\w+) = [^;]*;\s*\w+\(closureData, ([^;]*), \1\);"
-    )
-    found = list(re.finditer(pattern, text))
-    if len(found) != 1:
+    block = re.search(rf"ClosureData closureData = makeClosureData\({closure}[^}}]*", text)
+    calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block[0]) if block else []
+    if len(calls) != 1:
         raise ValueError(
             f"element {element!r} must call one BSDF and nothing else to be evaluated; "
-            f"its shader has {len(found)} such calls"
+            f"its shader calls {len(calls)}"
         )
-    return found[0][0], found[0][1], found[0][2].split(", ")
+    (arguments, result), end = calls[0], f", {calls[0][1]});"
+    return block[0][: block[0].index(end) + len(end)], result, arguments.split(", ")
 
 
 def _argument(default, inputs):

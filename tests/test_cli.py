@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command: what it prints, what it leaves behind, and the status it ends with."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from documents import material
+
+from mxeon.cli import FAILED, MISUSE, NOT_RUN, PASSED, main
+from mxeon.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.library import eonlib_folder, examples_folder
+
+CLAY = str(examples_folder() / "clay.mtlx")
+PLASTER = str(examples_folder() / "plaster.mtlx")
+
+
+def run(*arguments, **environment):
+    command = [sys.executable, "-m", "mxeon", *map(str, arguments)]
+    return subprocess.run(
+        command, capture_output=True, text=True, env={**os.environ, **environment}, check=False
+    )
+
+
+def one_line(text):
+    lines = [line for line in text.splitlines() if line.startswith("mxeon")]
+    return lines[0] if len(lines) == 1 and "Traceback" not in text else ""
+
+
+# --- status -------------------------------------------------------------------------------------
+
+
+def test_check_passes_and_writes_a_report(tmp_path, capsys):
+    assert main(["check", PLASTER, "--report", str(tmp_path / "report")]) == PASSED
+    printed = capsys.readouterr().out
+    assert "checks passed" in printed and "report.html" in printed
+    names = {path.name for path in (tmp_path / "report").iterdir()}
+    assert names == {"report.html", "results.json", "junit.xml", "pictures"}
+
+
+def test_check_of_stock_fails_and_names_the_defects(capsys):
+    assert main(["check", PLASTER, "--library", "stock"]) == FAILED
+    assert "EON with clamped dot(wo, wi)" in capsys.readouterr().out
+
+
+def test_check_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys):
+    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
+    assert main(["check", PLASTER, "--host", "cycles"]) == NOT_RUN
+    assert "not run: cycles" in capsys.readouterr().out
+
+
+def test_render_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys, tmp_path):
+    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
+    output = tmp_path / "out.exr"
+    assert main(["render", PLASTER, "--host", "cycles", "--output", str(output)]) == NOT_RUN
+    assert "MXEON_CYCLES_PYTHON" in capsys.readouterr().err and not output.exists()
+
+
+def test_check_prints_json_for_machines(capsys):
+    assert main(["check", PLASTER, "--json"]) == PASSED
+    assert json.loads(capsys.readouterr().out)["results"]
+
+
+# --- misuse -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["generate", "nowhere.mtlx", "--target", "glsl"], "must be a readable file"),
+        (["generate", CLAY, "--target", "hlsl"], "target must be one of glsl"),
+        (["generate", CLAY, "--target", "glsl", "--element", "loam"], "element must be one of"),
+        (["generate", CLAY, "--target", "glsl", "--library", "mine"], "library must be one of"),
+        (["generate", CLAY, "--target", "osl", "--profile", "arnold"], "profile must be one of"),
+        (["generate", CLAY], "required: --target"),
+    ],
+    ids=["file", "target", "element", "library", "profile", "no target"],
+)
+def test_generate_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_path):
+    ended = run(*arguments, "--outputPath", tmp_path / "out")
+    assert ended.returncode == MISUSE and words in one_line(ended.stderr)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["check", PLASTER, "--host", "abacus"], "host must be one of gl"),
+        (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, stock"),
+        (["check", "nowhere.mtlx"], "must be a readable file"),
+        (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
+        (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),
+        (["render", PLASTER, "--output", "out.exr", "--scene", "dusk"], "scene must be one of"),
+        (["render", PLASTER, "--output", "out.exr", "--environment", "sky.hdr"], "sky.hdr"),
+        (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must be at least 1"),
+        (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
+        (["invert", "1", "0", "0", "--roughness", "nan"], "roughness must lie in [0, 1]"),
+        (["frobnicate"], "invalid choice"),
+        ([], "required"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_misuse_is_one_line(arguments, words, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    try:
+        status = main(arguments)
+    except SystemExit as ended:
+        status = ended.code
+    assert status == MISUSE and words in one_line(capfd.readouterr().err)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(tmp_path):
+    (tmp_path / "file").write_text("")
+    folder = tmp_path / "file" / "out"
+    ended = run("generate", PLASTER, "--target", "osl", "--outputPath", folder)
+    assert ended.returncode == MISUSE and "must be accessible" in one_line(ended.stderr)
+
+
+def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
+    bad = tmp_path / "bad.mtlx"
+    bad.write_text("<materialx")
+    status = main(
+        ["generate", str(bad), PLASTER, "--target", "osl", "--outputPath", str(tmp_path), "--json"]
+    )
+    printed = capsys.readouterr()
+    found = json.loads(printed.out)
+    assert status == MISUSE and len(found["errors"]) == 1
+    assert found["files"] and str(bad) in printed.err
+
+
+# --- what the commands do -----------------------------------------------------------------------
+
+
+def test_generate_writes_a_file_for_each_stage_and_material(tmp_path, capsys):
+    targets = ["--target", "glsl", "--target", "osl"]
+    assert main(["generate", CLAY, *targets, "--outputPath", str(tmp_path)]) == PASSED
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {"clay.terracotta.glsl.frag", "clay.terracotta.glsl.vert", "clay.terracotta.osl"} <= names
+    assert set(capsys.readouterr().out.split()) == {str(tmp_path / name) for name in names}
+
+
+def test_generate_for_cycles_warns_of_what_it_approximates(tmp_path):
+    document = tmp_path / "qon.mtlx"
+    document.write_text(material('<oren_nayar_diffuse_bsdf name="lobe" type="BSDF"/>'))
+    options = ["--target", "osl", "--profile", "cycles", "--outputPath", tmp_path]
+    ended = run("generate", document, *options)
+    assert ended.returncode == PASSED
+    assert "look: Cycles has no closure for qualitative Oren-Nayar" in one_line(ended.stderr)
+
+
+@pytest.mark.parametrize("host", ["gl", "reference"])
+def test_render_writes_a_linear_exr_that_says_what_made_it(host, tmp_path):
+    output = str(tmp_path / "plaster.exr")
+    options = ["--element", "ochre_plaster", "--size", "64", "--scene", "front"]
+    assert main(["render", PLASTER, "--host", host, "--output", output, *options]) == PASSED
+    image = oiio.ImageBuf(output)
+    assert image.spec().get_string_attribute("mxeon:element") == "ochre_plaster"
+    pixels = image.get_pixels(oiio.FLOAT)
+    assert pixels.shape == (64, 64, 3) and pixels.max() > 0.1 and not pixels[0, 0].any()
+
+
+def test_library_prints_the_folder_and_what_each_target_finds(capsys):
+    assert main(["library", "--folder"]) == PASSED
+    assert capsys.readouterr().out.strip() == str(eonlib_folder())
+    assert main(["library", "--verify"]) == PASSED
+    assert "IM_oren_nayar_diffuse_bsdf_genosl" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "option, function",
+    [([], eon_rho_from_albedo_normal), (["--average"], eon_rho_from_albedo_avg)],
+)
+def test_invert_prints_rho(option, function, capsys):
+    assert main(["invert", "0.8", "0.4", "0.1", "--roughness", "0.7", *option]) == PASSED
+    printed = np.array(capsys.readouterr().out.split(), dtype=float)
+    assert np.abs(printed - function([0.8, 0.4, 0.1], 0.7)).max() <= 5e-10  # nine digits printed
+
+
+def test_a_reader_who_has_enough_is_no_error():
+    command = f"{sys.executable} -m mxeon library --verify | head -1"
+    ended = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
+    assert ended.stderr == ""
+
+
+def test_help_loads_no_shader_generator():
+    code = "import sys, mxeon.cli; mxeon.cli._parser(); sys.exit('MaterialX' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
