@@ -57,7 +57,7 @@ def test_every_material_becomes_a_shader(path, target):
 
 def test_materials_have_names_of_their_own():
     materials = sum((read_document(path).getMaterialNodes() for path in DOCUMENTS), [])
-    assert len({node.getName() for node in materials}) == len(materials) == 20
+    assert len({node.getName() for node in materials}) == len(materials) == 23
 
 
 def test_the_wedge_has_the_same_roughnesses_with_and_without_compensation():

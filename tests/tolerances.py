@@ -170,3 +170,9 @@ FURNACE_OPENED = 20 * TWIN_WEIGHT
 # Error times cos(theta_o): 16 roundings of float32 in the place of a pixel's point, whose normal
 # changes by the inverse of that cosine from pixel to pixel, and 32 in the value.
 PICTURE = 48 * 2.0**-24
+
+# --- Albedo inversion as nodes -----------------------------------------------------------------
+
+# A dozen roundings of float32 in the graph and as many in the picture, of numbers up to 1, with the
+# constants rounded to float32 and, by MaterialX, to six digits: 1e-6 each in five of them.
+INVERSION_NODE = 1e-5
