@@ -104,6 +104,9 @@ def _parser():
     invert.add_argument("color", nargs=3, type=float, metavar=("R", "G", "B"))
     invert.add_argument("--roughness", type=float, required=True)
     invert.add_argument("--average", action="store_true", help="seen on average, not head-on")
+
+    figures = _command(commands, "figures", _figures, "make the figures of the EON paper, checked")
+    figures.add_argument("folder", metavar="DIR", help="where to write")
     return parser
 
 
@@ -260,4 +263,16 @@ def _invert(options):
 
     invert = eon_rho_from_albedo_avg if options.average else eon_rho_from_albedo_normal
     print(*(f"{float(rho):.9g}" for rho in invert(options.color, options.roughness)))
+    return PASSED
+
+
+def _figures(options):
+    from tqdm import tqdm
+
+    from mxeon.figures import figures
+
+    def progress(steps):
+        return tqdm(steps, desc="mxeon figures", unit="figure", disable=None, leave=False)
+
+    print(figures(options.folder, progress))
     return PASSED

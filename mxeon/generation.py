@@ -280,11 +280,11 @@ def _inputs(shader):
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
     return tuple(
-        Input(port.getVariable(), port.getType().getName(), _plain(port.getValue()), port.getPath())
+        Input(port.getVariable(), kind.getName(), _plain(port.getValue()), path)
         for name, block in blocks.items()
         if name != "PrivateUniforms"
         for port in block
-        if port.getPath() and not port.getType().isClosure()
+        if (path := port.getPath()) and not (kind := port.getType()).isClosure()
     )
 
 

@@ -74,6 +74,11 @@ def test_page_holds_every_claim_with_a_verdict(made):
     assert all(row.count(" | ") == 3 for row in rows)
 
 
+def test_page_shows_every_plot(made):
+    shown = set(re.findall(r"\]\(figures/(\S+)\)", made.page))
+    assert shown == {path.name for path in made.folder.iterdir() if path.suffix in (".svg", ".png")}
+
+
 def test_refuted_claims_are_those_that_are_known(made):
     row = re.compile(r"^\| [^|]* \| ([^|]*) \| [^|]* \| \*\*fails\*\* \|$", re.MULTILINE)
     failed = row.findall(made.page)
