@@ -239,22 +239,28 @@ def _render(options):
 
 
 def _show_library(options):
-    from mxeon.library import assert_ours, eonlib_folder, implementations, load_library
+    from mxeon.library import (
+        assert_ours,
+        eonlib_folder,
+        implementations,
+        load_library,
+        profile_folder,
+    )
 
-    folder = eonlib_folder()
+    folder, cycles = eonlib_folder(), profile_folder("cycles")
     if options.folder:
         print(folder)
-        return PASSED
-    if not options.verify:
-        print(f"folder           {folder}")
-        print(f"generateshader   --library {folder}")
-        print(f"USD              PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
-        print(f'C++              loadLibraries({{"{folder}", "libraries"}}, searchPath, document)')
-        return PASSED
-    document = load_library()
-    for found in implementations(document):
-        print(f"{found.node:30} {found.target:10} {found.name:40} {found.document}")
-    assert_ours(document)
+    elif options.verify:
+        document = load_library()
+        for found in implementations(document):
+            print(f"{found.node:30} {found.target:10} {found.name:40} {found.document}")
+        assert_ours(document)
+    else:
+        print(f"folder                      {folder}")
+        print(f"generateshader              --library {folder}")
+        print(f"generateshader, for Cycles  --library {cycles} {folder}")
+        print(f"USD                         PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
+        print(f'C++                         loadLibraries({{"{folder}", "libraries"}}, path, document)')
     return PASSED
 
 

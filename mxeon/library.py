@@ -64,6 +64,11 @@ def eonlib_folder():
     return installed if installed.is_dir() else data_folder() / "libraries"
 
 
+def profile_folder(profile):
+    """Folder of a profile's MaterialX documents, to be loaded before eonlib's."""
+    return data_folder() / "profiles" / profile
+
+
 def examples_folder():
     """Folder of the bundled example documents."""
     return data_folder() / "examples"
@@ -77,7 +82,7 @@ def _folders(library, profile):
         raise ValueError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
     ours = [] if library == "stock" else [eonlib_folder()]
     if profile is not None and library != "stock":
-        ours.insert(0, data_folder() / "profiles" / profile)
+        ours.insert(0, profile_folder(profile))
     return [str(folder) for folder in ours] + list(mx.getDefaultDataLibraryFolders())
 
 
