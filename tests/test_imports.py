@@ -21,7 +21,10 @@ SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
 REPORT = ("writing", "verdict", "junit", "pictures", "plots", "page", "report")
 FIGURES = ("figures.*", "figures")
-ORDER = MODELS + SHADERS + ("results",) + CONFORMANCE + REPORT + FIGURES + ("cli",)
+KIT = ("kit.*", "kit")
+COMMAND = ("cli", "__main__")
+ORDER = MODELS + ("compiled",) + SHADERS + ("results",) + CONFORMANCE
+ORDER += REPORT + FIGURES + KIT + COMMAND
 
 # The one host that is made of the models.
 REFERENCE = "hosts.reference"
@@ -32,11 +35,12 @@ FOR_REPORT = (*REPORT, "results", "scene", "hosts")
 # Packages from outside, and who may import them.
 EXTERNAL = {
     "MaterialX": ("library", "document", "generation", "hosts.*"),
-    "OpenImageIO": ("images", "pictures", "hosts.*"),
+    "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
     "jinja2": ("page",),
     "matplotlib": ("plots", "figures.*"),
     "moderngl": ("hosts.*",),
+    "numba": ("compiled",),
     "tqdm": ("cli",),
 }
 
@@ -129,7 +133,7 @@ def test_the_shaders_do_not_see_the_models(module):
 @of_each_module
 def test_only_conformance_and_the_command_see_both_chains(module):
     both = own(module) & set(MODELS) and any(matches(name, SHADERS) for name in own(module))
-    assert not both or matches(module, (*CONFORMANCE, REFERENCE, "cli"))
+    assert not both or matches(module, (*CONFORMANCE, *KIT, REFERENCE, "cli"))
 
 
 @of_each_module
