@@ -1,31 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON over many pairs: mxeon's blocks against the printed formula over whole arrays.
+"""EON in NumPy over many pairs: mxeon's blocks, and Numba, against the printed formula as it is.
 
-    python benchmarks/models.py [PAIRS ...]
-
-Prints one JSON line per number of pairs and kind of material (one for all pairs, or one per pair):
-nanoseconds per pair of three channels, medians of interleaved rounds, and their ratio. The values
-are compared in the same run.
+Memory beyond arguments and result is the growth of the resident peak in a process of its own.
 """
 
-import json
-import platform
-import statistics
+import subprocess
 import sys
-import time
+from functools import partial
 
 import numpy as np
 
+from benchmarks.rounds import Check, Group, figure, interleave, ratio, scaled
 from mxeon import geometry
 from mxeon.models import eon_brdf
 
-ROUNDS = 5
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
 C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
 
 # The printed forms lose digits where they cancel, as 1e-16 / mu: compared above this cosine.
 COMPARED = 1e-3
 TOLERANCE = 1e-11
+PAIRS = (10_000, 100_000, 1_000_000, 10_000_000)
+GOALS = {1_000_000: 3.0, 10_000_000: 3.5}
 
 
 def naive_fon_albedo(mu, r):
@@ -56,48 +52,117 @@ def directions(count, rng):
     return np.stack([S * np.cos(phi), S * np.sin(phi), mu], axis=-1)
 
 
-def seconds(function, arguments):
-    """Time of one call, and its result."""
-    start = time.perf_counter()
-    result = function(*arguments)
-    return time.perf_counter() - start, result
+def arguments(count, material):
+    """Random pairs with one material for all, or one per pair."""
+    rng = np.random.default_rng(1)
+    wo, wi = directions(count, rng), directions(count, rng)
+    if material == "one":
+        return wo, wi, np.array([0.2, 0.5, 0.8]), np.float64(0.7)
+    return wo, wi, rng.random((count, 3)), rng.random(count)
 
 
-def compare(count, material, arguments):
-    """One row of the result."""
-    naive, blocked = [], []
-    for _ in range(ROUNDS):
-        elapsed, expected = seconds(naive_eon_brdf, arguments)
-        naive.append(elapsed)
-        elapsed, value = seconds(eon_brdf, arguments)
-        blocked.append(elapsed)
-        error = np.pi * float(np.abs(np.subtract(value, expected, out=value)).max())
-        if error > TOLERANCE:
-            raise SystemExit(f"values differ by {error:.1e} / pi, more than {TOLERANCE:.0e} / pi")
+def with_workers(workers, *given):
+    """`eon_brdf` with so many blocks at a time."""
+    usual, geometry.WORKERS = geometry.WORKERS, workers
+    try:
+        return eon_brdf(*given)
+    finally:
+        geometry.WORKERS = usual
+
+
+def rivals(given):
+    """Every way to the same values."""
+    found = {"naive": partial(naive_eon_brdf, *given)}
+    for workers in (1, 2):
+        found[f"blocks, {workers} thread{'s'[: workers - 1]}"] = partial(
+            with_workers, workers, *given
+        )
+    return found | compiled(given)
+
+
+def compiled(given):
+    """Numba's rivals, where it is installed."""
+    try:
+        import numba
+
+        from mxeon import compiled as module
+    except ImportError:
+        return {}
+
+    def run(threads):
+        numba.set_num_threads(threads)
+        return module.eon_brdf(*given)
+
+    most = min(2, numba.config.NUMBA_NUM_THREADS)
     return {
-        "benchmark": "eon_brdf",
-        "pairs": count,
-        "material": material,
-        "naive_ns": round(1e9 * statistics.median(naive) / count, 1),
-        "mxeon_ns": round(1e9 * statistics.median(blocked) / count, 1),
-        "ratio": round(statistics.median(naive) / statistics.median(blocked), 2),
-        "largest_difference": error,
-        "workers": geometry.WORKERS,
-        "numpy": np.__version__,
-        "machine": platform.machine(),
+        f"Numba, {n} thread{'s'[: n - 1]}": partial(run, n) for n in range(1, most + 1)
     }
 
 
-def main(counts):
-    """Print one line per number of pairs and material."""
-    for count in counts:
-        rng = np.random.default_rng(1)
-        wo, wi = directions(count, rng), directions(count, rng)
-        uniform = (wo, wi, np.array([0.2, 0.5, 0.8]), np.float64(0.7))
-        print(json.dumps(compare(count, "one for all", uniform)), flush=True)
-        textured = (wo, wi, rng.random((count, 3)), rng.random(count))
-        print(json.dumps(compare(count, "one per pair", textured)), flush=True)
+def compare(count, material, rounds):
+    """Figures, checks and medians of one number of pairs."""
+    given = arguments(count, material)
+    ways = rivals(given)
+    exact = ways["naive"]()
+    checks, label = [], f"{count:.0e} pairs, {material} material"
+    for name, way in ways.items():
+        error = np.pi * float(np.abs(way() - exact).max())
+        checks.append(Check(f"{name}, {label}", error, TOLERANCE))
+    seconds = interleave(ways, rounds)
+    figures = [scaled(f"{n}, {label}", "ns", s, 1e9 / count) for n, s in seconds.items()]
+    goals = {"blocks, 2 threads": GOALS.get(count)}
+    if count == 1_000_000:
+        goals |= {"Numba, 1 thread": 8.0, "Numba, 2 threads": 15.0}
+    figures += [
+        ratio(f"naive / {n}, {label}", seconds["naive"], s, goals.get(n), at_least=True)
+        for n, s in seconds.items()
+        if n != "naive"
+    ]
+    return figures, checks, {n: each.median for n, each in zip(seconds, figures, strict=False)}
 
 
-if __name__ == "__main__":
-    main([int(float(count)) for count in sys.argv[1:]] or [1_000_000, 10_000_000])
+def extra_memory(way, count):
+    """MiB by which the resident peak of a new process grows beyond arguments and result."""
+    code = f"from benchmarks.models import peak; print(peak({way!r}, {count}))"
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    return float(done.stdout)
+
+
+def peak(way, count):
+    """Growth of this process's resident peak in one call, without the result; MiB."""
+    rivals(arguments(8, "one"))[way]()
+    given = arguments(count, "one")
+    before = reset_memory()
+    result = rivals(given)[way]()
+    return max(0.0, peak_memory() - before - result.nbytes / 2**20)
+
+
+def reset_memory():
+    """Resident MiB after the peak is set back to it."""
+    with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
+        file.write("5")
+    return peak_memory()
+
+
+def peak_memory():
+    """Peak of this process's resident memory, MiB."""
+    with open("/proc/self/status", encoding="ascii") as file:
+        line = next(line for line in file if line.startswith("VmHWM"))
+    return int(line.split()[1]) / 1024.0
+
+
+def measure(rounds=7, pairs=PAIRS):
+    """The `Group` of both kinds of material over the numbers of pairs."""
+    figures, checks, series = [], [], {}
+    for material in ("one", "own"):
+        for count in pairs:
+            found, checked, medians = compare(count, material, rounds if count < 1e7 else 3)
+            figures, checks = figures + found, checks + checked
+            for name, value in medians.items():
+                series.setdefault(f"ns: {name}, {material} material", []).append((count, value))
+    for way in rivals(arguments(8, "one")):
+        for count in pairs:
+            memory = extra_memory(way, count)
+            figures.append(figure(f"extra memory, {way}, {count:.0e} pairs", "MiB", [memory]))
+            series.setdefault(f"MiB: {way}", []).append((count, memory))
+    return Group("models", "NumPy reference, per pair", tuple(figures), tuple(checks), series)

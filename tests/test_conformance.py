@@ -152,11 +152,12 @@ def test_a_host_that_gives_no_numbers_fails():
     assert "not finite" in result.diagnosis
 
 
-def test_a_control_that_passes_makes_the_verdict_failed(monkeypatch):
-    blind = [replace(row, control=lambda probe: probe) for row in CHECKS]
-    monkeypatch.setattr("mxeon.conformance.nodes.CHECKS", blind)
-    host = ModelHost(reference.model("eon"))
-    result = judged(host)["reciprocity"]
+def test_a_control_that_passes_makes_the_verdict_failed():
+    blind = [
+        replace(row, control=lambda probe: probe) for row in CHECKS if row.key == "reciprocity"
+    ]
+    probe = PairProbe(ModelHost(reference.model("eon")), EON, "eonlib")
+    (result,) = judge_subject(probe, blind)
     assert result.figure <= result.tolerance and result.verdict == FAILED
     assert not result.control.caught
 

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the benchmarks: prints the tables, and writes docs/performance.json and the page from it.
+
+    python -m benchmarks [GROUP ...] [--quick] [--output DIR]
+    python -m benchmarks --page           the page alone, from the JSON that is there
+
+Exit status: 0, or 1 if a value that was timed is wrong. A missed goal is shown and no error.
+"""
+
+import argparse
+import os
+import sys
+from importlib import import_module
+from pathlib import Path
+
+from benchmarks import page, record
+
+GROUPS = ("shaders", "materials", "models", "tool")
+QUICK = {
+    "shaders": {"rounds": 5},
+    "materials": {"rounds": 3, "size": 256},
+    "models": {"rounds": 3, "pairs": (10_000, 100_000)},
+    "tool": {"rounds": 2, "counts": (1, 10), "documents": 10, "whole": False},
+}
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+
+
+def main(arguments=None):
+    """Run what is asked for; the exit status."""
+    parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__.splitlines()[0])
+    parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS))
+    parser.add_argument("--quick", action="store_true", help="small sizes, few rounds")
+    parser.add_argument("--output", type=Path, default=DOCS, help="folder of JSON and page")
+    parser.add_argument("--page", action="store_true", help="make the page alone")
+    options = parser.parse_args(arguments)
+    unknown = set(options.groups) - set(GROUPS)
+    if unknown:
+        parser.error(f"group must be one of {', '.join(GROUPS)}; got {', '.join(unknown)}")
+    file = options.output / "performance.json"
+    if not options.page:
+        os.environ["MESA_SHADER_CACHE_DISABLE"] = "true"  # or a compilation is read from a file
+        found = []
+        for name in options.groups or GROUPS:
+            sizes = QUICK[name] if options.quick else {}
+            found.append(import_module(f"benchmarks.{name}").measure(**sizes))
+            print(page.table(found[-1]), flush=True)
+        record.write(file, found)
+    groups = page.write(options.output, file)
+    wrong = [each.name for group in groups for each in group.checks if not each.passed]
+    if wrong:
+        print(f"benchmarks: wrong values: {', '.join(wrong)}", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Generated materials with eonlib and with stock MaterialX: source, compilation, frame time."""
+
+from functools import partial
+
+import numpy as np
+
+from benchmarks.rounds import Check, Group, figure, interleave, ratio, scaled
+from mxeon.generation import generate
+from mxeon.hosts import gl
+from mxeon.library import LIBRARIES
+from mxeon.scene import SIDE, sphere
+
+SIZE = 1024
+FRAMES = 4
+MESH = 128  # squares along a side of the mesh, few enough to cost nothing beside the pixels
+LOBE = """<input name="roughness" type="float" value="0.6"/>
+    <input name="energy_compensation" type="boolean" value="true"/>
+  </oren_nayar_diffuse_bsdf>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe"/>"""
+NODES = {
+    "oren_nayar": '<oren_nayar_diffuse_bsdf name="lobe" type="BSDF">' + LOBE + "</surface>",
+    "open_pbr_surface": """<open_pbr_surface name="shading" type="surfaceshader">
+    <input name="base_diffuse_roughness" type="float" value="0.6"/></open_pbr_surface>""",
+    "standard_surface": """<standard_surface name="shading" type="surfaceshader">
+    <input name="diffuse_roughness" type="float" value="0.6"/></standard_surface>""",
+}
+MATERIAL = """<surfacematerial name="look" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
+  </surfacematerial>"""
+SHORTER = {"oren_nayar": 1.0}
+GOALS = {"oren_nayar": 1.0, "open_pbr_surface": 1.0}
+
+# Of values up to 2: MaterialX's own EON loses digits of 1 - E, 3e-4. Its standard_surface asks for
+# QON, whose value for s < 0 both libraries give alike.
+TOLERANCE = 3e-4
+
+# Cosine from which pixels are compared: the coarse mesh does not end on the rim of the sphere.
+FACING = 0.2
+
+
+def shader(node, library):
+    """The generated shader of a material around one node."""
+    text = f'<materialx version="1.39">{NODES[node]}{MATERIAL}</materialx>'
+    return generate(text, "glsl", library=library, lights=True)[0]
+
+
+class Frame:
+    """A material on the sphere, drawn again and again with its uniforms and buffers in place.
+
+    What `mxeon.hosts.gl` does for one picture, by its own functions, with the set-up kept apart.
+    """
+
+    def __init__(self, host, generated, size):
+        context = self._context = host._context
+        self._target = context.framebuffer([context.renderbuffer((size, size), 4, dtype="f4")])
+        program = host._program(generated.stages["vertex"], generated.stages["pixel"])
+        gl._set_light(program, SIDE)
+        for unit, name in enumerate(("u_envRadiance", "u_envIrradiance")):
+            if name in program:
+                host._texture(gl.WHITE, False).use(location=unit)
+                program[name].value = unit
+        vertices, indices = gl._grid(MESH)
+        buffers = [
+            (context.buffer(values), f"{values.shape[1]}f", name)
+            for name, values in vertices.items()
+            if name in program
+        ]
+        self._mesh = context.vertex_array(program, buffers, context.buffer(indices))
+
+    def draw(self):
+        """Draw so many frames, to the end."""
+        self._target.use()
+        for _ in range(FRAMES):
+            self._target.clear()
+            self._mesh.render()
+        self._context.finish()
+
+    def image(self):
+        """What was drawn last."""
+        width, height = self._target.size
+        pixels = np.frombuffer(self._target.read(components=3, dtype="f4"), np.float32)
+        return pixels.reshape(height, width, 3)[::-1]
+
+
+def measure(rounds=9, size=SIZE):
+    """The `Group` of all materials."""
+    host, figures, checks = gl.Host(), [], []
+    for node in NODES:
+        shaders = {library: shader(node, library) for library in LIBRARIES}
+        compiling = interleave(
+            {name: partial(Frame, host, each, 8) for name, each in shaders.items()}, rounds
+        )
+        frames = {name: Frame(host, each, size) for name, each in shaders.items()}
+        drawing = interleave({name: each.draw for name, each in frames.items()}, rounds)
+        difference = np.abs(frames["eonlib"].image() - frames["stock"].image())
+        difference = difference[sphere(size).normal[..., 2] > FACING].max()
+        checks.append(Check(f"{node}, eonlib - stock", float(difference), TOLERANCE))
+        lengths = [len(each.stages["pixel"]) for each in shaders.values()]
+        figures += [
+            scaled(f"frame, {node}, eonlib", "ms", drawing["eonlib"], 1e3 / FRAMES),
+            ratio(f"frame, {node}, eonlib / stock", *drawing.values(), GOALS.get(node)),
+            scaled(f"set-up and compilation, {node}, eonlib", "ms", compiling["eonlib"], 1e3),
+            ratio(f"set-up and compilation, {node}, eonlib / stock", *compiling.values()),
+            figure(f"source, {node}, eonlib", "characters", lengths[:1]),
+            ratio(f"source, {node}, eonlib / stock", *zip(lengths), SHORTER.get(node)),
+        ]
+    device = host.identity().device
+    host.close()
+    title = f"Materials on {device}, {size} x {size}"
+    return Group("materials", title, tuple(figures), tuple(checks))

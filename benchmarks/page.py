@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""docs/performance.md from the JSON: tables, plots, and the notes on what was tried."""
+
+from pathlib import Path
+
+from benchmarks import record
+
+NOTES = Path(__file__).with_name("notes.md")
+HEAD = """<!-- Made by `python -m benchmarks --page` from performance.json. -->
+# Performance
+
+Medians of interleaved rounds with their quartiles; each ratio is the median of the ratios of the
+rounds of one run. What was timed was compared with the float64 reference, or with its rival, in
+the same run.
+"""
+
+
+def table(group):
+    """The figures of a group and its worst check, in Markdown."""
+    lines = [f"## {group.title}", "", "| | median | quartiles | goal | |", "|---|---|---|---|---|"]
+    for each in group.figures:
+        sign = "≥" if each.at_least else "≤"
+        goal = "" if each.goal is None else f"{sign} {each.goal:g}"
+        verdict = {None: "", True: "reached", False: "**missed**"}[each.reached]
+        quartiles = f"{each.low:.3g} – {each.high:.3g}"
+        lines.append(
+            f"| {each.name} | {each.median:.3g} {each.unit} | {quartiles} | {goal} | {verdict} |"
+        )
+    if group.checks:
+        right = sum(each.passed for each in group.checks)
+        lines += ["", f"Values: {right} of {len(group.checks)} right."]
+        lines += ["", "| values of | largest error | tolerance |", "|---|---|---|"]
+        lines += [f"| {c.name} | {c.error:.2g} | {c.tolerance:.2g} |" for c in group.checks]
+    return "\n".join(lines) + "\n"
+
+
+def plot(group, folder):
+    """Plots of a group's series, one for each unit; the files."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    files = []
+    for unit in sorted({name.split(":")[0] for name in group.series}):
+        figure, axes = pyplot.subplots(figsize=(9.0, 4.0), layout="constrained")
+        for name, points in group.series.items():
+            if name.split(":")[0] == unit:
+                x, y = zip(*points, strict=True)
+                axes.plot(x, y, "o-", label=name.partition(": ")[2] or group.title)
+        axes.set(xscale="log", xlabel=LABELS[group.name], ylabel=unit, ylim=(0, None))
+        figure.legend(loc="outside right upper", fontsize="small")
+        files.append(folder / f"performance_{group.name}_{unit}.png")
+        folder.mkdir(parents=True, exist_ok=True)
+        figure.savefig(files[-1], dpi=100)
+        pyplot.close(figure)
+    return files
+
+
+LABELS = {"models": "pairs", "tool": "documents"}
+
+
+def write(folder, file):
+    """The page and its plots beside the JSON `file`; the groups."""
+    parts, groups = [HEAD], []
+    for group, machine in record.read(file):
+        groups.append(group)
+        parts.append(table(group))
+        parts.append("Measured on: " + ", ".join(f"{k} {v}" for k, v in machine.items()) + ".\n")
+        for image in plot(group, folder / "images") if group.series else ():
+            parts.append(f"![{group.title}, {image.stem}](images/{image.name})\n")
+    parts.append(NOTES.read_text(encoding="utf-8"))
+    (folder / "performance.md").write_text("\n".join(parts), encoding="utf-8")
+    return groups

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Interleaved rounds, their medians and ratios, and what one benchmark found.
+
+Rivals take turns within a round, so that what else the machine does falls on all of them alike; a
+ratio is the median of the ratios of the rounds. Benchmark libraries time one function after the
+other, which makes ratios of what drifts between them; hence these few lines.
+"""
+
+import statistics
+import time
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A median over rounds and its quartiles.
+
+    Attributes
+    ----------
+    name, unit : str
+        What was measured; the unit is "x" for a ratio.
+    median, low, high : float
+    goal : float or None
+        What the median should reach, if anything: at most, or at least where `at_least`.
+    at_least : bool
+    """
+
+    name: str
+    unit: str
+    median: float
+    low: float
+    high: float
+    goal: float | None = None
+    at_least: bool = False
+
+    @property
+    def reached(self):
+        """Whether the goal is; None without a goal."""
+        if self.goal is None:
+            return None
+        return self.median >= self.goal if self.at_least else self.median <= self.goal
+
+
+@dataclass(frozen=True)
+class Check:
+    """Whether what was timed gave right values, in the same run."""
+
+    name: str
+    error: float
+    tolerance: float
+
+    @property
+    def passed(self):
+        """Whether the error is a number within the tolerance."""
+        return self.error <= self.tolerance
+
+
+@dataclass(frozen=True)
+class Group:
+    """One benchmark's findings; `series` maps a curve's name to pairs of x and y."""
+
+    name: str
+    title: str
+    figures: tuple = ()
+    checks: tuple = ()
+    series: dict | None = None
+
+
+def interleave(rivals, rounds):
+    """Seconds of each call of each rival, one call per round, in turn; a first round is dropped.
+
+    Parameters
+    ----------
+    rivals : mapping of str to callable
+    rounds : int
+
+    Returns
+    -------
+    dict of str to list of float
+    """
+    found = {name: [] for name in rivals}
+    for _ in range(rounds + 1):
+        for name, rival in rivals.items():
+            start = time.perf_counter()
+            rival()
+            found[name].append(time.perf_counter() - start)
+    return {name: seconds[1:] for name, seconds in found.items()}
+
+
+def figure(name, unit, values, goal=None, at_least=False):
+    """The `Figure` of one value per round.
+
+    Examples
+    --------
+    >>> figure("value", "x", [3.0, 1.0, 2.0], goal=2.0).reached
+    True
+    """
+    low, median, high = (
+        statistics.quantiles(values, n=4, method="inclusive") if len(values) > 1 else values * 3
+    )
+    return Figure(name, unit, median, low, high, goal, at_least)
+
+
+def scaled(name, unit, values, factor):
+    """The `Figure` of values times a factor."""
+    return figure(name, unit, [factor * value for value in values])
+
+
+def ratio(name, values, others, goal=None, at_least=False):
+    """The `Figure` of the ratios of two rivals, round by round."""
+    pairs = zip(values, others, strict=True)
+    return figure(name, "x", [a / b for a, b in pairs], goal, at_least)
+
+
+def less(values, others):
+    """Differences of two rivals, round by round."""
+    return [a - b for a, b in zip(values, others, strict=True)]

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
+
+import numpy as np
+import pytest
+
+from benchmarks import __main__ as command
+from benchmarks import materials, models, page, record, shaders, tool
+from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
+from mxeon.hosts import NotRun, open_host
+
+
+@pytest.fixture(scope="module")
+def gl():
+    try:
+        return open_host("gl")
+    except NotRun as reason:
+        pytest.skip(str(reason))
+
+
+def assert_right(group):
+    assert [check for check in group.checks if not check.passed] == []
+    assert all(np.isfinite([f.median, f.low, f.high]).all() for f in group.figures)
+
+
+def test_rivals_take_turns_and_the_first_round_is_dropped():
+    order = []
+    found = interleave({name: lambda name=name: order.append(name) for name in "ab"}, rounds=2)
+    assert "".join(order) == "ababab"
+    assert [len(seconds) for seconds in found.values()] == [2, 2]
+
+
+def test_ratio_is_the_median_of_the_ratios_of_the_rounds():
+    found = ratio("a / b", [1.0, 9.0, 4.0], [1.0, 3.0, 2.0])
+    assert (found.median, found.low, found.high) == (2.0, 1.5, 2.5)
+
+
+@pytest.mark.parametrize(("at_least", "reached"), [(False, False), (True, True)])
+def test_goal_is_a_bound_from_above_or_from_below(at_least, reached):
+    assert figure("x", "x", [2.0], goal=1.0, at_least=at_least).reached is reached
+
+
+def test_error_that_is_no_number_fails_its_check():
+    assert not Check("x", float("nan"), 1.0).passed
+
+
+def test_timed_shaders_give_right_values(gl):
+    assert_right(shaders.measure(rounds=1, invocations=1024, calls=2))
+
+
+def test_check_of_shaders_tells_fon_from_eon(gl):
+    device = shaders.Device(1024)
+    rivals = {each.name: each for each in shaders.RIVALS}
+    kernel = device.kernel(rivals["FON"].statement)
+    assert not shaders.checked(device, rivals["EON, eonlib"], kernel).passed
+
+
+def test_timed_materials_agree(gl, monkeypatch):
+    monkeypatch.setattr(materials, "NODES", {"oren_nayar": materials.NODES["oren_nayar"]})
+    assert_right(materials.measure(rounds=1, size=64))
+
+
+def test_timed_models_give_right_values_and_memory_is_seen():
+    group = models.measure(rounds=1, pairs=(1000,))
+    assert_right(group)
+    assert {name.split(":")[0] for name in group.series} == {"ns", "MiB"}
+
+
+def test_timed_generation_gives_the_text_of_the_raw_calls(monkeypatch):
+    monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
+    assert_right(tool.measure(rounds=1, counts=(1, 2), documents=1, whole=False))
+
+
+def test_compiled_values_and_errors_are_those_of_the_models():
+    compiled = pytest.importorskip("mxeon.compiled")
+    rng = np.random.default_rng(3)
+    wo, wi = models.directions(3000, rng), models.directions(3000, rng)
+    wo[0] = wi[0] = 1.0, 0.0, 0.0
+    for rho, r in ((0.5, 1.0), (rng.random((3000, 3)), rng.random(3000)), ([0.2, 1.0], 0.0)):
+        exact = models.eon_brdf(wo, wi, rho, r)
+        error = np.pi * np.abs(compiled.eon_brdf(wo, wi, rho, r) - exact)
+        assert error.max() <= models.TOLERANCE
+    for bad in ([0.0, 0.0, 2.0], [0.0, 0.6, -0.8], [0.0, 0.0, np.nan], [0.0, 1.0]):
+        with pytest.raises(ValueError, match="wi must"):
+            compiled.eon_brdf([0.0, 0.0, 1.0], bad, 0.5, 0.5)
+
+
+def test_record_returns_what_was_written_and_keeps_other_groups(tmp_path):
+    group = Group("models", "Title", (figure("a", "ns", [1.0]),), (Check("a", 0.0, 1.0),), {})
+    record.write(tmp_path / "performance.json", [group])
+    record.write(tmp_path / "performance.json", [Group("tool", "Other", series={})])
+    found = record.read(tmp_path / "performance.json")
+    assert [each.name for each, _ in found] == ["models", "tool"]
+    assert found[0][0] == group
+
+
+def test_page_shows_a_missed_goal_and_a_wrong_value():
+    group = Group("tool", "T", (Figure("f", "x", 2.0, 2.0, 2.0, 1.0),), (Check("c", 2.0, 1.0),))
+    text = page.table(group)
+    assert "**missed**" in text
+    assert "0 of 1 right" in text
+
+
+def test_command_fails_where_a_value_is_wrong(tmp_path):
+    wrong = Group("tool", "T", checks=(Check("c", 2.0, 1.0),))
+    record.write(tmp_path / "performance.json", [wrong])
+    assert command.main(["--page", "--output", str(tmp_path)]) == 1
+    assert "T" in (tmp_path / "performance.md").read_text()
+
+
+def test_committed_page_is_made_from_the_committed_json():
+    text = (command.DOCS / "performance.md").read_text(encoding="utf-8")
+    groups = [group for group, _ in record.read(command.DOCS / "performance.json")]
+    assert {group.name for group in groups} == set(command.GROUPS)
+    assert all(page.table(group) in text for group in groups)
