@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The conformance suite judged: what passes, what it must catch, and what it calls by name."""
 
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from mxeon.conformance import check
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import nearest_value
 from mxeon.conformance.nodes import judge_subject, judge_twins
-from mxeon.conformance.probes import GRAZING, PAIRS, PairProbe
+from mxeon.conformance.probes import GRAZING, PAIRS, PairProbe, PictureProbe
 from mxeon.conformance.sources import check_sources
 from mxeon.conformance.subjects import SUBJECTS, Subject
 from mxeon.generation import TARGETS
@@ -243,6 +244,18 @@ def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, 
         if (each.host, each.check, each.subject) == (host, key, subject)
     ]
     assert result.verdict == FAILED and words in result.diagnosis
+
+
+@pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
+def test_stock_materialx_in_cycles_is_called_by_its_name(subject):
+    try:
+        cycles = open_host("cycles")
+        cycles.identity()
+    except NotRun as reason:
+        pytest.skip(str(reason))
+    with closing(cycles):
+        probe = PictureProbe(cycles, subject, "stock")
+        assert "nearest known model: EON with rho^3 (rms " in nearest_value(probe)
 
 
 def test_what_stock_materialx_has_right_passes(stock):
