@@ -11,7 +11,9 @@ __version__ = "0.1.0"
 # Public name -> the module that defines it.
 _HOMES = {
     "Shader": "mxeon.generation",
+    "brdf_test": "mxeon.conformance.callables",
     "check": "mxeon.conformance",
+    "check_brdf": "mxeon.conformance.callables",
     "generate": "mxeon.generation",
     "load_library": "mxeon.library",
 }

@@ -107,6 +107,17 @@ def _parser():
 
     figures = _command(commands, "figures", _figures, "make the figures of the EON paper, checked")
     figures.add_argument("folder", metavar="DIR", help="where to write")
+
+    kit = _command(commands, "kit", None, "judge a renderer by the pictures it makes")
+    actions = kit.add_subparsers(required=True, metavar="ACTION")
+    export = _command(actions, "export", _kit_export, "write scenes, materials and a page")
+    export.add_argument("folder", metavar="DIR")
+    export.add_argument("--size", type=int, default=128, help="width and height in pixels")
+    judge = _command(actions, "check", _kit_check, "judge the pictures in DIR/renders")
+    judge.add_argument("folder", metavar="DIR")
+    judge.add_argument("--renderer", default="renderer", metavar="NAME", help="who made them")
+    judge.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
+    _json(judge)
     return parser
 
 
@@ -125,16 +136,38 @@ def _json(command):
 
 
 def _check(options):
+    from mxeon.conformance import check
+
+    progress = _progress("mxeon check")
+    hosts = options.host or ("gl",)
+    return _judged(check(options.files, hosts, options.library, progress), options)
+
+
+def _kit_export(options):
+    from mxeon.kit.export import export_kit
+
+    print(export_kit(options.folder, options.size))
+    return PASSED
+
+
+def _kit_check(options):
+    from mxeon.kit.check import check_kit
+
+    progress = _progress("mxeon kit check")
+    return _judged(check_kit(options.folder, options.renderer, progress), options)
+
+
+def _progress(words):
     from tqdm import tqdm
 
+    return lambda steps: tqdm(steps, desc=words, unit="step", disable=None, leave=False)
+
+
+def _judged(run, options):
+    """A run shown as the options ask for it, and the exit status that it means."""
     from mxeon import report
-    from mxeon.conformance import check
     from mxeon.verdict import summarize
 
-    def progress(steps):
-        return tqdm(steps, desc="mxeon check", unit="step", disable=None, leave=False)
-
-    run = check(options.files, options.host or ("gl",), options.library, progress)
     page = report.write(run, options.report) if options.report else None
     if options.json:
         print(report.to_json(run))

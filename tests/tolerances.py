@@ -176,3 +176,17 @@ PICTURE = 48 * 2.0**-24
 # A dozen roundings of float32 in the graph and as many in the picture, of numbers up to 1, with the
 # constants rounded to float32 and, by MaterialX, to six digits: 1e-6 each in five of them.
 INVERSION_NODE = 1e-5
+
+# --- kit ---------------------------------------------------------------------------------------
+
+# How far the kit's mesh lies below the sphere: its longest edge is 2.4 degrees = 0.042, the circle
+# around its triangle has a radius of 0.042 / sqrt(3), half the square of which is 2.9e-4.
+KIT_DEPTH = 3e-4
+
+# Pictures of pure noise, 200 of them at a false rate of 1e-3 each: more than 2 are called biased
+# with a probability of 1.1e-3.
+KIT_FALSE_ALARMS = 2
+
+# A component of a vertex is printed with 9 digits after the point, half a unit off at most; of its
+# length three are.
+KIT_PRINTED = 1.5e-9

@@ -15,8 +15,14 @@ CURVE = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
 
-def judge_subject(probe):
+def judge_subject(probe, checks=CHECKS):
     """Results of every check that applies to a node, as its host can be asked.
+
+    Parameters
+    ----------
+    probe : PairProbe or PictureProbe
+    checks : sequence of Check
+        The rows to go through.
 
     Returns
     -------
@@ -29,7 +35,7 @@ def judge_subject(probe):
     }
     return tuple(
         _judge(check, probe, check.tolerances[probe.kind], place, _diagnose)
-        for check in CHECKS
+        for check in checks
         if probe.subject.model in check.models
         and probe.kind in check.tolerances
         and not (check.key == "flag" and FLAG not in probe.subject.inputs)
