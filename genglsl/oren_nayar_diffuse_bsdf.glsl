@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node oren_nayar_diffuse_bsdf; the models are in eon.glsl.
+//
+// Inputs are not clamped: outside [0, 1] the formulas go on, and give finite numbers for a roughness
+// in [-1, 10] and colors up to 1. A negative weight counts as 0.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"

@@ -10,7 +10,7 @@ import pytest
 from documents import EON, OREN_NAYAR, material
 from tolerances import PICTURE
 
-from mxeon.conformance.probes import picture_pairs
+from mxeon.conformance.probes import directions, picture_pairs
 from mxeon.generation import Shader, generate
 from mxeon.hosts import NotRun, ShaderError, open_host
 from mxeon.images import irradiance, read_latlong
@@ -101,6 +101,22 @@ def test_a_normal_that_faces_away_is_turned_and_light_below_the_horizon_gives_no
         for z in (1.0, -1.0)
     )
     assert np.array_equal(up, down) and up[0].min() > 0.0 and not up[1].any()
+
+
+@pytest.mark.parametrize("branch", ["direct", "environment"])
+@pytest.mark.parametrize("flag", [True, False])
+def test_inputs_outside_their_ranges_give_finite_numbers(gl, flag, branch):
+    rng = np.random.default_rng(1)
+    wo, wi = directions(rng, 4096), directions(rng, 4096)
+    inputs = {
+        "color": rng.uniform(-1.0, 1.0, (4096, 3)),
+        "roughness": rng.uniform(-1.0, 10.0, 4096),
+        "weight": rng.uniform(-1.0, 2.0, 4096),
+        "energy_compensation": flag,
+    }
+    values = gl.evaluate(shader(LOBES["eon"]), wo, wi, inputs, branch)
+    assert np.isfinite(values).all()
+    assert not values[inputs["weight"] < 0.0].any()
 
 
 def test_weight_scales_the_value(gl):
