@@ -101,7 +101,8 @@ def _parser():
     library.add_argument("--verify", action="store_true", help="list what each target finds")
 
     invert = _command(commands, "invert", _invert, "find the color input for a colour to be seen")
-    invert.add_argument("color", nargs=3, type=float, metavar=("R", "G", "B"))
+    for channel in "RGB":
+        invert.add_argument(channel, type=float, help="wanted, in [0, 1]")
     invert.add_argument("--roughness", type=float, required=True)
     invert.add_argument("--average", action="store_true", help="seen on average, not head-on")
 
@@ -195,32 +196,38 @@ def _print_run(run, summary, page):
 
 
 def _generate(options):
-    from mxeon.generation import generate
     from mxeon.writing import write_text
 
     written, errors = [], []
     for file in map(Path, options.files):
         for target in options.target:
             try:
-                shaders = generate(
-                    file,
-                    target,
-                    options.element,
-                    library=options.library,
-                    profile=options.profile,
-                )
+                texts = _sources(file, target, options)
             except ValueError as error:
                 errors.append(str(error))
                 continue
-            for shader in shaders:
-                for stage, text in shader.stages.items():
-                    path = Path(options.outputPath) / _file_name(file.stem, shader, stage)
-                    write_text(path, text)
-                    written.append(str(path))
+            if taken := texts.keys() & set(written):
+                errors.append(f"{file}: must not overwrite {min(taken)} of this run; rename it")
+                continue
+            for path, text in texts.items():
+                write_text(path, text)
+            written += texts
     print(json.dumps({"files": written, "errors": errors}) if options.json else "\n".join(written))
     for error in errors:
         _fail(MISUSE, error)
     return MISUSE if errors else PASSED
+
+
+def _sources(file, target, options):
+    """Texts of a document's shaders, by the path that each is written to."""
+    from mxeon.generation import generate
+
+    known = {"library": options.library, "profile": options.profile}
+    return {
+        str(Path(options.outputPath) / _file_name(file.stem, shader, stage)): text
+        for shader in generate(file, target, options.element, **known)
+        for stage, text in shader.stages.items()
+    }
 
 
 def _file_name(stem, shader, stage):
@@ -301,7 +308,8 @@ def _invert(options):
     from mxeon.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 
     invert = eon_rho_from_albedo_avg if options.average else eon_rho_from_albedo_normal
-    print(*(f"{float(rho):.9g}" for rho in invert(options.color, options.roughness)))
+    found = invert([options.R, options.G, options.B], options.roughness)
+    print(*(f"{float(rho):.9g}" for rho in found))
     return PASSED
 
 

@@ -18,14 +18,16 @@ def read_image(path):
 
     Raises
     ------
-    OSError
+    ValueError
         If OpenImageIO cannot read it; in OpenImageIO's words.
     """
     import OpenImageIO as oiio
 
-    pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
-    if pixels is None or not pixels.size:
-        raise OSError(f"{path}: must be an image that OpenImageIO reads; {oiio.geterror()}")
+    file = oiio.ImageInput.open(str(path))
+    pixels = file.read_image(oiio.FLOAT) if file else None
+    if pixels is None:
+        reason = " ".join((file.geterror() if file else oiio.geterror()).split())
+        raise ValueError(f"{path}: must be an image that OpenImageIO reads; {reason}")
     return pixels
 
 

@@ -12,6 +12,9 @@ from pathlib import Path
 import numpy as np
 
 
+LARGEST = 8192  # the width that every OpenGL 4 device draws; a picture of it takes some gigabytes
+
+
 @dataclass(frozen=True)
 class Scene:
     """A light on the sphere.
@@ -26,12 +29,12 @@ class Scene:
     environment : float, Path or None
         Radiance of a uniform surrounding, or a latitude-longitude image.
     size : int
-        Width and height in pixels, at least 1.
+        Width and height in pixels, in [1, LARGEST].
 
     Raises
     ------
     ValueError
-        If there is no pixel.
+        If the size leaves its range.
     """
 
     name: str
@@ -40,8 +43,8 @@ class Scene:
     size: int = 256
 
     def __post_init__(self):
-        if self.size < 1:
-            raise ValueError(f"size must be at least 1; got {self.size}")
+        if not 1 <= self.size <= LARGEST:
+            raise ValueError(f"size must lie in [1, {LARGEST}]; got {self.size}")
 
 
 def _towards(azimuth, polar):

@@ -96,7 +96,8 @@ def test_generate_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_p
         (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),
         (["render", PLASTER, "--output", "out.exr", "--scene", "dusk"], "scene must be one of"),
         (["render", PLASTER, "--output", "out.exr", "--environment", "sky.hdr"], "sky.hdr"),
-        (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must be at least 1"),
+        (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must lie in [1, 8192]"),
+        (["invert", "0.5", "0.5", "--roughness", "1"], "required: B"),
         (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
         (["invert", "1", "0", "0", "--roughness", "nan"], "roughness must lie in [0, 1]"),
         (["frobnicate"], "invalid choice"),
@@ -112,6 +113,27 @@ def test_misuse_is_one_line(arguments, words, tmp_path, monkeypatch, capfd):
         status = ended.code
     assert status == MISUSE and words in one_line(capfd.readouterr().err)
     assert not list(tmp_path.iterdir())
+
+
+def test_two_documents_of_one_name_do_not_overwrite_each_other(tmp_path, capsys):
+    files = [tmp_path / "a.mtlx", tmp_path / "b" / "a.mtlx"]
+    files[1].parent.mkdir()
+    for file, color in zip(files, ("0.1, 0.1, 0.1", "0.9, 0.9, 0.9"), strict=True):
+        lobe = f'<input name="color" type="color3" value="{color}"/></eon_diffuse_bsdf>'
+        file.write_text(material(f'<eon_diffuse_bsdf name="lobe" type="BSDF">{lobe}'))
+    out = tmp_path / "out"
+    arguments = ["generate", *map(str, files), "--target", "osl", "--outputPath", str(out)]
+    assert main(arguments) == MISUSE
+    assert "must not overwrite" in one_line(capsys.readouterr().err)
+    assert "color(0.1" in (out / "a.look.osl").read_text()
+
+
+def test_a_file_that_is_no_image_is_one_line(tmp_path):
+    (tmp_path / "sky.exr").write_text("no image")
+    output = tmp_path / "out.exr"
+    ended = run("render", PLASTER, "--environment", tmp_path / "sky.exr", "--output", output)
+    assert ended.returncode == MISUSE and not output.exists()
+    assert "must be an image that OpenImageIO reads" in one_line(ended.stderr)
 
 
 def test_a_folder_that_cannot_be_written_is_one_line(tmp_path):
