@@ -4,6 +4,7 @@
 import numpy as np
 
 from mxeon import formulas
+from mxeon.albedo import eon_albedo_dir, fon_albedo_dir
 from mxeon.geometry import cosines, evaluate
 
 
@@ -97,6 +98,63 @@ def fon_white_lobe_brdf(wo, wi, rho, roughness):
     array([0.048519, 0.119705])
     """
     return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
+
+
+def eon_rho_cubed_albedo_dir(mu, rho, roughness):
+    """Directional albedo of `eon_rho_cubed_brdf`.
+
+        E = rho (E_EON + (1 - rho) E_FON)
+
+    Parameters
+    ----------
+    mu, rho, roughness
+        As those of `mxeon.albedo.eon_albedo_dir`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Dimensionless, in [0, 1].
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Examples
+    --------
+    >>> eon_rho_cubed_albedo_dir(0.5, [0.5, 1.0], 1.0).round(6)
+    array([0.447959, 1.      ])
+    """
+    single = fon_albedo_dir(mu, roughness)[..., np.newaxis]
+    return rho * (eon_albedo_dir(mu, rho, roughness) + (1.0 - np.asarray(rho)) * single)
+
+
+def fon_white_lobe_albedo_dir(mu, rho, roughness):
+    """Directional albedo of `fon_white_lobe_brdf`.
+
+        E = 1 - (1 - rho) E_FON
+
+    Parameters
+    ----------
+    mu, rho, roughness
+        As those of `mxeon.albedo.eon_albedo_dir`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Dimensionless, in [0, 1]; not 0 where rho is 0.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Examples
+    --------
+    >>> fon_white_lobe_albedo_dir(1.0, [0.0, 1.0], 1.0).round(6)
+    array([0.223478, 1.      ])
+    """
+    return 1.0 - (1.0 - np.asarray(rho)) * fon_albedo_dir(mu, roughness)[..., np.newaxis]
 
 
 def qon_fitted_albedo_dir(mu, rho, sigma):

@@ -110,8 +110,20 @@ MODELS = (
 
 DEFECTS = (
     Model("eon_clamped", "EON with clamped dot(wo, wi)", defects.eon_clamped_brdf, "roughness"),
-    Model("eon_rho_cubed", "EON with rho^3", defects.eon_rho_cubed_brdf, "roughness"),
-    Model("fon_white_lobe", "FON + white lobe", defects.fon_white_lobe_brdf, "roughness"),
+    Model(
+        "eon_rho_cubed",
+        "EON with rho^3",
+        defects.eon_rho_cubed_brdf,
+        "roughness",
+        defects.eon_rho_cubed_albedo_dir,
+    ),
+    Model(
+        "fon_white_lobe",
+        "FON + white lobe",
+        defects.fon_white_lobe_brdf,
+        "roughness",
+        defects.fon_white_lobe_albedo_dir,
+    ),
     Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",

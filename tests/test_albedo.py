@@ -123,6 +123,14 @@ def test_quadrature_has_converged(row):
     assert np.abs(fewer - more).max() <= tolerances.QUADRATURE
 
 
+@named([row for row in DEFECTS if row.name in ("eon_rho_cubed", "fon_white_lobe")])
+@pytest.mark.parametrize("fraction", FRACTIONS)
+def test_albedo_of_a_defect_agrees_with_quadrature(row, fraction):
+    mu, extra = np.array([0.0, 1e-3, 0.1, 0.9]), parameter(row, fraction)
+    numerical = albedo_dir_quadrature(row.brdf, mu, RHO, *extra)
+    assert np.abs(row.albedo_dir(mu, RHO, *extra) - numerical).max() <= tolerances.QUADRATURE
+
+
 def test_loss_keeps_its_digits_down_to_grazing():
     for mu in MU[MU >= 1e-16]:
         exact = mp.mpf(1) / 2 - 2 / (3 * mp.pi) - oracle.g_f(mp.mpf(float(mu))) / mp.pi

@@ -14,7 +14,7 @@ import pytest
 import mxeon
 
 # Every module, or a pattern of them, after all that it may import.
-MODELS = ("geometry", "formulas", "quadrature", "models", "defects", "albedo", "inversion")
+MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
 SHADERS = ("library", "document", "generation", "twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
