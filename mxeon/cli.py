@@ -72,9 +72,12 @@ def _parser():
 
     check = _command(commands, "check", _check, "run the checks and compare pictures")
     check.add_argument("files", nargs="*", metavar="FILE", help="documents; none: the examples")
-    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles; may be repeated")
+    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles, or all; may be repeated")
+    check.add_argument("--library", action="append", help="eonlib (the default), stock; may be repeated")
     check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
-    _library(check)
+    check.add_argument("--resume", action="store_true", help="go on with the interrupted run in DIR")
+    check.add_argument("--workers", type=int, default=os.cpu_count(), metavar="N", help="processes that share the work; 0 for none but this")
+    check.add_argument("--limit", type=float, default=300.0, metavar="SECONDS", help="for one item of work")
     _json(check)
 
     generate = _command(commands, "generate", _generate, "write shader sources")
@@ -109,6 +112,12 @@ def _parser():
     figures = _command(commands, "figures", _figures, "make the figures of the EON paper, checked")
     figures.add_argument("folder", metavar="DIR", help="where to write")
 
+    report = _command(commands, "report", None, "make and compare reports of runs")
+    actions = report.add_subparsers(required=True, metavar="ACTION")
+    make = _command(actions, "make", _report_make, "make the report of a run, finished or not")
+    make.add_argument("report", metavar="DIR", help="the folder of the run")
+    _json(make)
+
     kit = _command(commands, "kit", None, "judge a renderer by the pictures it makes")
     actions = kit.add_subparsers(required=True, metavar="ACTION")
     export = _command(actions, "export", _kit_export, "write scenes, materials and a page")
@@ -137,11 +146,28 @@ def _json(command):
 
 
 def _check(options):
-    from mxeon.conformance import check
+    from mxeon.conformance import PROBES, check
 
-    progress = _progress("mxeon check")
+    if options.resume and not options.report:
+        raise ValueError("--resume needs --report DIR, the folder of the run to go on with; got none")
     hosts = options.host or ("gl",)
-    return _judged(check(options.files, hosts, options.library, progress), options)
+    run = check(
+        options.files,
+        PROBES if "all" in hosts else hosts,
+        options.library or ("eonlib",),
+        workers=options.workers,
+        limit=options.limit,
+        folder=options.report,
+        resume=options.resume,
+        progress=_progress("mxeon check"),
+    )
+    return _judged(run, options)
+
+
+def _report_make(options):
+    from mxeon.conformance import read_run
+
+    return _judged(read_run(options.report), options)
 
 
 def _kit_export(options):
@@ -161,7 +187,9 @@ def _kit_check(options):
 def _progress(words):
     from tqdm import tqdm
 
-    return lambda steps: tqdm(steps, desc=words, unit="step", disable=None, leave=False)
+    return lambda steps, total=None: tqdm(
+        steps, desc=words, total=total, unit="step", disable=None, leave=False
+    )
 
 
 def _judged(run, options):

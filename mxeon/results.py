@@ -52,6 +52,8 @@ class Result:
         The inputs and values at the worst point, by name.
     diagnosis : str
         The nearest known model with its distance, or what else explains a failure.
+    distances : dict of str to float
+        Root-mean-square distance to each known model and defect, by title, where diagnosed.
     control : Control or None
         None only where the check did not run.
     reason : str
@@ -70,6 +72,7 @@ class Result:
     derivation: str = ""
     worst: dict = field(default_factory=dict)
     diagnosis: str = ""
+    distances: dict = field(default_factory=dict)
     control: Control | None = None
     reason: str = ""
 
@@ -125,6 +128,61 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Item:
+    """One independent piece of a run: a check of one subject on one host with one library.
+
+    Attributes
+    ----------
+    check : str
+        Key of a row of `mxeon.conformance.checks.CHECKS`, or "source", "curve" or "picture".
+    subject : str
+        Title of a node, path of a document, or "shader twins".
+    host, library : str
+    """
+
+    check: str
+    subject: str
+    host: str
+    library: str
+
+    def __str__(self):
+        return f"{self.host}, {self.check}, {self.subject}, {self.library}"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run consists of; two runs are the same if their plans are.
+
+    Attributes
+    ----------
+    version : str
+        Of mxeon.
+    software : dict of str to str
+        Versions of what takes part (Python, NumPy, MaterialX, ...).
+    items : tuple of Item
+    documents : dict of str to str
+        Path to the SHA-256 of the file, or "" where it cannot be read.
+    """
+
+    version: str
+    software: dict[str, str]
+    items: tuple[Item, ...]
+    documents: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What the work on one item found; see Run."""
+
+    results: tuple[Result, ...] = ()
+    pictures: tuple[Picture, ...] = ()
+    curves: tuple[Curve, ...] = ()
+    notes: tuple[tuple[str, str], ...] = ()
+    errors: tuple[str, ...] = ()
+    hosts: tuple[Identity, ...] = ()
+
+
+@dataclass(frozen=True)
 class Run:
     """Everything one `mxeon check` found.
 
@@ -143,6 +201,8 @@ class Run:
     errors : tuple of str
         One line for each document that could not be judged.
     documents : tuple of Path
+    missing : tuple of str
+        Items that are not done yet, where the run was interrupted.
     """
 
     version: str
@@ -154,3 +214,4 @@ class Run:
     notes: tuple[str, ...] = ()
     errors: tuple[str, ...] = ()
     documents: tuple[Path, ...] = ()
+    missing: tuple[str, ...] = ()

@@ -31,6 +31,9 @@ def replacing(path):
     try:
         yield beside
         os.replace(beside, path)
+    except OSError as error:
+        error.filename = error.filename or str(path)  # writing, as on a full disk, names none
+        raise
     finally:
         beside.unlink(missing_ok=True)
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon import conformance, reference
-from mxeon.conformance import check
+from mxeon import reference
+from mxeon.conformance import check, items
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import nearest_value
 from mxeon.conformance.nodes import judge_subject, judge_twins
@@ -206,15 +206,16 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
             return open_host(name)
         raise NotRun(f"{name}: nowhere")
 
-    monkeypatch.setattr(conformance, "open_host", missing)
+    monkeypatch.setattr(items, "open_host", missing)
     run = check(EXAMPLES[:1], ["gl"])
-    (result,) = [each for each in run.results if each.host == "gl"]
-    assert result.verdict == NOT_RUN and result.reason == "gl: nowhere"
+    results = [each for each in run.results if each.host == "gl"]
+    assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), items.TWINS}
+    assert {(each.verdict, each.reason) for each in results} == {(NOT_RUN, "gl: nowhere")}
 
 
 @pytest.mark.parametrize("word", ["host", "library"])
 def test_an_unknown_name_lists_the_known_ones(word):
-    options = {"hosts": ["abacus"]} if word == "host" else {"library": "abacus"}
+    options = {"hosts": ["abacus"]} if word == "host" else {"libraries": ["abacus"]}
     with pytest.raises(ValueError, match=f"^{word} must be one of .*; got 'abacus'$"):
         check(EXAMPLES, **options)
 
@@ -224,7 +225,7 @@ def test_an_unknown_name_lists_the_known_ones(word):
 
 @pytest.fixture(scope="module")
 def stock():
-    return check(EXAMPLES[:1], ["gl"], "stock")
+    return check(EXAMPLES[:1], ["gl"], ["stock"])
 
 
 @pytest.mark.parametrize(
@@ -264,7 +265,7 @@ def test_what_stock_materialx_has_right_passes(stock):
 
 
 def test_the_bundled_examples_leave_out_what_stock_lacks():
-    assert not any("eon_node" in Path(file).name for file in conformance._examples("stock"))
+    assert not any("eon_node" in Path(file).name for file in items._examples("stock"))
 
 
 def test_a_subject_writes_a_document_with_its_flag():

@@ -19,28 +19,32 @@ MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
 SHADERS = ("library", "document", "generation", "twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
-REPORT = ("writing", "verdict", "junit", "pictures", "plots", "page", "report")
+REPORT = ("verdict", "junit", "pictures", "plots", "page", "report")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("cli", "__main__")
-ORDER = MODELS + ("compiled",) + SHADERS + ("results",) + CONFORMANCE
+RUNNING = ("pool", "results", "writing", "journal")
+ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += REPORT + FIGURES + KIT + COMMAND
 
 # The one host that is made of the models.
 REFERENCE = "hosts.reference"
 
 # What a run and its pictures consist of.
-FOR_REPORT = (*REPORT, "results", "scene", "hosts")
+FOR_REPORT = (*REPORT, "results", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
     "MaterialX": ("library", "document", "generation", "hosts.*"),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
+    "cattrs": ("journal",),
+    "filelock": ("journal",),
     "jinja2": ("page",),
     "matplotlib": ("plots", "figures.*"),
     "moderngl": ("hosts.*",),
     "numba": ("compiled",),
+    "pebble": ("pool",),
     "tqdm": ("cli",),
 }
 

@@ -4,38 +4,32 @@
 The only place that sees both chains, the shaders and the models.
 """
 
-import platform
-from contextlib import ExitStack, closing
-from dataclasses import dataclass
-from functools import partial
-from importlib.metadata import version
+from contextlib import closing, nullcontext
+from functools import lru_cache
 from pathlib import Path
 
-import mxeon
-from mxeon.conformance.documents import SCENES, judge_document
-from mxeon.conformance.nodes import judge_curve, judge_subject, judge_twins
+from mxeon import pool
+from mxeon.conformance.items import Judge, not_run, plan
 from mxeon.conformance.probes import PROBES
-from mxeon.conformance.subjects import SUBJECTS
-from mxeon.conformance.sources import check_sources
-from mxeon.hosts import NotRun, open_host
-from mxeon.library import LIBRARIES, examples_folder
-from mxeon.results import NOT_RUN, Result, Run
+from mxeon.journal import Journal, read_journal
+from mxeon.results import Findings, Run
 
-SOFTWARE = ("MaterialX", "numpy", "OpenImageIO", "moderngl")
+__all__ = ["PROBES", "check", "read_run", "to_run", "work"]
 
-
-@dataclass(frozen=True)
-class Findings:
-    """What one step of a run found; see `mxeon.results.Run`."""
-
-    results: tuple = ()
-    pictures: tuple = ()
-    curves: tuple = ()
-    notes: tuple = ()
-    errors: tuple = ()
+LIMIT = 300.0  # seconds for one item
 
 
-def check(files=(), hosts=("gl",), library="eonlib", progress=list):
+def check(
+    files=(),
+    hosts=("gl",),
+    libraries=("eonlib",),
+    *,
+    workers=0,
+    limit=LIMIT,
+    folder=None,
+    resume=False,
+    progress=lambda items, total: items,
+):
     """Every check on every host, and every document's pictures against the reference's.
 
     Parameters
@@ -44,10 +38,19 @@ def check(files=(), hosts=("gl",), library="eonlib", progress=list):
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
         Who is judged; `mxeon.conformance.probes.PROBES` has them.
-    library : str
-        "eonlib", or "stock" for MaterialX as it comes.
-    progress : callable (list) -> iterable
-        Goes through the steps; a progress bar, say.
+    libraries : sequence of str
+        "eonlib", and "stock" for MaterialX as it comes.
+    workers : int
+        Processes that share the work, of which any may crash or hang; 0 to work in this one.
+    limit : float
+        Seconds that one item may take in a worker.
+    folder : path-like or None
+        Where what is finished is kept, pictures included, so that an interrupted run can be
+        resumed; None to keep it in memory.
+    resume : bool
+        Go on with the run that `folder` holds.
+    progress : callable (iterable, int) -> iterable
+        Goes through the items that are to be done, whose number it is told; a progress bar, say.
 
     Returns
     -------
@@ -57,73 +60,88 @@ def check(files=(), hosts=("gl",), library="eonlib", progress=list):
     Raises
     ------
     ValueError
-        If a host or the library is unknown; lists the known ones.
+        If a host or a library is unknown, `folder` holds another run than the one to resume, or
+        `workers` or `limit` leave their ranges.
     """
-    for host in hosts:
-        if host not in PROBES:
-            raise ValueError(f"host must be one of {', '.join(PROBES)}; got {host!r}")
-    if library not in LIBRARIES:
-        raise ValueError(f"library must be one of {', '.join(LIBRARIES)}; got {library!r}")
-    files = [Path(file) for file in files] or _examples(library)
-    subjects = [subject for subject in SUBJECTS if subject.stock or library != "stock"]
-    steps = [lambda: Findings(results=check_sources(subjects, library))]
-    identities = []
-    with ExitStack() as stack:
-        judge = stack.enter_context(closing(open_host("reference")))
-        for name in hosts:
-            try:
-                host = stack.enter_context(closing(open_host(name)))
-                identities.append(host.identity())
-            except NotRun as reason:
-                steps.append(partial(_not_run, name, library, str(reason)))
-            else:
-                steps += _steps(host, judge, subjects, files, library)
-        parts = [step() for step in progress(steps)]
-    found = {name: sum((getattr(part, name) for part in parts), ()) for name in vars(Findings())}
+    planned = plan(files, hosts, libraries)
+    with _keeper(folder, planned, resume) as kept:
+        places = [place for place in range(len(planned.items)) if place not in kept.findings]
+        waiting = [planned.items[place] for place in places]
+        found = _pooled(waiting, workers, limit) if workers else _here(waiting)
+        for number, findings in progress(found, len(waiting)):
+            kept.add(places[number], findings)
+        return to_run(planned, kept.findings)
+
+
+def read_run(folder):
+    """What the run in a folder has found so far.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds no journal that this version reads.
+    """
+    return to_run(*read_journal(folder))
+
+
+def work(item):
+    """Findings of an item, by this process's judge: what workers run."""
+    return _judge().work(item)
+
+
+def to_run(planned, findings):
+    """A run from its plan and the findings of the items that are done, by their places."""
+    done = [findings[place] for place in sorted(findings)]
+    found = {
+        name: tuple(each for part in done for each in getattr(part, name))
+        for name in vars(Findings())
+    }
     return Run(
-        version=mxeon.__version__,
-        software={"Python": platform.python_version()} | {each: version(each) for each in SOFTWARE},
-        hosts=tuple(identities),
-        documents=tuple(files),
-        **found | {"notes": _grouped(found["notes"])},
+        version=planned.version,
+        software=planned.software,
+        documents=tuple(map(Path, planned.documents)),
+        missing=tuple(str(i) for place, i in enumerate(planned.items) if place not in findings),
+        **found
+        | {
+            "notes": _grouped(found["notes"]),
+            "errors": tuple(dict.fromkeys(found["errors"])),
+            "hosts": tuple(dict.fromkeys(found["hosts"])),
+        },
     )
 
 
-def _examples(library):
-    """The bundled documents, but for those with a node that the library lacks."""
-    files = sorted(examples_folder().glob("*.mtlx"))
-    lacking = [subject.node for subject in SUBJECTS if library == "stock" and not subject.stock]
-    return [file for file in files if not any(node in file.read_text() for node in lacking)]
+class _Memory:
+    """A journal that is gone with the process."""
+
+    def __init__(self):
+        self.findings = {}
+        self.add = self.findings.__setitem__
 
 
-def _steps(host, judge, subjects, files, library):
-    """The work on one host: independent steps, each giving Findings."""
-    steps = [lambda: Findings(results=judge_twins(host, library))]
-    for subject in subjects:
-        probe = PROBES[host.name](host, subject, library)
-        steps.append(lambda probe=probe: Findings(results=judge_subject(probe)))
-        steps.append(lambda probe=probe: Findings(curves=judge_curve(probe)))
-    if host.name in SCENES:
-        steps += [partial(_document, file, host, judge, library) for file in files]
-    return steps
+def _keeper(folder, planned, resume):
+    return nullcontext(_Memory()) if folder is None else Journal(folder, planned, resume)
 
 
-def _document(file, host, judge, library):
-    try:
-        results, pictures, notes = judge_document(file, host, judge, library)
-    except ValueError as error:
-        return Findings(errors=(str(error),))
-    return Findings(results=results, pictures=pictures, notes=notes)
+def _here(items):
+    with closing(Judge()) as judge:
+        for place, item in enumerate(items):
+            yield place, judge.work(item)
+
+
+def _pooled(items, workers, limit):
+    for place, outcome in pool.run(work, items, workers, limit):
+        failed = outcome.value is None
+        yield place, not_run(items[place], outcome.failure) if failed else outcome.value
+
+
+@lru_cache(maxsize=1)
+def _judge():
+    return Judge()
 
 
 def _grouped(notes):
     """One line for each text, with all its places."""
     places = {}
-    for text, place in notes:
+    for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).append(place)
     return tuple(f"{text}: {', '.join(found)}" for text, found in places.items())
-
-
-def _not_run(name, library, reason):
-    claim = "The host executes shaders here."
-    return Findings(results=(Result("host", claim, name, name, library, NOT_RUN, reason=reason),))

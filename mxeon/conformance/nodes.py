@@ -15,8 +15,17 @@ CURVE = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
 
+def applies(check, subject, kind):
+    """Whether a row of the table can be asked about a subject by a kind of probe."""
+    return (
+        subject.model in check.models
+        and kind in check.tolerances
+        and not (check.key == "flag" and FLAG not in subject.inputs)
+    )
+
+
 def judge_subject(probe, checks=CHECKS):
-    """Results of every check that applies to a node, as its host can be asked.
+    """Results of the checks that apply to a node, as its host can be asked.
 
     Parameters
     ----------
@@ -36,20 +45,18 @@ def judge_subject(probe, checks=CHECKS):
     return tuple(
         _judge(check, probe, check.tolerances[probe.kind], place, _diagnose)
         for check in checks
-        if probe.subject.model in check.models
-        and probe.kind in check.tolerances
-        and not (check.key == "flag" and FLAG not in probe.subject.inputs)
+        if applies(check, probe.subject, probe.kind)
         and not (check.key == "environment" and not probe.cosines)
     )
 
 
-def judge_twins(host, library):
+def judge_twins(host, library, checks=CHECKS):
     """Results of the checks of the shader twins, which are the same whatever library is judged."""
     place = {"subject": "shader twins", "host": host.name, "library": library}
     kind = PROBES[host.name].kind
     return tuple(
         _judge(check, host.call, tolerance, place, lambda check, probe: "")
-        for check in CHECKS
+        for check in checks
         if not check.models
         for tolerance in [check.tolerances.get(host.name, check.tolerances[kind])]
     )

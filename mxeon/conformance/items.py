@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A run as independent items, each a check of one subject on one host with one library.
+
+An item is a few words and its findings are plain data, so both travel to other processes and
+machines. Whoever works on items keeps a `Judge`, which holds what is costly to open.
+"""
+
+import hashlib
+import platform
+from contextlib import suppress
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+
+import mxeon
+from mxeon.conformance.checks import CHECKS
+from mxeon.conformance.documents import MATCH, SCENES, judge_document
+from mxeon.conformance.nodes import applies, judge_curve, judge_subject, judge_twins
+from mxeon.conformance.probes import PROBES
+from mxeon.conformance.sources import check_sources
+from mxeon.conformance.subjects import SUBJECTS
+from mxeon.hosts import NotRun, open_host
+from mxeon.library import LIBRARIES, examples_folder
+from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
+
+SOFTWARE = ("MaterialX", "numpy", "OpenImageIO", "moderngl")
+SOURCE, CURVE, PICTURE, TWINS = "source", "curve", "picture", "shader twins"
+ROWS = {check.key: check for check in CHECKS}
+CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
+    SOURCE: "The generated text was checked.",
+    CURVE: "The albedo was measured over the cosine.",
+    PICTURE: MATCH,
+}
+
+
+def plan(files, hosts, libraries):
+    """The items of a run, those of one host and library beside each other.
+
+    Parameters
+    ----------
+    files : sequence of path-like
+        Documents; none for the bundled examples.
+    hosts, libraries : sequence of str
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ValueError
+        If a host or a library is unknown; lists the known ones.
+    """
+    _known("host", hosts, PROBES)
+    _known("library", libraries, LIBRARIES)
+    items, documents = [], {}
+    for library in dict.fromkeys(libraries):
+        named = [Path(file) for file in files] or _examples(library)
+        documents |= {str(file): _digest(file) for file in named}
+        items.append(Item(SOURCE, "every node", SOURCE, library))
+        for host in dict.fromkeys(hosts):
+            items += _on_host(host, library, named)
+    software = {"Python": platform.python_version()} | {each: version(each) for each in SOFTWARE}
+    return Plan(mxeon.__version__, software, tuple(items), documents)
+
+
+def subjects(library):
+    """The nodes that a library has."""
+    return [subject for subject in SUBJECTS if subject.stock or library != "stock"]
+
+
+def not_run(item, reason):
+    """Findings of an item that could not be worked on."""
+    claim = CLAIMS[item.check]
+    place = (item.subject, item.host, item.library)
+    return Findings(results=(Result(item.check, claim, *place, NOT_RUN, reason=reason),))
+
+
+class Judge:
+    """Works on items, one after the other, and keeps the hosts it opens."""
+
+    def __init__(self):
+        self._hosts = {}
+        self._reference = open_host("reference")
+        self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
+
+    def work(self, item):
+        """Findings of an item.
+
+        Parameters
+        ----------
+        item : Item
+
+        Returns
+        -------
+        Findings
+            A host that cannot run here, or a document that cannot be read, is among them.
+        """
+        if item.check == SOURCE:
+            return Findings(results=check_sources(subjects(item.library), item.library))
+        host = self._host(item.host)
+        if isinstance(host, NotRun):
+            return not_run(item, str(host))
+        found = self._on_host(item, host)
+        return Findings(**found, hosts=(host.identity(),))
+
+    def close(self):
+        """Close what was opened."""
+        for host in self._hosts.values():
+            with suppress(AttributeError):  # a reason for not running has nothing to close
+                host.close()
+
+    def _host(self, name):
+        """The host of that name, or the NotRun that says why there is none."""
+        if name not in self._hosts:
+            try:
+                self._hosts[name] = open_host(name)
+            except NotRun as reason:
+                self._hosts[name] = reason
+        return self._hosts[name]
+
+    def _on_host(self, item, host):
+        if item.check == PICTURE:
+            return self._document(item, host)
+        if item.subject == TWINS:
+            return {"results": judge_twins(host, item.library, (ROWS[item.check],))}
+        probe = self._probe(host, item.subject, item.library)
+        if item.check == CURVE:
+            return {"curves": judge_curve(probe)}
+        return {"results": judge_subject(probe, (ROWS[item.check],))}
+
+    def _document(self, item, host):
+        path = Path(item.subject)
+        try:
+            found = judge_document(path, host, self._reference, item.library)
+        except ValueError as error:
+            return {"errors": (str(error),)}
+        return dict(zip(("results", "pictures", "notes"), found, strict=True))
+
+
+def _probe(host, title, library):
+    subject = next(each for each in SUBJECTS if each.title == title)
+    return PROBES[host.name](host, subject, library)
+
+
+def _on_host(host, library, files):
+    kind = PROBES[host].kind
+    for row in CHECKS:
+        if not row.models:
+            yield Item(row.key, TWINS, host, library)
+    for subject in subjects(library):
+        for row in CHECKS:
+            if applies(row, subject, kind):
+                yield Item(row.key, subject.title, host, library)
+        yield Item(CURVE, subject.title, host, library)
+    if host in SCENES:
+        yield from (Item(PICTURE, str(file), host, library) for file in files)
+
+
+def _examples(library):
+    """The bundled documents, but for those with a node that the library lacks."""
+    files = sorted(examples_folder().glob("*.mtlx"))
+    lacking = [subject.node for subject in SUBJECTS if subject not in subjects(library)]
+    return [file for file in files if not any(node in file.read_text() for node in lacking)]
+
+
+def _digest(file):
+    try:
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except OSError:
+        return ""
+
+
+def _known(rule, names, known):
+    for name in names:
+        if name not in known:
+            raise ValueError(f"{rule} must be one of {', '.join(known)}; got {name!r}")

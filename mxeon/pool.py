@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Work on many items in processes of their own, of which any may crash, hang or be killed.
+
+Nothing here knows what the work is.
+"""
+
+import multiprocessing
+import os
+import signal
+import sys
+import tempfile
+from collections import deque
+from concurrent.futures import FIRST_COMPLETED, wait
+from dataclasses import dataclass
+from pathlib import Path
+
+from pebble import ProcessExpired, ProcessPool
+
+ATTEMPTS = 2
+LAST_LINES = 4  # of a worker's output, in the reason
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How the work on one item ended.
+
+    Attributes
+    ----------
+    value : object
+        What the work returned, or None.
+    failure : str
+        Why it returned nothing, in one line, or "".
+    attempts : int
+    """
+
+    value: object
+    failure: str = ""
+    attempts: int = 1
+
+
+def run(work, items, workers, limit):
+    """Outcomes of `work` on every item, as they come.
+
+    Parameters
+    ----------
+    work : callable (item) -> object
+        Can be imported by name; runs in another process, which serves many items.
+    items : sequence
+    workers : int
+        Number of processes, at least 1.
+    limit : float
+        Seconds for one item, after which its process is killed.
+
+    Yields
+    ------
+    int, Outcome
+        Place of the item in `items`. A crash or time-out costs the item alone: it is tried once
+        more and then given up.
+
+    Raises
+    ------
+    ValueError
+        If `workers` is below 1 or `limit` is not positive.
+
+    Notes
+    -----
+    No more than two items a worker are under way, so results do not pile up in memory. Whatever a
+    worker prints goes to a file; its last lines are quoted when it fails.
+    """
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1; got {workers}")
+    if not limit > 0.0:
+        raise ValueError(f"limit must be positive; got {limit:g}")
+    waiting = deque((place, item, 1) for place, item in enumerate(items))
+    with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
+        while waiting:
+            yield from _serve(work, waiting, workers, limit, logs)
+
+
+def _serve(work, waiting, workers, limit, logs):
+    """Outcomes until nothing waits or the pool breaks, which leaves its items waiting."""
+    pool = ProcessPool(workers, context=multiprocessing.get_context("spawn"))
+    running = {}
+    try:
+        while (waiting or running) and pool.active:
+            while waiting and len(running) < 2 * workers:
+                place, item, attempt = waiting.popleft()
+                log = os.path.join(logs, f"{place}-{attempt}.txt")
+                future = pool.schedule(_logged, args=(work, item, log), timeout=limit)
+                running[future] = place, item, attempt, log
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                place, item, attempt, log = running.pop(future)
+                outcome = _outcome(future, attempt, limit, log)
+                if outcome.failure and attempt < ATTEMPTS:
+                    waiting.append((place, item, attempt + 1))
+                else:
+                    yield place, outcome
+                Path(log).unlink(missing_ok=True)
+    finally:
+        waiting.extend((place, item, attempt) for place, item, attempt, _ in running.values())
+        pool.stop()
+        pool.join()
+
+
+def _outcome(future, attempt, limit, log):
+    error = future.exception()
+    if error is None:
+        return Outcome(future.result(), attempts=attempt)
+    if isinstance(error, TimeoutError):
+        end = f"no end within {limit:g} s"
+    elif isinstance(error, ProcessExpired):
+        code = error.exitcode
+        end = f"ended by {signal.Signals(-code).name}" if code < 0 else f"exit status {code}"
+    else:
+        end = f"{type(error).__name__}: {error}"
+    path = Path(log)
+    printed = path.read_text(errors="replace").split("\n") if path.exists() else []
+    last = " | ".join([line.strip() for line in printed if line.strip()][-LAST_LINES:]) or "none"
+    return Outcome(None, f"{' '.join(end.split())}; last output: {last}", attempt)
+
+
+def _logged(work, item, log):
+    """The work on an item; all that this process prints meanwhile, C++ included, goes to `log`.
+
+    Temporary files stay beside it, and go with it whatever becomes of this process.
+    """
+    tempfile.tempdir = os.path.dirname(log)
+    sys.stdout.flush()
+    file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(file, 1)
+    os.dup2(file, 2)
+    os.close(file)
+    return work(item)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Work that goes wrong on purpose, in processes that the tests of the pool start."""
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+
+def square(item):
+    return item * item
+
+
+def misbehave(item):
+    """Do what the item says; a number is squared."""
+    if isinstance(item, int):
+        return square(item)
+    print(f"about to {item}", file=sys.stderr, flush=True)
+    if item == "hang":
+        time.sleep(60.0)
+    if item == "exit":
+        os._exit(7)
+    if item == "raise":
+        raise RuntimeError("no light")
+    os.kill(os.getpid(), getattr(signal, item))
+
+
+def once(item):
+    """Die at the first attempt: the item is a file that the first attempt leaves behind."""
+    path = Path(item)
+    if not path.exists():
+        path.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "done"

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pool: whatever becomes of a worker costs its own item and no other."""
+
+import os
+from pathlib import Path
+from tempfile import gettempdir
+
+import pytest
+from faults import misbehave, once, square
+
+from mxeon.pool import ATTEMPTS, Outcome, run
+
+NUMBERS = [1, 2, 3, 4]
+
+
+def test_every_item_is_worked_on_once():
+    found = dict(run(square, range(20), 2, 60.0))
+    assert found == {item: Outcome(item * item) for item in range(20)}
+
+
+@pytest.mark.parametrize(
+    "fault, end",
+    [
+        ("SIGKILL", "ended by SIGKILL; last output: about to SIGKILL"),
+        ("SIGSEGV", "ended by SIGSEGV; last output: about to SIGSEGV"),
+        ("exit", "exit status 7; last output: about to exit"),
+        ("hang", "no end within 1 s; last output: about to hang"),
+        ("raise", "RuntimeError: no light; last output: about to raise"),
+    ],
+)
+def test_a_fault_costs_its_item_alone_and_is_named(fault, end):
+    found = dict(run(misbehave, [*NUMBERS[:2], fault, *NUMBERS[2:]], 2, 1.0 if fault == "hang" else 60.0))
+    assert found.pop(2) == Outcome(None, end, ATTEMPTS)
+    assert sorted(outcome.value for outcome in found.values()) == [1, 4, 9, 16]
+
+
+def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
+    items = [str(tmp_path / name) for name in "ab"]
+    found = dict(run(once, items, 2, 60.0))
+    assert found == dict.fromkeys((0, 1), Outcome("done", attempts=2))
+
+
+def test_what_workers_print_stays_out_of_ours(capfd):
+    list(run(misbehave, ["exit"], 1, 60.0))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_no_temporary_file_outlives_the_pool():
+    before = set(Path(gettempdir()).glob("mxeon-pool-*"))
+    found = run(square, range(4), 1, 60.0)
+    next(found)
+    assert set(Path(gettempdir()).glob("mxeon-pool-*")) > before
+    found.close()
+    assert set(Path(gettempdir()).glob("mxeon-pool-*")) == before
+
+
+def test_workers_are_other_processes():
+    (_, outcome), = run(_process, [0], 1, 60.0)
+    assert outcome.value != os.getpid()
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [((0, 1.0), "workers must be at least 1; got 0"), ((1, 0.0), "limit must be positive; got 0")],
+)
+def test_an_impossible_pool_is_one_line(options, words):
+    with pytest.raises(ValueError, match=f"^{words}$"):
+        list(run(square, [1], *options))
+
+
+def _process(_):
+    return os.getpid()
