@@ -44,8 +44,8 @@ class Journal:
         Made if need be.
     plan : Plan
     resume : bool
-        Whether to go on with the run that the folder holds. If not, an earlier journal is kept
-        beside, as PREVIOUS.
+        Whether to go on with the run that the folder holds, if one was begun. If not, an earlier
+        journal is kept beside, as PREVIOUS.
 
     Attributes
     ----------
@@ -70,7 +70,8 @@ class Journal:
         except Timeout:
             raise ValueError(f"{folder}: must have one writer; another run writes there") from None
         try:
-            self.findings = self._continue(plan) if resume else self._begin(plan)
+            begun = resume and self._path.exists() and b"\n" in self._path.read_bytes()
+            self.findings = self._continue(plan) if begun else self._begin(plan)
         except BaseException:
             self._lock.release()
             raise

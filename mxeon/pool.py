@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import tempfile
+import threading
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from pathlib import Path
 from pebble import ProcessExpired, ProcessPool
 
 ATTEMPTS = 2
+START = 60.0  # seconds that a process may take before it begins to work
 LAST_LINES = 4  # of a worker's output, in the reason
 
 
@@ -79,7 +81,8 @@ def run(work, items, workers, limit):
 
 def _serve(work, waiting, workers, limit, logs):
     """Outcomes until nothing waits or the pool breaks, which leaves its items waiting."""
-    pool = ProcessPool(workers, context=multiprocessing.get_context("spawn"))
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPool(workers, initializer=_end_with_parent, context=context)
     running = {}
     try:
         while (waiting or running) and pool.active:
@@ -88,7 +91,8 @@ def _serve(work, waiting, workers, limit, logs):
                 log = os.path.join(logs, f"{place}-{attempt}.txt")
                 future = pool.schedule(_logged, args=(work, item, log), timeout=limit)
                 running[future] = place, item, attempt, log
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            ended = wait(running, timeout=START + limit, return_when=FIRST_COMPLETED).done
+            for future in ended or tuple(running):  # none: the processes hang before they begin
                 place, item, attempt, log = running.pop(future)
                 outcome = _outcome(future, attempt, limit, log)
                 if outcome.failure and attempt < ATTEMPTS:
@@ -96,6 +100,8 @@ def _serve(work, waiting, workers, limit, logs):
                 else:
                     yield place, outcome
                 Path(log).unlink(missing_ok=True)
+            if not ended:
+                return
     finally:
         waiting.extend((place, item, attempt) for place, item, attempt, _ in running.values())
         pool.stop()
@@ -103,7 +109,7 @@ def _serve(work, waiting, workers, limit, logs):
 
 
 def _outcome(future, attempt, limit, log):
-    error = future.exception()
+    error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt)
     if isinstance(error, TimeoutError):
@@ -117,6 +123,16 @@ def _outcome(future, attempt, limit, log):
     printed = path.read_text(errors="replace").split("\n") if path.exists() else []
     last = " | ".join([line.strip() for line in printed if line.strip()][-LAST_LINES:]) or "none"
     return Outcome(None, f"{' '.join(end.split())}; last output: {last}", attempt)
+
+
+def _end_with_parent():
+    """Let this process die with its parent, however that ends."""
+
+    def wait_for_end():
+        multiprocessing.parent_process().join()
+        os._exit(1)
+
+    threading.Thread(target=wait_for_end, daemon=True).start()
 
 
 def _logged(work, item, log):

@@ -90,6 +90,16 @@ def test_another_run_is_not_resumed(tmp_path, change, words):
     assert str(error.value).endswith(words)
 
 
+@pytest.mark.parametrize("text", [None, '{"form'], ids=["none", "torn"])
+def test_a_run_that_was_never_begun_is_begun(tmp_path, text):
+    if text:
+        (tmp_path / NAME).parent.mkdir()
+        (tmp_path / NAME).write_text(text)
+    with journal(tmp_path, resume=True) as kept:
+        assert kept.findings == {}
+    assert read_journal(tmp_path) == (PLAN, {})
+
+
 def test_a_new_run_keeps_the_old_journal_beside(tmp_path):
     with journal(tmp_path) as kept:
         kept.add(0, FINDINGS)

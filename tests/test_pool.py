@@ -6,8 +6,9 @@ from pathlib import Path
 from tempfile import gettempdir
 
 import pytest
-from faults import misbehave, once, square
+from faults import Tar, misbehave, once, square
 
+from mxeon import pool
 from mxeon.pool import ATTEMPTS, Outcome, run
 
 NUMBERS = [1, 2, 3, 4]
@@ -32,6 +33,12 @@ def test_a_fault_costs_its_item_alone_and_is_named(fault, end):
     found = dict(run(misbehave, [*NUMBERS[:2], fault, *NUMBERS[2:]], 2, 1.0 if fault == "hang" else 60.0))
     assert found.pop(2) == Outcome(None, end, ATTEMPTS)
     assert sorted(outcome.value for outcome in found.values()) == [1, 4, 9, 16]
+
+
+def test_processes_that_hang_before_they_begin_are_given_up(monkeypatch):
+    monkeypatch.setattr(pool, "START", 2.0)
+    (outcome,) = dict(pool.run(square, [Tar()], 1, 1.0)).values()
+    assert outcome == Outcome(None, "no end within 1 s; last output: none", ATTEMPTS)
 
 
 def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hosts that stop answering: workers, and Blender, are stopped while they work."""
+
+import random
+import time
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import psutil
+
+from mxeon.conformance import read_run
+from mxeon.results import NOT_RUN
+from reliability.runs import finished, start, until, verdicts, wait_for_end, workers
+
+SEED = 1
+LIMIT = 600
+ITEM = 10.0  # seconds for an item: several times what the longest takes
+START = 4.0  # seconds after which a worker is at work
+
+
+def measure(count=10, progress=iter):
+    """Figures of runs in which workers were stopped with SIGSTOP, once or for good.
+
+    Returns
+    -------
+    dict
+        runs; survived: a worker stopped once, with the verdicts of an undisturbed run;
+        persistent: runs whose every worker was stopped as soon as it was seen, for a while;
+        named: of their items that did not run, those whose reason names the time-out, of
+        reasons.
+    """
+    rng = random.Random(SEED)
+    tally = dict.fromkeys(("runs", "survived", "persistent", "reasons", "named"), 0)
+    with TemporaryDirectory(prefix="mxeon-hangs-") as base:
+        wait_for_end(start(Path(base, "calm")), LIMIT)
+        calm = verdicts(Path(base, "calm"))
+        for number in progress(range(count)):
+            folder = Path(base, f"once-{number}")
+            process = start(folder, "--limit", str(ITEM))
+            goal = rng.randrange(len(calm) // 4)
+            until(lambda: finished(folder) > goal and workers(process), LIMIT, process)
+            _stop(workers(process)[:1])
+            wait_for_end(process, LIMIT)
+            tally["runs"] += 1
+            tally["survived"] += verdicts(folder) == calm
+        _persistent(Path(base, "persistent"), tally)
+    return tally
+
+
+def _persistent(folder, tally):
+    """A run whose workers are all stopped until two items have been given up."""
+    process = start(folder, "--limit", "3")
+    until(lambda: finished(folder) > 4, LIMIT, process)
+    before = finished(folder)
+
+    def given_up():
+        now = time.time()
+        _stop(each for each in workers(process) if now - each.create_time() > START)
+        return finished(folder) >= before + 2
+
+    until(given_up, LIMIT, process)
+    wait_for_end(process, LIMIT)
+    reasons = [each.reason for each in read_run(folder).results if each.verdict == NOT_RUN]
+    tally["persistent"] += 1
+    tally["reasons"] += len(reasons)
+    tally["named"] += sum("no end within 3 s" in reason for reason in reasons)
+
+
+def _stop(processes):
+    for each in processes:
+        with suppress(psutil.Error):
+            each.suspend()
