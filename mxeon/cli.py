@@ -77,6 +77,7 @@ def _parser():
     check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
     check.add_argument("--resume", action="store_true", help="go on with the interrupted run in DIR")
     check.add_argument("--workers", type=int, default=os.cpu_count(), metavar="N", help="processes that share the work; 0 for none but this")
+    check.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work")
     check.add_argument("--limit", type=float, default=300.0, metavar="SECONDS", help="for one item of work")
     _json(check)
 
@@ -159,6 +160,7 @@ def _check(options):
         limit=options.limit,
         folder=options.report,
         resume=options.resume,
+        scheduler=options.scheduler,
         progress=_progress("mxeon check"),
     )
     return _judged(run, options)

@@ -26,7 +26,7 @@ def measure(counts=COUNTS, progress=iter):
     found = {"documents": list(counts), "parent": [], "worker": [], "seconds": [], "ended": []}
     for count in progress(counts):
         with TemporaryDirectory(prefix="mxeon-memory-") as base:
-            files = [_document(Path(base), number) for number in range(count)]
+            files = [document(Path(base), number) for number in range(count)]
             began = time.monotonic()
             process = start(Path(base, "run"), files=files, capture=False)
             parent, worker = _peaks(process)
@@ -37,7 +37,7 @@ def measure(counts=COUNTS, progress=iter):
     return found
 
 
-def _document(folder, number):
+def document(folder, number):
     """A material that no other document has."""
     path = folder / f"document_{number:04}.mtlx"
     color = (number % 97 / 97, 0.5, number % 31 / 31)

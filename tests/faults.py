@@ -7,6 +7,8 @@ import sys
 import time
 from pathlib import Path
 
+from mxeon.hosts import NotRun
+
 
 def square(item):
     return item * item
@@ -40,3 +42,16 @@ def once(item):
         path.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return "done"
+
+
+def process(item):
+    """Number of the process that works, after a moment."""
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def need(item):
+    """Ask for the environment variable that the item names."""
+    if item not in os.environ:
+        raise NotRun(f"{item}: missing")
+    return os.environ[item]

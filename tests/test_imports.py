@@ -23,7 +23,7 @@ REPORT = ("verdict", "junit", "pictures", "plots", "page", "report")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("cli", "__main__")
-RUNNING = ("pool", "results", "writing", "journal")
+RUNNING = ("pool", "cluster", "results", "writing", "journal")
 ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += REPORT + FIGURES + KIT + COMMAND
 
@@ -39,6 +39,7 @@ EXTERNAL = {
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal",),
+    "distributed": ("cluster",),
     "filelock": ("journal",),
     "jinja2": ("page",),
     "matplotlib": ("plots", "figures.*"),

@@ -8,9 +8,10 @@ from contextlib import closing, nullcontext
 from functools import lru_cache
 from pathlib import Path
 
-from mxeon import pool
+from mxeon import cluster, pool
 from mxeon.conformance.items import Judge, not_run, plan
 from mxeon.conformance.probes import PROBES
+from mxeon.hosts import NotRun
 from mxeon.journal import Journal, read_journal
 from mxeon.results import Findings, Run
 
@@ -28,6 +29,7 @@ def check(
     limit=LIMIT,
     folder=None,
     resume=False,
+    scheduler=None,
     progress=lambda items, total: items,
 ):
     """Every check on every host, and every document's pictures against the reference's.
@@ -49,6 +51,8 @@ def check(
         resumed; None to keep it in memory.
     resume : bool
         Go on with the run that `folder` holds.
+    scheduler : str or None
+        Address of a Dask scheduler whose workers do the work instead.
     progress : callable (iterable, int) -> iterable
         Goes through the items that are to be done, whose number it is told; a progress bar, say.
 
@@ -60,14 +64,14 @@ def check(
     Raises
     ------
     ValueError
-        If a host or a library is unknown, `folder` holds another run than the one to resume, or
-        `workers` or `limit` leave their ranges.
+        If a host or a library is unknown, `folder` holds another run than the one to resume,
+        `workers` or `limit` leave their ranges, or no scheduler answers or has workers that fit.
     """
     planned = plan(files, hosts, libraries)
     with _keeper(folder, planned, resume) as kept:
         places = [place for place in range(len(planned.items)) if place not in kept.findings]
         waiting = [planned.items[place] for place in places]
-        found = _pooled(waiting, workers, limit) if workers else _here(waiting)
+        found = _done(waiting, workers, limit, scheduler)
         for number, findings in progress(found, len(waiting)):
             kept.add(places[number], findings)
         return to_run(planned, kept.findings)
@@ -85,8 +89,19 @@ def read_run(folder):
 
 
 def work(item):
-    """Findings of an item, by this process's judge: what workers run."""
+    """Findings of an item, by this process's judge: what workers run.
+
+    Raises
+    ------
+    NotRun
+        If the host cannot be opened here.
+    """
     return _judge().work(item)
+
+
+def settled(item):
+    """Findings of an item wherever it is: what cannot be done here is not run."""
+    return _settled(_judge(), item)
 
 
 def to_run(planned, findings):
@@ -122,16 +137,30 @@ def _keeper(folder, planned, resume):
     return nullcontext(_Memory()) if folder is None else Journal(folder, planned, resume)
 
 
+def _done(items, workers, limit, scheduler):
+    """Findings of the items as they come, each with its place."""
+    if scheduler:
+        outcomes = cluster.run(work, items, scheduler, limit, elsewhere=NotRun)
+    elif workers:
+        outcomes = pool.run(settled, items, workers, limit)
+    else:
+        outcomes = _here(items)
+    for place, outcome in outcomes:
+        failed = outcome.value is None
+        yield place, not_run(items[place], outcome.failure) if failed else outcome.value
+
+
 def _here(items):
     with closing(Judge()) as judge:
         for place, item in enumerate(items):
-            yield place, judge.work(item)
+            yield place, pool.Outcome(_settled(judge, item))
 
 
-def _pooled(items, workers, limit):
-    for place, outcome in pool.run(work, items, workers, limit):
-        failed = outcome.value is None
-        yield place, not_run(items[place], outcome.failure) if failed else outcome.value
+def _settled(judge, item):
+    try:
+        return judge.work(item)
+    except NotRun as reason:
+        return not_run(item, str(reason))
 
 
 @lru_cache(maxsize=1)

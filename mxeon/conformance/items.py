@@ -94,13 +94,16 @@ class Judge:
         Returns
         -------
         Findings
-            A host that cannot run here, or a document that cannot be read, is among them.
+            A document that cannot be read is among its errors.
+
+        Raises
+        ------
+        NotRun
+            If the host cannot be opened here.
         """
         if item.check == SOURCE:
             return Findings(results=check_sources(subjects(item.library), item.library))
         host = self._host(item.host)
-        if isinstance(host, NotRun):
-            return not_run(item, str(host))
         found = self._on_host(item, host)
         return Findings(**found, hosts=(host.identity(),))
 
@@ -111,12 +114,14 @@ class Judge:
                 host.close()
 
     def _host(self, name):
-        """The host of that name, or the NotRun that says why there is none."""
+        """The host of that name; it is opened, or found missing, once."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = open_host(name)
             except NotRun as reason:
                 self._hosts[name] = reason
+        if isinstance(self._hosts[name], NotRun):
+            raise self._hosts[name]
         return self._hosts[name]
 
     def _on_host(self, item, host):

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Work on many items on the machines of a Dask cluster. Needs the `dask` extra.
+
+Dask places the items, brings dead workers back and tries their items again. Here is what it cannot
+know: which workers fit, that an item one machine cannot do may be done by another, and time limits.
+"""
+
+import faulthandler
+import sys
+import warnings
+from collections import deque
+from contextlib import suppress
+
+import mxeon
+from mxeon.pool import Outcome
+
+WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
+PATIENCE = 10.0  # seconds until a scheduler answers
+POLL = 1.0  # seconds between looks at the workers that come and go
+
+
+def run(work, items, address, limit, elsewhere):
+    """Outcomes of `work` on every item, as they come; see `mxeon.pool.run`.
+
+    Parameters
+    ----------
+    work : callable (item) -> object
+        Can be imported by name on the workers.
+    items : sequence
+    address : str
+        Of the scheduler, "tcp://host:8786".
+    limit : float
+        Seconds for one item, after which its worker process ends and its nanny starts another.
+    elsewhere : type of exception
+        What `work` raises when this worker cannot do the item; others are asked then.
+
+    Yields
+    ------
+    int, Outcome
+
+    Raises
+    ------
+    ValueError
+        If no scheduler answers at the address, or none of its workers fits.
+    ImportError
+        If Dask is not installed; says what to install.
+    """
+    client = _connect(address)
+    try:
+        yield from _serve(_Workers(client), work, items, limit, elsewhere)
+    finally:
+        client.close()
+
+
+def _connect(address):
+    try:
+        from distributed import Client
+    except ModuleNotFoundError:
+        raise ImportError("--scheduler needs distributed: pip install 'mxeon[dask]'") from None
+    try:
+        return Client(address, timeout=PATIENCE)
+    except (OSError, ValueError) as error:
+        reason = str(error).partition("\n")[0]
+        raise ValueError(
+            f"scheduler must be the address of a running Dask scheduler; got {address}: {reason}"
+        ) from None
+
+
+def _serve(workers, work, items, limit, elsewhere):
+    from distributed import wait
+
+    waiting = deque((place, item, frozenset()) for place, item in enumerate(items))
+    running = {}
+    while waiting or running:
+        fit = workers.fit()
+        while waiting and len(running) < WINDOW * len(fit):
+            place, item, tried = waiting.popleft()
+            future, chosen = workers.submit(_timed, work, item, limit, elsewhere, avoid=tried)
+            running[future] = place, item, tried, chosen
+        if not running:
+            raise ValueError("cluster must keep a worker that fits; all are gone")
+        with suppress(TimeoutError):
+            wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
+        for future in list(running):
+            place, item, tried, chosen = running[future]
+            if future.done():
+                error = future.exception()
+                tried |= {error.worker} if isinstance(error, Elsewhere) else frozenset()
+                if not isinstance(error, Elsewhere) or not fit - tried:
+                    yield place, _outcome(future, error)
+                    del running[future]
+                    continue
+            elif not chosen or chosen & fit:
+                continue
+            waiting.append((place, item, tried))  # for others, or for those that came instead
+            del running[future]
+
+
+def _outcome(future, error):
+    if error is None:
+        return Outcome(future.result())
+    if isinstance(error, Elsewhere):
+        return Outcome(None, str(error))
+    return Outcome(None, " ".join(f"{type(error).__name__}: {error}".split()))
+
+
+class _Workers:
+    """The workers of a cluster, of which those fit that have this version and one thread."""
+
+    def __init__(self, client):
+        self.client = client
+        self._fits = {}
+        if not self.fit():
+            raise ValueError(
+                f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
+                f"got {len(self._fits)} others"
+            )
+
+    def fit(self):
+        """Addresses of the workers that fit; a warning for each other one when it is first seen."""
+        threads = {
+            address: worker["nthreads"]
+            for address, worker in self.client.scheduler_info(n_workers=-1)["workers"].items()
+        }
+        unknown = sorted(threads.keys() - self._fits.keys())
+        versions = self.client.run(_version, workers=unknown, on_error="return") if unknown else {}
+        for address, version in versions.items():
+            why = _unfit(version, threads[address])
+            self._fits[address] = not why
+            if why:
+                warnings.warn(f"worker {address} gets no work: {why}", stacklevel=2)
+        return frozenset(address for address in threads if self._fits.get(address))
+
+
+    def submit(self, *task, avoid):
+        """The future of a task, and the workers it is bound to, or none if any may do it."""
+        chosen = frozenset() if all(self._fits.values()) and not avoid else self.fit() - avoid
+        future = self.client.submit(*task, workers=sorted(chosen) or None, pure=False)
+        return future, chosen
+
+
+class Elsewhere(Exception):
+    """A worker cannot do an item, and says its address."""
+
+    def __init__(self, reason, worker):
+        super().__init__(reason, worker)
+        self.worker = worker
+
+    def __str__(self):
+        return self.args[0]
+
+
+def _timed(work, item, limit, elsewhere):
+    """The work on an item, on a worker, whose process ends if it takes too long."""
+    from distributed import get_worker
+
+    faulthandler.dump_traceback_later(limit, exit=True, file=sys.__stderr__)
+    try:
+        return work(item)
+    except elsewhere as reason:
+        raise Elsewhere(str(reason), get_worker().address) from None
+    finally:
+        faulthandler.cancel_dump_traceback_later()
+
+
+def _unfit(version, threads):
+    if version != mxeon.__version__:
+        return f"it must have mxeon {mxeon.__version__}; got {version}"
+    if threads != 1:
+        return f"it must have one thread, --nthreads 1, as OpenGL needs; got {threads}"
+    return ""
+
+
+def _version():
+    return mxeon.__version__

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Dask cluster as a farm: real schedulers and worker processes on this machine."""
+
+import os
+import subprocess
+import sys
+from contextlib import ExitStack, contextmanager
+
+import dask
+import pytest
+from distributed import LocalCluster
+from faults import need, once, process, square
+
+import mxeon
+from mxeon import cluster
+from mxeon.conformance import check
+from mxeon.hosts import NotRun
+from mxeon.library import examples_folder
+from mxeon.pool import Outcome
+
+OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
+# Dask leaves the sockets open by which it looks for a free port.
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+EXAMPLE = examples_folder() / "plaster.mtlx"
+
+
+def run(work, items, address, limit=60.0):
+    return dict(cluster.run(work, items, address, limit, NotRun))
+
+
+@contextmanager
+def farm(*workers):
+    """A scheduler's address; each worker is the environment variables that it has more."""
+    with ExitStack() as stack:
+        options = {"n_workers": 0, "dashboard_address": ":0", "protocol": "tcp"}
+        started = stack.enter_context(LocalCluster(**options))
+        for more in workers:
+            arguments = more.pop("arguments", ["--nthreads", "1"])
+            command = [sys.executable, "-m", "distributed.cli.dask_worker", started.scheduler_address]
+            paths = os.pathsep.join(filter(None, sys.path))
+            process = subprocess.Popen(
+                [*command, "--no-dashboard", *arguments],
+                env=os.environ | {"PYTHONPATH": paths} | more,
+                stderr=subprocess.DEVNULL,
+            )
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+        started.wait_for_workers(len(workers), timeout=60)
+        yield started.scheduler_address
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """Two workers, one of which has a lamp."""
+    with farm({}, {"LAMP": "on"}) as address:
+        yield address
+
+
+def test_every_item_is_worked_on_once_and_by_all_workers(pair):
+    assert run(square, range(20), pair) == {item: Outcome(item * item) for item in range(20)}
+    assert len({outcome.value for outcome in run(process, range(40), pair).values()}) == 2
+
+
+def test_what_one_worker_lacks_is_done_by_another(pair):
+    assert run(need, ["LAMP"] * 8, pair) == {place: Outcome("on") for place in range(8)}
+
+
+def test_what_all_workers_lack_is_not_run(pair):
+    assert run(need, ["MOON"], pair) == {0: Outcome(None, "MOON: missing")}
+
+
+def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
+    items = [str(tmp_path / name) for name in "ab"]
+    assert run(once, items, pair) == dict.fromkeys((0, 1), Outcome("done"))
+    assert run(square, [3], pair) == {0: Outcome(9)}
+
+
+def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), farm({}) as address:
+        (outcome,) = run(_sleep, [60.0], address, limit=1.0).values()
+    assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
+
+
+@pytest.mark.parametrize(
+    "fault, words",
+    [
+        ("version", f"it must have mxeon {mxeon.__version__}; got 0.0.9"),
+        ("threads", "it must have one thread, --nthreads 1, as OpenGL needs; got 2"),
+    ],
+)
+def test_a_worker_that_does_not_fit_gets_no_work_and_is_named(tmp_path, fault, words):
+    preload = tmp_path / "preload.py"
+    preload.write_text(OTHER_VERSION)
+    arguments = ["--preload", str(preload), "--nthreads", "1"]
+    unfit = {"arguments": arguments if fault == "version" else ["--nthreads", "2"]}
+    with farm({"FIT": "yes"}, unfit) as address, pytest.warns(UserWarning, match=words):
+        found = run(need, ["FIT"] * 8, address)
+    assert found == {place: Outcome("yes") for place in range(8)}
+
+
+def test_a_cluster_without_a_fitting_worker_is_one_line():
+    with farm({"arguments": ["--nthreads", "2"]}) as address, pytest.warns(UserWarning):
+        with pytest.raises(ValueError, match=f"must have a worker with mxeon {mxeon.__version__} "):
+            run(square, [1], address)
+
+
+def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch):
+    monkeypatch.setattr(cluster, "PATIENCE", 1.0)
+    with pytest.raises(ValueError, match="scheduler must be the address of a running") as error:
+        run(square, [1], "tcp://127.0.0.1:9")
+    assert "\n" not in str(error.value)
+
+
+def test_a_farm_finds_what_one_machine_finds(pair, tmp_path):
+    found = check([EXAMPLE], scheduler=pair, folder=tmp_path)
+    assert found.results == check([EXAMPLE]).results and not found.missing
+
+
+def _sleep(seconds):
+    import time
+
+    time.sleep(seconds)
