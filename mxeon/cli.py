@@ -9,6 +9,7 @@ import json
 import os
 import sys
 import warnings
+from collections import Counter
 from pathlib import Path
 
 import mxeon
@@ -77,6 +78,7 @@ def _parser():
     check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
     check.add_argument("--resume", action="store_true", help="go on with the interrupted run in DIR")
     check.add_argument("--workers", type=int, default=os.cpu_count(), metavar="N", help="processes that share the work; 0 for none but this")
+    check.add_argument("--materialx", nargs="+", metavar="VERSION", help="judge these versions of MaterialX, each in its own environment")
     check.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work")
     check.add_argument("--limit", type=float, default=300.0, metavar="SECONDS", help="for one item of work")
     _json(check)
@@ -151,6 +153,8 @@ def _check(options):
 
     if options.resume and not options.report:
         raise ValueError("--resume needs --report DIR, the folder of the run to go on with; got none")
+    if options.materialx:
+        return _check_versions(options)
     hosts = options.host or ("gl",)
     run = check(
         options.files,
@@ -164,6 +168,21 @@ def _check(options):
         progress=_progress("mxeon check"),
     )
     return _judged(run, options)
+
+
+def _check_versions(options):
+    from tempfile import TemporaryDirectory
+
+    from mxeon import versions
+
+    arguments = [*options.files, "--workers", str(options.workers), "--limit", str(options.limit)]
+    for word in ("host", "library"):
+        arguments += [each for name in getattr(options, word) or () for each in (f"--{word}", name)]
+    arguments += ["--resume"] if options.resume else []
+    arguments += ["--scheduler", options.scheduler] if options.scheduler else []
+    with TemporaryDirectory(prefix="mxeon-versions-") as temporary:
+        run = versions.check(options.materialx, arguments, options.report or temporary)
+        return _judged(run, options)
 
 
 def _report_make(options):
@@ -212,17 +231,29 @@ def _judged(run, options):
 
 
 def _print_run(run, summary, page):
+    for (place, reason), count in _not_run(run.results).items():
+        print(f"not run: {place}, {count} checks: {reason}")
     for result in run.results:
-        if result.verdict == "passed":
+        if result.verdict != "failed":
             continue
         figure = "" if result.figure is None else f" {result.figure:.3g} > {result.tolerance:.3g}"
-        why = "; ".join(filter(None, (result.reason, result.diagnosis)))
-        print(f"{result.verdict}: {result.host}, {result.check}, {result.subject}:{figure} {why}")
+        print(f"failed: {result.host}, {result.check}, {result.subject}:{figure} {result.diagnosis}")
     for note in run.notes:
         print(f"note: {note}")
     print(summary.sentence)
     if page:
         print(f"report: {page}")
+
+
+def _not_run(results):
+    """How many checks each reason kept from running at each place."""
+    from mxeon.verdict import place
+
+    return Counter(
+        (place(result), result.reason)
+        for result in results
+        if result.verdict == "not run"
+    )
 
 
 def _generate(options):

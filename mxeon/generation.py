@@ -4,31 +4,33 @@
 import re
 import warnings
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
+from importlib import import_module
 from types import MappingProxyType
 
 import MaterialX as mx
-import MaterialX.PyMaterialXGenGlsl as mx_glsl
-import MaterialX.PyMaterialXGenMdl as mx_mdl
-import MaterialX.PyMaterialXGenMsl as mx_msl
-import MaterialX.PyMaterialXGenOsl as mx_osl
 import MaterialX.PyMaterialXGenShader as mx_gen
-import MaterialX.PyMaterialXGenSlang as mx_slang
 
 from mxeon.document import DocumentError, label, read_document
 from mxeon.library import load_library
 
-GENERATORS = {
-    "glsl": mx_glsl.GlslShaderGenerator,
-    "essl": mx_glsl.EsslShaderGenerator,
-    "vulkan": mx_glsl.VkShaderGenerator,
-    "wgsl": mx_glsl.WgslShaderGenerator,
-    "msl": mx_msl.MslShaderGenerator,
-    "slang": mx_slang.SlangShaderGenerator,
-    "osl": mx_osl.OslShaderGenerator,
-    "mdl": mx_mdl.MdlShaderGenerator,
+# Target -> module of MaterialX and class in it. MaterialX has slang since 1.39.5, wgsl since 1.39.4.
+CLASSES = {
+    "glsl": ("GenGlsl", "GlslShaderGenerator"),
+    "essl": ("GenGlsl", "EsslShaderGenerator"),
+    "vulkan": ("GenGlsl", "VkShaderGenerator"),
+    "wgsl": ("GenGlsl", "WgslShaderGenerator"),
+    "msl": ("GenMsl", "MslShaderGenerator"),
+    "slang": ("GenSlang", "SlangShaderGenerator"),
+    "osl": ("GenOsl", "OslShaderGenerator"),
+    "mdl": ("GenMdl", "MdlShaderGenerator"),
 }
+GENERATORS = {}
+for _target, (_module, _name) in CLASSES.items():
+    with suppress(ModuleNotFoundError, AttributeError):
+        GENERATORS[_target] = getattr(import_module(f"MaterialX.PyMaterialX{_module}"), _name)
 TARGETS = tuple(GENERATORS)
 STAGES = ("pixel", "vertex")
 

@@ -11,10 +11,13 @@ from pathlib import Path
 
 import MaterialX as mx
 
+# Versions of MaterialX whose shaders hand a closure its data as eonlib's sources expect it.
+VERSIONS = ("1.39.3", "1.39.4", "1.39.5")
+
 LIBRARIES = ("eonlib", "stock")
 PROFILES = ("cycles",)
 
-# Nodes that eonlib implements, and the targets a generator asks for.
+# Nodes that eonlib implements, and the targets a generator asks for; 1.39.5 alone has all.
 NODES = ("ND_oren_nayar_diffuse_bsdf", "ND_eon_diffuse_bsdf")
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
 
@@ -108,13 +111,29 @@ def load_library(library="eonlib", profile=None):
     ValueError
         If the library or the profile is unknown; lists the known ones.
     LibraryError
-        If MaterialX finds another implementation than eonlib's on some target.
+        If this MaterialX is none of VERSIONS, or finds another implementation than eonlib's.
     """
+    assert_version()
     document = mx.createDocument()
     mx.loadLibraries(_folders(library, profile), mx.getDefaultDataSearchPath(), document)
     if library == "eonlib":
         assert_ours(document)
     return document
+
+
+def assert_version():
+    """Nothing, if this MaterialX is one of VERSIONS.
+
+    Raises
+    ------
+    LibraryError
+        Otherwise: its shaders would call eonlib's functions wrongly.
+    """
+    if mx.getVersionString() not in VERSIONS:
+        raise LibraryError(
+            f"MaterialX must be one of {', '.join(VERSIONS)}, whose closure interface eonlib is "
+            f"written for; got {mx.getVersionString()}: pip install materialx=={VERSIONS[-1]}"
+        )
 
 
 def implementations(document):
@@ -123,11 +142,12 @@ def implementations(document):
     Returns
     -------
     tuple of Implementation
-        One for each pair of NODES and TARGETS.
+        One for each pair of NODES and those TARGETS that this MaterialX has.
     """
-    return tuple(
-        _found(document, node, target) for node in NODES for target in TARGETS
-    )
+    data = document.getDataLibrary() or document
+    known = {each.getName() for each in data.getTargetDefs()} or TARGETS
+    targets = [target for target in TARGETS if target in known]
+    return tuple(_found(document, node, target) for node in NODES for target in targets)
 
 
 def _found(document, node, target):

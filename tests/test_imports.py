@@ -25,7 +25,7 @@ KIT = ("kit.*", "kit")
 COMMAND = ("cli", "__main__")
 RUNNING = ("pool", "cluster", "results", "writing", "journal")
 ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
-ORDER += REPORT + FIGURES + KIT + COMMAND
+ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
 
 # The one host that is made of the models.
 REFERENCE = "hosts.reference"
@@ -35,12 +35,12 @@ FOR_REPORT = (*REPORT, "results", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
-    "MaterialX": ("library", "document", "generation", "hosts.*"),
+    "MaterialX": ("library", "document", "generation", "hosts", "hosts.*"),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal",),
     "distributed": ("cluster",),
-    "filelock": ("journal",),
+    "filelock": ("journal", "versions"),
     "jinja2": ("page",),
     "matplotlib": ("plots", "figures.*"),
     "moderngl": ("hosts.*",),

@@ -20,7 +20,7 @@ from mxeon.conformance.probes import PROBES
 from mxeon.conformance.sources import check_sources
 from mxeon.conformance.subjects import SUBJECTS
 from mxeon.hosts import NotRun, open_host
-from mxeon.library import LIBRARIES, examples_folder
+from mxeon.library import LIBRARIES, assert_version, examples_folder
 from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
 
 SOFTWARE = ("MaterialX", "numpy", "OpenImageIO", "moderngl")
@@ -50,7 +50,10 @@ def plan(files, hosts, libraries):
     ------
     ValueError
         If a host or a library is unknown; lists the known ones.
+    LibraryError
+        If this MaterialX is not one that eonlib works with.
     """
+    assert_version()
     _known("host", hosts, PROBES)
     _known("library", libraries, LIBRARIES)
     items, documents = [], {}

@@ -12,6 +12,11 @@ each as far as that host can. A host that cannot do something here raises NotRun
 from dataclasses import dataclass
 from importlib import import_module
 
+import MaterialX as mx
+
+from mxeon.generation import TARGETS
+from mxeon.library import VERSIONS
+
 
 class NotRun(RuntimeError):
     """Something could not be executed here; the message says what and why, in one line."""
@@ -46,4 +51,10 @@ def open_host(name):
     """
     if name not in HOSTS:
         raise ValueError(f"host must be one of {', '.join(HOSTS)}; got {name!r}")
-    return import_module(f"mxeon.hosts.{name}").Host()
+    host = import_module(f"mxeon.hosts.{name}").Host
+    if host.target not in TARGETS:
+        raise NotRun(
+            f"{name}: MaterialX must have a generator for {host.target}; {mx.__version__} has none: "
+            f"pip install materialx=={VERSIONS[-1]}"
+        )
+    return host()

@@ -205,7 +205,9 @@ def columns(arguments):
 
 def _find_call(text, closure, element):
     """The statements that evaluate the BSDF for a closure type, its result and its arguments."""
-    block = re.search(rf"ClosureData closureData = makeClosureData\({closure}[^}}]*", text)
+    # MaterialX before 1.39.5 calls the constructor itself.
+    constructor = r"(?:makeClosureData|ClosureData)"
+    block = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
     calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block[0]) if block else []
     if len(calls) != 1:
         raise ValueError(

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The same run with other versions of MaterialX, each in an environment made on demand.
+
+An environment is a folder that holds one MaterialX and comes before all others on the path of
+Python, so that everything else is what it is here.
+"""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from filelock import FileLock
+
+from mxeon.conformance import read_run
+from mxeon.hosts import NotRun
+from mxeon.library import VERSIONS
+from mxeon.results import Run
+
+
+def check(versions, arguments, folder):
+    """One run made of those of several versions of MaterialX.
+
+    Parameters
+    ----------
+    versions : sequence of str
+    arguments : sequence of str
+        Of `mxeon check`, but for --report and --materialx.
+    folder : path-like
+        Gets a folder with the run of each version.
+
+    Returns
+    -------
+    Run
+        Its libraries carry the version in their names.
+
+    Raises
+    ------
+    ValueError
+        If a version is not known to work, lists the known ones; or a run is refused.
+    NotRun
+        If a version cannot be installed.
+    """
+    for version in versions:
+        _known(version)
+    places = {version: Path(folder, f"materialx-{version}") for version in versions}
+    for version, place in places.items():
+        _check(version, arguments, place)
+    return merged({version: read_run(place) for version, place in places.items()})
+
+
+def environment(version):
+    """The folder that holds a version of MaterialX; installed by pip the first time.
+
+    It lies in MXEON_ENVIRONMENTS, else in .cache/mxeon of the home folder.
+
+    Raises
+    ------
+    ValueError
+        If the version is not known to work; lists the known ones.
+    NotRun
+        If pip cannot install it; says why.
+    """
+    _known(version)
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    base = os.environ.get("MXEON_ENVIRONMENTS") or Path.home() / ".cache" / "mxeon"
+    folder = Path(base, f"materialx-{version}-{python}")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with FileLock(f"{folder}.lock"):
+        if not folder.is_dir():
+            with TemporaryDirectory(dir=folder.parent) as beside:
+                _install(version, Path(beside, "new"))
+                Path(beside, "new").rename(folder)
+    return folder
+
+
+def merged(runs):
+    """The runs of several versions as one, by version; a library is called after both.
+
+    Parameters
+    ----------
+    runs : dict of str to Run
+
+    Returns
+    -------
+    Run
+    """
+    first = next(iter(runs.values()))
+    parts = [_named(run, version) for version, run in runs.items()]
+    software = first.software | {"MaterialX": ", ".join(runs)}
+    found = {
+        name: tuple(dict.fromkeys(each for part in parts for each in getattr(part, name)))
+        for name in ("hosts", "notes", "errors", "documents", "missing")
+    }
+    listed = {
+        name: tuple(each for part in parts for each in getattr(part, name))
+        for name in ("results", "pictures", "curves")
+    }
+    return Run(version=first.version, software=software, **found, **listed)
+
+
+def _named(run, version):
+    """A run whose records carry the version of MaterialX in the names of their libraries."""
+
+    def named(records):
+        return tuple(
+            replace(each, library=f"{each.library}, MaterialX {version}") for each in records
+        )
+
+    return replace(
+        run,
+        results=named(run.results),
+        pictures=named(run.pictures),
+        curves=named(run.curves),
+        missing=tuple(f"{item}, MaterialX {version}" for item in run.missing),
+    )
+
+
+def _known(version):
+    if version not in VERSIONS:
+        raise ValueError(f"materialx must be one of {', '.join(VERSIONS)}; got {version!r}")
+
+
+def _install(version, folder):
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target"]
+    done = subprocess.run([*command, folder, f"materialx=={version}"], capture_output=True, text=True)
+    if done.returncode != 0:
+        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        raise NotRun(f"MaterialX {version}: pip cannot install it; {reason}")
+
+
+def _check(version, arguments, place):
+    """The run of one version, in a process of its own."""
+    paths = [str(environment(version)), str(Path(__file__).resolve().parents[1])]
+    if os.environ.get("PYTHONPATH"):
+        paths.append(os.environ["PYTHONPATH"])
+    done = subprocess.run(
+        [sys.executable, "-m", "mxeon", "check", *arguments, "--report", str(place)],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE if not sys.stderr.isatty() else None,
+        text=True,
+    )
+    if done.returncode not in (0, 1, 3):
+        reason = (done.stderr or "see above").strip().splitlines()[-1]
+        raise ValueError(f"MaterialX {version}: {reason.removeprefix('mxeon: ')}")
