@@ -3,7 +3,10 @@
 
 import math
 import re
+from base64 import b64encode
 from dataclasses import dataclass
+from hashlib import sha256
+from importlib.resources import files
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -16,6 +19,8 @@ from mxeon.verdict import summarize
 
 # Hosts in plots, in order: matplotlib's marker, and the character that looks like it.
 MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
+# Materials whose pictures are in the page, a megabyte or so each; those of others lie beside it.
+SHOWN_MATERIALS = 60
 # How each verdict looks: its CSS class and its mark, for those who do not see the colour.
 LOOKS = {PASSED: ("passed", "✓"), FAILED: ("failed", "✗"), NOT_RUN: ("not-run", "–")}
 
@@ -80,6 +85,13 @@ def number(value, digits=3):
     return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
 
 
+def nearest(distances, count=5):
+    """The nearest models of a classification: title, distance, and its share of the largest shown."""
+    found = sorted(distances.items(), key=lambda pair: pair[1])[:count]
+    largest = max((distance for _, distance in found), default=0.0) or 1.0
+    return [(title, distance, distance / largest) for title, distance in found]
+
+
 def vector(values):
     """One or more numbers as text.
 
@@ -124,15 +136,12 @@ def reasons(results):
 
 
 def materials(pictures):
-    """Mapping of (document, element) to mappings of scene to panels for the page."""
+    """Mapping of (document, element) to mappings of scene to its Pictures."""
     found = {}
     for picture in pictures:
         scenes = found.setdefault((picture.document, picture.element), {})
         scenes.setdefault(picture.scene, []).append(picture)
-    return {
-        name: {scene: panels(members) for scene, members in scenes.items()}
-        for name, scenes in found.items()
-    }
+    return found
 
 
 def panels(pictures):
@@ -142,18 +151,20 @@ def panels(pictures):
     if references:
         found.append(_panel("reference", "reference", "float64", srgb_encoded(references[0])))
     for one in pictures:
-        found.append(_panel("image", one.host, one.library, srgb_encoded(one.image)))
+        place = {"host": one.host, "library": one.library}
+        found.append(_panel("image", one.host, one.library, srgb_encoded(one.image), **place))
         if one.reference is not None:
             apart = difference(one.image, one.reference)
             scale = difference_scale(apart)
             note = f"{one.host}, max {number(apart.max(), 2)}"
             pixels = difference_pixels(apart, scale)
-            found.append(_panel("difference", "difference", note, pixels) | {"scale": scale})
+            found.append(_panel("difference", "difference", note, pixels, scale=scale, **place))
     return found
 
 
-def _panel(kind, title, note, pixels):
-    return {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
+def _panel(kind, title, note, pixels, **more):
+    common = {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
+    return {"host": "", "library": ""} | common | more
 
 
 def plots(curves):
@@ -176,16 +187,25 @@ def _plot(curves, marks, prefix):
     return {"curve": curves[0], "svg": Markup(svg), "legend": legend}
 
 
-def render(run):
+def render(run, file_of):
     """The page for `run`, an `mxeon.results.Run`.
 
-    Returns
-    -------
+    Parameters
+    ----------
+    run : mxeon.results.Run
+    file_of : callable (Picture) -> str
+        The file beside the page that holds a picture, for those that the page does not show.
+
+    Yields
+    ------
     str
-        HTML that loads nothing and runs nothing. All that comes from documents, shaders and
-        hosts is escaped.
+        HTML that loads nothing and runs nothing but its own script, without which it shows all.
+        All that comes from documents, shaders and hosts is escaped. Pieces of the text: a picture
+        is read when its turn has come.
     """
     places = checks_by_place(run.results)
+    found = list(materials(run.pictures).items())
+    script = files("mxeon").joinpath("templates/report.js").read_text(encoding="utf-8")
     environment = Environment(
         loader=PackageLoader("mxeon"),
         autoescape=True,
@@ -194,16 +214,22 @@ def render(run):
         lstrip_blocks=True,
     )
     environment.filters |= {"number": number, "vector": vector}
-    environment.filters |= {"share": share, "look": LOOKS.__getitem__}
-    return environment.get_template("report.html.jinja").render(
+    environment.filters |= {"share": share, "look": LOOKS.__getitem__, "nearest": nearest}
+    return environment.get_template("report.html.jinja").generate(
         run=run,
-        summary=summarize(run.results),
+        summary=summarize(run.results, run.missing),
+        script=Markup(script),
+        script_hash=b64encode(sha256(script.encode()).digest()).decode(),
         places=places,
         matrix=matrix(places),
         identities={identity.name: identity for identity in run.hosts},
         reasons=reasons(run.results),
-        materials=materials(run.pictures),
+        shown=found[:SHOWN_MATERIALS],
+        listed=found[SHOWN_MATERIALS:],
+        panels=panels,
+        file_of=file_of,
         gradient=Markup(difference_gradient()),
         plots=plots(run.curves),
+        verdicts=tuple(LOOKS),
         FAILED=FAILED,
     )

@@ -11,7 +11,7 @@ from pathlib import Path
 from mxeon.junit import to_junit
 from mxeon.pictures import difference, write_exr, write_png
 from mxeon.verdict import summarize
-from mxeon.writing import write_text
+from mxeon.writing import replacing, write_text
 
 JSON_FORMAT = 1
 
@@ -36,6 +36,7 @@ def to_json(run):
         - format: this layout's number, raised when a key changes or goes.
         - verdict: "passed", "failed" or "not run"; counts: the number of checks with each.
         - sentence: the same in words.
+        - missing: texts, the items that an interrupted run has not done.
         - version: of mxeon; software: name to version; documents: paths; notes: texts.
         - hosts: objects of name, version, device.
         - results: objects with the fields of `mxeon.results.Result`; control is null or an
@@ -44,13 +45,14 @@ def to_json(run):
           beside the JSON file; largest_difference from the reference, or null without one.
         - curves: objects with the fields of `mxeon.results.Curve`.
     """
-    summary = summarize(run.results)
+    summary = summarize(run.results, run.missing)
     hosts = [vars(identity) for identity in run.hosts]
     data = {
         "format": JSON_FORMAT,
         "verdict": summary.verdict,
         "counts": summary.counts,
         "sentence": summary.sentence,
+        "missing": run.missing,
         "version": run.version,
         "software": run.software,
         "documents": [str(path) for path in run.documents],
@@ -126,12 +128,19 @@ def write(run, folder):
         path = folder / "pictures" / stem
         write_exr(f"{path}.exr", picture.image, picture.metadata)
         write_png(f"{path}.png", picture.image, picture.metadata)
-    write_text(folder / "report.html", to_html(run))
+    with replacing(folder / "report.html") as beside, open(beside, "w", encoding="utf-8") as page:
+        for text in html(run):
+            page.write(text)
     return folder / "report.html"
 
 
-def to_html(run):
+def html(run):
     """A run as one self-contained HTML page, for a reader.
+
+    Yields
+    ------
+    str
+        The page's text piece by piece, so that no more than a few pictures are in memory.
 
     Raises
     ------
@@ -145,7 +154,8 @@ def to_html(run):
             remedy = "pip install 'mxeon[report]'"
             raise ImportError(f"report.html needs {error.name}: {remedy}") from error
         raise
-    return render(run)
+    files = {id(each): stem for each, stem in zip(run.pictures, _stems(run.pictures), strict=True)}
+    return render(run, lambda picture: f"pictures/{files[id(picture)]}.png")
 
 
 def _stems(pictures):

@@ -134,7 +134,7 @@ class Item:
     Attributes
     ----------
     check : str
-        Key of a row of `mxeon.conformance.checks.CHECKS`, or "source", "curve" or "picture".
+        Key of a row of `mxeon.conformance.checks.CHECKS`, or "host", "source", "curve" or "picture".
     subject : str
         Title of a node, path of a document, or "shader twins".
     host, library : str

@@ -2,7 +2,7 @@
 """The verdict on a whole run, in a word, in numbers and in a sentence."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mxeon.results import FAILED, NOT_RUN, PASSED
 
@@ -14,7 +14,8 @@ class Summary:
     Attributes
     ----------
     verdict : str
-        FAILED if any check failed, else NOT_RUN if any or all did not run, else PASSED.
+        FAILED if any check failed, else NOT_RUN if any or all did not run or the run is not
+        finished, else PASSED.
     counts : dict of str to int
         How many checks ended as PASSED, FAILED, NOT_RUN.
     sentence : str
@@ -26,14 +27,32 @@ class Summary:
     sentence: str
 
 
-def summarize(results):
+def summarize(results, missing=()):
     """Verdict on `results`, a sequence of `mxeon.results.Result`, as a Summary.
+
+    Parameters
+    ----------
+    results : sequence of Result
+    missing : sequence of str
+        Items of an interrupted run that are not done yet.
 
     Examples
     --------
     >>> summarize(()).sentence
     'No check ran.'
     """
+    summary = _summarize(results)
+    if not missing:
+        return summary
+    verdict = FAILED if summary.verdict == FAILED else NOT_RUN
+    return replace(
+        summary,
+        verdict=verdict,
+        sentence=f"{summary.sentence} The run is not finished: {len(missing)} items are missing.",
+    )
+
+
+def _summarize(results):
     tally = Counter(result.verdict for result in results)
     counts = {verdict: tally[verdict] for verdict in (PASSED, FAILED, NOT_RUN)}
     total = len(results)

@@ -32,7 +32,8 @@ def replacing(path):
         yield beside
         os.replace(beside, path)
     except OSError as error:
-        error.filename = error.filename or str(path)  # writing, as on a full disk, names none
+        if error.errno:  # what the system says of a full disk names no file
+            error.filename = error.filename or str(path)
         raise
     finally:
         beside.unlink(missing_ok=True)

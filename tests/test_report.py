@@ -5,7 +5,9 @@ import json
 import math
 import re
 import sys
+from base64 import b64encode
 from dataclasses import replace
+from hashlib import sha256
 from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
@@ -17,7 +19,7 @@ import pytest
 from mxeon.hosts import Identity
 from mxeon.pictures import difference_scale, srgb_encoded
 from mxeon.plots import SHOWN_SIZE, difference_pixels
-from mxeon.report import to_html, to_json, to_junit, write
+from mxeon.report import html, to_json, to_junit, write
 from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Curve, Picture, Result, Run
 from mxeon.scene import sphere
 from mxeon.verdict import summarize
@@ -107,9 +109,13 @@ class Page(HTMLParser):
         return [value for name, value in self.attributes if name in names]
 
 
+def page_of(run):
+    return "".join(html(run))
+
+
 @pytest.fixture(scope="module")
 def page(run):
-    return Page(to_html(run))
+    return Page(page_of(run))
 
 
 @pytest.fixture(scope="module")
@@ -143,8 +149,12 @@ def test_the_sentence_counts_and_says_where():
     assert found.counts == {PASSED: 1, FAILED: 1, NOT_RUN: 0}
 
 
-def test_page_runs_nothing_and_escapes_what_it_was_given(page):
-    assert not {"script", "iframe", "object", "link", "base", "form"} & set(page.tags)
+def test_page_runs_its_own_script_alone_and_escapes_what_it_was_given(page, run):
+    assert not {"iframe", "object", "link", "base", "form"} & set(page.tags)
+    assert page.tags.count("script") == 1
+    (script,) = re.findall(r"<script>(.*?)</script>", page_of(run), re.DOTALL)
+    (allowed,) = re.findall(r"script-src 'sha256-(.*?)'", page_of(run))
+    assert allowed == b64encode(sha256(script.encode()).digest()).decode()
     assert not [name for name, _ in page.attributes if name.startswith("on")]
     assert page.text.count("<script>alert(") > 8
     assert "49" not in re.findall(r"&(\d+)\$", page.text)
@@ -153,7 +163,7 @@ def test_page_runs_nothing_and_escapes_what_it_was_given(page):
 def test_page_loads_nothing(page, run):
     assert all(value.startswith("data:image/png;") for value in page.values("src"))
     assert all(value.startswith("#") for value in page.values("href", "xlink:href"))
-    assert not re.findall(r"url\((?!#)|@import", to_html(run))
+    assert not re.findall(r"url\((?!#)|@import", page_of(run))
 
 
 def test_page_has_unique_identifiers_and_no_loose_link(page):
@@ -191,21 +201,46 @@ def test_page_gives_the_verdict_before_anything_else(page):
     assert places == sorted(places)
 
 
+def test_page_shows_what_a_classification_was_nearest_to(run):
+    distances = {f"model {number}": 0.1 * number for number in range(9)}
+    text = Page(page_of(replace(run, results=(replace(FAILURE, distances=distances),)))).text
+    assert "model 4" in text and "model 5" not in text
+
+
+def test_an_unfinished_run_says_what_is_missing(run):
+    started = replace(run, results=(made_result(PASSED),), missing=("gl, value, clay, eonlib",))
+    text = Page(page_of(started)).text
+    assert "The run is not finished: 1 items are missing." in text
+    assert "gl, value, clay, eonlib" in text
+    assert json.loads(to_json(started))["missing"] == ["gl, value, clay, eonlib"]
+    assert json.loads(to_json(started))["verdict"] == NOT_RUN
+
+
+def test_pictures_beyond_the_first_materials_are_links_to_their_files(run, tmp_path, monkeypatch):
+    monkeypatch.setattr("mxeon.page.SHOWN_MATERIALS", 1)
+    many = replace(run, pictures=tuple(made_picture(name) for name in ("clay", "slate", "dust")))
+    write(many, tmp_path)
+    page = Page((tmp_path / "report.html").read_text(encoding="utf-8"))
+    links = [link for link in page.values("href") if not link.startswith("#")]
+    assert len(links) == 2 and all((tmp_path / link).is_file() for link in links)
+    assert "Further materials" in page.text
+
+
 def test_page_of_an_empty_run_says_that_nothing_ran():
     empty = Run(version="0.1.0", software={}, hosts=(), results=())
-    assert "No check ran." in Page(to_html(empty)).text
+    assert "No check ran." in Page(page_of(empty)).text
 
 
 def test_page_shows_a_failure_without_a_figure(run):
     crash = made_result(FAILED, figure=None, tolerance=None, diagnosis="no image came back")
-    text = Page(to_html(replace(run, results=(crash,), pictures=(), curves=()))).text
+    text = Page(page_of(replace(run, results=(crash,), pictures=(), curves=()))).text
     assert text.count("no image came back") == 2
 
 
 def test_page_shows_large_pictures_small(run):
     size = 2 * SHOWN_SIZE
     large = made_picture("clay", image=np.zeros((size, size, 3)), reference=None)
-    small = to_html(replace(run, pictures=(large,), curves=()))
+    small = page_of(replace(run, pictures=(large,), curves=()))
     assert len(small) < 60_000
 
 
@@ -293,7 +328,7 @@ def test_files_are_replaced_whole_and_nothing_else_stays_behind(run, folder):
     before = sorted(folder.rglob("*"))
     write(run, folder)
     assert sorted(folder.rglob("*")) == before
-    assert (folder / "report.html").read_text(encoding="utf-8") == to_html(run)
+    assert (folder / "report.html").read_text(encoding="utf-8") == page_of(run)
 
 
 def test_a_folder_that_cannot_be_written_is_an_error(run, tmp_path):

@@ -1,16 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a host computes instead: the known model, or known defect, that its values are nearest to."""
 
+from dataclasses import dataclass, field
+
 import numpy as np
 
 from mxeon import reference
 
 
-def nearest_value(probe):
-    """The model nearest to the probe's values, in words.
+@dataclass(frozen=True)
+class Diagnosis:
+    """What values are nearest to.
 
-    Its root-mean-square distance is given in units of pi f cos, with that of the next one.
+    Attributes
+    ----------
+    text : str
+        The nearest model and the next one, with their distances.
+    distances : dict of str to float
+        Root-mean-square distance to every model and defect, by title, in units of pi f cos.
     """
+
+    text: str = ""
+    distances: dict = field(default_factory=dict)
+
+
+def nearest_value(probe):
+    """The model nearest to the probe's values, as a Diagnosis."""
     batches = [_clipped(batch) for batch in probe.few]
     rows = {row.brdf: row for row in reference.DEFECTS + reference.MODELS}
     return _nearest(
@@ -21,7 +36,7 @@ def nearest_value(probe):
 
 
 def nearest_albedo(probe):
-    """The model whose directional albedo is nearest to the probe's environment branch, in words."""
+    """The model whose directional albedo is nearest to the probe's environment branch."""
     batches = [_clipped(batch) for batch in probe.cosines]
     rows = [row for row in reference.MODELS + reference.DEFECTS if row.albedo_dir]
     return _nearest(
@@ -44,12 +59,14 @@ def _clipped(batch):
 def _nearest(rows, measured, expected):
     measured = np.concatenate(measured)
     if not np.isfinite(measured).all():
-        return "values that are not finite: no model is near"
+        return Diagnosis("values that are not finite: no model is near")
     distances = {
-        row.title: np.sqrt(np.mean((measured - np.concatenate(expected(row))) ** 2)) for row in rows
+        row.title: float(np.sqrt(np.mean((measured - np.concatenate(expected(row))) ** 2)))
+        for row in rows
     }
     first, second = sorted(distances, key=distances.get)[:2]
-    return (
+    return Diagnosis(
         f"nearest known model: {first} (rms {distances[first]:.2g}), "
-        f"then {second} ({distances[second]:.2g})"
+        f"then {second} ({distances[second]:.2g})",
+        distances,
     )

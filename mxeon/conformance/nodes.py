@@ -4,7 +4,7 @@
 import numpy as np
 
 from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.diagnosis import nearest_albedo, nearest_value
+from mxeon.conformance.diagnosis import Diagnosis, nearest_albedo, nearest_value
 from mxeon.conformance.measures import integrated
 from mxeon.conformance.probes import PROBES, PairProbe
 from mxeon.conformance.subjects import FLAG
@@ -55,7 +55,7 @@ def judge_twins(host, library, checks=CHECKS):
     place = {"subject": "shader twins", "host": host.name, "library": library}
     kind = PROBES[host.name].kind
     return tuple(
-        _judge(check, host.call, tolerance, place, lambda check, probe: "")
+        _judge(check, host.call, tolerance, place, lambda check, probe: Diagnosis())
         for check in checks
         if not check.models
         for tolerance in [check.tolerances.get(host.name, check.tolerances[kind])]
@@ -96,6 +96,7 @@ def _judge(check, probe, tolerance, place, diagnose):
     except ShaderError as error:
         return Result(check.key, check.claim, **place, verdict=FAILED, diagnosis=str(error))
     right, caught = found.figure <= tolerance.limit, wrong.figure > tolerance.limit
+    diagnosis = Diagnosis() if right else diagnose(check, probe)
     return Result(
         check.key,
         check.claim,
@@ -106,7 +107,8 @@ def _judge(check, probe, tolerance, place, diagnose):
         tolerance=tolerance.limit,
         derivation=tolerance.derivation,
         worst=found.worst,
-        diagnosis="" if right else diagnose(check, probe),
+        diagnosis=diagnosis.text,
+        distances=diagnosis.distances,
         control=Control(check.variant, wrong.figure, caught),
     )
 

@@ -70,7 +70,7 @@ class Host:
     def __init__(self, limit=300.0):
         if sync_api is None:
             raise NotRun("webgl: Playwright is not installed; pip install 'mxeon[webgl]'")
-        self._program = _program()
+        self._program = program()
         self._limit = 1000.0 * limit
         self._page = None
         self._stack = ExitStack()
@@ -163,7 +163,7 @@ class Host:
         self._stack.close()
 
 
-def _program():
+def program():
     """The browser to drive."""
     named = os.environ.get(PROGRAM)
     found = shutil.which(named or "chromium")

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page gains with a script: filters, and the reference drawn over a picture by a slider.
+"use strict";
+
+document.documentElement.classList.add("scripted");
+
+const filters = [...document.querySelectorAll(".filters select")];
+
+function filter() {
+  const chosen = filters.filter((each) => each.value).map((each) => [each.name, each.value]);
+  for (const row of document.querySelectorAll("[data-host]")) {
+    row.hidden = chosen.some(([name, value]) => name in row.dataset && row.dataset[name] !== value);
+  }
+  for (const group of document.querySelectorAll(".group")) {
+    group.hidden = ![...group.querySelectorAll("[data-host]")].some((row) => !row.hidden);
+  }
+}
+
+for (const each of filters) each.addEventListener("change", filter);
+
+for (const panels of document.querySelectorAll(".panels.referenced")) {
+  const reference = panels.querySelector(".reference img");
+  for (const figure of panels.querySelectorAll(".image")) {
+    const over = reference.cloneNode();
+    const slider = document.createElement("input");
+    over.className = "over";
+    Object.assign(slider, { type: "range", min: 0, max: 100, value: 0 });
+    slider.setAttribute("aria-label", "how much of the reference lies over the picture");
+    slider.addEventListener("input", () => {
+      over.style.clipPath = `inset(0 ${100 - slider.value}% 0 0)`;
+    });
+    over.style.clipPath = "inset(0 100% 0 0)";
+    figure.querySelector(".frame").append(over);
+    figure.querySelector(".frame").after(slider);
+  }
+}
+
+function open() {
+  const target = document.getElementById(location.hash.slice(1));
+  if (target instanceof HTMLDetailsElement) target.open = true;
+}
+
+addEventListener("hashchange", open);
+open();
