@@ -13,6 +13,8 @@ from collections import Counter
 from pathlib import Path
 
 import mxeon
+from mxeon.permissions import LIMITS, Permissions
+from mxeon.screening import one_line, printable
 
 PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
@@ -23,7 +25,7 @@ class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one line."""
 
     def error(self, message):
-        self.exit(MISUSE, f"{self.prog}: {message}\n")
+        self.exit(MISUSE, f"{self.prog}: {one_line(message)}\n")
 
 
 def main(arguments=None):
@@ -58,12 +60,12 @@ def main(arguments=None):
 
 
 def _fail(status, error):
-    print(f"mxeon: {error}", file=sys.stderr)
+    print(f"mxeon: {one_line(error)}", file=sys.stderr)
     return status
 
 
 def _warn(message, *_, **__):
-    print(f"mxeon: warning: {message}", file=sys.stderr)
+    print(f"mxeon: warning: {one_line(message)}", file=sys.stderr)
 
 
 def _parser():
@@ -73,7 +75,7 @@ def _parser():
 
     check = _command(commands, "check", _check, "run the checks and compare pictures")
     check.add_argument("files", nargs="*", metavar="FILE", help="documents; none: the examples")
-    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles, or all; may be repeated")
+    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles, msl, mdl, wgsl, or all; may be repeated")
     check.add_argument("--library", action="append", help="eonlib (the default), stock; may be repeated")
     check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
     check.add_argument("--resume", action="store_true", help="go on with the interrupted run in DIR")
@@ -81,6 +83,7 @@ def _parser():
     check.add_argument("--materialx", nargs="+", metavar="VERSION", help="judge these versions of MaterialX, each in its own environment")
     check.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work")
     check.add_argument("--limit", type=float, default=300.0, metavar="SECONDS", help="for one item of work")
+    _permissions(check, runs=True)
     _json(check)
 
     generate = _command(commands, "generate", _generate, "write shader sources")
@@ -90,6 +93,7 @@ def _parser():
     generate.add_argument("--profile", help="cycles: osl for Blender's Cycles")
     generate.add_argument("--outputPath", metavar="DIR", required=True, help="where to write")
     _library(generate)
+    _permissions(generate)
     _json(generate)
 
     render = _command(commands, "render", _render, "make a picture of a material on a sphere")
@@ -101,6 +105,7 @@ def _parser():
     render.add_argument("--environment", metavar="IMAGE", help="a latitude-longitude image instead")
     render.add_argument("--size", type=int, default=512, help="width and height in pixels")
     _library(render)
+    _permissions(render, runs=True)
 
     library = _command(commands, "library", _show_library, "say where eonlib lies, for other hosts")
     library.add_argument("--folder", action="store_true", help="print the folder alone")
@@ -120,6 +125,11 @@ def _parser():
     make = _command(actions, "make", _report_make, "make the report of a run, finished or not")
     make.add_argument("report", metavar="DIR", help="the folder of the run")
     _json(make)
+
+    diff = _command(actions, "diff", _report_diff, "tell what is not the same in two reports")
+    diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
+    diff.add_argument("after", metavar="B")
+    _json(diff)
 
     kit = _command(commands, "kit", None, "judge a renderer by the pictures it makes")
     actions = kit.add_subparsers(required=True, metavar="ACTION")
@@ -144,12 +154,29 @@ def _library(command):
     command.add_argument("--library", default="eonlib", help="eonlib (the default) or stock")
 
 
+def _permissions(command, runs=False):
+    """Options for what documents may do; code can only be forbidden where it would run."""
+    group = command.add_argument_group("documents from strangers")
+    group.add_argument("--allowOutside", action="store_true", help="let documents name files outside their folders and the libraries")
+    if runs:
+        group.add_argument("--allowCode", action="store_true", help="run the shader code that documents bring along")
+    for name, meaning in LIMITS.items():
+        limit = getattr(Permissions, name)
+        group.add_argument(f"--max{name.capitalize()}", type=int, default=limit, metavar="N", help=f"{meaning}; {limit}")
+
+
+def _permitted(options):
+    """What documents may do, as the options say."""
+    limits = {name: getattr(options, f"max{name.capitalize()}") for name in LIMITS}
+    return Permissions(options.allowOutside, getattr(options, "allowCode", True), **limits)
+
+
 def _json(command):
     command.add_argument("--json", action="store_true", help="print JSON for machines")
 
 
 def _check(options):
-    from mxeon.conformance import PROBES, check
+    from mxeon.conformance import JUDGED, check
 
     if options.resume and not options.report:
         raise ValueError("--resume needs --report DIR, the folder of the run to go on with; got none")
@@ -158,13 +185,14 @@ def _check(options):
     hosts = options.host or ("gl",)
     run = check(
         options.files,
-        PROBES if "all" in hosts else hosts,
+        JUDGED if "all" in hosts else hosts,
         options.library or ("eonlib",),
         workers=options.workers,
         limit=options.limit,
         folder=options.report,
         resume=options.resume,
         scheduler=options.scheduler,
+        permissions=_permitted(options),
         progress=_progress("mxeon check"),
     )
     return _judged(run, options)
@@ -178,8 +206,11 @@ def _check_versions(options):
     arguments = [*options.files, "--workers", str(options.workers), "--limit", str(options.limit)]
     for word in ("host", "library"):
         arguments += [each for name in getattr(options, word) or () for each in (f"--{word}", name)]
-    arguments += ["--resume"] if options.resume else []
     arguments += ["--scheduler", options.scheduler] if options.scheduler else []
+    flags = ("resume", "allowOutside", "allowCode")
+    arguments += [f"--{flag}" for flag in flags if getattr(options, flag)]
+    limits = [f"max{name.capitalize()}" for name in LIMITS]
+    arguments += [f"--{name}={getattr(options, name)}" for name in limits]
     with TemporaryDirectory(prefix="mxeon-versions-") as temporary:
         run = versions.check(options.materialx, arguments, options.report or temporary)
         return _judged(run, options)
@@ -189,6 +220,17 @@ def _report_make(options):
     from mxeon.conformance import read_run
 
     return _judged(read_run(options.report), options)
+
+
+def _report_diff(options):
+    from mxeon.comparison import WORSE, compare, read_results
+
+    changes = compare(read_results(options.before), read_results(options.after))
+    if options.json:
+        print(json.dumps([vars(change) for change in changes], indent=1))
+    else:
+        print("\n".join(map(str, changes)) or "no difference")
+    return FAILED if any(change.kind == WORSE for change in changes) else PASSED
 
 
 def _kit_export(options):
@@ -219,15 +261,16 @@ def _judged(run, options):
     from mxeon.verdict import summarize
 
     page = report.write(run, options.report) if options.report else None
+    summary = summarize(run.results, run.missing)
     if options.json:
         print(report.to_json(run))
     else:
-        _print_run(run, summarize(run.results), page)
+        _print_run(run, summary, page)
     for error in run.errors:
         _fail(MISUSE, error)
     if run.errors:
         return MISUSE
-    return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[summarize(run.results).verdict]
+    return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[summary.verdict]
 
 
 def _print_run(run, summary, page):
@@ -284,6 +327,7 @@ def _sources(file, target, options):
     from mxeon.generation import generate
 
     known = {"library": options.library, "profile": options.profile}
+    known["permissions"] = _permitted(options)
     return {
         str(Path(options.outputPath) / _file_name(file.stem, shader, stage)): text
         for shader in generate(file, target, options.element, **known)
@@ -294,7 +338,8 @@ def _sources(file, target, options):
 def _file_name(stem, shader, stage):
     """As generateshader calls them, with the document in front: its elements may share names."""
     ending = {"pixel": ".frag", "vertex": ".vert"}[stage] if len(shader.stages) > 1 else ""
-    return f"{stem}.{shader.name}.{shader.target}{ending}"
+    plain = " ".join(printable(stem).split())
+    return f"{plain}.{shader.name}.{shader.target}{ending}"
 
 
 def _render(options):
@@ -316,6 +361,7 @@ def _render(options):
         library=options.library,
         profile=host.profile,
         lights=host.target == "glsl",
+        permissions=_permitted(options),
     )
     if len(found) > 1:
         known = ", ".join(shader.element for shader in found)

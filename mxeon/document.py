@@ -1,33 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
 """Material documents from files and text: reading them, and what is wrong with them.
 
-MaterialX accepts much that no shader can be made from, and ends the process on a nodegraph that
-contains itself. Everything of that kind is refused here, in one line, before generation.
+MaterialX accepts much that no shader can be made from, reads every file that a document names, and
+copies its words into shaders. What should not be is refused here, in one line, before generation:
+the text before MaterialX reads it (`screening`), the document after.
 """
 
 import math
 import os
 from pathlib import Path
-from textwrap import shorten
 
 import MaterialX as mx
 
+from mxeon.expansion import check_inheritance
 from mxeon.library import load_library
+from mxeon.permissions import DEFAULT
+from mxeon.screening import DocumentError, Screening, check_limit
+from mxeon.trust import TEXTUAL, check_code, check_file, check_inside, check_words, folder
+
+__all__ = ["DocumentError", "label", "read_document"]
 
 NUMERIC = ("float", "color3", "color4", "vector2", "vector3", "vector4", "matrix33", "matrix44")
 TEXT = "document text"
-LONGEST = 1000  # characters of a message, which may quote the document
+ERRORS = (mx.Exception, LookupError)  # what MaterialX raises
 DIFFUSE_NODES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
-class DocumentError(ValueError):
-    """A document that no shader can be made from; names the place, the rule and the value."""
-
-    def __init__(self, message):
-        super().__init__(shorten(message, LONGEST))
-
-
-def read_document(source, library="eonlib", profile=None):
+def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
     """A checked MaterialX document with its data library attached.
 
     Parameters
@@ -37,6 +36,8 @@ def read_document(source, library="eonlib", profile=None):
         XIncludes and relative file names are resolved from the folder of the file.
     library, profile : str
         See `mxeon.library.load_library`.
+    permissions : Permissions
+        What the document may do, and how large it may be.
 
     Returns
     -------
@@ -46,8 +47,8 @@ def read_document(source, library="eonlib", profile=None):
     ------
     DocumentError
         If it cannot be read, is not MaterialX or breaks its rules, comes from a later version,
-        contains a number that is not finite or out of range, names a file that does not exist, or
-        contains itself.
+        contains a number that is not finite or out of range, names a file that does not exist,
+        includes itself, or does what it may not.
     """
     data = load_library(library, profile)
     document = mx.createDocument()
@@ -55,16 +56,62 @@ def read_document(source, library="eonlib", profile=None):
         document.copyContentFrom(source)
         document.setSourceUri(source.getSourceUri())
     elif str(source).lstrip().startswith("<"):
-        _parse(mx.readFromXmlString, document, str(source), TEXT)
-    elif os.path.isfile(source):
-        _parse(mx.readFromXmlFile, document, str(source), str(source))
-        document.setSourceUri(str(source))
+        _Reader(permissions, Path.cwd()).parse(document, str(source).encode(errors="replace"), TEXT)
+    elif os.path.isfile(source):  # a pipe or a device may have no end
+        _Reader(permissions, Path(source).resolve().parent).file(document, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
-    mx.flattenFilenames(document, mx.FileSearchPath(str(_folder(document))))
+    mx.flattenFilenames(document, mx.FileSearchPath(str(folder(document))))
     document.setDataLibrary(data)
-    _check(document)
+    _check(document, permissions)
     return document
+
+
+class _Reader:
+    """Reads a document and what it includes, of which MaterialX sees only what was judged.
+
+    Parameters
+    ----------
+    permissions : Permissions
+    home : Path
+        The folder of the document.
+    """
+
+    def __init__(self, permissions, home):
+        self._permissions, self._home = permissions, home
+        self._screening = Screening(permissions)
+        self._open = []  # files that are being read, each included by the one before
+
+    def file(self, document, name):
+        """Read a file into a document."""
+        text = self._screening.read(name)
+        self._open.append(os.path.realpath(name))
+        self.parse(document, text, name)
+        self._open.pop()
+        document.setSourceUri(name)
+
+    def parse(self, document, text, place):
+        """Read bytes into a document."""
+        self._screening.judge(text, place)
+        options = mx.XmlReadOptions()
+        options.readXIncludeFunction = lambda part, name, *_: self._include(part, name.asString(), place)
+        try:
+            mx.readFromXmlString(document, text, mx.FileSearchPath(), options)
+        except (*ERRORS, mx.ExceptionParseError) as error:
+            reason = str(error).strip().splitlines()[0]
+            raise DocumentError(f"{place}: must be a MaterialX document; {reason}") from None
+
+    def _include(self, document, name, place):
+        """Read what the document at `place` includes, which is called by its real path."""
+        base = self._home if place == TEXT else Path(place).parent
+        path, include = os.path.realpath(base / name), f"{place}: include"
+        check_inside(path, self._home, self._permissions, include)
+        if path in self._open:
+            raise DocumentError(f"{include} must not lead back to the same document; got {name}")
+        check_limit(self._permissions, "includes", len(self._open), f"{include} must be", "in a row")
+        if not os.path.isfile(path):
+            raise DocumentError(f"{include} must name a file that exists; got {name}")
+        self.file(document, path)
 
 
 def label(document):
@@ -72,21 +119,7 @@ def label(document):
     return document.getSourceUri() or TEXT
 
 
-def _folder(document):
-    """Where relative file names start: at the document's file, or the working folder for text."""
-    file = document.getSourceUri()
-    return Path(file).resolve().parent if file else Path.cwd()
-
-
-def _parse(read, document, source, place):
-    try:
-        read(document, source)
-    except (mx.ExceptionParseError, mx.ExceptionFileMissing, LookupError) as error:
-        reason = str(error).strip().splitlines()[0]
-        raise DocumentError(f"{place}: must be a MaterialX document; {reason}") from None
-
-
-def _check(document):
+def _check(document, permissions):
     """Refuse what MaterialX lets through. The order matters: a later check relies on the former."""
     version, known = document.getVersionIntegers(), mx.getVersionIntegers()[:2]
     if tuple(version) > tuple(known):
@@ -94,14 +127,15 @@ def _check(document):
             f"{label(document)}: version must be at most {known[0]}.{known[1]}; "
             f"got {version[0]}.{version[1]}"
         )
-    _check_recursion(document)
+    check_inheritance(document, permissions, label(document))
+    check_code(document, permissions, label(document))
     for element in document.traverseTree():
         if element.isA(mx.ValueElement) and element.getValueString():
-            _check_value(element)
+            _check_value(element, permissions)
     _check_validity(document)
 
 
-def _check_value(element):
+def _check_value(element, permissions):
     place = f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
     kind, text = element.getType(), element.getValueString()
     if kind in NUMERIC:
@@ -110,14 +144,17 @@ def _check_value(element):
         low, high = _range(element)
         if not all(low <= float(value) <= high for value in text.split(",")):
             raise DocumentError(f"{place} must lie in [{low:g}, {high:.6g}]; got {text}")
-    elif kind == "filename" and "<" not in text and not os.path.isfile(text):
-        raise DocumentError(f"{place} must name a file that exists; got {text}")
+    elif kind == "filename":
+        check_file(element, place, permissions)
+    elif kind in TEXTUAL:
+        check_words(element, place)
 
 
 def _range(element):
     """Range of an input of a rough diffuse node; any number elsewhere."""
     node = element.getParent()
-    if node.getCategory() not in DIFFUSE_NODES or not element.isA(mx.Input):
+    lobe = node.isA(mx.Node) and node.getCategory() in DIFFUSE_NODES
+    if not lobe or not element.isA(mx.Input):
         return -math.inf, math.inf
     if element.getName() in ("weight", "color"):
         return 0.0, 1.0
@@ -128,29 +165,11 @@ def _range(element):
     return 0.0, math.pi / 2.0 if qualitative else 1.0
 
 
-def _check_recursion(document):
-    """Refuse a nodegraph that contains the node it implements, at any depth."""
-    inside = {}
-    for graph in document.getChildren():
-        definition = graph.getNodeDef() if graph.isA(mx.NodeGraph) else None
-        if definition:
-            parts = filter(None, (node.getNodeDef() for node in graph.getNodes()))
-            inside.setdefault(definition.getName(), set()).update(part.getName() for part in parts)
-    for name in inside:
-        seen, waiting = set(), [name]
-        while waiting:
-            parts = inside.get(waiting.pop(), set()) - seen
-            if name in parts:
-                raise DocumentError(f'{label(document)}: nodedef "{name}" must not contain itself')
-            seen |= parts
-            waiting.extend(parts)
-
-
 def _check_validity(document):
     """Refuse what breaks MaterialX's own rules: it would fall back to a default in silence."""
     try:
         valid, message = document.validate()
-    except (mx.Exception, LookupError) as error:
+    except ERRORS as error:
         valid, message = False, str(error)
     if not valid:
         reason = message.strip().splitlines()[0]

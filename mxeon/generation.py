@@ -14,7 +14,10 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.document import DocumentError, label, read_document
+from mxeon.expansion import check_expansion
 from mxeon.library import load_library
+from mxeon.permissions import DEFAULT
+from mxeon.trust import foreign_code
 
 # Target -> module of MaterialX and class in it. MaterialX has slang since 1.39.5, wgsl since 1.39.4.
 CLASSES = {
@@ -72,6 +75,10 @@ class ApproximationWarning(UserWarning):
         self.approximation = approximation
 
 
+class CodeWarning(UserWarning):
+    """Shaders that hold code which their document brings along."""
+
+
 @dataclass(frozen=True)
 class Input:
     """A public input of a generated shader.
@@ -121,7 +128,16 @@ class Shader:
     document: mx.Document = field(repr=False, compare=False)
 
 
-def generate(document, target, element=None, *, library="eonlib", profile=None, lights=False):
+def generate(
+    document,
+    target,
+    element=None,
+    *,
+    library="eonlib",
+    profile=None,
+    lights=False,
+    permissions=DEFAULT,
+):
     """The shaders of a document, one for each renderable element.
 
     Parameters
@@ -138,6 +154,8 @@ def generate(document, target, element=None, *, library="eonlib", profile=None, 
         "cycles" makes osl for Blender's Cycles.
     lights : bool
         Whether a rasterised shader gets MaterialX's directional light, as light type 1.
+    permissions : Permissions
+        What the document may do, and how large it may be.
 
     Returns
     -------
@@ -154,6 +172,8 @@ def generate(document, target, element=None, *, library="eonlib", profile=None, 
     -----
     ApproximationWarning
         If the profile cannot express a model that the document asks for.
+    CodeWarning
+        If the document brings shader code of its own, which has to be permitted.
 
     Examples
     --------
@@ -171,14 +191,16 @@ def generate(document, target, element=None, *, library="eonlib", profile=None, 
     """
     if target not in GENERATORS:
         raise ValueError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
-    document = read_document(document, library, profile)
-    generator, context = _generator(document, target, lights, _systems(target, library, profile))
+    document = read_document(document, library, profile, permissions)
     found = renderable(document)
-    names = _names(found)
+    chosen, names = _chosen(found, element), _names(found)
+    check_expansion(document, chosen, permissions, label(document))
+    generator, context = _generator(document, target, lights, _systems(target, library, profile))
     shaders = tuple(
         _generate(document, each, names[each.getNamePath()], target, generator, context)
-        for each in _chosen(found, element)
+        for each in chosen
     )
+    _warn_of_code(document)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
     return shaders
@@ -294,6 +316,12 @@ def _plain(value):
     """A MaterialX value as a number, a string or a tuple of numbers."""
     data = value.getData() if value else None
     return data if isinstance(data, (type(None), bool, int, float, str)) else tuple(data)
+
+
+def _warn_of_code(document):
+    names = ", ".join(each.getName() for each in foreign_code(document))
+    if names:
+        warnings.warn(CodeWarning(f"{label(document)}: brings code of its own: {names}"), stacklevel=3)
 
 
 def _warn_of_approximation(shaders):

@@ -15,10 +15,12 @@ from concurrent.futures import FIRST_COMPLETED, wait
 from dataclasses import dataclass
 from pathlib import Path
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import CONSTS, ProcessExpired, ProcessPool
 
 ATTEMPTS = 2
 START = 60.0  # seconds that a process may take before it begins to work
+# Seconds until the lock of a process that was killed while it took or gave is taken from it.
+CONSTS.channel_lock_timeout = 10.0
 LAST_LINES = 4  # of a worker's output, in the reason
 
 

@@ -15,6 +15,7 @@ from reliability.runs import done_twice, start, verdicts, wait_for_end, workers
 
 SEED = 1
 LIMIT = 600  # seconds for a run, whatever happens to it
+ENDED = (0, 1, 3)  # exit statuses of a run that came to its end
 VICTIMS = ("worker", "worker", "parent", "parent", "interrupt")
 
 
@@ -47,7 +48,7 @@ def measure(count=240, progress=iter):
 def _strike(folder, rng, usual, tally):
     """A run, struck until it ends undisturbed."""
     status, strikes = None, 0
-    while status != 0:
+    while status not in ENDED:
         process = start(folder)
         time.sleep(rng.uniform(0.0, usual))
         victim = rng.choice(VICTIMS)
@@ -56,7 +57,7 @@ def _strike(folder, rng, usual, tally):
             tally[f"struck_{victim}"] += 1
         status, errors = wait_for_end(process, LIMIT)
         tally["tracebacks"] += "Traceback" in errors
-        tally["resumed"] += status != 0
+        tally["resumed"] += status not in ENDED
 
 
 def _hit(process, victim, rng):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mxeon import reference
-from mxeon.conformance import check, items
+from mxeon.conformance import check, items, ledger
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import nearest_value
 from mxeon.conformance.nodes import judge_subject, judge_twins
@@ -17,7 +17,7 @@ from mxeon.conformance.probes import GRAZING, PAIRS, PairProbe, PictureProbe
 from mxeon.conformance.sources import check_sources
 from mxeon.conformance.subjects import SUBJECTS, Subject
 from mxeon.generation import TARGETS
-from mxeon.hosts import NotRun, ShaderError, open_host
+from mxeon.hosts import TEXT_ONLY, NotRun, ShaderError, open_host
 from mxeon.library import examples_folder
 from mxeon.results import FAILED, NOT_RUN, PASSED
 
@@ -177,7 +177,7 @@ def test_what_does_not_run_is_never_passed(error, verdict):
 
 
 def test_the_nearest_model_comes_with_the_next_one():
-    words = nearest_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib"))
+    words = nearest_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
     assert words.startswith("nearest known model: Fujii Oren-Nayar (FON) (rms ")
     assert ", then EON with rho^3 (0.0" in words
 
@@ -213,6 +213,15 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
     assert {(each.verdict, each.reason) for each in results} == {(NOT_RUN, "gl: nowhere")}
 
 
+@pytest.mark.parametrize("host", TEXT_ONLY)
+def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
+    run = check(EXAMPLES[:1], [host])
+    (result,) = [each for each in run.results if each.host == host]
+    assert result.verdict == NOT_RUN and result.reason.startswith(f"{host}: running it needs ")
+    texts = [each for each in run.results if each.subject.endswith(f", {host}")]
+    assert texts and {each.verdict for each in texts} == {PASSED}
+
+
 @pytest.mark.parametrize("word", ["host", "library"])
 def test_an_unknown_name_lists_the_known_ones(word):
     options = {"hosts": ["abacus"]} if word == "host" else {"libraries": ["abacus"]}
@@ -245,6 +254,19 @@ def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, 
         if (each.host, each.check, each.subject) == (host, key, subject)
     ]
     assert result.verdict == FAILED and words in result.diagnosis
+    assert "; see upstream/" in result.diagnosis
+
+
+def test_a_defect_that_was_repaired_upstream_is_said_to_be(stock):
+    (row,) = [each for each in stock.results if (each.check, each.subject) == ("value", EON.title)]
+    assert not ledger.repaired(stock.results, "2.0")
+    text, page = ledger.repaired([replace(row, verdict=PASSED)], "2.0")[0]
+    assert text.startswith("repaired in MaterialX 2.0") and page == "upstream/genglsl_clamped_dot.md"
+
+
+def test_every_page_that_a_check_refers_to_is_there():
+    folder = Path(__file__).parents[1] / "upstream"
+    assert all((folder / f"{defect.page}.md").is_file() for defect in ledger.DEFECTS)
 
 
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
@@ -256,7 +278,7 @@ def test_stock_materialx_in_cycles_is_called_by_its_name(subject):
         pytest.skip(str(reason))
     with closing(cycles):
         probe = PictureProbe(cycles, subject, "stock")
-        assert "nearest known model: EON with rho^3 (rms " in nearest_value(probe)
+        assert "nearest known model: EON with rho^3 (rms " in nearest_value(probe).text
 
 
 def test_what_stock_materialx_has_right_passes(stock):

@@ -7,8 +7,9 @@ import MaterialX as mx
 import pytest
 from documents import EON, FLAG, connected, lobe, material
 
-from mxeon.document import LONGEST, DocumentError, read_document
+from mxeon.document import DocumentError, read_document
 from mxeon.generation import generate
+from mxeon.screening import LONGEST
 
 INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 DEFINED = '<nodedef name="ND_{0}" node="{0}"><output name="out" type="BSDF"/></nodedef>'
@@ -30,12 +31,12 @@ FILES = {
     "binary": ("".join(map(chr, range(256))), "must be a MaterialX document; XML parse error"),
     "cut short": (material(lobe())[:150], "must be a MaterialX document; XML parse error"),
     "html": ("<html><body/></html>", "must be a MaterialX document; No root MaterialX element"),
-    "too deep": (material("<a>" * 1000 + "</a>" * 1000), "Maximum tree depth exceeded"),
+    "too deep": (material("<a>" * 1000 + "</a>" * 1000), "must have at most 64 elements within each other; got 65"),
     "future": ('<materialx version="1.99"/>', "version must be at most 1.39; got 1.99"),
     "next": ('<materialx version="2"/>', "version must be at most 1.39; got 2.0"),
     "no version": ('<materialx version="x"/>', "Unsupported document version: <materialx version="),
     "no include": (INCLUDE.format('<xi:include href="none.mtlx"/>'), "none.mtlx"),
-    "own include": (INCLUDE.format('<xi:include href="bad.mtlx"/>'), "XInclude cycle detected"),
+    "own include": (INCLUDE.format('<xi:include href="bad.mtlx"/>'), "must not lead back to the same document"),
     "lobe alone": (f'<materialx version="1.39">{lobe()}</materialx>', "must contain a renderable"),
     "nothing": ('<materialx version="1.39"/>', "must contain a renderable element"),
     "look alone": (
@@ -72,16 +73,16 @@ NODES = {
     "no implementation": (DEFINED.format("a") + A, "Could not find a matching implementation"),
     "no source file": (
         DEFINED.format("a") + '<implementation name="IM_a" nodedef="ND_a" file="none.glsl"/>' + A,
-        "Failed to get source code from file 'none.glsl' used by implementation 'IM_a'",
+        'implementation "IM_a" must not bring code of its own; got file "none.glsl"',
     ),
-    "circle": (CYCLE + connected(color='nodename="a"'), 'cycle at element: <add name="a"'),
+    "circle": (CYCLE + connected(color='nodename="a"'), 'node "a" must not be upstream of itself'),
     "circle of lobes": (
         '<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="lobe"/></add>',
-        'cycle at element: <add name="lobe"',
+        'node "lobe" must not be upstream of itself',
     ),
     "circle of inheritance": (
         DEFINED.format("a").replace("node=", 'inherit="ND_a" node=') + A,
-        'cycle at element: <nodedef name="ND_a"',
+        'definition "ND_a" must not inherit itself',
     ),
     "own part": (
         DEFINED.format("a") + INSIDE.format("a", "a", "a") + A,
@@ -102,7 +103,7 @@ NODES = {
     ),
     "folder for a texture": (
         IMAGE.format("/") + connected(color='nodename="image"'),
-        'input "image/file" must name a file that exists; got /',
+        'input "image/file" must name a file in ',
     ),
     "unconnected node": (connected(color='nodename="none"'), "Invalid port connection: <input"),
     "unconnected graph": (

@@ -14,6 +14,7 @@ from mxeon.conformance.probes import directions, picture_pairs
 from mxeon.generation import Shader, generate
 from mxeon.hosts import NotRun, ShaderError, open_host
 from mxeon.images import irradiance, read_latlong
+from mxeon.permissions import Permissions
 from mxeon.scene import SCENES, Scene, sphere
 
 SIZE = 96
@@ -40,7 +41,7 @@ def reference():
 
 
 def shader(nodes):
-    return generate(material(nodes), "glsl", lights=True)[0]
+    return generate(material(nodes), "glsl", lights=True, permissions=Permissions(outside=True))[0]
 
 
 def picture(host, nodes, scene):

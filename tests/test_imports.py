@@ -16,10 +16,11 @@ import mxeon
 # Every module, or a pattern of them, after all that it may import.
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
-SHADERS = ("library", "document", "generation", "twins", "scene", "images", "tracer", "hosts")
+SHADERS = ("library", "permissions", "screening", "trust", "expansion", "document", "generation")
+SHADERS += ("twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
-REPORT = ("verdict", "junit", "pictures", "plots", "page", "report")
+REPORT = ("verdict", "junit", "pictures", "plots", "page", "report", "comparison")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("cli", "__main__")
@@ -35,7 +36,7 @@ FOR_REPORT = (*REPORT, "results", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
-    "MaterialX": ("library", "document", "generation", "hosts", "hosts.*"),
+    "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*"),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal",),

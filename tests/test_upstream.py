@@ -10,7 +10,7 @@ from upstream import ledger
 
 PAGES = [defect.page for defect in ledger.DEFECTS] + [ledger.THIN_WALLED, ledger.PRINTED_B]
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
-CAUSES = [each.cause for each in ledger.DEFECTS if each.cause] + [ledger.THIN_WALLED_CAUSE]
+CAUSES = [*ledger.CAUSES.values(), ledger.THIN_WALLED_CAUSE]
 
 of_each_defect = pytest.mark.parametrize("defect", ledger.DEFECTS, ids=lambda each: each.page)
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from mxeon import albedo
 from mxeon.conformance.checks import CHECKS
+from mxeon.conformance.ledger import DEFECTS
 from mxeon.conformance.nodes import judge_subject
 from mxeon.conformance.probes import PROBES
 from mxeon.conformance.sources import check_sources
@@ -25,7 +26,6 @@ from mxeon.writing import write_text
 FOLDER = Path(__file__).parent
 BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
 HEAD = "| check | subject | measured | allowed | unit |\n|---|---|---|---|---|\n"
-NODE = "oren_nayar_diffuse_bsdf, energy_compensation"
 COLOR = np.array([0.8, 0.4, 0.1])
 
 
@@ -48,61 +48,16 @@ class Cause:
     word: str
 
 
-@dataclass(frozen=True)
-class Defect:
-    """A page of the ledger, and the results of the suite that show it.
-
-    Attributes
-    ----------
-    page : str
-        Its name without suffix.
-    host : str
-        Where it shows; "source" for generated text.
-    rows : tuple of (str, str)
-        Key of the check and subject of each result, all of which fail.
-    cause : Cause or None
-        None where the source is not part of MaterialX's data.
-    """
-
-    page: str
-    host: str
-    rows: tuple
-    cause: Cause | None = None
-
-
 MICROFACET = "pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
-DEFECTS = (
-    Defect(
-        "genglsl_clamped_dot",
-        "gl",
-        (("value", f"{NODE} true"), ("albedo", f"{NODE} true")),
-        Cause("pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl", 22, "LdotV"),
+# Page -> cause, where the source is part of MaterialX's data.
+CAUSES = {
+    "genglsl_clamped_dot": Cause("pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl", 22, "LdotV"),
+    "genglsl_qon_albedo_fit": Cause(MICROFACET, 21, "dir_albedo_analytic"),
+    "genglsl_albedo_acos": Cause(MICROFACET, 92, "mx_acos"),
+    "genosl_dropped_flag": Cause(
+        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 5, "oren_nayar_diffuse_bsdf({{normal}}"
     ),
-    Defect(
-        "genglsl_qon_albedo_fit",
-        "gl",
-        (("environment", f"{NODE} false"),),
-        Cause(MICROFACET, 21, "dir_albedo_analytic"),
-    ),
-    Defect(
-        "genglsl_albedo_acos",
-        "gl",
-        (("environment", f"{NODE} true"),),
-        Cause(MICROFACET, 92, "mx_acos"),
-    ),
-    Defect(
-        "genosl_dropped_flag",
-        "source",
-        (("source", f"{NODE} true, osl"), ("source", f"{NODE} false, osl")),
-        Cause("pbrlib/genosl/pbrlib_genosl_impl.mtlx", 5, "oren_nayar_diffuse_bsdf({{normal}}"),
-    ),
-    Defect("genmdl_white_lobe", "source", (("tint", f"{NODE} true, mdl"),)),
-    Defect(
-        "cycles_rho_cubed",
-        "cycles",
-        (("value", f"{NODE} true"), ("value", f"{NODE} false"), ("flag", f"{NODE} true")),
-    ),
-)
+}
 
 THIN_WALLED = "openpbr_thin_walled"
 THIN_WALLED_LOBE = "NG_open_pbr_surface_surfaceshader/subsurface_thin_walled_reflection_bsdf"

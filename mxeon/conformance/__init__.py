@@ -5,17 +5,17 @@ The only place that sees both chains, the shaders and the models.
 """
 
 from contextlib import closing, nullcontext
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 from mxeon import cluster, pool
-from mxeon.conformance.items import Judge, not_run, plan
-from mxeon.conformance.probes import PROBES
+from mxeon.conformance.items import JUDGED, Judge, not_run, plan
 from mxeon.hosts import NotRun
 from mxeon.journal import Journal, read_journal
+from mxeon.permissions import DEFAULT
 from mxeon.results import Findings, Run
 
-__all__ = ["PROBES", "check", "read_run", "to_run", "work"]
+__all__ = ["JUDGED", "check", "read_run", "to_run", "work"]
 
 LIMIT = 300.0  # seconds for one item
 
@@ -30,6 +30,7 @@ def check(
     folder=None,
     resume=False,
     scheduler=None,
+    permissions=DEFAULT,
     progress=lambda items, total: items,
 ):
     """Every check on every host, and every document's pictures against the reference's.
@@ -39,7 +40,7 @@ def check(
     files : sequence of path-like
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
-        Who is judged; `mxeon.conformance.probes.PROBES` has them.
+        Who is judged; `mxeon.conformance.JUDGED` has them.
     libraries : sequence of str
         "eonlib", and "stock" for MaterialX as it comes.
     workers : int
@@ -53,6 +54,8 @@ def check(
         Go on with the run that `folder` holds.
     scheduler : str or None
         Address of a Dask scheduler whose workers do the work instead.
+    permissions : Permissions
+        What the documents may do, and how large they may be.
     progress : callable (iterable, int) -> iterable
         Goes through the items that are to be done, whose number it is told; a progress bar, say.
 
@@ -71,7 +74,7 @@ def check(
     with _keeper(folder, planned, resume) as kept:
         places = [place for place in range(len(planned.items)) if place not in kept.findings]
         waiting = [planned.items[place] for place in places]
-        found = _done(waiting, workers, limit, scheduler)
+        found = _done(waiting, permissions, workers, limit, scheduler)
         for number, findings in progress(found, len(waiting)):
             kept.add(places[number], findings)
         return to_run(planned, kept.findings)
@@ -88,7 +91,7 @@ def read_run(folder):
     return to_run(*read_journal(folder))
 
 
-def work(item):
+def work(permissions, item):
     """Findings of an item, by this process's judge: what workers run.
 
     Raises
@@ -96,12 +99,12 @@ def work(item):
     NotRun
         If the host cannot be opened here.
     """
-    return _judge().work(item)
+    return _judge(permissions).work(item)
 
 
-def settled(item):
-    """Findings of an item wherever it is: what cannot be done here is not run."""
-    return _settled(_judge(), item)
+def settled(permissions, item):
+    """Findings of an item whatever is missing: what cannot be done here is not run."""
+    return _settled(_judge(permissions), item)
 
 
 def to_run(planned, findings):
@@ -137,21 +140,22 @@ def _keeper(folder, planned, resume):
     return nullcontext(_Memory()) if folder is None else Journal(folder, planned, resume)
 
 
-def _done(items, workers, limit, scheduler):
+def _done(items, permissions, workers, limit, scheduler):
     """Findings of the items as they come, each with its place."""
     if scheduler:
-        outcomes = cluster.run(work, items, scheduler, limit, elsewhere=NotRun)
+        at_work = partial(work, permissions)
+        outcomes = cluster.run(at_work, items, scheduler, limit, elsewhere=NotRun)
     elif workers:
-        outcomes = pool.run(settled, items, workers, limit)
+        outcomes = pool.run(partial(settled, permissions), items, workers, limit)
     else:
-        outcomes = _here(items)
+        outcomes = _here(items, permissions)
     for place, outcome in outcomes:
         failed = outcome.value is None
         yield place, not_run(items[place], outcome.failure) if failed else outcome.value
 
 
-def _here(items):
-    with closing(Judge()) as judge:
+def _here(items, permissions):
+    with closing(Judge(permissions)) as judge:
         for place, item in enumerate(items):
             yield place, pool.Outcome(_settled(judge, item))
 
@@ -164,8 +168,8 @@ def _settled(judge, item):
 
 
 @lru_cache(maxsize=1)
-def _judge():
-    return Judge()
+def _judge(permissions):
+    return Judge(permissions)
 
 
 def _grouped(notes):

@@ -9,8 +9,9 @@ import mxeon
 from mxeon.conformance.checks import ROUNDING
 from mxeon.conformance.measures import absolute
 from mxeon.conformance.probes import picture_pairs
-from mxeon.generation import ApproximationWarning, generate
+from mxeon.generation import ApproximationWarning, CodeWarning, generate
 from mxeon.hosts import NotRun, ShaderError
+from mxeon.permissions import DEFAULT
 from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.scene import BACK, FURNACE, SIDE, sphere
 
@@ -34,7 +35,7 @@ MATCH = "The picture is the reference's in every pixel."
 FINITE = "No pixel is infinite or not a number."
 
 
-def judge_document(file, host, judge, library):
+def judge_document(file, host, judge, library, permissions=DEFAULT):
     """Pictures of every material of a document on a host, and whether they are the reference's.
 
     Parameters
@@ -44,6 +45,8 @@ def judge_document(file, host, judge, library):
         Who is judged, and the reference.
     library : str
         Name of the data library.
+    permissions : Permissions
+        What the document may do, and how large it may be.
 
     Returns
     -------
@@ -57,17 +60,20 @@ def judge_document(file, host, judge, library):
     """
     options = {"library": library, "profile": host.profile, "lights": host.target == "glsl"}
     with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", ApproximationWarning)
-        shaders = generate(file, host.target, **options)
-    approximated = {each.message.element: each.message.approximation for each in caught}
+        warnings.simplefilter("always")
+        shaders = generate(file, host.target, permissions=permissions, **options)
+    said = [each.message for each in caught]
+    approximations = [each for each in said if isinstance(each, ApproximationWarning)]
+    approximated = {each.element: each.approximation for each in approximations}
     results, pictures = [], []
     for shader in shaders:
         front_lit = shader.element in approximated
         result, shown = _judge_material(file, shader, host, judge, library, front_lit)
         results.append(result)
         pictures += shown
-    notes = tuple((text, f"{file.name}: {place}") for place, text in approximated.items())
-    return tuple(results), tuple(pictures), notes
+    notes = [(text, f"{file.name}: {place}") for place, text in approximated.items()]
+    notes += [(str(each), file.name) for each in said if isinstance(each, CodeWarning)]
+    return tuple(results), tuple(pictures), tuple(notes)
 
 
 def _judge_material(file, shader, host, judge, library, front_lit):

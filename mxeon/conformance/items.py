@@ -8,6 +8,7 @@ machines. Whoever works on items keeps a `Judge`, which holds what is costly to 
 import hashlib
 import platform
 from contextlib import suppress
+from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -15,18 +16,22 @@ from pathlib import Path
 import mxeon
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.documents import MATCH, SCENES, judge_document
+from mxeon.conformance.ledger import referred, repaired
 from mxeon.conformance.nodes import applies, judge_curve, judge_subject, judge_twins
 from mxeon.conformance.probes import PROBES
 from mxeon.conformance.sources import check_sources
 from mxeon.conformance.subjects import SUBJECTS
-from mxeon.hosts import NotRun, open_host
+from mxeon.hosts import TEXT_ONLY, NotRun, open_host
 from mxeon.library import LIBRARIES, assert_version, examples_folder
 from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
 
 SOFTWARE = ("MaterialX", "numpy", "OpenImageIO", "moderngl")
-SOURCE, CURVE, PICTURE, TWINS = "source", "curve", "picture", "shader twins"
+JUDGED = (*PROBES, *TEXT_ONLY)  # hosts on the command line
+HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
+TWINS, EVERY_NODE = "shader twins", "every node"
 ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
+    HOST: "The host executes shaders here.",
     SOURCE: "The generated text was checked.",
     CURVE: "The albedo was measured over the cosine.",
     PICTURE: MATCH,
@@ -54,13 +59,13 @@ def plan(files, hosts, libraries):
         If this MaterialX is not one that eonlib works with.
     """
     assert_version()
-    _known("host", hosts, PROBES)
+    _known("host", hosts, JUDGED)
     _known("library", libraries, LIBRARIES)
     items, documents = [], {}
     for library in dict.fromkeys(libraries):
         named = [Path(file) for file in files] or _examples(library)
         documents |= {str(file): _digest(file) for file in named}
-        items.append(Item(SOURCE, "every node", SOURCE, library))
+        items.append(Item(SOURCE, EVERY_NODE, SOURCE, library))
         for host in dict.fromkeys(hosts):
             items += _on_host(host, library, named)
     software = {"Python": platform.python_version()} | {each: version(each) for each in SOFTWARE}
@@ -80,9 +85,16 @@ def not_run(item, reason):
 
 
 class Judge:
-    """Works on items, one after the other, and keeps the hosts it opens."""
+    """Works on items, one after the other, and keeps the hosts it opens.
 
-    def __init__(self):
+    Parameters
+    ----------
+    permissions : Permissions
+        What documents may do, and how large they may be.
+    """
+
+    def __init__(self, permissions):
+        self._permissions = permissions
         self._hosts = {}
         self._reference = open_host("reference")
         self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
@@ -105,10 +117,11 @@ class Judge:
             If the host cannot be opened here.
         """
         if item.check == SOURCE:
-            return Findings(results=check_sources(subjects(item.library), item.library))
-        host = self._host(item.host)
-        found = self._on_host(item, host)
-        return Findings(**found, hosts=(host.identity(),))
+            found = {"results": check_sources(subjects(item.library), item.library)}
+        else:
+            host = self._host(item.host)
+            found = self._on_host(item, host) | {"hosts": (host.identity(),)}
+        return _with_ledger(Findings(**found))
 
     def close(self):
         """Close what was opened."""
@@ -140,10 +153,18 @@ class Judge:
     def _document(self, item, host):
         path = Path(item.subject)
         try:
-            found = judge_document(path, host, self._reference, item.library)
+            found = judge_document(
+                path, host, self._reference, item.library, self._permissions
+            )
         except ValueError as error:
             return {"errors": (str(error),)}
         return dict(zip(("results", "pictures", "notes"), found, strict=True))
+
+
+def _with_ledger(findings):
+    """Findings whose failures name their pages of the ledger, with notes on what was repaired."""
+    notes = findings.notes + repaired(findings.results, version("MaterialX"))
+    return replace(findings, results=tuple(map(referred, findings.results)), notes=notes)
 
 
 def _probe(host, title, library):
@@ -152,6 +173,9 @@ def _probe(host, title, library):
 
 
 def _on_host(host, library, files):
+    if host in TEXT_ONLY:
+        yield Item(HOST, EVERY_NODE, host, library)
+        return
     kind = PROBES[host].kind
     for row in CHECKS:
         if not row.models:

@@ -35,8 +35,15 @@ class Identity:
     device: str
 
 
-# Name on the command line -> module of this package with a class `Host`.
+# Name on the command line, which is that of a module of this package with a class `Host`.
 HOSTS = ("gl", "webgl", "vulkan", "slang", "cycles", "reference")
+
+# Targets whose text is generated and checked, and what it would take to run it.
+TEXT_ONLY = {
+    "msl": "Metal, which macOS alone has",
+    "mdl": "a renderer that compiles MDL",
+    "wgsl": "MaterialX's WGSL in place of the GLSL that it writes, which WebGPU does not take",
+}
 
 
 def open_host(name):
@@ -49,8 +56,10 @@ def open_host(name):
     NotRun
         If it cannot run on this machine.
     """
+    if name in TEXT_ONLY:
+        raise NotRun(f"{name}: running it needs {TEXT_ONLY[name]}; its text is checked")
     if name not in HOSTS:
-        raise ValueError(f"host must be one of {', '.join(HOSTS)}; got {name!r}")
+        raise ValueError(f"host must be one of {', '.join((*HOSTS, *TEXT_ONLY))}; got {name!r}")
     host = import_module(f"mxeon.hosts.{name}").Host
     if host.target not in TARGETS:
         raise NotRun(

@@ -5,6 +5,8 @@ A picture draws one vertex per pixel, placed at its centre, so each pixel holds 
 at an exact point of the sphere, with neighbours to take derivatives from.
 """
 
+from functools import lru_cache
+
 import moderngl
 import numpy as np
 
@@ -14,6 +16,7 @@ from mxeon.images import irradiance, read_latlong, read_texture
 from mxeon.scene import sphere
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
+PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
 
 
@@ -39,6 +42,7 @@ class Host:
                 "apt-get install libegl1 libgl1-mesa-dri"
             ) from None
         self._context.gc_mode = "auto"
+        self._program = lru_cache(maxsize=PROGRAMS)(self._compile)
 
     def identity(self):
         """Version and device as the driver names them."""
@@ -122,7 +126,7 @@ class Host:
         program = self._program(vertex, pixel)
         return self._draw(program, textures, _triangle(), size).reshape(-1, 3)[:count]
 
-    def _program(self, vertex, pixel):
+    def _compile(self, vertex, pixel):
         try:
             return self._context.program(vertex_shader=vertex, fragment_shader=pixel)
         except moderngl.Error as error:
@@ -160,6 +164,7 @@ class Host:
 
 def _set_light(program, scene):
     values = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE), "u_envRadianceMips": 1}
+    values["u_numActiveLightSources"] = 0  # a program keeps what the last scene gave it
     if scene.light is not None:
         values |= {
             "u_numActiveLightSources": 1,

@@ -5,27 +5,34 @@ What a graph may contain: rough diffuse lobes; mix, add and multiply; values, ar
 nodes that are nodegraphs of these. Anything else is NotRun, with the node's name.
 """
 
+from collections import Counter
+from functools import partial
+from operator import add, mul, pow, sub, truediv
+
 import MaterialX as mx
 import numpy as np
 
+from mxeon.expansion import reached
 from mxeon.hosts import NotRun
 from mxeon.images import read_texture
 
-# Operations on values and on lobes alike: node category -> inputs -> result.
+# Operations on values and on lobes alike: node category -> its inputs, and the result from them.
 OPERATIONS = {
-    "constant": lambda get: get("value"),
-    "add": lambda get: get("in1") + get("in2"),
-    "subtract": lambda get: get("in1") - get("in2"),
-    "multiply": lambda get: get("in1") * get("in2"),
-    "divide": lambda get: get("in1") / get("in2"),
-    "power": lambda get: get("in1") ** get("in2"),
-    "invert": lambda get: get("amount") - get("in"),
-    "sqrt": lambda get: np.sqrt(get("in")),
-    "convert": lambda get: get("in"),
-    "mix": lambda get: get("fg") * get("mix") + get("bg") * (1.0 - get("mix")),
-    "surface": lambda get: get("bsdf") * get("opacity"),
-    "surfacematerial": lambda get: get("surfaceshader"),
+    "constant": (("value",), lambda value: value),
+    "add": (("in1", "in2"), add),
+    "subtract": (("in1", "in2"), sub),
+    "multiply": (("in1", "in2"), mul),
+    "divide": (("in1", "in2"), truediv),
+    "power": (("in1", "in2"), pow),
+    "invert": (("amount", "in"), sub),
+    "sqrt": (("in",), np.sqrt),
+    "convert": (("in",), lambda value: value),
+    "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
+    "surface": (("bsdf", "opacity"), mul),
+    "surfacematerial": (("surfaceshader",), lambda shader: shader),
 }
+CLOSURES = ("BSDF", "EDF", "surfaceshader")  # black where nothing is connected
+LOBES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
 class Graph:
@@ -39,6 +46,12 @@ class Graph:
         What a diffuse lobe of weight one gives at these points.
     inputs : mapping of str to array
         Inputs of diffuse lobes that take the place of the document's.
+
+    Notes
+    -----
+    A place is a node as part of all the nodes and nodegraphs around it: a tuple of name paths, the
+    outermost first. Places are evaluated by a loop, each once, so that neither a long chain nor a
+    node with many uses does harm, and forgotten after their last use.
     """
 
     def __init__(self, document, texcoord, lobe, inputs=None):
@@ -46,6 +59,8 @@ class Graph:
         self._texcoord = texcoord
         self._lobe = lobe
         self._inputs = inputs or {}
+        self._elements = {}  # by their places
+        self._recipes = {}  # place -> a function and the places of its arguments
 
     def element(self, path):
         """What the renderable element at a name path gives.
@@ -56,44 +71,98 @@ class Graph:
             If the graph holds a node that is none of the above.
         """
         element = self._document.getDescendant(path)
-        if element.isA(mx.Output):
-            return self._output(element, _no_interface)
-        return self._node(element, _no_interface)
+        root = element.getConnectedNode() if element.isA(mx.Output) else element
+        return self._evaluate(self._place((), root))
 
-    def _output(self, output, interface):
-        return self._node(output.getConnectedNode(), interface)
+    def _evaluate(self, root):
+        parts = reached([root], lambda place: self._recipe(place)[1])
+        uses = Counter(part for each in parts.values() for part in each)
+        values, waiting = {}, [root]
+        while waiting:
+            place = waiting[-1]
+            if place in values:
+                waiting.pop()
+            elif missing := [part for part in parts[place] if part not in values]:
+                waiting.append(missing[0])
+            else:
+                values[place] = self._recipes[place][0](*(values[part] for part in parts[place]))
+                for part in parts[place]:
+                    uses[part] -= 1
+                    if not uses[part]:
+                        del values[part]
+        return values[root]
 
-    def _node(self, node, interface):
-        def get(name):
-            return self._input(node, name, interface)
+    def _recipe(self, place):
+        """How the value at a place is made."""
+        if place not in self._recipes:
+            self._recipes[place] = self._made(place)
+        return self._recipes[place]
 
+    def _made(self, place):
+        node = self._elements[place]
         category = node.getCategory()
-        if category in ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf"):
-            return self._diffuse(node, lambda name: self._inputs.get(name, get(name)))
+        if category in LOBES:
+            names, make = ("normal", "color", "roughness", "weight"), self._diffuse
+            if category == "eon_diffuse_bsdf":
+                return partial(make, True), self._sources(place, names)
+            return make, self._sources(place, ("energy_compensation", *names))
         if category == "image":
-            return self._image(node, get)
+            return partial(self._image, node), ()
         if category in OPERATIONS:
-            return OPERATIONS[category](get)
+            names, make = OPERATIONS[category]
+            return make, self._sources(place, names)
         inside = node.getImplementation()
-        if not inside or not inside.isA(mx.NodeGraph):
+        outputs = inside.getOutputs() if inside and inside.isA(mx.NodeGraph) else ()
+        if len(outputs) != 1 or not outputs[0].getConnectedNode():
             raise NotRun(f"reference: there is no model for node {category!r}")
-        return self._output(inside.getOutputs()[0], get)
+        return lambda value: value, (self._place(place, outputs[0].getConnectedNode()),)
 
-    def _input(self, node, name, interface):
-        """Value of an input: connected, from the enclosing graph, given, or the default."""
-        given = node.getInput(name) or node.getNodeDef().getActiveInput(name)
-        if given.hasInterfaceName():
-            return interface(given.getInterfaceName())
+    def _sources(self, place, names):
+        lobe = self._elements[place].getCategory() in LOBES
+        given = self._inputs if lobe else {}
+        return tuple(
+            self._constant(place, name, given[name]) if name in given else self._source(place, name)
+            for name in names
+        )
+
+    def _source(self, place, name):
+        """The place that an input's value comes from: connected, given, or the default."""
+        while (given := self._port(place, name)).hasInterfaceName():
+            place, name = place[:-1], given.getInterfaceName()
         connected = given.getConnectedNode()
         if connected:
-            graph = connected.getParent()
-            if graph.getNamePath() != node.getParent().getNamePath():
-                return self._node(connected, lambda each: self._input(graph, each, _no_interface))
-            return self._node(connected, interface)
-        if node.getNodeDef().getActiveInput(name).hasDefaultGeomPropString():
-            return None  # the surface's own: MaterialX takes no value for such an input
-        value = _plain(given.getValue())
-        return self._linear(given, value) if given.getType() == "color3" else value
+            graph, parent = connected.getParent(), self._elements[place].getParent()
+            if graph.getNamePath() == parent.getNamePath():
+                return self._place(place[:-1], connected)
+            return self._place(self._place((), graph), connected)
+        definition = self._elements[place].getNodeDef()
+        declared = definition.getActiveInput(name) if definition else None
+        if declared and declared.hasDefaultGeomPropString():
+            return self._constant(place, name, None)  # the surface's own: nothing sets it
+        value = 0.0 if given.getType() in CLOSURES else _plain(given.getValue())
+        linear = self._linear(given, value) if given.getType() == "color3" else value
+        return self._constant(place, name, linear)
+
+    def _port(self, place, name):
+        """An input as it is written, or else as its nodedef has it."""
+        element = self._elements.get(place)
+        definition = element.getNodeDef() if element else None
+        given = element and element.getInput(name)
+        given = given or (definition and definition.getActiveInput(name))
+        if not given:
+            raise NotRun(f"reference: there is nothing to give {name!r} to {place[-1:]}")
+        return given
+
+    def _place(self, around, element):
+        place = (*around, element.getNamePath())
+        self._elements[place] = element
+        return place
+
+    def _constant(self, place, name, value):
+        """A place that has no parts."""
+        constant = (*place, f":{name}")
+        self._recipes[constant] = (lambda: value), ()
+        return constant
 
     def _linear(self, element, value):
         """A colour in the document's linear space, as the generators' colour management has it."""
@@ -104,19 +173,19 @@ class Graph:
             raise NotRun(f"reference: there is no transform for colour space {space!r}")
         return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
 
-    def _diffuse(self, node, get):
-        if get("normal") is not None:
+    def _diffuse(self, compensated, normal, color, roughness, weight):
+        if normal is not None:
             raise NotRun("reference: there are no models for a normal other than the surface's")
-        eon = node.getCategory() == "eon_diffuse_bsdf" or get("energy_compensation")
-        roughness = np.reshape(get("roughness"), -1)
-        value = self._lobe("eon" if eon else "qon", get("color"), roughness)
-        return value * np.reshape(get("weight"), (-1, 1))
+        model = "eon" if compensated else "qon"
+        return self._lobe(model, color, np.reshape(roughness, -1)) * np.reshape(weight, (-1, 1))
 
-    def _image(self, node, get):
+    def _image(self, node):
         """Bilinear, periodic look-up; texel centres at half-integers, v = 0 at the bottom."""
         if node.getInput("texcoord") is not None:
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")
+        if not file or not file.getValueString():
+            raise NotRun("reference: an image must name its file itself")
         texels = read_texture(file.getValueString()).astype(np.float64)
         channels = 3 if node.getType() == "color3" else 1
         height, width = texels.shape[:2]
@@ -132,10 +201,6 @@ class Graph:
         upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
         value = lower * (1.0 - v) + upper * v
         return self._linear(file, value) if channels == 3 else value
-
-
-def _no_interface(name):
-    raise NotRun(f"reference: there is no enclosing graph to give {name!r}")
 
 
 def _plain(value):

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Known defects of stock MaterialX: the page of `upstream/` that each failing check belongs to."""
+
+from dataclasses import dataclass, replace
+
+from mxeon.results import FAILED, PASSED
+
+STOCK = "stock"
+NODE = "oren_nayar_diffuse_bsdf, energy_compensation"
+
+
+@dataclass(frozen=True)
+class Defect:
+    """A page of the ledger, and the results that show its defect.
+
+    Attributes
+    ----------
+    page : str
+        Its name without suffix.
+    host : str
+        Where it was found; "source" for generated text.
+    rows : tuple of (str, str)
+        Key of the check and subject of each result, all of which fail.
+    also : tuple of str
+        Other hosts that show it.
+    """
+
+    page: str
+    host: str
+    rows: tuple[tuple[str, str], ...]
+    also: tuple[str, ...] = ()
+
+
+DEFECTS = (
+    Defect(
+        "genglsl_clamped_dot",
+        "gl",
+        (("value", f"{NODE} true"), ("albedo", f"{NODE} true")),
+        ("webgl", "vulkan", "slang"),
+    ),
+    Defect(
+        "genglsl_qon_albedo_fit",
+        "gl",
+        (("environment", f"{NODE} false"),),
+        ("webgl", "vulkan", "slang"),
+    ),
+    Defect("genglsl_albedo_acos", "gl", (("environment", f"{NODE} true"),), ("webgl", "vulkan")),
+    Defect(
+        "genosl_dropped_flag",
+        "source",
+        (("source", f"{NODE} true, osl"), ("source", f"{NODE} false, osl")),
+    ),
+    Defect("genmdl_white_lobe", "source", (("tint", f"{NODE} true, mdl"),)),
+    Defect(
+        "cycles_rho_cubed",
+        "cycles",
+        (("value", f"{NODE} true"), ("value", f"{NODE} false"), ("flag", f"{NODE} true")),
+    ),
+)
+
+
+def referred(result):
+    """A result whose diagnosis ends with the page of the ledger that explains it, if one does."""
+    pages = [
+        f"see upstream/{defect.page}.md"
+        for defect in _found(result)
+        if result.verdict == FAILED
+    ]
+    return replace(result, diagnosis="; ".join(filter(None, (result.diagnosis, *pages))))
+
+
+def repaired(results, version):
+    """Notes on defects that are gone: a text and a page for each.
+
+    Parameters
+    ----------
+    results : sequence of Result
+    version : str
+        Of the MaterialX that was judged.
+
+    Returns
+    -------
+    tuple of (str, str)
+    """
+    text = f"repaired in MaterialX {version}, so that its page can go"
+    return tuple(
+        (text, f"upstream/{defect.page}.md")
+        for result in results
+        for defect in _found(result)
+        if result.verdict == PASSED and result.host == defect.host
+    )
+
+
+def _found(result):
+    """Defects whose rows a result of the stock library is one of."""
+    return [
+        defect
+        for defect in DEFECTS
+        if result.library == STOCK
+        and result.host in (defect.host, *defect.also)
+        and (result.check, result.subject) in defect.rows
+    ]

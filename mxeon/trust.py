@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which files a document may name, what its words may be, and whether it brings code.
+
+Generators write the words of a document into shaders as they are, so a word that is more than a
+word is code too.
+"""
+
+import glob
+import os
+import re
+from pathlib import Path
+
+import MaterialX as mx
+
+from mxeon.library import data_folder, eonlib_folder
+from mxeon.screening import DocumentError
+
+# What a value of type string may hold: words, lists of words, paths; nothing that ends a string or
+# calls a function in any target.
+STRING = re.compile(r"[\w .,:/+<>\[\]-]*", re.ASCII)
+WORD = re.compile(r"\w*", re.ASCII)
+ENDS_A_STRING = re.compile(r'["\\\r\n]')
+CODE = ("file", "sourcecode")
+TEXTUAL = ("string", "stringarray", "geomname", "geomnamearray")
+
+
+def folder(document):
+    """Where relative file names start: at the document's file, or the working folder for text."""
+    file = document.getSourceUri()
+    return Path(file).resolve().parent if file else Path.cwd()
+
+
+def inside(path, home):
+    """Whether a path, its symbolic links resolved, lies in a folder or in the libraries."""
+    real = Path(os.path.realpath(path))
+    return any(real.is_relative_to(root) for root in (home, *_libraries()))
+
+
+def check_inside(path, home, permissions, place):
+    """Nothing, if a document in the folder `home` may name that file.
+
+    Raises
+    ------
+    DocumentError
+        Otherwise.
+    """
+    if not permissions.outside and not inside(path, home):
+        raise DocumentError(
+            f"{place} must name a file in {home} or in the libraries; got {path}: "
+            "--allowOutside lets it"
+        )
+
+
+def check_file(element, place, permissions):
+    """Nothing, if the file or the texture set that an input names may be read and is there."""
+    text, home = element.getValueString(), folder(element.getDocument())
+    if ENDS_A_STRING.search(text):
+        raise DocumentError(f"{place} must name a file without quotes and backslashes; got {text}")
+    pattern = re.sub(r"<\w*>", "*", glob.escape(text))
+    tiles = glob.glob(pattern) if "<" in text else ()
+    for each in (text, *tiles):
+        check_inside(each, home, permissions, place)
+    if "<" not in text and not os.path.isfile(text):
+        raise DocumentError(f"{place} must name a file that exists; got {text}")
+
+
+def check_words(element, place):
+    """Nothing, if a text value is made of words; one that becomes a variable's name, of one."""
+    text = element.getValueString()
+    one = element.getName() == "geomprop"
+    if not (WORD if one else STRING).fullmatch(text):
+        rule = "one word of letters, digits and _" if one else "words, of letters, digits and .,:/+-"
+        raise DocumentError(f"{place} must be {rule}; got {text}")
+
+
+def foreign_code(document):
+    """The implementations by which a document brings shader code of its own."""
+    return [
+        each
+        for each in document.getChildren()  # getImplementations has the data library's too
+        if each.isA(mx.Implementation) and any(map(each.hasAttribute, CODE))
+    ]
+
+
+def check_code(document, permissions, called):
+    """Nothing, if the code that a document brings may be used.
+
+    Raises
+    ------
+    DocumentError
+        If it may not, or lies in a file that may not be read.
+    """
+    home = folder(document)
+    for element in foreign_code(document):
+        place = f'{called}: implementation "{element.getName()}"'
+        if not permissions.code:
+            raise DocumentError(
+                f"{place} must not bring code of its own; got {_code(element)}: --allowCode lets it"
+            )
+        for path in _sources(element, home):
+            check_inside(path, home, permissions, place)
+
+
+def _code(element):
+    name = next(filter(element.hasAttribute, CODE))
+    return f'{name} "{element.getAttribute(name)}"'
+
+
+def _sources(element, home):
+    """The files that an implementation's `file` may mean to a generator."""
+    name = element.getAttribute("file")
+    origin = Path(element.getActiveSourceUri() or home / "document").parent
+    bases = (origin, home, Path.cwd(), *_libraries())
+    return [base / name for base in bases if name and os.path.lexists(base / name)]
+
+
+def _libraries():
+    """Folders whose files any document may use: MaterialX's own and eonlib's."""
+    standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
+    ours = (eonlib_folder(), *(data_folder() / each for each in ("profiles", "genglsl", "genosl")))
+    return tuple(Path(each).resolve() for each in (*standard, *ours))
