@@ -18,9 +18,9 @@ from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.documents import MATCH, SCENES, judge_document
 from mxeon.conformance.ledger import referred, repaired
 from mxeon.conformance.nodes import applies, judge_curve, judge_subject, judge_twins
-from mxeon.conformance.probes import PROBES
+from mxeon.conformance.probes import PROBES, NativeProbe
 from mxeon.conformance.sources import check_sources
-from mxeon.conformance.subjects import SUBJECTS
+from mxeon.conformance.subjects import NATIVE, SUBJECTS
 from mxeon.hosts import TEXT_ONLY, NotRun, open_host
 from mxeon.library import LIBRARIES, assert_version, examples_folder
 from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
@@ -68,6 +68,7 @@ def plan(files, hosts, libraries):
         items.append(Item(SOURCE, EVERY_NODE, SOURCE, library))
         for host in dict.fromkeys(hosts):
             items += _on_host(host, library, named)
+    items += [item for host in dict.fromkeys(hosts) for item in _native(host)]
     software = {"Python": platform.python_version()} | {each: version(each) for each in SOFTWARE}
     return Plan(mxeon.__version__, software, tuple(items), documents)
 
@@ -168,13 +169,14 @@ def _with_ledger(findings):
 
 
 def _probe(host, title, library):
-    subject = next(each for each in SUBJECTS if each.title == title)
+    subject = next(each for each in SUBJECTS + NATIVE if each.title == title)
     return PROBES[host.name](host, subject, library)
 
 
 def _on_host(host, library, files):
     if host in TEXT_ONLY:
         yield Item(HOST, EVERY_NODE, host, library)
+    if host in TEXT_ONLY or PROBES[host] is NativeProbe:
         return
     kind = PROBES[host].kind
     for row in CHECKS:
@@ -187,6 +189,15 @@ def _on_host(host, library, files):
         yield Item(CURVE, subject.title, host, library)
     if host in SCENES:
         yield from (Item(PICTURE, str(file), host, library) for file in files)
+
+
+def _native(host):
+    """Items of a renderer's own nodes, which no library of ours plays a part in."""
+    if PROBES.get(host) is NativeProbe:
+        for subject in NATIVE:
+            for row in CHECKS:
+                if applies(row, subject, NativeProbe.kind):
+                    yield Item(row.key, subject.title, host, "its own nodes")
 
 
 def _examples(library):

@@ -187,12 +187,23 @@ class PictureProbe:
         return image[chosen & self._expressible(wo, wi)].astype(np.float64)
 
 
+@dataclass(frozen=True)
+class NativeProbe(PictureProbe):
+    """A node that a renderer has of its own, on a sphere."""
+
+    def _picture(self, batch):
+        color, roughness = (batch.inputs[name] for name in ("color", "roughness"))
+        image = self.host.node(self.subject.node, color, roughness, batch.scene)
+        return image[sphere(batch.scene.size).mask][picture_pairs(batch.scene)[2]].astype(np.float64)
+
+
 PROBES = {
     "gl": PairProbe,
     "webgl": PairProbe,
     "vulkan": PairProbe,
     "slang": PairProbe,
     "cycles": PictureProbe,
+    "cycles-native": NativeProbe,
 }
 
 

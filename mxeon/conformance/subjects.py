@@ -43,11 +43,14 @@ class Subject:
         energy_compensation, or None where the node has no such input.
     model : str
         Name of a row of `mxeon.reference.MODELS`.
+    names : tuple of str
+        Inputs that it may have; the flag counts only where it is not None.
     """
 
     node: str
     flag: bool | None
     model: str
+    names: tuple[str, ...] = tuple(TYPES)
 
     @property
     def stock(self):
@@ -63,7 +66,7 @@ class Subject:
     @property
     def inputs(self):
         """Names of the node's inputs."""
-        return tuple(name for name in TYPES if self.flag is not None or name != FLAG)
+        return tuple(name for name in self.names if self.flag is not None or name != FLAG)
 
     def with_flag(self, inputs):
         """Inputs with the subject's flag, unless they set it."""
@@ -84,6 +87,11 @@ SUBJECTS = (
     Subject("oren_nayar_diffuse_bsdf", True, "eon"),
     Subject("oren_nayar_diffuse_bsdf", False, "qon"),
     Subject("eon_diffuse_bsdf", None, "eon"),
+)
+
+# Nodes that a renderer has of its own; Blender's are meant to be EON.
+NATIVE = tuple(
+    Subject(node, None, "eon", ("color", "roughness")) for node in ("Diffuse BSDF", "Principled BSDF")
 )
 
 

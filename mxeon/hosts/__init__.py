@@ -36,7 +36,7 @@ class Identity:
 
 
 # Name on the command line, which is that of a module of this package with a class `Host`.
-HOSTS = ("gl", "webgl", "vulkan", "slang", "cycles", "reference")
+HOSTS = ("gl", "webgl", "vulkan", "slang", "cycles", "cycles-native", "reference")
 
 # Targets whose text is generated and checked, and what it would take to run it.
 TEXT_ONLY = {
@@ -60,7 +60,7 @@ def open_host(name):
         raise NotRun(f"{name}: running it needs {TEXT_ONLY[name]}; its text is checked")
     if name not in HOSTS:
         raise ValueError(f"host must be one of {', '.join((*HOSTS, *TEXT_ONLY))}; got {name!r}")
-    host = import_module(f"mxeon.hosts.{name}").Host
+    host = import_module(f"mxeon.hosts.{name.replace('-', '_')}").Host
     if host.target not in TARGETS:
         raise NotRun(
             f"{name}: MaterialX must have a generator for {host.target}; {mx.__version__} has none: "

@@ -123,13 +123,35 @@ class Host:
             raise NotRun("cycles: an environment must be uniform here; got an image")
         with self._folder() as folder:
             pixels = self._render(
-                Path(folder),
-                _on_sphere(shader.stages["pixel"]),
-                size=scene.size,
-                samples=1 if scene.environment is None else ENVIRONMENT_SAMPLES,
-                radius=1.0,
-                light=scene.light,
-                environment=scene.environment,
+                Path(folder), _on_sphere(shader.stages["pixel"]), **_frame(scene)
+            )
+        return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+
+    def node(self, kind, inputs, scene):
+        """The unit sphere wearing a node of Blender's, rendered without OSL.
+
+        Parameters
+        ----------
+        kind : str
+            Blender's name of the node's type.
+        inputs : dict of str to float or sequence of float
+            Values by the names of the node's sockets.
+        scene : Scene
+            Its environment, if any, uniform.
+
+        Returns
+        -------
+        ndarray, shape (size, size, 3), float32
+            As `picture`.
+
+        Raises
+        ------
+        NotRun
+            If the process fails.
+        """
+        with self._folder() as folder:
+            pixels = self._request(
+                Path(folder), native={"kind": kind, "inputs": inputs}, **_frame(scene)
             )
         return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
 
@@ -203,9 +225,14 @@ class Host:
 
     def _render(self, folder, text, **frame):
         """The picture that the worker makes of the OSL shader `text`."""
-        shader, output = folder / "shader.osl", folder / "output.exr"
+        shader = folder / "shader.osl"
         shader.write_text(text)
-        reply = self.worker.ask(shader=str(shader), output=str(output), **frame)
+        return self._request(folder, shader=str(shader), **frame)
+
+    def _request(self, folder, **request):
+        """The picture that the worker makes."""
+        output = folder / "output.exr"
+        reply = self.worker.ask(output=str(output), **request)
         if "error" in reply:
             errors = " | ".join(self.worker.printed()[:4])
             raise ShaderError(f"cycles: the shader does not compile: {errors}")
@@ -214,6 +241,17 @@ class Host:
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")
         return _read(output)
+
+
+def _frame(scene):
+    """What the worker has to know of a scene."""
+    return {
+        "size": scene.size,
+        "samples": 1 if scene.environment is None else ENVIRONMENT_SAMPLES,
+        "radius": 1.0,
+        "light": scene.light,
+        "environment": scene.environment,
+    }
 
 
 def _on_sphere(text):

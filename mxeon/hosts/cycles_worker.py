@@ -50,12 +50,12 @@ def set_output(scene, path, size):
     render.image_settings.exr_codec = "NONE"
 
 
-def set_sampling(scene, samples):
-    """Make `scene` render by Cycles and OSL, every sample at its pixel's centre."""
+def set_sampling(scene, samples, osl):
+    """Make `scene` render by Cycles, with or without OSL, every sample at its pixel's centre."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
-    cycles.shading_system = True
+    cycles.shading_system = osl
     cycles.samples = samples
     cycles.use_adaptive_sampling = False
     cycles.use_denoising = False
@@ -65,8 +65,8 @@ def set_sampling(scene, samples):
     cycles.filter_width = 0.01
 
 
-def add_sphere(scene, radius, shader):
-    """Add an exact sphere around the origin, a point cloud of one point, wearing `shader`."""
+def add_sphere(scene, radius, material):
+    """Add an exact sphere around the origin, a point cloud of one point, wearing `material`."""
     mesh = bpy.data.meshes.new("sphere")
     mesh.from_pydata([(0.0, 0.0, 0.0)], [], [])
     sphere = bpy.data.objects.new("sphere", mesh)
@@ -76,20 +76,39 @@ def add_sphere(scene, radius, shader):
     bpy.ops.object.convert(target="POINTCLOUD")
     points = bpy.context.view_layer.objects.active.data
     points.attributes.new("radius", "FLOAT", "POINT").data[0].value = radius
-    points.materials.append(script_material(shader))
+    points.materials.append(material)
 
 
 def script_material(shader):
     """A material whose surface is the output of the compiled OSL file `shader`."""
+    material, script = surface_material("ShaderNodeScript")
+    script.mode = "EXTERNAL"
+    script.filepath = shader
+    connect(material, script)
+    return material
+
+
+def native_material(kind, inputs):
+    """A material whose surface is a node of Blender's, with some of its inputs set."""
+    material, node = surface_material(kind)
+    for name, value in inputs.items():
+        node.inputs[name].default_value = value
+    connect(material, node)
+    return material
+
+
+def surface_material(kind):
+    """A new material that holds one node of a kind, and that node."""
     material = bpy.data.materials.new("material")
     nodes = material.node_tree.nodes
     nodes.clear()
-    script = nodes.new("ShaderNodeScript")
-    script.mode = "EXTERNAL"
-    script.filepath = shader
-    surface = nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
-    material.node_tree.links.new(script.outputs[0], surface)
-    return material
+    return material, nodes.new(kind)
+
+
+def connect(material, node):
+    """Make the first output of a node the surface of its material."""
+    surface = material.node_tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
+    material.node_tree.links.new(node.outputs[0], surface)
 
 
 def add_light(scene, direction):
@@ -111,15 +130,16 @@ def add_environment(scene, radiance):
     scene.world = world
 
 
-def render(shader, output, size, samples, radius, light, environment):
-    """Compile the OSL file `shader`, render it on a sphere to the file `output`; the reply."""
-    compiled = os.path.splitext(shader)[0] + ".oso"
-    if not _cycles.osl_compile(shader, compiled):
-        return {"error": "compile"}
+def render(output, size, samples, radius, light, environment, shader=None, native=None):
+    """Render the OSL file `shader`, or a node of Blender's, on a sphere; the reply."""
+    if shader:
+        compiled = os.path.splitext(shader)[0] + ".oso"
+        if not _cycles.osl_compile(shader, compiled):
+            return {"error": "compile"}
     scene = unit_scene(2.0 * radius)
     set_output(scene, output, size)
-    set_sampling(scene, samples)
-    add_sphere(scene, radius, compiled)
+    set_sampling(scene, samples, osl=native is None)
+    add_sphere(scene, radius, native_material(**native) if native else script_material(compiled))
     if light:
         add_light(scene, light)
     if environment:
