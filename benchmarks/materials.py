@@ -5,14 +5,14 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.rounds import Check, Group, figure, interleave, ratio, scaled
+from benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio, scaled
 from mxeon.generation import generate
 from mxeon.hosts import gl
 from mxeon.library import LIBRARIES
 from mxeon.scene import SIDE, sphere
 
 SIZE = 1024
-FRAMES = 4
+FRAMES = 2
 MESH = 128  # squares along a side of the mesh, few enough to cost nothing beside the pixels
 LOBE = """<input name="roughness" type="float" value="0.6"/>
     <input name="energy_compensation" type="boolean" value="true"/>
@@ -84,16 +84,17 @@ class Frame:
         return pixels.reshape(height, width, 3)[::-1]
 
 
-def measure(rounds=9, size=SIZE):
+def measure(rounds=7, size=SIZE):
     """The `Group` of all materials."""
     host, figures, checks = gl.Host(), [], []
+    device = host.identity().device
+    clock = clock_of(device)
     for node in NODES:
         shaders = {library: shader(node, library) for library in LIBRARIES}
-        compiling = interleave(
-            {name: partial(Frame, host, each, 8) for name, each in shaders.items()}, rounds
-        )
+        made = {name: partial(Frame, host, each, 8) for name, each in shaders.items()}
+        compiling = interleave(made, rounds, clock)
         frames = {name: Frame(host, each, size) for name, each in shaders.items()}
-        drawing = interleave({name: each.draw for name, each in frames.items()}, rounds)
+        drawing = interleave({name: each.draw for name, each in frames.items()}, rounds, clock)
         difference = np.abs(frames["eonlib"].image() - frames["stock"].image())
         difference = difference[sphere(size).normal[..., 2] > FACING].max()
         checks.append(Check(f"{node}, eonlib - stock", float(difference), TOLERANCE))
@@ -106,7 +107,6 @@ def measure(rounds=9, size=SIZE):
             figure(f"source, {node}, eonlib", "characters", lengths[:1]),
             ratio(f"source, {node}, eonlib / stock", *zip(lengths), SHORTER.get(node)),
         ]
-    device = host.identity().device
     host.close()
     title = f"Materials on {device}, {size} x {size}"
     return Group("materials", title, tuple(figures), tuple(checks))

@@ -20,7 +20,7 @@ C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
 # The printed forms lose digits where they cancel, as 1e-16 / mu: compared above this cosine.
 COMPARED = 1e-3
 TOLERANCE = 1e-11
-PAIRS = (10_000, 100_000, 1_000_000, 10_000_000)
+PAIRS = (10_000, 100_000, 1_000_000, 10_000_000, 30_000_000)
 GOALS = {1_000_000: 3.0, 10_000_000: 3.5}
 
 

@@ -14,6 +14,31 @@ rounds of one run. What was timed was compared with the float64 reference, or wi
 the same run.
 """
 
+# [Portsmouth2025], Table 1, ns: row, value, with cosine sampling, with CLTC sampling; and the names
+# that value and samplers have here.
+TABLE_1 = (
+    ("Lambert", 1.4, 67.2, None, "Lambert", "Lambert"),
+    ("FON", 6.3, 67.2, None, "FON", "FON"),
+    ("QON", 6.3, 67.4, None, "QON", "QON"),
+    ("fullON", 141.7, 211.218, None, "full Oren-Nayar", "full Oren-Nayar"),
+    ("EON (approx)", 20.8, 105.8, 217.0, "EON, quartic", "quartic"),
+    ("EON (exact)", 108.7, 193.5, 297.0, "EON, printed", "printed"),
+    ("eonlib", None, None, None, "EON, eonlib", "eonlib"),
+)
+SAMPLERS = ("cosine", "LTC, d = 0", "LTC", "CLTC alone", "CLTC", "exact")
+
+
+def table_1(group):
+    """Table 1 of the paper beside what was measured here, in Markdown."""
+    found = {each.name: each.median for each in group.figures}
+    head = ["BRDF", "paper: value", "cosine", "CLTC", "here: value", *SAMPLERS]
+    rows = [head, ["---"] * len(head)]
+    for name, *paper, value, rest in TABLE_1:
+        here = [found.get(value), *(found.get(f"{each} + {rest}") for each in SAMPLERS)]
+        rows.append([name, *("" if x is None else f"{x:.3g}" for x in (*paper, *here))])
+    lines = ["### Table 1 of the paper, and here", "", *(f"| {' | '.join(r)} |" for r in rows)]
+    return "\n".join(lines) + "\n"
+
 
 def table(group):
     """The figures of a group and its worst check, in Markdown."""
@@ -65,7 +90,7 @@ def write(folder, file):
     parts, groups = [HEAD], []
     for group, machine in record.read(file):
         groups.append(group)
-        parts.append(table(group))
+        parts += [table(group), *([table_1(group)] if group.name == "shaders" else [])]
         parts.append("Measured on: " + ", ".join(f"{k} {v}" for k, v in machine.items()) + ".\n")
         for image in plot(group, folder / "images") if group.series else ():
             parts.append(f"![{group.title}, {image.stem}](images/{image.name})\n")

@@ -50,6 +50,28 @@ vec3 printed_quartic(float mu_o, float mu_i, float s, vec3 rho, float roughness)
     return printed_eon(mu_o, mu_i, s, rho, roughness, E_o, E_i);
 }
 
+// What printed_quartic_of takes: all of Eq. (19) that depends on the material alone.
+vec3 printed_tint(vec3 rho, float roughness, float A)
+{
+    float average = A * (1.0 + EON_C2 * roughness);
+    vec3 tint = rho * rho * average / (vec3(1.0) - rho * (1.0 - average));
+    return tint * (1.0 / EON_PI) / max(PRINTED_EPSILON, 1.0 - average);
+}
+
+// printed_quartic with the material's terms taken out of it.
+vec3 printed_quartic_of(float mu_o, float mu_i, float s, vec3 scale, vec3 tint, float roughness,
+                        float A)
+{
+    float m_o = 1.0 - mu_o;
+    float m_i = 1.0 - mu_i;
+    float G_o = m_o * (EON_G1 + m_o * (EON_G2 + m_o * (EON_G3 + m_o * EON_G4)));
+    float G_i = m_i * (EON_G1 + m_i * (EON_G2 + m_i * (EON_G3 + m_i * EON_G4)));
+    float lost_o = max(PRINTED_EPSILON, 1.0 - A * (1.0 + roughness * G_o));
+    float lost_i = max(PRINTED_EPSILON, 1.0 - A * (1.0 + roughness * G_i));
+    float quotient = s > 0.0 ? s / max(mu_i, mu_o) : s;
+    return scale * (1.0 + roughness * quotient) + tint * lost_o * lost_i;
+}
+
 // [Portsmouth2025], Eq. (28).
 vec3 printed_environment(float mu, vec3 rho, float roughness)
 {

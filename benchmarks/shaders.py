@@ -3,11 +3,11 @@
 
 Each invocation calls its function many times, with arguments that change from call to call in ways
 no compiler foresees, and stores the sum. A loop that adds up the arguments alone is subtracted. A
-loop of one pass gives the values of the first arguments, which are compared with float64.
+loop of one pass gives the values of the first arguments, which are compared with float64. On a
+software device processor time is taken, which other work on the machine does not enter.
 """
 
 import re
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -15,23 +15,13 @@ import moderngl
 import MaterialX as mx
 import numpy as np
 
-from benchmarks.rounds import Check, Group, interleave, less, ratio, scaled
-from mxeon import albedo, models, sampling, twins
+from benchmarks.rivals import BASES, BRDFS, GOALS, RIVALS
+from benchmarks.rounds import Check, Group, clock_of, interleave, less, ratio, scaled
+from mxeon import twins
 
 PRINTED = Path(__file__).with_name("printed.glsl")
 CALLS, INVOCATIONS = 256, 2**14
 COLUMNS = ("mu_o", "mu_i", "turn", "roughness", "r", "g", "b", "u1", "u2")
-
-# What drivers' float32 leaves of pi f cos <= 2: 14 roundings and two fits; as the shader twins'.
-VALUE = 2e-6
-# Listing 1 in float32: 1 - E loses digits, 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
-EXACT = 3e-4
-# [Portsmouth2025], Eq. (14): 6.0e-4 in E, twice 3.61 x 0.288 x 6.0e-4 in the value.
-QUARTIC = 1.25e-3
-# Weights of samples: a random number stretched over a part, and its rounding with it, tenfold.
-WEIGHT = 2e-4
-# Samples beside a border between parts may fall to its other side.
-SHARE = 2e-3
 
 STEP = """
     mu_o = fract(mu_o + 0.6180339); mu_i = fract(mu_i + 0.4142135); turn = fract(turn + 0.7320508);
@@ -51,7 +41,7 @@ void main()
     float mu_o = given[n], mu_i = given[n + 1u], turn = given[n + 2u], roughness = given[n + 3u];
     vec3 rho = vec3(given[n + 4u], given[n + 5u], given[n + 6u]);
     float u1 = given[n + 7u], u2 = given[n + 8u];
-    vec3 sum = vec3(0.0);
+    vec3 sum = vec3(0.0);%s
     for (int i = 0; i < calls; ++i)
     {
         float S_o = sqrt(1.0 - mu_o * mu_o), S_i = sqrt(1.0 - mu_i * mu_i);
@@ -64,140 +54,6 @@ void main()
     sums[3u * k] = sum.x; sums[3u * k + 1u] = sum.y; sums[3u * k + 2u] = sum.z;
 }
 """
-
-
-@dataclass(frozen=True)
-class Rival:
-    """A function to time.
-
-    Attributes
-    ----------
-    name : str
-    statement : str
-        GLSL that adds to `sum`.
-    base : str
-        The loop to subtract, by its statement's key in BASES.
-    exact : callable or None
-        Columns of arguments -> what the statement should add, (N, 3).
-    tolerance : float
-    share : float
-        Of the elements, those that may miss the tolerance.
-    """
-
-    name: str
-    statement: str
-    base: str
-    exact: object
-    tolerance: float
-    share: float = 0.0
-
-
-# Rivals with these bases add BRDFs, which are compared times pi and the cosine.
-BRDFS = ("color", "value", "frame")
-BASES = {
-    "color": "sum += rho;",
-    "value": "sum += rho * (cosine + mu_o + mu_i + roughness);",
-    "frame": "sum += rho * (dot(wo, wi) + wo.x + wo.z + wi.x + wi.z + roughness);",
-    "albedo": "sum += rho * (mu_o + roughness);",
-    "draw": "sum += rho * (wo.x + wo.z + u1 + u2 + roughness);",
-    "pdf": "sum += vec3(wo.x + wo.z + wi.x + wi.y + wi.z + roughness);",
-}
-
-
-def frames(a):
-    """Directions of columns of arguments, in float64, and unit."""
-    mu_o, mu_i, x = a["mu_o"], a["mu_i"], 2.0 * a["turn"] - 1.0
-    S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
-    wi = np.stack([S_i * x, S_i * np.sqrt(1.0 - x * x), mu_i], -1)
-    return np.stack([S_o, 0.0 * S_o, mu_o], -1), wi
-
-
-def _rho(a):
-    return np.stack([a["r"], a["g"], a["b"]], -1)
-
-
-def value_of(brdf, a):
-    """The BRDF at columns of arguments."""
-    wo, wi = frames(a)
-    parameter = () if brdf is models.lambert_brdf else (a["roughness"],)
-    return brdf(wo, wi, _rho(a), *parameter)
-
-
-def albedo_of(a):
-    """Directional albedo of EON."""
-    return albedo.eon_albedo_dir(a["mu_o"], _rho(a), a["roughness"])
-
-
-def weight_of(name, a):
-    """EON times the cosine over the density of the sampler's own sample."""
-    wo, _ = frames(a)
-    sampler = next(each for each in sampling.SAMPLERS if each.name == name)
-    wi, pdf = sampler.sample(wo, np.stack([a["u1"], a["u2"]], -1), a["roughness"])
-    return models.eon_brdf(wo, wi, _rho(a), a["roughness"]) * (wi[:, 2] / pdf)[:, None]
-
-
-def pdf_of(name, a):
-    """pi times the density of the given direction, in three equal channels."""
-    sampler = next(each for each in sampling.SAMPLERS if each.name == name)
-    return np.pi * np.repeat(sampler.pdf(*frames(a), a["roughness"])[:, None], 3, 1)
-
-
-def _value(name, call, exact, tolerance=VALUE, base="value"):
-    """A BRDF; `value_of` and `checked` compare it times pi and the cosine."""
-    statement = f"sum += {call};"
-    return Rival(name, statement, base, partial(value_of, exact), tolerance)
-
-
-def _draw(name, wi, pdf, value, sampler, tolerance=WEIGHT):
-    body = f"{{ {wi} sum += {value} * (wi.z / {pdf}); }}"
-    return Rival(name, body, "draw", partial(weight_of, sampler), tolerance, SHARE)
-
-
-TWIN = "{}(wo, wi, rho, roughness)"
-OURS = "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)"
-PAPER = "printed_{}(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)"
-STOCK = "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI"
-DRAWN = "printed_quartic(min(wo.z, 1.0), min(wi.z, 1.0), dot(wo, wi) - wo.z * wi.z, rho, roughness)"
-EXACTLY = "eon_brdf(wo, wi, rho, roughness)"
-RIVALS = (
-    _value("Lambert", "rho / EON_PI", models.lambert_brdf, base="color"),
-    _value("FON", TWIN.format("fon_brdf"), models.fon_brdf, base="frame"),
-    _value("QON", TWIN.format("qon_brdf"), models.qon_brdf, base="frame"),
-    _value("full Oren-Nayar", TWIN.format("oren_nayar_brdf"), models.oren_nayar_brdf, base="frame"),
-    _value("EON, quartic", PAPER.format("quartic"), models.eon_brdf, QUARTIC),
-    _value("EON, printed", PAPER.format("exact"), models.eon_brdf, EXACT),
-    _value("EON, stock", STOCK, models.eon_brdf, EXACT),
-    _value("EON, eonlib", OURS, models.eon_brdf),
-    Rival("environment, quartic", "sum += printed_environment(mu_o, rho, roughness);", "albedo",
-          albedo_of, QUARTIC),
-    Rival("environment, stock",
-          "sum += mx_oren_nayar_compensated_diffuse_dir_albedo(mu_o, roughness, rho);", "albedo",
-          albedo_of, EXACT),
-    Rival("environment, eonlib", "sum += eon_albedo_dir(mu_o, rho, roughness);", "albedo",
-          albedo_of, VALUE),
-    _draw("cosine + quartic", "wi = cosine_sample(u1, u2);", "cosine_pdf(wi)", DRAWN, "cosine",
-          20 * QUARTIC),
-    _draw("CLTC + quartic", "vec4 w = printed_sample(wo, u1, u2, roughness); wi = w.xyz;", "w.w",
-          DRAWN, "eon_cltc", 4 * QUARTIC),
-    _draw("exact + eonlib", "wi = eon_sample(wo, u1, u2, 1.0, roughness);",
-          "eon_pdf(wo, wi, 1.0, roughness)", EXACTLY, "eon"),
-    Rival("pdf, CLTC", "sum += vec3(EON_PI * eon_cltc_pdf(wo, wi, roughness));", "pdf",
-          partial(pdf_of, "eon_cltc"), 2e-5),
-    Rival("pdf, exact", "sum += vec3(EON_PI * eon_pdf(wo, wi, 1.0, roughness));", "pdf",
-          partial(pdf_of, "eon"), 2e-5),
-)
-HOISTED = ("EON, quartic", "EON, stock", "EON, eonlib")
-GOALS = (
-    ("EON, eonlib", "EON, quartic", 0.9),
-    ("EON, eonlib", "EON, stock", 0.7),
-    ("EON, eonlib (hoisted)", "EON, quartic (hoisted)", None),
-    ("EON, eonlib (hoisted)", "EON, quartic", 0.65),
-    ("environment, eonlib", "environment, stock", None),
-    ("environment, eonlib", "environment, quartic", None),
-    ("exact + eonlib", "CLTC + quartic", 0.75),
-    ("exact + eonlib", "cosine + quartic", None),
-    ("pdf, exact", "pdf, CLTC", 0.5),
-)
 
 
 def library_source():
@@ -226,9 +82,9 @@ class Device:
         self._given = self.context.buffer(given.tobytes())
         self._sums = self.context.buffer(reserve=12 * invocations)
 
-    def kernel(self, statement, material=MATERIAL):
-        """The compiled loop around a statement."""
-        return self.context.compute_shader(KERNEL % (self.source, statement, STEP + material))
+    def kernel(self, statement, before="", step=STEP + MATERIAL):
+        """The compiled loop around a statement, after what comes before the loop."""
+        return self.context.compute_shader(KERNEL % (self.source, before, statement, step))
 
     def run(self, kernel, calls=CALLS):
         """The sums of so many calls, as raw memory of the device, complete."""
@@ -252,23 +108,32 @@ def checked(device, rival, kernel):
     return Check(rival.name, float(worst), rival.tolerance)
 
 
+def kernels(device):
+    """The loops to subtract and those of the rivals, by name; a hoisted material stays the same."""
+    bases = {
+        name: device.kernel(text, step=STEP if name == "hoisted" else STEP + MATERIAL)
+        for name, text in BASES.items()
+    }
+    found = {
+        each.name: device.kernel(
+            each.statement, each.before, STEP if each.base == "hoisted" else STEP + MATERIAL
+        )
+        for each in RIVALS
+    }
+    return bases, found
+
+
 def measure(rounds=21, invocations=INVOCATIONS, calls=CALLS):
     """The `Group` of all rivals."""
     device = Device(invocations)
-    timed = {each.name: each for each in RIVALS}
-    kernels = {name: device.kernel(each.statement) for name, each in timed.items()}
-    checks = tuple(checked(device, timed[name], kernel) for name, kernel in kernels.items())
-    for name in HOISTED:
-        kernels[f"{name} (hoisted)"] = device.kernel(timed[name].statement, "")
-        timed[f"{name} (hoisted)"] = timed[name]
-    bases = {key: device.kernel(text) for key, text in BASES.items()}
-    bases["hoisted"] = device.kernel(BASES["value"], "")
-    runs = {n: partial(device.run, k, calls) for n, k in (bases | kernels).items()}
-    seconds = interleave(runs, rounds)
-    base = {n: "hoisted" if n.endswith("(hoisted)") else each.base for n, each in timed.items()}
-    net = {name: less(seconds[name], seconds[base[name]]) for name in timed}
+    bases, timed = kernels(device)
+    checks = tuple(checked(device, each, timed[each.name]) for each in RIVALS)
+    runs = {n: partial(device.run, k, calls) for n, k in (bases | timed).items()}
+    renderer = device.context.info["GL_RENDERER"]
+    seconds = interleave(runs, rounds, clock_of(renderer))
+    net = {each.name: less(seconds[each.name], seconds[each.base]) for each in RIVALS}
     factor = 1e9 / (invocations * calls)
     figures = [scaled(name, "ns", values, factor) for name, values in net.items()]
     figures += [ratio(f"{a} / {b}", net[a], net[b], goal) for a, b, goal in GOALS]
-    title = f"Shaders on {device.context.info['GL_RENDERER']}, ns per call, all cores"
+    title = f"Shaders on {renderer}, ns per call"
     return Group("shaders", title, tuple(figures), checks)

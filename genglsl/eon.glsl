@@ -41,6 +41,12 @@ float fon_a(float roughness)
     return 1.0 / (1.0 + EON_C1 * roughness);
 }
 
+// rho A_F / pi of [Portsmouth2025], Eq. (10).
+vec3 fon_scale(vec3 rho, float roughness)
+{
+    return 1.0 / EON_PI * fon_a(roughness) * rho;
+}
+
 // A_q of [Portsmouth2025], below Eq. (1).
 float qon_a(float sigma)
 {
@@ -92,7 +98,7 @@ float qon_quotient(float mu_o, float mu_i, float s)
 // s / t_F of [Portsmouth2025], Eq. (11).
 float fon_quotient(float mu_o, float mu_i, float s)
 {
-    return qon_quotient(mu_o, mu_i, s) + min(s, 0.0);
+    return s > 0.0 ? oren_nayar_quotient(s, max(mu_o, mu_i)) : s;
 }
 
 // Weight of H(mu_o) H(mu_i) beside 1 + r s / t_F: [Portsmouth2025], Eq. (19) over Eq. (10). With
@@ -113,7 +119,16 @@ vec3 qon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float sigma)
 // [Portsmouth2025], Eq. (16).
 vec3 eon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float roughness)
 {
+    vec3 weight = eon_multiple_weight(rho, roughness);
+    vec3 scale = fon_scale(rho, roughness);
     float single = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
-    vec3 multiple = fon_loss(mu_o) * fon_loss(mu_i) * eon_multiple_weight(rho, roughness);
-    return 1.0 / EON_PI * fon_a(roughness) * rho * (vec3(single) + multiple);
+    return scale * (vec3(single) + fon_loss(mu_o) * fon_loss(mu_i) * weight);
+}
+
+// eon_brdf_mu from the colors of its two lobes, which depend on the material alone and are computed
+// once for many directions: fon_scale, and fon_scale times eon_multiple_weight.
+vec3 eon_brdf_of(float mu_o, float mu_i, float s, vec3 single, vec3 multiple, float roughness)
+{
+    float quotient = fon_quotient(mu_o, mu_i, s);
+    return (1.0 + roughness * quotient) * single + fon_loss(mu_o) * fon_loss(mu_i) * multiple;
 }

@@ -11,7 +11,8 @@
 #define EON_HORIZON (1.0 / 16777216.0)
 
 // Inverse distributions of two parts of EON. Source: fits/eon_sampling.py. Domain: random numbers
-// and roots of them in [0, 1]. Largest relative error of the density: 1.27e-5 and 5.7e-6.
+// and roots of them in [0, 1]. Largest relative error of the density: 1.27e-5 and 5.7e-6; of ROOT,
+// the inverse of m = y Q(y): 1.8e-7.
 #define EON_MULTIPLE0 -0.1221922778
 #define EON_MULTIPLE1 0.3674879021
 #define EON_MULTIPLE2 -0.5228118253
@@ -24,6 +25,12 @@
 #define EON_UPPER3 -0.0096471279
 #define EON_UPPER4 0.0067340733
 #define EON_UPPER5 -0.0065897093
+#define EON_ROOT0 1.0938298847
+#define EON_ROOT1 -0.0781435851
+#define EON_ROOT2 -0.0116435545
+#define EON_ROOT3 -0.0032983444
+#define EON_ROOT4 0.0001101024
+#define EON_ROOT5 -0.0008543250
 
 // eon_multiple_weight of a grey rho.
 float eon_grey_weight(float rho, float roughness)
@@ -38,58 +45,50 @@ float eon_cube_gap(float mu, float S)
     return mu * (1.0 + S + S * S) / (1.0 + S);
 }
 
-// K, the integral of sin^2 (1 - cos) up to this angle, from H: the two parts towards wo hold
-// r (c1 - H(mu_o)) together. Near the normal no digit of the difference is left, and the bounds
-// hold K, which is 0.2 to 0.4521 times (1 - mu) S^3.
-float eon_segment(float mu, float S)
-{
-    float both = 0.5 * EON_PI * oren_nayar_quotient(EON_C1 - fon_loss(mu), S);
-    float scale = (1.0 - mu) * S * S * S;
-    float K = both - (1.0 - mu) / 3.0 * eon_cube_gap(mu, S);
-    return clamp(K, 0.2 * scale, 0.4521 * scale);
-}
-
 // Direction with cosine mu and sine S at an azimuth whose sine is uniform, towards wo.
 vec3 eon_towards(float mu, float S, float u2)
 {
     return vec3(2.0 * S * sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu);
 }
 
-// Drawn in proportion to x (1 / mu_o - 1) below mu_o: 1 - S^3 is uniform.
-vec3 eon_lower_draw(float v, float u2, float mu_o, float S_o)
+// Cosine drawn in proportion to S mu below mu_o: x = 1 - S^3 is uniform.
+float eon_lower_cosine(float x, float S)
 {
-    float x = v * mu_o * eon_cube_gap(mu_o, S_o);
-    float S = pow(1.0 - x, 1.0 / 3.0);
-    return eon_towards(sqrt(x * (1.0 + S) / (1.0 + S + S * S)), S, u2);
+    return sqrt(x * (1.0 + S) / (1.0 + S + S * S));
 }
 
-// Q(y) of eon_upper_draw, 1 at y = 1.
+// y(m), inverse of m = y Q(y): (K / K(pi / 2))^(2 / 5), K the integral of sin^2 (1 - cos) up to the
+// angle whose cosine is 1 - m.
+float eon_upper_root(float m)
+{
+    float high = EON_ROOT3 + m * (EON_ROOT4 + m * EON_ROOT5);
+    return m * (EON_ROOT0 + m * (EON_ROOT1 + m * (EON_ROOT2 + m * high)));
+}
+
+// Q(y) of eon_upper_cosine, 1 at y = 1.
 float eon_upper_quotient(float y)
 {
-    float Q = EON_UPPER2 + y * (EON_UPPER3 + y * (EON_UPPER4 + y * EON_UPPER5));
-    return 1.0 + (1.0 - y) * (EON_UPPER0 + y * (EON_UPPER1 + y * Q));
+    float y2 = y * y;
+    float even = EON_UPPER0 + y2 * (EON_UPPER2 + y2 * EON_UPPER4);
+    float odd = EON_UPPER1 + y2 * (EON_UPPER3 + y2 * EON_UPPER5);
+    return 1.0 + (1.0 - y) * (even + y * odd);
 }
 
-// Drawn in proportion to x (1 / mu_i - 1) above mu_o: K is uniform, and
-// 1 - mu = m(v K_o) (1 - mu_o) / m(K_o), m(K) = y Q(y), y = (K / K(pi / 2))^(2 / 5).
-vec3 eon_upper_draw(float v, float u2, float mu_o, float S_o)
+// Cosine drawn in proportion to S (1 - mu) above mu_o: K is uniform, y = v^(2 / 5), and
+// 1 - mu = m(v K_o) (1 - mu_o) / m(K_o), m(K) = y Q(y).
+float eon_upper_cosine(float y, float mu_o, float y_o)
 {
-    float y_o = pow(eon_segment(mu_o, S_o) / (0.25 * EON_PI - 1.0 / 3.0), 0.4);
-    float y = pow(v, 0.4);
-    float m = (1.0 - mu_o) * y * eon_upper_quotient(y_o * y) / eon_upper_quotient(y_o);
-    return eon_towards(1.0 - m, sqrt(m * (2.0 - m)), u2);
+    return 1.0 - (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y));
 }
 
-// Drawn in proportion to H(mu_i); mu is a function of the cube root of v.
-vec3 eon_multiple_draw(float v, float u2)
+// Cosine drawn in proportion to H(mu) mu, a function of t = v^(1 / 3).
+float eon_multiple_cosine(float t)
 {
-    float t = pow(v, 1.0 / 3.0);
     float m = max(1.0 - t, 0.0);
     float w = sqrt(m);
-    float high = EON_MULTIPLE3 + w * (EON_MULTIPLE4 + m * m * EON_MULTIPLE5);
-    float low = EON_MULTIPLE0 + m * (EON_MULTIPLE1 + w * (EON_MULTIPLE2 + w * high));
-    float mu = t * (1.0 + m * low);
-    return eon_around(mu, sqrt((1.0 - mu) * (1.0 + mu)), u2);
+    float even = EON_MULTIPLE0 + m * (EON_MULTIPLE1 + m * EON_MULTIPLE3);
+    float odd = EON_MULTIPLE2 + m * (EON_MULTIPLE4 + m * m * EON_MULTIPLE5);
+    return t * (1.0 + m * (even + m * w * odd));
 }
 
 // Drawn in proportion to 1 + q x: along each chord of the disk, x by its inverse distribution from
@@ -104,23 +103,32 @@ vec3 eon_flat_draw(float v, float u2, float q)
 }
 
 // Drawn from one of the four parts, chosen by what their integrals over pi leave of u1; wo has
-// azimuth 0. The flat part's integral is 1.
+// azimuth 0. The flat part's integral is 1. The others share one power, the dearest operation:
+// where lanes of a processor choose different parts, it takes every lane through all.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
     float q = roughness * S_o;
+    float y_o = eon_upper_root(1.0 - mu_o);
     float lower = 2.0 / EON_PI * q * (1.0 - mu_o) / 3.0 * eon_cube_gap(mu_o, S_o);
-    float upper = 2.0 / EON_PI * q * eon_segment(mu_o, S_o);
+    float upper = EON_C1 * q * y_o * y_o * sqrt(y_o);
     float multiple = EON_LOSS_AVG * eon_grey_weight(rho, roughness) * fon_loss(mu_o);
-    float v = u1 * (lower + upper + multiple + 1.0);
+    float towards = lower + upper;
+    float polar = towards + multiple;
+    float v = u1 * (polar + 1.0);
+    float x = v * (1.5 * EON_PI * mu_o / (q * (1.0 - mu_o)));
+    float part = v < towards ? (v - lower) * (1.0 / upper) : (v - towards) * (1.0 / multiple);
+    float power = v < lower || v >= towards ? 1.0 / 3.0 : 0.4;
+    float root = pow(v < lower ? max(1.0 - x, 0.0) : part, power);
+    if (v >= polar)
+        return eon_flat_draw(min(v - polar, EON_BELOW_ONE), u2, q);
+    float mu = v < towards ? eon_upper_cosine(root, mu_o, y_o) : eon_multiple_cosine(root);
+    float S = sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
     if (v < lower)
-        return eon_lower_draw(v / lower, u2, mu_o, S_o);
-    v = v - lower;
-    if (v < upper)
-        return eon_upper_draw(v / upper, u2, mu_o, S_o);
-    v = v - upper;
-    if (v < multiple)
-        return eon_multiple_draw(v / multiple, u2);
-    return eon_flat_draw(min(v - multiple, EON_BELOW_ONE), u2, q);
+    {
+        mu = eon_lower_cosine(x, root);
+        S = root;
+    }
+    return v < towards ? eon_towards(mu, S, u2) : eon_around(mu, S, u2);
 }
 
 // In proportion to EON with a grey rho, times the cosine: docs/sampling.md. The end of a part may
@@ -143,5 +151,5 @@ float eon_pdf(vec3 wo, vec3 wi, float rho, float roughness)
     float multiple = weight * fon_loss(mu_o) * fon_loss(mu_i);
     float parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + multiple;
     float total = 1.0 + EON_C1 * roughness + (weight * EON_LOSS_AVG - roughness) * fon_loss(mu_o);
-    return mu_i * parts / (EON_PI * total);
+    return mu_i * parts * (1.0 / (EON_PI * total));
 }

@@ -213,14 +213,16 @@ def upper_cosine(v, mu_o, S_o):
     """
     y_o = (segment(mu_o, S_o) / (0.25 * np.pi - 1.0 / 3.0)) ** 0.4
     y = v**0.4
-    m = (1.0 - mu_o) * y * _upper_quotient(y_o * y) / _upper_quotient(y_o)
+    m = (1.0 - mu_o) / _upper_quotient(y_o) * (y * _upper_quotient(y_o * y))
     return 1.0 - m, np.sqrt(m * (2.0 - m))
 
 
 def _upper_quotient(y):
     """Q(y) of `upper_cosine`, 1 at y = 1."""
     a, b, c, d, e, f = UPPER
-    return 1.0 + (1.0 - y) * (a + y * (b + y * (c + y * (d + y * (e + y * f)))))
+    y2 = y * y
+    even, odd = a + y2 * (c + y2 * e), b + y2 * (d + y2 * f)
+    return 1.0 + (1.0 - y) * (even + y * odd)
 
 
 def multiple_cosine(v):
@@ -229,7 +231,8 @@ def multiple_cosine(v):
     t = np.cbrt(v)
     m = 1.0 - t
     w = np.sqrt(m)
-    mu = t * (1.0 + m * (a + m * (b + w * (c + w * (d + w * (e + m * m * f))))))
+    even, odd = a + m * (b + m * d), c + m * (e + m * m * f)
+    mu = t * (1.0 + m * (even + m * w * odd))
     return mu, np.sqrt((1.0 - mu) * (1.0 + mu))
 
 

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
+import tolerances
 
 from benchmarks import __main__ as command
-from benchmarks import materials, models, page, record, shaders, tool
+from benchmarks import cycles, materials, models, page, record, shaders, tool
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
 from mxeon.hosts import NotRun, open_host
 
@@ -113,3 +117,38 @@ def test_committed_page_is_made_from_the_committed_json():
     groups = [group for group, _ in record.read(command.DOCS / "performance.json")]
     assert {group.name for group in groups} == set(command.GROUPS)
     assert all(page.table(group) in text for group in groups)
+
+
+def test_table_1_has_the_paper_beside_what_was_measured():
+    found = page.table_1(Group("shaders", "T", (figure("cosine + quartic", "ns", [3.0]),)))
+    assert "| EON (approx) | 20.8 | 106 | 217 |  | 3 |" in found
+
+
+def test_names_of_table_1_are_names_of_rivals():
+    named = {row[-2] for row in page.TABLE_1}
+    named |= {f"cosine + {row[-1]}" for row in page.TABLE_1[1:]}
+    named |= {f"{sampler} + quartic" for sampler in page.SAMPLERS[:-1]} | {"exact + eonlib"}
+    assert named <= {rival.name for rival in shaders.RIVALS}
+
+
+def test_pictures_of_cycles_have_the_albedos_that_they_are_compared_with():
+    try:
+        assert_right(cycles.measure(rounds=1, size=32, samples=(64,)))
+    except NotRun as reason:
+        pytest.skip(str(reason))
+
+
+def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_shape():
+    compiled = pytest.importorskip("mxeon.compiled")
+    up = np.array([[0.0, 0.0, 1.0]] * 5)
+    for pairs, channels in ((0, 3), (1, 3), (5, 2), (5, 3)):
+        rho, r = np.full((pairs, channels), 0.5), np.full(pairs, 0.5)
+        assert compiled.eon_brdf(up[:pairs], up[:pairs], rho, r).shape == (pairs, channels)
+
+
+def test_script_gives_the_arc_tangent_of_the_compiled_models():
+    compiled = pytest.importorskip("mxeon.compiled")
+    fit = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "arc_tangent.py"))
+    found = fit["coefficients"]()
+    assert np.ravel(compiled.ATAN).tolist() == found
+    assert fit["largest_error"](found, 101) <= tolerances.ROUNDING

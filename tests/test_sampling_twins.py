@@ -7,6 +7,8 @@ although all is right: each of them runs at its share of it.
 
 import inspect
 import re
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +16,15 @@ from hemispheres import BY_NAME, every_sampler, view
 from scipy import stats
 from test_sampling_statistics import binned, expected
 from test_twins import directions, text
-from tolerances import TWIN_DIRECTION, TWIN_DIRECTION_SHARE, TWIN_LENGTH, TWIN_PDF, TWIN_WEIGHT
+from tolerances import (
+    FIT_ROOT,
+    REFIT,
+    TWIN_DIRECTION,
+    TWIN_DIRECTION_SHARE,
+    TWIN_LENGTH,
+    TWIN_PDF,
+    TWIN_WEIGHT,
+)
 
 from mxeon import eon_sampling, sampling, twins
 from mxeon.hosts import NotRun, open_host
@@ -24,6 +34,7 @@ FALSE_ALARM = 1e-4
 DRAWS = [(sampler, mu, r) for sampler in SAMPLERS for mu, r in ((0.1, 1.0), (0.7, 0.3))]
 DRAWS += [(BY_NAME["eon"], mu, r) for mu, r in ((0.0, 1.0), (1e-3, 0.5), (0.97, 1.0), (1.0, 1.0))]
 SHARE = FALSE_ALARM / len(DRAWS)
+FITS = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "eon_sampling.py"))
 
 
 @pytest.fixture(scope="module", params=("gl", "cycles"))
@@ -82,6 +93,13 @@ def test_sampling_twins_take_the_arguments_of_the_python_package(sampler, suffix
 def test_sampling_twins_have_the_coefficients_of_the_python_package(name):
     found = re.findall(rf"#define EON_{name}\d (\S+)", text("glsl", "eon_sampling"))
     assert tuple(map(float, found)) == getattr(eon_sampling, name)
+
+
+def test_script_gives_the_root_of_the_sampling_twins():
+    found = re.findall(r"#define EON_ROOT\d (\S+)", text("glsl", "eon_sampling"))
+    kept, error = FITS["root_fit"]()
+    np.testing.assert_allclose([float(each) for each in found], kept, rtol=0.0, atol=REFIT)
+    assert error <= FIT_ROOT
 
 
 @every_sampler

@@ -190,3 +190,8 @@ KIT_FALSE_ALARMS = 2
 # A component of a vertex is printed with 9 digits after the point, half a unit off at most; of its
 # length three are.
 KIT_PRINTED = 1.5e-9
+
+# --- root of the sampling twins ------------------------------------------------------------------
+
+# Relative error of ROOT, the figure beside its coefficients, last digit rounded up.
+FIT_ROOT = 1.8e-7
