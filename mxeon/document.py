@@ -93,8 +93,12 @@ class _Reader:
     def parse(self, document, text, place):
         """Read bytes into a document."""
         self._screening.judge(text, place)
+
+        def include(part, name, *_):
+            self._include(part, name.asString(), place)
+
         options = mx.XmlReadOptions()
-        options.readXIncludeFunction = lambda part, name, *_: self._include(part, name.asString(), place)
+        options.readXIncludeFunction = include
         try:
             mx.readFromXmlString(document, text, mx.FileSearchPath(), options)
         except (*ERRORS, mx.ExceptionParseError) as error:
@@ -104,13 +108,13 @@ class _Reader:
     def _include(self, document, name, place):
         """Read what the document at `place` includes, which is called by its real path."""
         base = self._home if place == TEXT else Path(place).parent
-        path, include = os.path.realpath(base / name), f"{place}: include"
-        check_inside(path, self._home, self._permissions, include)
+        path, rule = os.path.realpath(base / name), f"{place}: include must"
+        check_inside(path, self._home, self._permissions, f"{place}: include")
         if path in self._open:
-            raise DocumentError(f"{include} must not lead back to the same document; got {name}")
-        check_limit(self._permissions, "includes", len(self._open), f"{include} must be", "in a row")
+            raise DocumentError(f"{rule} not lead back to the same document; got {name}")
+        check_limit(self._permissions, "includes", len(self._open), f"{rule} be", "in a row")
         if not os.path.isfile(path):
-            raise DocumentError(f"{include} must name a file that exists; got {name}")
+            raise DocumentError(f"{rule} name a file that exists; got {name}")
         self.file(document, path)
 
 

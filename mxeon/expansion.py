@@ -35,7 +35,8 @@ def check_expansion(document, elements, permissions, called):
     for element in elements:
         graph = reached([element.getNamePath()], lambda path: _upstream(document, path))
         order = _ordered(graph, f"{called}: node", "be upstream of itself")
-        check_limit(permissions, "chain", max(_heights(graph, order).values()), rule, "nodes in a row")
+        longest = max(_heights(graph, order).values())
+        check_limit(permissions, "chain", longest, rule, "nodes in a row")
         for path in order:
             definition = _definition(document.getDescendant(path))
             if definition not in weights:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
+LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
 RADIANCE_SIZE = 64  # rows from which it is summed
 
 
@@ -19,11 +20,15 @@ def read_image(path):
     Raises
     ------
     ValueError
-        If OpenImageIO cannot read it; in OpenImageIO's words.
+        If OpenImageIO cannot read it, in OpenImageIO's words; or if it is too large, which a small
+        file can be.
     """
     import OpenImageIO as oiio
 
     file = oiio.ImageInput.open(str(path))
+    values = file.spec().image_pixels() * file.spec().nchannels if file else 0
+    if values > LARGEST:
+        raise ValueError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
     pixels = file.read_image(oiio.FLOAT) if file else None
     if pixels is None:
         reason = " ".join((file.geterror() if file else oiio.geterror()).split())

@@ -12,7 +12,9 @@ from xml.parsers import expat
 
 LONGEST = 1000  # characters of a message, which may quote the document
 # Controls, changes of the direction of writing, and halves of characters.
-STEERING = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+STEERING = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
 LONGEST_NAME = 128  # characters; a file's name may have 255 and has three names in it
 
 
@@ -82,7 +84,8 @@ class Screening:
             if STEERING.search(value):
                 self._refuse(f"{name} must have no control characters in {key!r}; got {value!r}")
         if len(called := attributes.get("name", "")) > LONGEST_NAME:
-            self._refuse(f"{name} must have a name of at most {LONGEST_NAME} characters; got {called}")
+            rule = f"must have a name of at most {LONGEST_NAME} characters"
+            self._refuse(f"{name} {rule}; got {called}")
 
     def _end(self, _):
         self._depth -= 1

@@ -8,6 +8,7 @@ word is code too.
 import glob
 import os
 import re
+from functools import cache
 from pathlib import Path
 
 import MaterialX as mx
@@ -52,16 +53,26 @@ def check_inside(path, home, permissions, place):
 
 
 def check_file(element, place, permissions):
-    """Nothing, if the file or the texture set that an input names may be read and is there."""
+    """Nothing, if the file or the set of textures that an input names is there and may be read.
+
+    Raises
+    ------
+    DocumentError
+        Otherwise.
+    """
     text, home = element.getValueString(), folder(element.getDocument())
     if ENDS_A_STRING.search(text):
         raise DocumentError(f"{place} must name a file without quotes and backslashes; got {text}")
-    pattern = re.sub(r"<\w*>", "*", glob.escape(text))
-    tiles = glob.glob(pattern) if "<" in text else ()
-    for each in (text, *tiles):
+    path = home / text  # what MaterialX did not find there is relative still
+    check_inside(path, home, permissions, place)
+    if "<" not in text:
+        if not os.path.isfile(path):
+            raise DocumentError(f"{place} must name a file that exists; got {text}")
+        return
+    if "<" in str(path.parent):
+        raise DocumentError(f"{place} must name one folder; got {text}")
+    for each in path.parent.glob(re.sub(r"<\w*>", "*", glob.escape(path.name))):
         check_inside(each, home, permissions, place)
-    if "<" not in text and not os.path.isfile(text):
-        raise DocumentError(f"{place} must name a file that exists; got {text}")
 
 
 def check_words(element, place):
@@ -69,7 +80,7 @@ def check_words(element, place):
     text = element.getValueString()
     one = element.getName() == "geomprop"
     if not (WORD if one else STRING).fullmatch(text):
-        rule = "one word of letters, digits and _" if one else "words, of letters, digits and .,:/+-"
+        rule = "one word of letters, digits and _" if one else "words of letters, digits and .,:/+-"
         raise DocumentError(f"{place} must be {rule}; got {text}")
 
 
@@ -114,6 +125,7 @@ def _sources(element, home):
     return [base / name for base in bases if name and os.path.lexists(base / name)]
 
 
+@cache
 def _libraries():
     """Folders whose files any document may use: MaterialX's own and eonlib's."""
     standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The fuzz run: a slice of it, the faults it found, and that a trial notices what is wrong."""
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+from fuzz.cases import OUT, Case, case
+from fuzz.found import FOUND
+from fuzz.trial import guarded, numbered, trial
+from fuzz.words import CANARY, POISON
+
+from mxeon import cli, pool
+
+LIMIT = 60.0  # seconds for one case
+
+
+def faults(work, items):
+    """What was found wrong, by item."""
+    outcomes = pool.run(work, items, 1, LIMIT)
+    said = {items[place]: each.failure or each.value for place, each in outcomes}
+    return {item: fault for item, fault in said.items() if fault}
+
+
+def test_what_was_found_stays_fixed():
+    assert faults(guarded, FOUND) == {}
+
+
+def test_a_slice_of_the_fuzz_run_ends_without_fault():
+    assert faults(numbered, [(2, number) for number in range(100)]) == {}
+
+
+def write(path, text):
+    """A command that writes a file."""
+    Path(path).parent.mkdir(exist_ok=True)
+    Path(path).write_text(text)
+    return 0
+
+
+WRONG = {
+    "a traceback": (lambda _: 1 / 0, "ended with ZeroDivisionError"),
+    "another status": (lambda _: 7, "ended with 7"),
+    "no reason": (lambda _: 2, "did not say why"),
+    "two lines": (lambda _: print("more", file=sys.stderr) or 0, "said 'more'"),
+    "a long line": (lambda _: print("mxeon" + 2000 * ".", file=sys.stderr) or 0, "of 2005 char"),
+    "a file elsewhere": (lambda _: write("../stray", "x"), "wrote stray"),
+    "a file changed": (lambda _: write("base.mtlx", "x"), "wrote documents"),
+    "a secret told": (lambda _: print(CANARY) or 0, "gave away a file from outside"),
+    "a secret written": (lambda _: write("../out/a.osl", CANARY), "gave away a file from outside"),
+    "a word as code": (lambda _: write("../out/a.osl", POISON), "let a word into a shader as code"),
+}
+
+
+@pytest.mark.parametrize("does, fault", WRONG.values(), ids=WRONG)
+def test_a_trial_notices(monkeypatch, does, fault):
+    monkeypatch.setattr(cli, "main", does)
+    assert fault in trial(Case("control", (("base.mtlx", b""),), ("generate", OUT)))
+
+
+def test_a_trial_notices_that_the_process_died():
+    assert "SIGKILL" in faults(killed, ["control"])["control"]
+
+
+def killed(_):
+    """Work that ends its process."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_case_is_the_same_again():
+    assert case(1, 7) == case(1, 7) != case(1, 8)
