@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio, scaled
 from mxeon.generation import generate
-from mxeon.hosts import gl
+from mxeon.hosts import gl, raster
 from mxeon.library import LIBRARIES
 from mxeon.scene import SIDE, sphere
 
@@ -56,12 +56,12 @@ class Frame:
         context = self._context = host._context
         self._target = context.framebuffer([context.renderbuffer((size, size), 4, dtype="f4")])
         program = host._program(generated.stages["vertex"], generated.stages["pixel"])
-        gl._set_light(program, SIDE)
+        gl._set(program, raster.light(SIDE))
         for unit, name in enumerate(("u_envRadiance", "u_envIrradiance")):
             if name in program:
-                host._texture(gl.WHITE, False).use(location=unit)
+                host._texture(raster.WHITE, False).use(location=unit)
                 program[name].value = unit
-        vertices, indices = gl._grid(MESH)
+        vertices, indices = raster.grid(MESH)
         buffers = [
             (context.buffer(values), f"{values.shape[1]}f", name)
             for name, values in vertices.items()

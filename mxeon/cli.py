@@ -360,7 +360,7 @@ def _render(options):
         options.element,
         library=options.library,
         profile=host.profile,
-        lights=host.target == "glsl",
+        lights=True,
         permissions=_permitted(options),
     )
     if len(found) > 1:

@@ -153,7 +153,7 @@ def generate(
     profile : str or None
         "cycles" makes osl for Blender's Cycles.
     lights : bool
-        Whether a rasterised shader gets MaterialX's directional light, as light type 1.
+        Whether a shader of a rasterised target gets MaterialX's directional light, as light type 1.
     permissions : Permissions
         What the document may do, and how large it may be.
 
@@ -267,8 +267,7 @@ def _generator(document, target, lights, systems):
     context.getOptions().targetDistanceUnit = "meter"
     # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
     context.getOptions().fileTextureVerticalFlip = target == "osl"
-
-    if lights:
+    if lights and isinstance(generator, mx_gen.HwShaderGenerator):
         light = document.getNodeDef("ND_directional_light")
         mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
     return generator, context

@@ -91,13 +91,17 @@ class Sphere:
     ----------
     mask : ndarray of bool, shape (size, size)
         Where the pixel centre lies on the sphere.
+    position : ndarray, shape (size, size, 3)
+        Under the pixel centre; outside the mask in the plane of the rim.
     normal : ndarray, shape (size, size, 3)
-        Outward unit normal, which is also the position; on the rim's circle outside the mask.
+        Outward unit normal, the same as the position; that of the nearest point of the rim outside
+        the mask.
     texcoord : ndarray, shape (size, size, 2)
         Latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards.
     """
 
     mask: np.ndarray
+    position: np.ndarray
     normal: np.ndarray
     texcoord: np.ndarray
 
@@ -114,10 +118,11 @@ def sphere(size, margin=0):
     mask = radius < 1.0
     scale = 1.0 / np.maximum(radius, 1.0)
     z = np.sqrt(np.maximum(0.0, 1.0 - radius * radius))
+    position = np.stack([x, y, z], axis=-1)
     normal = np.stack([x * scale, y * scale, z], axis=-1)
     u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
-    points = Sphere(mask, normal, np.stack([u, v], axis=-1))
+    points = Sphere(mask, position, normal, np.stack([u, v], axis=-1))
     for array in vars(points).values():
         array.flags.writeable = False  # shared by all who ask for this size
     return points

@@ -162,3 +162,8 @@ def test_a_machine_without_egl_did_not_run(monkeypatch):
         open_host("gl")
 
 
+def test_another_context_of_the_process_is_not_in_the_way(gl):
+    before = gl.call("fon_a", np.array([0.5]))
+    other = moderngl.create_standalone_context(require=430, backend="egl")
+    other.release()
+    np.testing.assert_array_equal(gl.call("fon_a", np.array([0.5])), before)

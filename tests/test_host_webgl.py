@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The browser as a host: what is missing is said, and a browser that fails is replaced."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from mxeon.hosts import NotRun, webgl
+from mxeon.generation import generate
+from mxeon.hosts import NotRun, reference, webgl
+from mxeon.library import examples_folder
+from mxeon.scene import BACK, FURNACE, SIDE
 
 MU = np.array([0.5])
 
@@ -62,8 +67,14 @@ def test_no_name_resolves_in_the_browser():
     host.close()
 
 
-def test_there_are_no_pictures():
+@pytest.mark.parametrize("scene", (SIDE, BACK, FURNACE), ids=lambda scene: scene.name)
+@pytest.mark.parametrize("name", ("plaster", "brick"))
+def test_a_picture_is_the_references(name, scene):
     host = started()
-    with pytest.raises(NotRun, match="webgl: there are no pictures here"):
-        host.picture(None, None)
+    document = examples_folder() / f"{name}.mtlx"
+    shader = generate(document, host.target, lights=True)[0]
+    image = host.picture(shader, replace(scene, size=64))
     host.close()
+    expected = reference.Host().picture(shader, replace(scene, size=64))
+    assert expected.max() > 0.1
+    np.testing.assert_allclose(image, expected, atol=2.0**-8 if name == "brick" else 1e-5)

@@ -16,7 +16,11 @@ from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.scene import BACK, FURNACE, SIDE, sphere
 
 # Lights under which a host shows a material. Cycles has noise in a surrounding.
-SCENES = {"gl": (SIDE, BACK, FURNACE), "cycles": (SIDE, BACK)}
+SCENES = {
+    "gl": (SIDE, BACK, FURNACE),
+    "webgl": (SIDE, BACK, FURNACE),
+    "cycles": (SIDE, BACK),
+}
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 UNIT = "pi f cos, times cos(theta_o)"
@@ -58,7 +62,7 @@ def judge_document(file, host, judge, library, permissions=DEFAULT):
     DocumentError
         If no shader can be made from the document.
     """
-    options = {"library": library, "profile": host.profile, "lights": host.target == "glsl"}
+    options = {"library": library, "profile": host.profile, "lights": True}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         shaders = generate(file, host.target, permissions=permissions, **options)

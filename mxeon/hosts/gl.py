@@ -1,23 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenGL without a window: generated GLSL on Mesa's software driver or a GPU, in float32.
+"""OpenGL without a window: generated GLSL on Mesa's software driver or a GPU, in float32."""
 
-A picture draws one vertex per pixel, placed at its centre, so each pixel holds the shader's value
-at an exact point of the sphere, with neighbours to take derivatives from.
-"""
-
-from functools import lru_cache
+from functools import lru_cache, wraps
 
 import moderngl
 import numpy as np
 
 from mxeon import twins
-from mxeon.hosts import Identity, NotRun, ShaderError, fragment
-from mxeon.images import irradiance, read_latlong, read_texture
-from mxeon.scene import sphere
+from mxeon.hosts import Identity, NotRun, ShaderError, fragment, raster
 
-VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
-WHITE = np.ones((1, 1, 3), dtype=np.float32)
+
+
+def _current(verb):
+    """A verb with the host's context current: other hosts of a process have contexts of their own."""
+
+    @wraps(verb)
+    def wrapped(self, *arguments):
+        with self._context:
+            return verb(self, *arguments)
+
+    return wrapped
 
 
 class Host:
@@ -49,26 +52,22 @@ class Host:
         info = self._context.info
         return Identity(self.name, info["GL_VERSION"], info["GL_RENDERER"])
 
+    @_current
     def picture(self, shader, scene):
         """The shader on the sphere; see `mxeon.hosts`."""
-        points = sphere(scene.size)
-        radiance = read_latlong(scene.environment)
-        textures = {
-            each.name: read_texture(each.value)
-            for each in shader.inputs
-            if each.type == "filename" and each.value
-        }
-        textures |= {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
         program = self._program(shader.stages["vertex"], shader.stages["pixel"])
-        _set_light(program, scene)
-        image = self._draw(program, textures, _grid(scene.size), (scene.size, scene.size))
-        return np.where(points.mask[..., None], image[::-1], np.float32(0.0))
+        _set(program, raster.light(scene))
+        size = scene.size
+        image = self._draw(program, raster.textures(shader, scene), raster.grid(size), (size, size))
+        return raster.picture(image, size)
 
+    @_current
     def evaluate(self, shader, wo, wi, inputs, branch):
         """The shader's own BSDF function for pairs of directions; see `mxeon.hosts`."""
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
         return self._evaluate(shader.stages["vertex"], pixel, arguments)
 
+    @_current
     def call(self, function, *arguments):
         """A function of the GLSL twins; see `mxeon.hosts`."""
         parameters = twins.signature("glsl", function)
@@ -76,6 +75,7 @@ class Host:
         pixel, named = fragment.function_evaluation(source, function, parameters, arguments)
         return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, named)
 
+    @_current
     def accumulate(self, pixel, uniforms, size, passes):
         """The sum over passes of what a fragment shader draws; the uniform `tracer_pass` counts them.
 
@@ -98,7 +98,7 @@ class Host:
         context = self._context
         program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
         _set(program, uniforms)
-        vertices, indices = _triangle()
+        vertices, indices = raster.triangle()
         corners = [(context.buffer(vertices["i_position"]), "3f", "i_position")]
         triangle = context.vertex_array(program, corners, context.buffer(indices))
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
@@ -122,9 +122,9 @@ class Host:
         """One pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= {"u_envRadiance": WHITE, "u_envIrradiance": WHITE}
+        textures |= raster.SURROUNDING
         program = self._program(vertex, pixel)
-        return self._draw(program, textures, _triangle(), size).reshape(-1, 3)[:count]
+        return self._draw(program, textures, raster.triangle(), size).reshape(-1, 3)[:count]
 
     def _compile(self, vertex, pixel):
         try:
@@ -162,50 +162,8 @@ class Host:
         return texture
 
 
-def _set_light(program, scene):
-    values = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE), "u_envRadianceMips": 1}
-    values["u_numActiveLightSources"] = 0  # a program keeps what the last scene gave it
-    if scene.light is not None:
-        values |= {
-            "u_numActiveLightSources": 1,
-            "u_lightData[0].type": 1,
-            "u_lightData[0].direction": tuple(-x for x in scene.light),
-            "u_lightData[0].color": (1.0, 1.0, 1.0),
-            "u_lightData[0].intensity": np.pi,
-        }
-    _set(program, values)
-
-
 def _set(program, values):
     """Gives the uniforms that the program has their values."""
     for name, value in values.items():
         if name in program:
             program[name].value = value
-
-
-def _grid(size):
-    """Vertices at the pixel centres, one row more on each side, and triangles between them.
-
-    A centre beside the sphere is moved to the nearest point of its rim, so the triangles that
-    meet in a pixel's vertex surround it, and one of them covers the pixel.
-    """
-    points = sphere(size, margin=1)
-    size = len(points.mask)
-    flat = points.normal.reshape(-1, 3)
-    tangent = np.stack([flat[:, 2], np.zeros(len(flat)), -flat[:, 0]], axis=1)
-    vertices = {
-        "i_position": flat,
-        "i_normal": flat,
-        "i_tangent": tangent / np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-30),
-        "i_texcoord_0": points.texcoord.reshape(-1, 2),
-    }
-    corner = np.arange(size * size).reshape(size, size)[:-1, :-1].ravel()
-    square = corner[:, None] + [0, 1, size, size, 1, size + 1]
-    return {name: values.astype("f4") for name, values in vertices.items()}, square.astype("u4")
-
-
-def _triangle():
-    """One triangle over the whole frame."""
-    corners = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
-    normals = np.tile(np.array([[0, 0, 1]], dtype="f4"), (3, 1))
-    return {"i_position": corners, "i_normal": normals}, np.arange(3, dtype="u4")

@@ -8,6 +8,7 @@ browser: nothing leaves the machine.
 
 import base64
 import os
+import re
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
@@ -17,7 +18,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from mxeon import twins
-from mxeon.hosts import Identity, NotRun, ShaderError, fragment
+from mxeon.hosts import Identity, NotRun, ShaderError, fragment, raster
 
 try:
     from playwright import sync_api
@@ -43,8 +44,7 @@ UNIFORMS = {
     "u_envMatrix": IDENTITY,
     "u_envLightIntensity": 1.0,
 }
-TRIANGLE = {"i_position": [[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], "i_normal": [[0, 0, 1]] * 3}
-WHITE = np.ones((1, 1, 3), dtype=np.float32)
+IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
 
 
 class Host:
@@ -87,14 +87,13 @@ class Host:
         return Identity(self.name, f"Chromium {found['version']}, WebGL2", found["device"])
 
     def picture(self, shader, scene):
-        """Nothing: free pairs tell more.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("webgl: there are no pictures here; compare values instead")
+        """The shader on the sphere; see `mxeon.hosts`."""
+        size = scene.size
+        uniforms = UNIFORMS | _inputs(shader) | raster.light(scene)
+        frame = self._draw(
+            shader.stages, uniforms, raster.textures(shader, scene), raster.grid(size), (size, size)
+        )
+        return raster.picture(frame, size)
 
     def evaluate(self, shader, wo, wi, inputs, branch):
         """The shader's own BSDF function for pairs of directions; see `mxeon.hosts`."""
@@ -118,16 +117,22 @@ class Host:
         """One pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= {"u_envRadiance": WHITE, "u_envIrradiance": WHITE}
+        textures |= raster.SURROUNDING
+        stages = {"vertex": vertex, "pixel": pixel}
+        frame = self._draw(stages, UNIFORMS, textures, raster.triangle(), size)
+        return frame.reshape(-1, 3)[:count]
+
+    def _draw(self, stages, uniforms, textures, mesh, size):
+        """One frame as float32 (height, width, 3), row 0 at the bottom."""
+        arrays = {"textures": textures, "attributes": mesh[0], "mesh": {"indices": mesh[1]}}
         with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
             numbers = Path(folder, "numbers")
-            job = {"vertex": vertex, "pixel": pixel, "size": size, "uniforms": UNIFORMS}
-            job |= {"attributes": TRIANGLE, "textures": _write(numbers, textures)}
+            job = {**stages, "size": size, "uniforms": uniforms, **_write(numbers, arrays)}
             answer = self._ask("draw", job, numbers)
         if "refused" in answer:
             raise ShaderError(f"webgl: {answer['refused'].strip()}")
         pixels = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
-        return pixels.reshape(-1, 4)[:count, :3]
+        return pixels.reshape(size[1], size[0], 4)[..., :3]
 
     def _ask(self, function, job=None, numbers=None):
         """What a function of the page returns; a browser that dies or hangs is ended."""
@@ -175,12 +180,26 @@ def program():
     return found
 
 
-def _write(path, textures):
-    """Write texels one after the other; their layout in the file, by name."""
+def _inputs(shader):
+    """Values of the uniforms that carry a shader's inputs."""
+    given = {
+        each.name: each.value
+        for each in shader.inputs
+        if each.value is not None and not isinstance(each.value, str)
+    }
+    names = re.findall(r"^uniform vec2 (\w+_(uv_scale|uv_offset));", shader.stages["pixel"], re.M)
+    return {name: IMAGE[kind] for name, kind in names} | given
+
+
+def _write(path, groups):
+    """Write arrays one after the other; shapes and places in the file, by group and name."""
     layout, offset = {}, 0
     with path.open("wb") as file:
-        for name, texels in textures.items():
-            height, width, components = texels.shape
-            layout[name] = dict(width=width, height=height, components=components, offset=offset)
-            offset += file.write(texels.tobytes())
+        for group, arrays in groups.items():
+            layout[group] = {}
+            for name, values in arrays.items():
+                kind = np.uint32 if values.dtype == np.uint32 else np.float32
+                data = np.ascontiguousarray(values, dtype=kind)
+                layout[group][name] = {"shape": data.shape, "offset": offset}
+                offset += file.write(data.tobytes())
     return layout
