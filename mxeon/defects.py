@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of EON that renderers in the field implement, to recognise them by."""
+"""Wrong variants of EON and QON that renderers in the field implement, to recognise them by."""
 
 import numpy as np
 
 from mxeon import formulas
-from mxeon.albedo import eon_albedo_dir, fon_albedo_dir
+from mxeon.albedo import eon_albedo_dir, fon_albedo_dir, qon_albedo_dir
 from mxeon.geometry import cosines, evaluate
+from mxeon.models import qon_brdf
 
 
 def eon_clamped_brdf(wo, wi, rho, roughness):
@@ -98,6 +99,57 @@ def fon_white_lobe_brdf(wo, wi, rho, roughness):
     array([0.048519, 0.119705])
     """
     return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
+
+
+def qon_tinted_twice_brdf(wo, wi, rho, sigma):
+    """Reflection of QON that is multiplied by its own colour once more.
+
+    Parameters
+    ----------
+    wo, wi, rho, sigma
+        As those of `mxeon.models.qon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too dark, and right where rho is 0 or 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    OpenPBR's thin-walled lobe in MaterialX 1.39.5, issue 3027 of MaterialX.
+
+    Examples
+    --------
+    >>> qon_tinted_twice_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.5, 1.0], 0.0).round(6)
+    array([0.079577, 0.31831 ])
+    """
+    return rho * qon_brdf(wo, wi, rho, sigma)
+
+
+def qon_tinted_twice_albedo_dir(mu, rho, sigma):
+    """Directional albedo of `qon_tinted_twice_brdf`.
+
+    Parameters
+    ----------
+    mu, rho, sigma
+        As those of `mxeon.defects.qon_fitted_albedo_dir`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Dimensionless, in [0, 1].
+
+    Examples
+    --------
+    >>> qon_tinted_twice_albedo_dir(0.5, [0.5, 1.0], 0.0).round(6)
+    array([0.25, 1.  ])
+    """
+    return np.square(rho) * qon_albedo_dir(mu, sigma)[..., np.newaxis]
 
 
 def eon_rho_cubed_albedo_dir(mu, rho, roughness):

@@ -131,4 +131,11 @@ DEFECTS = (
         "sigma",
         defects.qon_fitted_albedo_dir,
     ),
+    Model(
+        "qon_tinted_twice",
+        "QON tinted twice",
+        defects.qon_tinted_twice_brdf,
+        "sigma",
+        defects.qon_tinted_twice_albedo_dir,
+    ),
 )

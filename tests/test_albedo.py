@@ -123,7 +123,7 @@ def test_quadrature_has_converged(row):
     assert np.abs(fewer - more).max() <= tolerances.QUADRATURE
 
 
-@named([row for row in DEFECTS if row.name in ("eon_rho_cubed", "fon_white_lobe")])
+@named([row for row in DEFECTS if row.name in ("eon_rho_cubed", "fon_white_lobe", "qon_tinted_twice")])
 @pytest.mark.parametrize("fraction", FRACTIONS)
 def test_albedo_of_a_defect_agrees_with_quadrature(row, fraction):
     mu, extra = np.array([0.0, 1e-3, 0.1, 0.9]), parameter(row, fraction)

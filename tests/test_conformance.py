@@ -243,6 +243,8 @@ def stock():
         ("gl", "value", EON.title, "EON with clamped dot(wo, wi)"),
         ("gl", "albedo", EON.title, "EON with clamped dot(wo, wi)"),
         ("gl", "environment", QON.title, "QON with MaterialX's fit of its albedo"),
+        ("gl", "lobe", "open_pbr_surface", "EON with clamped dot(wo, wi)"),
+        ("gl", "lobe", "open_pbr_surface, thin-walled", "QON tinted twice"),
         ("source", "source", f"{EON.title}, osl", "never used: energy_compensation"),
         ("source", "tint", f"{EON.title}, mdl", "FON + white lobe"),
     ],
@@ -255,6 +257,14 @@ def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, 
     ]
     assert result.verdict == FAILED and words in result.diagnosis
     assert "; see upstream/" in result.diagnosis
+
+
+def test_the_lobes_of_surface_shaders_are_judged_and_those_that_are_right_pass(stock, run):
+    right = {"standard_surface", "UsdPreviewSurface", "gltf_pbr"}
+    for findings, expected in ((stock, right), (run, right | {"open_pbr_surface"})):
+        lobes = [each for each in findings.results if each.check == "lobe"]
+        assert {each.subject for each in lobes if each.verdict == PASSED} == expected
+        assert all(each.control.caught for each in lobes)
 
 
 def test_a_defect_that_was_repaired_upstream_is_said_to_be(stock):

@@ -70,7 +70,7 @@ MESSAGES = (
     (
         lambda: model("phong"),
         f"model must be one of {', '.join(row.name for row in MODELS)}, eon_clamped, "
-        "eon_rho_cubed, fon_white_lobe, qon_fitted; got 'phong'",
+        "eon_rho_cubed, fon_white_lobe, qon_fitted, qon_tinted_twice; got 'phong'",
     ),
 )
 

@@ -276,6 +276,14 @@ def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     assert np.pi * np.abs(row.brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r)).max() > 1e-2
 
 
+def test_qon_tinted_twice_is_right_where_it_is_white():
+    row = model("qon_tinted_twice")
+    wo, wi, rho, sigma = pairs(2000, seed=14)
+    right = model("qon").brdf
+    assert np.array_equal(row.brdf(wo, wi, 1.0, sigma), right(wo, wi, 1.0, sigma))
+    assert np.array_equal(row.brdf(wo, wi, rho, sigma), rho * right(wo, wi, rho, sigma))
+
+
 def test_fitted_albedo_of_qon_is_lambert_when_smooth_and_off_when_rough():
     fitted, exact = model("qon_fitted").albedo_dir, model("qon").albedo_dir
     mu = np.linspace(0.0, 1.0, 101)

@@ -8,9 +8,8 @@ import pytest
 from mxeon.hosts import NotRun
 from upstream import ledger
 
-PAGES = [defect.page for defect in ledger.DEFECTS] + [ledger.THIN_WALLED, ledger.PRINTED_B]
+PAGES = [defect.page for defect in ledger.DEFECTS] + list(ledger.OF_QUANTITIES)
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
-CAUSES = [*ledger.CAUSES.values(), ledger.THIN_WALLED_CAUSE]
 
 of_each_defect = pytest.mark.parametrize("defect", ledger.DEFECTS, ids=lambda each: each.page)
 
@@ -48,16 +47,12 @@ def test_the_figures_of_each_page_are_those_of_the_suite(defect):
     assert ledger.written(defect.page) == ledger.block(ledger.shown(defect, judged(defect.host)))
 
 
-def test_the_thin_walled_lobe_still_leaves_the_flag_off():
-    assert ledger.thin_walled_flag() is False
-    assert ledger.written(ledger.THIN_WALLED) == ledger.thin_walled_block()
+@pytest.mark.parametrize("page, made", ledger.OF_QUANTITIES.items())
+def test_the_quantities_of_each_page_are_those_computed(page, made):
+    assert ledger.written(page) == made()
 
 
-def test_the_printed_b_is_not_lambert():
-    assert ledger.written(ledger.PRINTED_B) == ledger.printed_b_block()
-
-
-@pytest.mark.parametrize("cause", CAUSES, ids=lambda cause: cause.file)
+@pytest.mark.parametrize("cause", ledger.CAUSES.values(), ids=lambda cause: cause.file)
 def test_each_cause_is_at_its_line(cause):
     text = ledger.stock_path(cause).read_text().splitlines()
     assert cause.word in text[cause.line - 1]

@@ -12,21 +12,16 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
-from mxeon import albedo
-from mxeon.conformance.checks import CHECKS
-from mxeon.conformance.ledger import DEFECTS
-from mxeon.conformance.nodes import judge_subject
-from mxeon.conformance.probes import PROBES
-from mxeon.conformance.sources import check_sources
-from mxeon.conformance.subjects import SUBJECTS
-from mxeon.hosts import open_host
-from mxeon.library import load_library
+from mxeon import albedo, formulas, models
+from mxeon.conformance.items import SOURCE, Judge, plan
+from mxeon.conformance.ledger import DEFECTS, STOCK
+from mxeon.generation import generate
+from mxeon.permissions import DEFAULT
 from mxeon.writing import write_text
 
 FOLDER = Path(__file__).parent
 BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
 HEAD = "| check | subject | measured | allowed | unit |\n|---|---|---|---|---|\n"
-COLOR = np.array([0.8, 0.4, 0.1])
 
 
 @dataclass(frozen=True)
@@ -48,6 +43,7 @@ class Cause:
     word: str
 
 
+OPENPBR = "bxdf/open_pbr_surface.mtlx"
 MICROFACET = "pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
 # Page -> cause, where the source is part of MaterialX's data.
 CAUSES = {
@@ -57,12 +53,21 @@ CAUSES = {
     "genosl_dropped_flag": Cause(
         "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 5, "oren_nayar_diffuse_bsdf({{normal}}"
     ),
+    "openpbr_thin_walled": Cause(OPENPBR, 140, "subsurface_thin_walled_reflection_bsdf"),
+    "openpbr_thin_walled_tint": Cause(OPENPBR, 149, "subsurface_thin_walled_brdf_factor"),
 }
 
-THIN_WALLED = "openpbr_thin_walled"
-THIN_WALLED_LOBE = "NG_open_pbr_surface_surfaceshader/subsurface_thin_walled_reflection_bsdf"
-THIN_WALLED_CAUSE = Cause("bxdf/open_pbr_surface.mtlx", 140, "subsurface_thin_walled_reflection")
-PRINTED_B = "pbrlib_printed_b"
+GIVEN_NORMAL = """<materialx version="1.39">
+  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
+    <input name="normal" type="vector3" value="0.25, 0.5, 0.75" />
+  </oren_nayar_diffuse_bsdf>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe" />
+  </surface>
+  <surfacematerial name="material" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>"""
 
 
 def stock_path(cause):
@@ -78,14 +83,15 @@ def judged(host):
     NotRun
         If the host cannot run here.
     """
-    subjects = [subject for subject in SUBJECTS if subject.stock]
-    if host == "source":
-        return check_sources(subjects, "stock")
-    keys = {key for defect in DEFECTS if defect.host == host for key, _ in defect.rows}
-    checks = [check for check in CHECKS if check.key in keys]
-    with closing(open_host(host)) as engine:
-        probes = [PROBES[host](engine, subject, "stock") for subject in subjects]
-        return sum((judge_subject(probe, checks) for probe in probes), ())
+    rows = {row for defect in DEFECTS for row in defect.rows}
+    items = plan((), () if host == SOURCE else (host,), (STOCK,)).items
+    chosen = [
+        each
+        for each in items
+        if each.host == host and (host == SOURCE or (each.check, each.subject) in rows)
+    ]
+    with closing(Judge(DEFAULT)) as judge:
+        return [result for item in chosen for result in judge.work(item).results]
 
 
 def shown(defect, results):
@@ -105,22 +111,8 @@ def block(results):
 
 
 def _rounded(text):
-    """A diagnosis without the distances, which drivers change."""
-    return re.sub(r" \([^()]*\d[^()]*\)", "", text)
-
-
-def thin_walled_flag():
-    """What OpenPBR's thin-walled lobe says of energy_compensation in stock MaterialX."""
-    lobe = load_library("stock").getDescendant(THIN_WALLED_LOBE)
-    given = lobe.getInput("energy_compensation")
-    return bool(given and given.getValue())
-
-
-def thin_walled_block():
-    """The lobe's albedo head-on as it is, against that of the base lobe beside it."""
-    qon = COLOR * albedo.qon_albedo_dir(1.0, 1.0)
-    eon = albedo.eon_albedo_dir(1.0, COLOR, 1.0)
-    return _quantities("albedo head-on, color 0.8 0.4 0.1, roughness 1", qon, eon)
+    """A diagnosis without pages and without distances, which drivers change."""
+    return re.sub(r" \([^()]*\d[^()]*\)", "", text.split("; see ")[0])
 
 
 def printed_b_block():
@@ -130,10 +122,44 @@ def printed_b_block():
     return _quantities("pi f / rho at sigma 0, both directions at 60 degrees", [printed], [1.0])
 
 
+def printed_angles_block():
+    """QON lit and seen at 60 degrees from either side, with polar angles where azimuths belong."""
+    sigma, angle = 1.0, np.pi / 3.0
+    wo, wi = ([side * np.sin(angle), 0.0, np.cos(angle)] for side in (1.0, -1.0))
+    a, b = formulas.qon_a(sigma), formulas.qon_b(sigma)
+    printed = a + b * np.cos(angle - angle) * np.sin(angle) * np.tan(angle)
+    right = np.pi * models.qon_brdf(wo, wi, [1.0], sigma)
+    name = "pi f / rho at sigma 1, directions at 60 degrees on either side"
+    return _quantities(name, [printed], right)
+
+
+def printed_pi_block():
+    """Albedo head-on of a white surface whose multiple scattering has been divided by pi."""
+    single = albedo.fon_albedo_dir(1.0, 1.0)
+    printed = single + (1.0 - single) / np.pi
+    return _quantities("albedo head-on, reflectance 1, roughness 1", [printed], [1.0])
+
+
+def dropped_normal_block():
+    """Whether generated GLSL holds a normal that the document gives as a literal value."""
+    [shader] = generate(GIVEN_NORMAL, "glsl", library=STOCK)
+    return _quantities(
+        "shaders, of 1, that hold the value", [float("0.25" in shader.stages["pixel"])], [1.0]
+    )
+
+
 def _quantities(name, measured, expected):
     text = [" ".join(f"{each:.3f}" for each in values) for values in (measured, expected)]
     head = "| quantity | measured | expected |\n|---|---|---|\n"
     return f"{head}| {name} | {text[0]} | {text[1]} |\n"
+
+
+OF_QUANTITIES = {
+    "dropped_normal": dropped_normal_block,
+    "openpbr_printed_pi": printed_pi_block,
+    "pbrlib_printed_angles": printed_angles_block,
+    "pbrlib_printed_b": printed_b_block,
+}
 
 
 def written(page):
@@ -146,7 +172,7 @@ def main():
     """Write the blocks of all pages."""
     results = {host: judged(host) for host in dict.fromkeys(each.host for each in DEFECTS)}
     blocks = {each.page: block(shown(each, results[each.host])) for each in DEFECTS}
-    blocks |= {THIN_WALLED: thin_walled_block(), PRINTED_B: printed_b_block()}
+    blocks |= {page: made() for page, made in OF_QUANTITIES.items()}
     for page, text in blocks.items():
         path = FOLDER / f"{page}.md"
         head, rest = path.read_text(encoding="utf-8").split(BEGIN)

@@ -131,6 +131,10 @@ VALUE = (
     "in the two losses, twelve in the sum"
 )
 ENVIRONMENT = "16 roundings of float32, 2^-24 each, of numbers up to 1: half of the direct branch"
+LOBE = (
+    "512 roundings of float32, 2^-24 each: 16 in the place of a pixel's point, over the square of the "
+    "smallest cosine judged, 1/4; 32 in the lobe; four in sums that other lobes make 48 times as large"
+)
 CYCLES_RAY = (
     "float32 place of a pixel's point, 2^-24 of the camera's distance over the smallest cosine "
     "judged, times the sensitivity of f cos to it"
@@ -156,6 +160,15 @@ CHECKS = (
             "pairs": Tolerance(2e-6, "pi f cos", absolute, VALUE),
             "pictures": Tolerance(2e-4, "relative", relative, CYCLES_RAY),
         },
+    ),
+    Check(
+        "lobe",
+        "The diffuse lobe of the surface shader is the model's.",
+        (*ANY, "lambert"),
+        measures.value,
+        "every channel gets the mean colour",
+        _grey,
+        {"lobes": Tolerance(512 * ROUNDING, "pi f cos", absolute, LOBE)},
     ),
     Check(
         "environment",

@@ -18,9 +18,9 @@ from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.documents import MATCH, SCENES, judge_document
 from mxeon.conformance.ledger import referred, repaired
 from mxeon.conformance.nodes import applies, judge_curve, judge_subject, judge_twins
-from mxeon.conformance.probes import PROBES, NativeProbe
+from mxeon.conformance.probes import PROBES, NativeProbe, SurfaceProbe
 from mxeon.conformance.sources import check_sources
-from mxeon.conformance.subjects import NATIVE, SUBJECTS
+from mxeon.conformance.subjects import NATIVE, SUBJECTS, SURFACES, Surface
 from mxeon.hosts import TEXT_ONLY, NotRun, open_host
 from mxeon.library import LIBRARIES, assert_version, examples_folder
 from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
@@ -28,6 +28,7 @@ from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
 SOFTWARE = ("MaterialX", "numpy", "OpenImageIO", "moderngl")
 JUDGED = (*PROBES, *TEXT_ONLY)  # hosts on the command line
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
+SURFACE_HOST = "gl"  # its pictures are exact, and made in no time
 TWINS, EVERY_NODE = "shader twins", "every node"
 ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
@@ -169,8 +170,9 @@ def _with_ledger(findings):
 
 
 def _probe(host, title, library):
-    subject = next(each for each in SUBJECTS + NATIVE if each.title == title)
-    return PROBES[host.name](host, subject, library)
+    subject = next(each for each in SUBJECTS + NATIVE + SURFACES if each.title == title)
+    kind = SurfaceProbe if isinstance(subject, Surface) else PROBES[host.name]
+    return kind(host, subject, library)
 
 
 def _on_host(host, library, files):
@@ -187,6 +189,11 @@ def _on_host(host, library, files):
             if applies(row, subject, kind):
                 yield Item(row.key, subject.title, host, library)
         yield Item(CURVE, subject.title, host, library)
+    if host == SURFACE_HOST:
+        for subject in SURFACES:
+            for row in CHECKS:
+                if library in subject.libraries and applies(row, subject, SurfaceProbe.kind):
+                    yield Item(row.key, subject.title, host, library)
     if host in SCENES:
         yield from (Item(PICTURE, str(file), host, library) for file in files)
 
@@ -209,7 +216,10 @@ def _examples(library):
 
 def _digest(file):
     try:
-        return hashlib.sha256(file.read_bytes()).hexdigest()
+        if not file.is_file():  # a pipe or a device may have no end
+            return ""
+        with file.open("rb") as opened:
+            return hashlib.file_digest(opened, "sha256").hexdigest()
     except OSError:
         return ""
 

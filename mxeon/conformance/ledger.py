@@ -35,7 +35,7 @@ DEFECTS = (
     Defect(
         "genglsl_clamped_dot",
         "gl",
-        (("value", f"{NODE} true"), ("albedo", f"{NODE} true")),
+        (("value", f"{NODE} true"), ("albedo", f"{NODE} true"), ("lobe", "open_pbr_surface")),
         ("webgl", "vulkan", "slang"),
     ),
     Defect(
@@ -50,6 +50,8 @@ DEFECTS = (
         "source",
         (("source", f"{NODE} true, osl"), ("source", f"{NODE} false, osl")),
     ),
+    Defect("openpbr_thin_walled", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
+    Defect("openpbr_thin_walled_tint", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
     Defect("genmdl_white_lobe", "source", (("tint", f"{NODE} true, mdl"),)),
     Defect(
         "cycles_rho_cubed",

@@ -13,7 +13,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from mxeon import reference
-from mxeon.conformance.subjects import Subject
+from mxeon.conformance.subjects import Subject, Surface
 from mxeon.generation import ApproximationWarning, generate
 from mxeon.hosts.reference import local_directions
 from mxeon.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
@@ -23,6 +23,7 @@ PAIRS = 1 << 20
 FEW = 1 << 16  # pairs of the checks that do not ask for a million
 GRAZING = 1e-6  # smallest cosine of the random pairs
 RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
+LOBE_RIM = 0.25  # of a lobe below others
 
 # Colours and roughnesses of the pictures that stand for a node on hosts that only make pictures.
 PICTURE_INPUTS = (
@@ -129,7 +130,7 @@ class PictureProbe:
     kind = "pictures"
 
     host: object
-    subject: Subject
+    subject: Subject | Surface
     library: str
 
     @cached_property
@@ -167,24 +168,43 @@ class PictureProbe:
 
     def _batch(self, scene, inputs):
         wo, wi, chosen = picture_pairs(scene)
-        chosen = chosen & self._expressible(wo, wi)
+        chosen = chosen & self._judged(wo, wi)
         return Batch(wo[chosen], wi[chosen], inputs, scene)
 
-    def _expressible(self, wo, wi):
-        """Pairs for which the host has a closure that can be the model."""
+    def _judged(self, wo, wi):
+        """Pairs to judge: those for which the host has a closure that can be the model."""
         if (self.host.name, self.subject.model) not in FRONT_LIT_ONLY:
             return np.ones(len(wo), dtype=bool)
         return wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0
 
     def _picture(self, batch):
         text = self.subject.document(batch.inputs)
-        profile = self.host.profile
-        with warnings.catch_warnings():  # what is approximated is not judged: see _expressible
-            warnings.simplefilter("ignore", ApproximationWarning)
-            shader = generate(text, self.host.target, library=self.library, profile=profile)[0]
+        shader = _shader(text, self.host.target, self.library, self.host.profile)
         image = self.host.picture(shader, batch.scene)[sphere(batch.scene.size).mask]
         wo, wi, chosen = picture_pairs(batch.scene)
-        return image[chosen & self._expressible(wo, wi)].astype(np.float64)
+        return image[chosen & self._judged(wo, wi)].astype(np.float64)
+
+
+@dataclass(frozen=True)
+class SurfaceProbe(PictureProbe):
+    """The diffuse lobe of a surface shader, told apart from what lies over it.
+
+    A black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
+    model, shows how much of the light reaches the lobe and comes back.
+    """
+
+    kind = "lobes"
+
+    def _judged(self, wo, wi):
+        """Pairs to judge: those far from the rim, where an error in place is divided twice."""
+        return np.minimum(wo[:, 2], wi[:, 2]) >= LOBE_RIM
+
+    def _picture(self, batch):
+        picture = super()._picture
+        others = picture(batch.altered(color=(0.0, 0.0, 0.0)))
+        lambert = picture(batch.altered(color=(1.0, 1.0, 1.0), roughness=0.0)) - others
+        expected = 1.0 if batch.scene.light is None else batch.wi[:, 2:]
+        return (picture(batch) - others) / lambert * expected
 
 
 @dataclass(frozen=True)
@@ -205,6 +225,13 @@ PROBES = {
     "cycles": PictureProbe,
     "cycles-native": NativeProbe,
 }
+
+
+@lru_cache(maxsize=8)  # a check makes many pictures of a few documents
+def _shader(text, target, library, profile):
+    with warnings.catch_warnings():  # what is approximated is not judged: see _judged
+        warnings.simplefilter("ignore", ApproximationWarning)
+        return generate(text, target, library=library, profile=profile, lights=True)[0]
 
 
 @lru_cache(maxsize=8)

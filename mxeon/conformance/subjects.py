@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mxeon.library import LIBRARIES
+
 NODE_DOCUMENT = """<?xml version="1.0"?>
 <materialx version="1.39">
   <constant name="shading_normal" type="vector3">
@@ -17,6 +19,16 @@ NODE_DOCUMENT = """<?xml version="1.0"?>
     <input name="bsdf" type="BSDF" nodename="lobe" />
   </surface>
   <surfacematerial name="{node}" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>
+"""
+SURFACE_DOCUMENT = """<?xml version="1.0"?>
+<materialx version="1.39">
+  <{node} name="shading" type="surfaceshader">
+{inputs}
+  </{node}>
+  <surfacematerial name="material" type="material">
     <input name="surfaceshader" type="surfaceshader" nodename="shading" />
   </surfacematerial>
 </materialx>
@@ -87,6 +99,77 @@ SUBJECTS = (
     Subject("oren_nayar_diffuse_bsdf", True, "eon"),
     Subject("oren_nayar_diffuse_bsdf", False, "qon"),
     Subject("eon_diffuse_bsdf", None, "eon"),
+)
+
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
+
+    What lies over the lobe depends on the directions alone, so that pictures of other colours
+    tell the lobe apart; see `mxeon.conformance.probes.SurfaceProbe`.
+
+    Attributes
+    ----------
+    title, node, model : str
+        As reports call it, its category, and what its specification says it has to be.
+    color, roughness : str
+        Names of the inputs of the lobe; "" for no roughness.
+    fixed : tuple of (str, str, str)
+        Name, type and value of further inputs.
+    libraries : tuple of str
+        In which it is judged.
+    """
+
+    title: str
+    node: str
+    model: str
+    color: str
+    roughness: str
+    fixed: tuple[tuple[str, str, str], ...] = ()
+    libraries: tuple[str, ...] = LIBRARIES
+
+    inputs = ()
+
+    def document(self, inputs):
+        """MaterialX text of a material that is this shader alone."""
+        given = [(self.color, "color3", _text(inputs["color"])), *self.fixed]
+        if self.roughness:
+            given.append((self.roughness, "float", _text(inputs["roughness"])))
+        lines = "\n".join(
+            f'    <input name="{name}" type="{kind}" value="{value}" />' for name, kind, value in given
+        )
+        return SURFACE_DOCUMENT.format(node=self.node, inputs=lines)
+
+
+# OpenPBR asks for EON, Standard Surface for Oren-Nayar, USD Preview Surface and glTF for Lambert.
+# The thin-walled lobe is MaterialX's own whatever the library, so it is judged once.
+THIN_WALLED = (
+    ("geometry_thin_walled", "boolean", "true"),
+    ("subsurface_weight", "float", "1.0"),
+)
+SURFACES = (
+    Surface("open_pbr_surface", "open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"),
+    Surface(
+        "open_pbr_surface, thin-walled",
+        "open_pbr_surface",
+        "eon",
+        "subsurface_color",
+        "base_diffuse_roughness",
+        THIN_WALLED,
+        ("stock",),
+    ),
+    Surface(
+        "standard_surface",
+        "standard_surface",
+        "qon",
+        "base_color",
+        "diffuse_roughness",
+        (("base", "float", "1.0"),),
+    ),
+    Surface("UsdPreviewSurface", "UsdPreviewSurface", "lambert", "diffuseColor", ""),
+    Surface("gltf_pbr", "gltf_pbr", "lambert", "base_color", "", (("metallic", "float", "0.0"),)),
 )
 
 # Nodes that a renderer has of its own; Blender's are meant to be EON.
