@@ -75,7 +75,7 @@ def _parser():
 
     check = _command(commands, "check", _check, "run the checks and compare pictures")
     check.add_argument("files", nargs="*", metavar="FILE", help="documents; none: the examples")
-    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles, cycles-native, msl, mdl, wgsl, or all; may be repeated")
+    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles, cycles-native, testrender, msl, mdl, wgsl, or all; may be repeated")
     check.add_argument("--library", action="append", help="eonlib (the default), stock; may be repeated")
     check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
     check.add_argument("--resume", action="store_true", help="go on with the interrupted run in DIR")

@@ -182,7 +182,7 @@ def _on_host(host, library, files):
         return
     kind = PROBES[host].kind
     for row in CHECKS:
-        if not row.models:
+        if not row.models and kind in row.tolerances:
             yield Item(row.key, TWINS, host, library)
     for subject in subjects(library):
         for row in CHECKS:

@@ -16,6 +16,7 @@ from mxeon import reference
 from mxeon.conformance.subjects import Subject, Surface
 from mxeon.generation import ApproximationWarning, generate
 from mxeon.hosts.reference import local_directions
+from mxeon.hosts.testrender import plane_pairs
 from mxeon.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
 
 SEED = 1
@@ -128,6 +129,8 @@ class PictureProbe:
     """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
 
     kind = "pictures"
+    lit = (SIDE, FRONT, BACK)
+    size = PICTURE_SIZE
 
     host: object
     subject: Subject | Surface
@@ -137,8 +140,8 @@ class PictureProbe:
     def batches(self):
         """The lit points away from rim and terminator, for each light and PICTURE_INPUTS."""
         batches = (
-            self._batch(replace(scene, size=PICTURE_SIZE), inputs)
-            for scene in (SIDE, FRONT, BACK)
+            self._batch(replace(scene, size=self.size), inputs)
+            for scene in self.lit
             for inputs in PICTURE_INPUTS
         )
         return tuple(batch for batch in batches if len(batch.wo))
@@ -153,7 +156,7 @@ class PictureProbe:
         """The points in a white surrounding."""
         if (self.host.name, self.subject.model) in FRONT_LIT_ONLY:
             return ()
-        scene = replace(FURNACE, size=PICTURE_SIZE)
+        scene = replace(FURNACE, size=self.size)
         return tuple(self._batch(scene, inputs) for inputs in PICTURE_INPUTS)
 
     def direct(self, batch):
@@ -167,9 +170,13 @@ class PictureProbe:
         return self.host.call(function, *arguments)
 
     def _batch(self, scene, inputs):
-        wo, wi, chosen = picture_pairs(scene)
-        chosen = chosen & self._judged(wo, wi)
+        wo, wi, chosen = self._points(scene)
         return Batch(wo[chosen], wi[chosen], inputs, scene)
+
+    def _points(self, scene):
+        """Directions at the points of a picture, and which points are judged."""
+        wo, wi, chosen = picture_pairs(scene)
+        return wo, wi, chosen & self._judged(wo, wi)
 
     def _judged(self, wo, wi):
         """Pairs to judge: those for which the host has a closure that can be the model."""
@@ -178,11 +185,16 @@ class PictureProbe:
         return wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0
 
     def _picture(self, batch):
-        text = self.subject.document(batch.inputs)
-        shader = _shader(text, self.host.target, self.library, self.host.profile)
-        image = self.host.picture(shader, batch.scene)[sphere(batch.scene.size).mask]
-        wo, wi, chosen = picture_pairs(batch.scene)
-        return image[chosen & self._judged(wo, wi)].astype(np.float64)
+        values = self._shown(self._shader(batch.inputs), batch.scene)
+        return values[self._points(batch.scene)[2]].astype(np.float64)
+
+    def _shader(self, inputs):
+        text = self.subject.document(inputs)
+        return _generated(text, self.host.target, self.library, self.host.profile)
+
+    def _shown(self, shader, scene):
+        """What the host shows at all points."""
+        return self.host.picture(shader, scene)[sphere(scene.size).mask]
 
 
 @dataclass(frozen=True)
@@ -194,6 +206,7 @@ class SurfaceProbe(PictureProbe):
     """
 
     kind = "lobes"
+    size = PICTURE_SIZE // 2  # the shaders are long
 
     def _judged(self, wo, wi):
         """Pairs to judge: those far from the rim, where an error in place is divided twice."""
@@ -203,8 +216,34 @@ class SurfaceProbe(PictureProbe):
         picture = super()._picture
         others = picture(batch.altered(color=(0.0, 0.0, 0.0)))
         lambert = picture(batch.altered(color=(1.0, 1.0, 1.0), roughness=0.0)) - others
-        expected = 1.0 if batch.scene.light is None else batch.wi[:, 2:]
-        return (picture(batch) - others) / lambert * expected
+        return (picture(batch) - others) / lambert * batch.wi[:, 2:]
+
+    def _shader(self, inputs):
+        """One shader for all inputs: long as it is, it is compiled once."""
+        shader = super()._shader(PICTURE_INPUTS[0])
+        given = {self.subject.color: inputs["color"], self.subject.roughness: inputs["roughness"]}
+        values = [given.get(each.path.rsplit("/", 1)[-1], each.value) for each in shader.inputs]
+        changed = map(lambda each, value: replace(each, value=value), shader.inputs, values)
+        return replace(shader, inputs=tuple(changed))
+
+
+@dataclass(frozen=True)
+class PlaneProbe(PictureProbe):
+    """A node on a plane: every pixel is another direction of view."""
+
+    kind = "planes"
+    lit = tuple(
+        Scene(f"plane{degrees}", light=(np.sin(polar), 0.0, np.cos(polar)))
+        for degrees in (20, 75)
+        for polar in [np.radians(degrees)]
+    )
+
+    def _points(self, scene):
+        wo, wi = plane_pairs(scene)
+        return wo, wi, np.ones(len(wo), dtype=bool)
+
+    def _shown(self, shader, scene):
+        return self.host.plane(shader, scene)
 
 
 @dataclass(frozen=True)
@@ -224,11 +263,12 @@ PROBES = {
     "slang": PairProbe,
     "cycles": PictureProbe,
     "cycles-native": NativeProbe,
+    "testrender": PlaneProbe,
 }
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
-def _shader(text, target, library, profile):
+def _generated(text, target, library, profile):
     with warnings.catch_warnings():  # what is approximated is not judged: see _judged
         warnings.simplefilter("ignore", ApproximationWarning)
         return generate(text, target, library=library, profile=profile, lights=True)[0]

@@ -36,7 +36,7 @@ class Identity:
 
 
 # Name on the command line, which is that of a module of this package with a class `Host`.
-HOSTS = ("gl", "webgl", "vulkan", "slang", "cycles", "cycles-native", "reference")
+HOSTS = ("gl", "webgl", "vulkan", "slang", "cycles", "cycles-native", "testrender", "reference")
 
 # Targets whose text is generated and checked, and what it would take to run it.
 TEXT_ONLY = {

@@ -78,6 +78,7 @@ class Worker:
             self._process = Popen(
                 [self._python, "-I", "-W", "ignore", script],
                 stdin=PIPE, stdout=PIPE, stderr=log, text=True,
+                env=os.environ | {"TMPDIR": str(self.log.parent)},  # Blender leaves a folder there
             )
         self.version = self._reply()["version"]
 

@@ -56,7 +56,7 @@ class Host:
     def picture(self, shader, scene):
         """The shader on the sphere; see `mxeon.hosts`."""
         program = self._program(shader.stages["vertex"], shader.stages["pixel"])
-        _set(program, raster.light(scene))
+        _set(program, raster.inputs(shader) | raster.light(scene))
         size = scene.size
         image = self._draw(program, raster.textures(shader, scene), raster.grid(size), (size, size))
         return raster.picture(image, size)

@@ -26,6 +26,15 @@ def textures(shader, scene):
     return images | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
 
 
+def inputs(shader):
+    """Values of the uniforms that carry a shader's inputs, but for its images."""
+    return {
+        each.name: each.value
+        for each in shader.inputs
+        if each.value is not None and not isinstance(each.value, str)
+    }
+
+
 def light(scene):
     """Values of the uniforms by which a shader knows the viewer and the distant light."""
     values = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE), "u_envRadianceMips": 1}

@@ -182,13 +182,8 @@ def program():
 
 def _inputs(shader):
     """Values of the uniforms that carry a shader's inputs."""
-    given = {
-        each.name: each.value
-        for each in shader.inputs
-        if each.value is not None and not isinstance(each.value, str)
-    }
     names = re.findall(r"^uniform vec2 (\w+_(uv_scale|uv_offset));", shader.stages["pixel"], re.M)
-    return {name: IMAGE[kind] for name, kind in names} | given
+    return {name: IMAGE[kind] for name, kind in names} | raster.inputs(shader)
 
 
 def _write(path, groups):
