@@ -206,7 +206,7 @@ class SurfaceProbe(PictureProbe):
     """
 
     kind = "lobes"
-    size = PICTURE_SIZE // 2  # the shaders are long
+    size = PICTURE_SIZE // 4  # the shaders are long
 
     def _judged(self, wo, wi):
         """Pairs to judge: those far from the rim, where an error in place is divided twice."""
