@@ -110,8 +110,10 @@ def load_library(library="eonlib", profile=None):
     ------
     ValueError
         If the library or the profile is unknown; lists the known ones.
+    ImportError
+        If this MaterialX is none of VERSIONS.
     LibraryError
-        If this MaterialX is none of VERSIONS, or finds another implementation than eonlib's.
+        If it finds another implementation than eonlib's.
     """
     assert_version()
     document = mx.createDocument()
@@ -126,11 +128,11 @@ def assert_version():
 
     Raises
     ------
-    LibraryError
+    ImportError
         Otherwise: its shaders would call eonlib's functions wrongly.
     """
     if mx.getVersionString() not in VERSIONS:
-        raise LibraryError(
+        raise ImportError(
             f"MaterialX must be one of {', '.join(VERSIONS)}, whose closure interface eonlib is "
             f"written for; got {mx.getVersionString()}: pip install materialx=={VERSIONS[-1]}"
         )

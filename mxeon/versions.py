@@ -47,7 +47,7 @@ def check(versions, arguments, folder):
         _known(version)
     places = {version: Path(folder, f"materialx-{version}") for version in versions}
     for version, place in places.items():
-        _check(version, arguments, place)
+        check_in(environment(version), version, arguments, place)
     return merged({version: read_run(place) for version, place in places.items()})
 
 
@@ -71,9 +71,57 @@ def environment(version):
     with FileLock(f"{folder}.lock"):
         if not folder.is_dir():
             with TemporaryDirectory(dir=folder.parent) as beside:
-                _install(version, Path(beside, "new"))
+                install(version, Path(beside, "new"))
                 Path(beside, "new").rename(folder)
     return folder
+
+
+def install(version, folder):
+    """Put a version of MaterialX, and nothing else, into a new folder.
+
+    Raises
+    ------
+    NotRun
+        If pip cannot; says why.
+    """
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target"]
+    done = subprocess.run([*command, folder, f"materialx=={version}"], capture_output=True, text=True)
+    if done.returncode != 0:
+        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        raise NotRun(f"MaterialX {version}: pip cannot install it; {reason}")
+
+
+def check_in(environment, version, arguments, place):
+    """`mxeon check` with the MaterialX of a folder, in a process of its own.
+
+    Parameters
+    ----------
+    environment : path-like
+    version : str
+        Of that MaterialX, for messages.
+    arguments : sequence of str
+        Of `mxeon check`, but for --report.
+    place : path-like
+        The report's folder.
+
+    Raises
+    ------
+    ValueError
+        If it refuses; in its words.
+    """
+    paths = [str(environment), str(Path(__file__).resolve().parents[1])]
+    if os.environ.get("PYTHONPATH"):
+        paths.append(os.environ["PYTHONPATH"])
+    done = subprocess.run(
+        [sys.executable, "-m", "mxeon", "check", *arguments, "--report", str(place)],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE if not sys.stderr.isatty() else None,
+        text=True,
+    )
+    if done.returncode not in (0, 1, 3):
+        reason = (done.stderr or "see above").strip().splitlines()[-1]
+        raise ValueError(f"MaterialX {version}: {reason.removeprefix('mxeon: ')}")
 
 
 def merged(runs):
@@ -121,28 +169,3 @@ def _named(run, version):
 def _known(version):
     if version not in VERSIONS:
         raise ValueError(f"materialx must be one of {', '.join(VERSIONS)}; got {version!r}")
-
-
-def _install(version, folder):
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target"]
-    done = subprocess.run([*command, folder, f"materialx=={version}"], capture_output=True, text=True)
-    if done.returncode != 0:
-        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
-        raise NotRun(f"MaterialX {version}: pip cannot install it; {reason}")
-
-
-def _check(version, arguments, place):
-    """The run of one version, in a process of its own."""
-    paths = [str(environment(version)), str(Path(__file__).resolve().parents[1])]
-    if os.environ.get("PYTHONPATH"):
-        paths.append(os.environ["PYTHONPATH"])
-    done = subprocess.run(
-        [sys.executable, "-m", "mxeon", "check", *arguments, "--report", str(place)],
-        env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE if not sys.stderr.isatty() else None,
-        text=True,
-    )
-    if done.returncode not in (0, 1, 3):
-        reason = (done.stderr or "see above").strip().splitlines()[-1]
-        raise ValueError(f"MaterialX {version}: {reason.removeprefix('mxeon: ')}")

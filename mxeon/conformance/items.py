@@ -56,7 +56,7 @@ def plan(files, hosts, libraries):
     ------
     ValueError
         If a host or a library is unknown; lists the known ones.
-    LibraryError
+    ImportError
         If this MaterialX is not one that eonlib works with.
     """
     assert_version()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Slang on the CPU: generated Slang compiled by slangpy, in float32.
+"""Slang on a GPU or the CPU: generated Slang compiled by slangpy, in float32.
 
 A compute kernel after the generated text, which stays as it is, repeats the statements by which
 the text calls its BSDF. Arguments arrive in buffers, one row per thread.
@@ -51,6 +51,8 @@ float atan(float y, float x) { return atan2(y, x); }
 """
 KINDS = {"boolean": "bool"}
 
+DEVICES = ("vulkan", "cpu")  # the first that works
+
 # The CPU device fills no texture but from a kernel.
 WHITE = f"""RWTexture2D<float4> mxeon_white;
 
@@ -64,12 +66,12 @@ void {ENTRY}()
 
 
 class Host:
-    """The CPU device of slangpy.
+    """The first of DEVICES on which slangpy runs a kernel.
 
     Raises
     ------
     NotRun
-        If there is no slangpy, or no C++ compiler for it.
+        If there is no slangpy, or neither a GPU nor a C++ compiler for it.
     """
 
     name = "slang"
@@ -80,12 +82,15 @@ class Host:
         if slangpy is None:
             raise NotRun("slang: slangpy is not installed; pip install 'mxeon[slang]'")
         slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
-        self._device = slangpy.Device(type=slangpy.DeviceType.cpu)
-        self._kernels = {}
-        try:
-            self._white = self._texture()
-        except RuntimeError as error:
-            raise NotRun(f"slang: no kernel for the CPU; {_reason(error)}") from None
+        for device in DEVICES:
+            self._kernels = {}
+            try:
+                self._device = slangpy.Device(type=slangpy.DeviceType[device])
+                self._white = self._texture()
+                return
+            except RuntimeError as error:
+                reason = _reason(error)
+        raise NotRun(f"slang: no kernel for the CPU; {reason}")
 
     def identity(self):
         """slangpy's version and device."""
