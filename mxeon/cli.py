@@ -4,7 +4,6 @@
 Modules are imported by the sub-command that needs them, so that `mxeon --help` answers at once.
 """
 
-import argparse
 import json
 import os
 import sys
@@ -13,19 +12,11 @@ from collections import Counter
 from pathlib import Path
 
 import mxeon
-from mxeon.permissions import LIMITS, Permissions
+from mxeon.arguments import MISUSE, parser, permitted
+from mxeon.permissions import LIMITS
 from mxeon.screening import one_line, printable
 
-PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3
-TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
-STATUS = "Exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run."
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line."""
-
-    def error(self, message):
-        self.exit(MISUSE, f"{self.prog}: {one_line(message)}\n")
+PASSED, FAILED, NOT_RUN = 0, 1, 3  # and MISUSE
 
 
 def main(arguments=None):
@@ -41,18 +32,20 @@ def main(arguments=None):
     int
         0 all passed, 1 a check failed, 2 misuse, 3 something did not run.
     """
-    options = _parser().parse_args(arguments)
+    options = parser().parse_args(arguments)
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _warn
-            return options.run(options)
+            return COMMANDS[options.command](options)
     except KeyboardInterrupt:
         return _fail(130, "interrupted")
     except BrokenPipeError:  # who read our output has had enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return PASSED
     except OSError as error:
-        return _fail(MISUSE, f"{error.filename or 'file'}: must be accessible; {error.strerror or error}")
+        return _fail(
+            MISUSE, f"{error.filename or 'file'}: must be accessible; {error.strerror or error}"
+        )
     except (ValueError, ImportError) as error:
         return _fail(MISUSE, error)
     except RuntimeError as error:
@@ -68,118 +61,13 @@ def _warn(message, *_, **__):
     print(f"mxeon: warning: {one_line(message)}", file=sys.stderr)
 
 
-def _parser():
-    parser = _Parser(prog="mxeon", description=mxeon.__doc__.splitlines()[0], epilog=STATUS)
-    parser.add_argument("--version", action="version", version=f"mxeon {mxeon.__version__}")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
-
-    check = _command(commands, "check", _check, "run the checks and compare pictures")
-    check.add_argument("files", nargs="*", metavar="FILE", help="documents; none: the examples")
-    check.add_argument("--host", action="append", help="gl (the default), webgl, vulkan, slang, cycles, cycles-native, testrender, msl, mdl, wgsl, or all; may be repeated")
-    check.add_argument("--library", action="append", help="eonlib (the default), stock; may be repeated")
-    check.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
-    check.add_argument("--resume", action="store_true", help="go on with the interrupted run in DIR")
-    check.add_argument("--workers", type=int, default=os.cpu_count(), metavar="N", help="processes that share the work; 0 for none but this")
-    check.add_argument("--materialx", nargs="+", metavar="VERSION", help="judge these versions of MaterialX, each in its own environment")
-    check.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work")
-    check.add_argument("--limit", type=float, default=300.0, metavar="SECONDS", help="for one item of work")
-    _permissions(check, runs=True)
-    _json(check)
-
-    generate = _command(commands, "generate", _generate, "write shader sources")
-    generate.add_argument("files", nargs="+", metavar="FILE", help="MaterialX documents")
-    generate.add_argument("--target", action="append", required=True, help=", ".join(TARGETS))
-    generate.add_argument("--element", metavar="NAME", help="one renderable element; none: all")
-    generate.add_argument("--profile", help="cycles: osl for Blender's Cycles")
-    generate.add_argument("--outputPath", metavar="DIR", required=True, help="where to write")
-    _library(generate)
-    _permissions(generate)
-    _json(generate)
-
-    render = _command(commands, "render", _render, "make a picture of a material on a sphere")
-    render.add_argument("file", metavar="FILE", help="a MaterialX document")
-    render.add_argument("--host", default="gl", help="gl, cycles, reference")
-    render.add_argument("--element", metavar="NAME", help="needed where there are several")
-    render.add_argument("--output", metavar="OUT", required=True, help="linear .exr or sRGB .png")
-    render.add_argument("--scene", default="side", help="front, side, back, furnace")
-    render.add_argument("--environment", metavar="IMAGE", help="a latitude-longitude image instead")
-    render.add_argument("--size", type=int, default=512, help="width and height in pixels")
-    _library(render)
-    _permissions(render, runs=True)
-
-    library = _command(commands, "library", _show_library, "say where eonlib lies, for other hosts")
-    library.add_argument("--folder", action="store_true", help="print the folder alone")
-    library.add_argument("--verify", action="store_true", help="list what each target finds")
-
-    invert = _command(commands, "invert", _invert, "find the color input for a colour to be seen")
-    for channel in "RGB":
-        invert.add_argument(channel, type=float, help="wanted, in [0, 1]")
-    invert.add_argument("--roughness", type=float, required=True)
-    invert.add_argument("--average", action="store_true", help="seen on average, not head-on")
-
-    figures = _command(commands, "figures", _figures, "make the figures of the EON paper, checked")
-    figures.add_argument("folder", metavar="DIR", help="where to write")
-
-    report = _command(commands, "report", None, "make and compare reports of runs")
-    actions = report.add_subparsers(required=True, metavar="ACTION")
-    make = _command(actions, "make", _report_make, "make the report of a run, finished or not")
-    make.add_argument("report", metavar="DIR", help="the folder of the run")
-    _json(make)
-
-    diff = _command(actions, "diff", _report_diff, "tell what is not the same in two reports")
-    diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
-    diff.add_argument("after", metavar="B")
-    _json(diff)
-
-    kit = _command(commands, "kit", None, "judge a renderer by the pictures it makes")
-    actions = kit.add_subparsers(required=True, metavar="ACTION")
-    export = _command(actions, "export", _kit_export, "write scenes, materials and a page")
-    export.add_argument("folder", metavar="DIR")
-    export.add_argument("--size", type=int, default=128, help="width and height in pixels")
-    judge = _command(actions, "check", _kit_check, "judge the pictures in DIR/renders")
-    judge.add_argument("folder", metavar="DIR")
-    judge.add_argument("--renderer", default="renderer", metavar="NAME", help="who made them")
-    judge.add_argument("--report", metavar="DIR", help="write a page, JSON, JUnit and the pictures")
-    _json(judge)
-    return parser
-
-
-def _command(commands, name, run, summary):
-    command = commands.add_parser(name, help=summary, description=summary, epilog=STATUS)
-    command.set_defaults(run=run)
-    return command
-
-
-def _library(command):
-    command.add_argument("--library", default="eonlib", help="eonlib (the default) or stock")
-
-
-def _permissions(command, runs=False):
-    """Options for what documents may do; code can only be forbidden where it would run."""
-    group = command.add_argument_group("documents from strangers")
-    group.add_argument("--allowOutside", action="store_true", help="let documents name files outside their folders and the libraries")
-    if runs:
-        group.add_argument("--allowCode", action="store_true", help="run the shader code that documents bring along")
-    for name, meaning in LIMITS.items():
-        limit = getattr(Permissions, name)
-        group.add_argument(f"--max{name.capitalize()}", type=int, default=limit, metavar="N", help=f"{meaning}; {limit}")
-
-
-def _permitted(options):
-    """What documents may do, as the options say."""
-    limits = {name: getattr(options, f"max{name.capitalize()}") for name in LIMITS}
-    return Permissions(options.allowOutside, getattr(options, "allowCode", True), **limits)
-
-
-def _json(command):
-    command.add_argument("--json", action="store_true", help="print JSON for machines")
-
-
 def _check(options):
     from mxeon.conformance import JUDGED, check
 
     if options.resume and not options.report:
-        raise ValueError("--resume needs --report DIR, the folder of the run to go on with; got none")
+        raise ValueError(
+            "--resume needs --report DIR, the folder of the run to go on with; got none"
+        )
     if options.materialx:
         return _check_versions(options)
     hosts = options.host or ("gl",)
@@ -192,7 +80,7 @@ def _check(options):
         folder=options.report,
         resume=options.resume,
         scheduler=options.scheduler,
-        permissions=_permitted(options),
+        permissions=permitted(options),
         progress=_progress("mxeon check"),
     )
     return _judged(run, options)
@@ -280,7 +168,9 @@ def _print_run(run, summary, page):
         if result.verdict != "failed":
             continue
         figure = "" if result.figure is None else f" {result.figure:.3g} > {result.tolerance:.3g}"
-        print(f"failed: {result.host}, {result.check}, {result.subject}:{figure} {result.diagnosis}")
+        print(
+            f"failed: {result.host}, {result.check}, {result.subject}:{figure} {result.diagnosis}"
+        )
     for note in run.notes:
         print(f"note: {note}")
     print(summary.sentence)
@@ -293,9 +183,7 @@ def _not_run(results):
     from mxeon.verdict import place
 
     return Counter(
-        (place(result), result.reason)
-        for result in results
-        if result.verdict == "not run"
+        (place(result), result.reason) for result in results if result.verdict == "not run"
     )
 
 
@@ -327,7 +215,7 @@ def _sources(file, target, options):
     from mxeon.generation import generate
 
     known = {"library": options.library, "profile": options.profile}
-    known["permissions"] = _permitted(options)
+    known["permissions"] = permitted(options)
     return {
         str(Path(options.outputPath) / _file_name(file.stem, shader, stage)): text
         for shader in generate(file, target, options.element, **known)
@@ -361,7 +249,7 @@ def _render(options):
         library=options.library,
         profile=host.profile,
         lights=True,
-        permissions=_permitted(options),
+        permissions=permitted(options),
     )
     if len(found) > 1:
         known = ", ".join(shader.element for shader in found)
@@ -407,7 +295,9 @@ def _show_library(options):
         print(f"generateshader              --library {folder}")
         print(f"generateshader, for Cycles  --library {cycles} {folder}")
         print(f"USD                         PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
-        print(f'C++                         loadLibraries({{"{folder}", "libraries"}}, path, document)')
+        print(
+            f'C++                         loadLibraries({{"{folder}", "libraries"}}, path, document)'
+        )
     return PASSED
 
 
@@ -430,3 +320,17 @@ def _figures(options):
 
     print(figures(options.folder, progress))
     return PASSED
+
+
+COMMANDS = {
+    "check": _check,
+    "generate": _generate,
+    "render": _render,
+    "library": _show_library,
+    "invert": _invert,
+    "figures": _figures,
+    "report make": _report_make,
+    "report diff": _report_diff,
+    "kit export": _kit_export,
+    "kit check": _kit_check,
+}

@@ -210,5 +210,5 @@ def test_a_reader_who_has_enough_is_no_error():
 
 
 def test_help_loads_no_shader_generator():
-    code = "import sys, mxeon.cli; mxeon.cli._parser(); sys.exit('MaterialX' in sys.modules)"
+    code = "import sys, mxeon.cli; mxeon.arguments.parser(); sys.exit('MaterialX' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
