@@ -21,7 +21,7 @@ from mxeon.hosts import NotRun, open_host
 from mxeon.library import data_folder
 
 STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling")
-WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan", "osl": "glsl"}
+WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "osl": "glsl"}
 MODELS = ("lambert", "oren_nayar", "qon", "fon", "eon")
 SAMPLERS = ("uniform", "cosine", "ltc0", "ltc", "cltc")
 VALUES = (
@@ -134,6 +134,14 @@ def test_fit_repeats_the_coefficients_of_the_shaders(language):
 
 def test_fit_has_the_accuracy_that_the_shaders_state():
     assert np.less_equal(FIT["largest_errors"](*FIT["fit"]()), (FIT_LOSS, FIT_LOSS_32)).all()
+
+
+@by_language
+def test_fit_repeats_the_series_of_the_angle(language):
+    fit = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "arc_tangent.py"))
+    body = re.search(r"float series = (.*);", twins.source(language))[1]
+    written = [float(each) for each in re.findall(r"-?\d\.\d+", body)]
+    np.testing.assert_allclose(written, fit["coefficients"](**fit["TWINS"]), rtol=0.0, atol=5e-9)
 
 
 def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():

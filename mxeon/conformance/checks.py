@@ -53,8 +53,7 @@ class Check:
         What the control does wrong.
     control : callable (probe) -> probe
     tolerances : dict of str to Tolerance
-        By kind of probe, or by host where one needs its own; a kind that is missing cannot be
-        asked.
+        By kind of probe; one that is missing cannot be asked.
     """
 
     key: str
@@ -138,10 +137,6 @@ LOBE = (
 CYCLES_RAY = (
     "float32 place of a pixel's point, 2^-24 of the camera's distance over the smallest cosine "
     "judged, times the sensitivity of f cos to it"
-)
-ARC_TANGENT = (
-    "measured, cause unknown: full Oren-Nayar, the one function with arc tangents, is off by 1.1e-5 "
-    "on ANGLE with SwiftShader, all others by 3e-7"
 )
 NOISE = (
     "four standard errors of the mean over a picture: 2e-3 a pixel with 256 samples of a weight "
@@ -295,7 +290,6 @@ CHECKS = (
         {
             "pairs": Tolerance(2e-6, "pi f cos", absolute, VALUE),
             "pictures": Tolerance(2e-6, "pi f cos", absolute, VALUE),
-            "webgl": Tolerance(2e-5, "pi f cos", absolute, ARC_TANGENT),
         },
     ),
     Check(

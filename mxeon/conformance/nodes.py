@@ -55,10 +55,9 @@ def judge_twins(host, library, checks=CHECKS):
     place = {"subject": "shader twins", "host": host.name, "library": library}
     kind = PROBES[host.name].kind
     return tuple(
-        _judge(check, host.call, tolerance, place, lambda check, probe: Diagnosis())
+        _judge(check, host.call, check.tolerances[kind], place, lambda check, probe: Diagnosis())
         for check in checks
         if not check.models
-        for tolerance in [check.tolerances.get(host.name, check.tolerances[kind])]
     )
 
 

@@ -47,7 +47,6 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 # GLSL's words for what the twins use, as far as Slang has other words.
 GLSL = """typealias vec3 = float3;
 #define mix lerp
-float atan(float y, float x) { return atan2(y, x); }
 """
 KINDS = {"boolean": "bool"}
 
