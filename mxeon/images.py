@@ -11,7 +11,7 @@ import numpy as np
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
-RADIANCE_SIZE = 64  # rows from which it is summed
+RADIANCE_SIZE = 64  # rows and columns, or little more, from which it is summed
 
 
 def read_image(path):
@@ -48,9 +48,18 @@ def read_latlong(environment):
     ----------
     environment : None, float or Path
         Nothing, a uniform radiance, or an image file.
+
+    Raises
+    ------
+    ValueError
+        If it is no image that can be read, or not one of colours.
     """
     if isinstance(environment, (str, Path)):
-        return read_image(environment)[..., :3]
+        pixels = read_image(environment)
+        if pixels.shape[-1] < 3:
+            channels = pixels.shape[-1]
+            raise ValueError(f"{environment}: must have red, green and blue; got {channels} channels")
+        return pixels[..., :3]
     return np.full((1, 1, 3), environment or 0.0, dtype=np.float32)
 
 
@@ -63,9 +72,9 @@ def irradiance(radiance):
     """
     if radiance.shape[:2] == (1, 1):
         return radiance
-    step = max(1, radiance.shape[0] // RADIANCE_SIZE)
-    rows, columns = (size // step for size in radiance.shape[:2])
-    blocks = radiance[: rows * step, : columns * step].reshape(rows, step, columns, step, -1)
+    high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
+    rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
+    blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
     coarse = blocks.mean(axis=(1, 3)).reshape(rows * columns, -1)
     incoming, solid_angle = _directions(rows, columns)
     normals, _ = _directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
