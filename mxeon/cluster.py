@@ -10,6 +10,7 @@ import sys
 import warnings
 from collections import deque
 from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import mxeon
 from mxeon.pool import Outcome
@@ -66,34 +67,53 @@ def _connect(address):
         ) from None
 
 
+@dataclass(frozen=True)
+class _Task:
+    """An item, the workers that could not do it, and those it is bound to, if any."""
+
+    place: int
+    item: object
+    tried: frozenset = frozenset()
+    chosen: frozenset = frozenset()
+
+
 def _serve(workers, work, items, limit, elsewhere):
     from distributed import wait
 
-    waiting = deque((place, item, frozenset()) for place, item in enumerate(items))
+    waiting = deque(_Task(place, item) for place, item in enumerate(items))
     running = {}
     while waiting or running:
         fit = workers.fit()
         while waiting and len(running) < WINDOW * len(fit):
-            place, item, tried = waiting.popleft()
-            future, chosen = workers.submit(_timed, work, item, limit, elsewhere, avoid=tried)
-            running[future] = place, item, tried, chosen
+            task = waiting.popleft()
+            future, chosen = workers.submit(_timed, work, task.item, limit, elsewhere, avoid=task.tried)
+            running[future] = replace(task, chosen=chosen)
         if not running:
             raise ValueError("cluster must keep a worker that fits; all are gone")
         with suppress(TimeoutError):
             wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
-        for future in list(running):
-            place, item, tried, chosen = running[future]
+        for future, task in list(running.items()):
             if future.done():
-                error = future.exception()
-                tried |= {error.worker} if isinstance(error, Elsewhere) else frozenset()
-                if not isinstance(error, Elsewhere) or not fit - tried:
-                    yield place, _outcome(future, error)
-                    del running[future]
-                    continue
-            elif not chosen or chosen & fit:
+                outcome, task = _ended(future, task, fit)
+            elif task.chosen and not task.chosen & fit:  # for those that came instead
+                outcome = None
+            else:
                 continue
-            waiting.append((place, item, tried))  # for others, or for those that came instead
             del running[future]
+            if outcome:
+                yield task.place, outcome
+            else:
+                waiting.append(task)
+
+
+def _ended(future, task, fit):
+    """The outcome of a task that ended; or none, and the task as others are to try it."""
+    error = future.exception()
+    if isinstance(error, Elsewhere):
+        tried = task.tried | {error.worker}
+        if fit - tried:
+            return None, replace(task, tried=tried)
+    return _outcome(future, error), task
 
 
 def _outcome(future, error):
@@ -130,7 +150,6 @@ class _Workers:
             if why:
                 warnings.warn(f"worker {address} gets no work: {why}", stacklevel=2)
         return frozenset(address for address in threads if self._fits.get(address))
-
 
     def submit(self, *task, avoid):
         """The future of a task, and the workers it is bound to, or none if any may do it."""
