@@ -9,7 +9,7 @@ import faulthandler
 import sys
 import warnings
 from collections import deque
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 
 import mxeon
@@ -20,7 +20,30 @@ PATIENCE = 10.0  # seconds until a scheduler answers
 POLL = 1.0  # seconds between looks at the workers that come and go
 
 
-def run(work, items, address, limit, elsewhere):
+@contextmanager
+def connected(address):
+    """The workers of a cluster.
+
+    Parameters
+    ----------
+    address : str
+        Of the scheduler, "tcp://host:8786".
+
+    Raises
+    ------
+    ValueError
+        If no scheduler answers at the address, or none of its workers fits.
+    ImportError
+        If Dask is not installed; says what to install.
+    """
+    client = _connect(address)
+    try:
+        yield _Workers(client)
+    finally:
+        client.close()
+
+
+def run(work, items, workers, limit, elsewhere):
     """Outcomes of `work` on every item, as they come; see `mxeon.pool.run`.
 
     Parameters
@@ -28,8 +51,7 @@ def run(work, items, address, limit, elsewhere):
     work : callable (item) -> object
         Can be imported by name on the workers.
     items : sequence
-    address : str
-        Of the scheduler, "tcp://host:8786".
+    workers : what `connected` gives
     limit : float
         Seconds for one item, after which its worker process ends and its nanny starts another.
     elsewhere : type of exception
@@ -42,15 +64,45 @@ def run(work, items, address, limit, elsewhere):
     Raises
     ------
     ValueError
-        If no scheduler answers at the address, or none of its workers fits.
-    ImportError
-        If Dask is not installed; says what to install.
+        If no worker that fits is left.
     """
-    client = _connect(address)
-    try:
-        yield from _serve(_Workers(client), work, items, limit, elsewhere)
-    finally:
-        client.close()
+    from distributed import wait
+
+    waiting = deque(_Task(place, item) for place, item in enumerate(items))
+    running = {}
+    while waiting or running:
+        fit = workers.fit()
+        while waiting and len(running) < WINDOW * len(fit):
+            task = waiting.popleft()
+            chosen = fit - task.tried or fit
+            future = workers.submit(_timed, work, task.item, limit, elsewhere, among=chosen)
+            running[future] = replace(task, chosen=chosen)
+        if not running:
+            raise ValueError("cluster must keep a worker that fits; all are gone")
+        with suppress(TimeoutError):
+            wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
+        for future, task in list(running.items()):
+            if future.done():
+                outcome, task = _ended(future, task, fit)
+            elif not task.chosen & fit:  # for those that came instead
+                outcome = None
+            else:
+                continue
+            del running[future]
+            if outcome:
+                yield task.place, outcome
+            else:
+                waiting.append(task)
+
+
+@dataclass(frozen=True)
+class _Task:
+    """An item, the workers that could not do it, and those it is bound to."""
+
+    place: int
+    item: object
+    tried: frozenset = frozenset()
+    chosen: frozenset = frozenset()
 
 
 def _connect(address):
@@ -65,45 +117,6 @@ def _connect(address):
         raise ValueError(
             f"scheduler must be the address of a running Dask scheduler; got {address}: {reason}"
         ) from None
-
-
-@dataclass(frozen=True)
-class _Task:
-    """An item, the workers that could not do it, and those it is bound to, if any."""
-
-    place: int
-    item: object
-    tried: frozenset = frozenset()
-    chosen: frozenset = frozenset()
-
-
-def _serve(workers, work, items, limit, elsewhere):
-    from distributed import wait
-
-    waiting = deque(_Task(place, item) for place, item in enumerate(items))
-    running = {}
-    while waiting or running:
-        fit = workers.fit()
-        while waiting and len(running) < WINDOW * len(fit):
-            task = waiting.popleft()
-            future, chosen = workers.submit(_timed, work, task.item, limit, elsewhere, avoid=task.tried)
-            running[future] = replace(task, chosen=chosen)
-        if not running:
-            raise ValueError("cluster must keep a worker that fits; all are gone")
-        with suppress(TimeoutError):
-            wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
-        for future, task in list(running.items()):
-            if future.done():
-                outcome, task = _ended(future, task, fit)
-            elif task.chosen and not task.chosen & fit:  # for those that came instead
-                outcome = None
-            else:
-                continue
-            del running[future]
-            if outcome:
-                yield task.place, outcome
-            else:
-                waiting.append(task)
 
 
 def _ended(future, task, fit):
@@ -151,11 +164,9 @@ class _Workers:
                 warnings.warn(f"worker {address} gets no work: {why}", stacklevel=2)
         return frozenset(address for address in threads if self._fits.get(address))
 
-    def submit(self, *task, avoid):
-        """The future of a task, and the workers it is bound to, or none if any may do it."""
-        chosen = frozenset() if all(self._fits.values()) and not avoid else self.fit() - avoid
-        future = self.client.submit(*task, workers=sorted(chosen) or None, pure=False)
-        return future, chosen
+    def submit(self, *task, among):
+        """The future of a task that some of the workers may do."""
+        return self.client.submit(*task, workers=sorted(among), pure=False)
 
 
 class Elsewhere(Exception):

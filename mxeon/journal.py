@@ -8,7 +8,7 @@ A line counts once its newline is there.
 
 import json
 import os
-from contextlib import suppress
+import shutil
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
@@ -22,7 +22,8 @@ from mxeon.results import Findings, Picture, Plan
 from mxeon.writing import replacing
 
 FORMAT = 1
-NAME, PREVIOUS = "journal/items.jsonl", "journal/items.previous.jsonl"
+NAME = "journal/items.jsonl"
+PREVIOUS, LOCK = "journal.previous", "journal.lock"  # beside the folder `journal`
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Journal:
     plan : Plan
     resume : bool
         Whether to go on with the run that the folder holds, if one was begun. If not, an earlier
-        journal is kept beside, as PREVIOUS.
+        journal is kept beside with its pictures, as PREVIOUS.
 
     Attributes
     ----------
@@ -63,8 +64,8 @@ class Journal:
     def __init__(self, folder, plan, resume=False):
         self._folder = Path(folder)
         self._path = self._folder / NAME
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        self._lock = FileLock(self._path.with_name("lock"), timeout=0)
+        self._folder.mkdir(parents=True, exist_ok=True)
+        self._lock = FileLock(self._folder / LOCK, timeout=0)
         try:
             self._lock.acquire()
         except Timeout:
@@ -105,8 +106,10 @@ class Journal:
         self.findings[place] = findings
 
     def _begin(self, plan):
-        with suppress(FileNotFoundError):
-            os.replace(self._path, self._folder / PREVIOUS)
+        if self._path.exists():
+            shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
+            os.replace(self._path.parent, self._folder / PREVIOUS)
+        self._path.parent.mkdir(exist_ok=True)
         self._open()
         self._append({"format": FORMAT} | _converter(self._folder).unstructure(plan))
         return {}

@@ -18,6 +18,7 @@ from pathlib import Path
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
 ATTEMPTS = 2
+BREAKS = 3  # pools that break one after the other before any item ends
 START = 60.0  # seconds that a process may take before it begins to work
 # Seconds until the lock of a process that was killed while it took or gave is taken from it.
 CONSTS.channel_lock_timeout = 10.0
@@ -77,8 +78,14 @@ def run(work, items, workers, limit):
         raise ValueError(f"limit must be positive; got {limit:g}")
     waiting = deque((place, item, 1) for place, item in enumerate(items))
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
-        while waiting:
-            yield from _serve(work, waiting, workers, limit, logs)
+        breaks = 0
+        while waiting and breaks < BREAKS:
+            breaks += 1
+            for ended in _serve(work, waiting, workers, limit, logs):
+                breaks = 0
+                yield ended
+    for place, _, attempt in waiting:
+        yield place, Outcome(None, "the processes end before they begin to work", attempt)
 
 
 def _serve(work, waiting, workers, limit, logs):
@@ -114,17 +121,24 @@ def _outcome(future, attempt, limit, log):
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt)
-    if isinstance(error, TimeoutError):
+    if isinstance(error, TimeoutError) and error.__cause__ is None:  # else the work raised it
         end = f"no end within {limit:g} s"
     elif isinstance(error, ProcessExpired):
         code = error.exitcode
-        end = f"ended by {signal.Signals(-code).name}" if code < 0 else f"exit status {code}"
+        end = f"ended by {_signal(-code)}" if code < 0 else f"exit status {code}"
     else:
         end = f"{type(error).__name__}: {error}"
     path = Path(log)
     printed = path.read_text(errors="replace").split("\n") if path.exists() else []
     last = " | ".join([line.strip() for line in printed if line.strip()][-LAST_LINES:]) or "none"
     return Outcome(None, f"{' '.join(end.split())}; last output: {last}", attempt)
+
+
+def _signal(number):
+    try:
+        return signal.Signals(number).name
+    except ValueError:  # a real-time signal has no name
+        return f"signal {number}"
 
 
 def _end_with_parent():

@@ -113,14 +113,14 @@ def check_in(environment, version, arguments, place):
     if os.environ.get("PYTHONPATH"):
         paths.append(os.environ["PYTHONPATH"])
     done = subprocess.run(
-        [sys.executable, "-m", "mxeon", "check", *arguments, "--report", str(place)],
+        [sys.executable, "-m", "mxeon", "check", *arguments, "--report", str(place), "--json"],
         env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
-        stdout=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
         stderr=subprocess.PIPE if not sys.stderr.isatty() else None,
         text=True,
     )
-    if done.returncode not in (0, 1, 3):
-        reason = (done.stderr or "see above").strip().splitlines()[-1]
+    if not done.stdout.strip():  # it has a run to show unless it refuses
+        reason = ((done.stderr or "").strip() or "see above").splitlines()[-1]
         raise ValueError(f"MaterialX {version}: {reason.removeprefix('mxeon: ')}")
 
 
@@ -163,6 +163,7 @@ def _named(run, version):
         pictures=named(run.pictures),
         curves=named(run.curves),
         missing=tuple(f"{item}, MaterialX {version}" for item in run.missing),
+        errors=tuple(f"MaterialX {version}: {error}" for error in run.errors),
     )
 
 

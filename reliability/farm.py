@@ -21,8 +21,8 @@ def measure(workers=WORKERS, documents=DOCUMENTS, progress=iter):
     Returns
     -------
     dict
-        workers, seconds: lists of equal length; cores of this machine; items; mebibytes that
-        the findings have when they travel.
+        workers, seconds: lists of equal length; cores of this machine; documents; mebibytes of
+        a picture and the reference's when they travel.
     """
     with TemporaryDirectory(prefix="mxeon-farm-") as base:
         files = [document(Path(base), number) for number in range(documents)]

@@ -40,10 +40,10 @@ def measure(count=10, progress=iter):
             process = start(folder, "--limit", str(ITEM))
             goal = rng.randrange(len(calm) // 4)
             until(lambda: finished(folder) > goal and workers(process), LIMIT, process)
-            _stop(workers(process)[:1])
+            stopped = _stop(workers(process)[:1])
             wait_for_end(process, LIMIT)
-            tally["runs"] += 1
-            tally["survived"] += verdicts(folder) == calm
+            tally["runs"] += stopped
+            tally["survived"] += stopped and verdicts(folder) == calm
         _persistent(Path(base, "persistent"), tally)
     return tally
 
@@ -59,7 +59,8 @@ def _persistent(folder, tally):
         _stop(each for each in workers(process) if now - each.create_time() > START)
         return finished(folder) >= before + 2
 
-    until(given_up, LIMIT, process)
+    if not until(given_up, LIMIT, process):
+        raise RuntimeError("the run came to its end before two of its items were given up")
     wait_for_end(process, LIMIT)
     reasons = [each.reason for each in read_run(folder).results if each.verdict == NOT_RUN]
     tally["persistent"] += 1
@@ -68,6 +69,10 @@ def _persistent(folder, tally):
 
 
 def _stop(processes):
+    """How many could be stopped."""
+    count = 0
     for each in processes:
         with suppress(psutil.Error):
             each.suspend()
+            count += 1
+    return count

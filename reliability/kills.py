@@ -19,7 +19,7 @@ ENDED = (0, 1, 3)  # exit statuses of a run that came to its end
 VICTIMS = ("worker", "worker", "parent", "parent", "interrupt")
 
 
-def measure(count=240, progress=iter):
+def measure(count=200, progress=iter):
     """Figures of `count` runs, each struck once or more at random moments.
 
     Returns
@@ -62,6 +62,8 @@ def _strike(folder, rng, usual, tally):
 
 def _hit(process, victim, rng):
     """Strike; whether there was something to hit."""
+    if process.poll() is not None:
+        return False
     with suppress(psutil.Error):
         if victim == "interrupt":
             process.send_signal(signal.SIGINT)

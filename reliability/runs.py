@@ -52,7 +52,7 @@ def workers(process):
 
 
 def wait_for_end(process, seconds):
-    """Exit status and last line of standard error of a run.
+    """Exit status and standard error of a run.
 
     Raises
     ------

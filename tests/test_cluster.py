@@ -28,7 +28,8 @@ EXAMPLE = examples_folder() / "plaster.mtlx"
 
 
 def run(work, items, address, limit=60.0):
-    return dict(cluster.run(work, items, address, limit, NotRun))
+    with cluster.connected(address) as workers:
+        return dict(cluster.run(work, items, workers, limit, NotRun))
 
 
 @contextmanager

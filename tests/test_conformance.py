@@ -304,3 +304,19 @@ def test_a_subject_writes_a_document_with_its_flag():
     text = Subject("oren_nayar_diffuse_bsdf", True, "eon").document({"roughness": 0.5})
     assert 'name="energy_compensation" type="boolean" value="true"' in text
     assert 'name="roughness" type="float" value="0.5"' in text
+
+
+def test_a_black_material_passes(tmp_path):
+    path = tmp_path / "black.mtlx"
+    path.write_text(SUBJECTS[0].document({"color": (0.0, 0.0, 0.0)}), encoding="utf-8")
+    (result,) = [each for each in check([path]).results if each.check == "picture"]
+    assert result.verdict == PASSED and result.control.caught and result.figure == 0.0
+
+
+def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path):
+    check(EXAMPLES[:1], folder=tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    for wrong in ({"workers": -1}, {"limit": 0.0}, {"scheduler": "tcp://127.0.0.1:9"}):
+        with pytest.raises(ValueError, match=r"^(workers|limit|scheduler) must be "):
+            check(EXAMPLES[:1], folder=tmp_path, **wrong)
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 from dataclasses import replace
 
 import numpy as np
@@ -106,7 +107,7 @@ def test_a_new_run_keeps_the_old_journal_beside(tmp_path):
     before = (tmp_path / NAME).read_bytes()
     with journal(tmp_path) as kept:
         assert kept.findings == {}
-    assert (tmp_path / PREVIOUS).read_bytes() == before
+    assert (tmp_path / PREVIOUS / Path(NAME).name).read_bytes() == before
 
 
 def test_one_folder_has_one_writer(tmp_path):

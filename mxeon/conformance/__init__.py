@@ -4,7 +4,7 @@
 The only place that sees both chains, the shaders and the models.
 """
 
-from contextlib import closing, nullcontext
+from contextlib import closing, contextmanager, nullcontext
 from functools import lru_cache, partial
 from pathlib import Path
 
@@ -71,11 +71,14 @@ def check(
         `workers` or `limit` leave their ranges, or no scheduler answers or has workers that fit.
     """
     planned = plan(files, hosts, libraries)
-    with _keeper(folder, planned, resume) as kept:
+    # Who cannot work must not touch what the folder holds.
+    with (
+        _crew(permissions, workers, limit, scheduler) as crew,
+        _keeper(folder, planned, resume) as kept,
+    ):
         places = [place for place in range(len(planned.items)) if place not in kept.findings]
         waiting = [planned.items[place] for place in places]
-        found = _done(waiting, permissions, workers, limit, scheduler)
-        for number, findings in progress(found, len(waiting)):
+        for number, findings in progress(_done(waiting, crew), len(waiting)):
             kept.add(places[number], findings)
         return to_run(planned, kept.findings)
 
@@ -140,21 +143,31 @@ def _keeper(folder, planned, resume):
     return nullcontext(_Memory()) if folder is None else Journal(folder, planned, resume)
 
 
-def _done(items, permissions, workers, limit, scheduler):
-    """Findings of the items as they come, each with its place."""
+@contextmanager
+def _crew(permissions, workers, limit, scheduler):
+    """Who works: a function from items to their outcomes."""
+    if workers < 0:
+        raise ValueError(f"workers must be at least 0; got {workers}")
+    if not limit > 0.0:
+        raise ValueError(f"limit must be positive; got {limit:g}")
     if scheduler:
-        at_work = partial(work, permissions)
-        outcomes = cluster.run(at_work, items, scheduler, limit, elsewhere=NotRun)
+        with cluster.connected(scheduler) as found:
+            at_work = partial(work, permissions)
+            yield partial(cluster.run, at_work, workers=found, limit=limit, elsewhere=NotRun)
     elif workers:
-        outcomes = pool.run(partial(settled, permissions), items, workers, limit)
+        yield partial(pool.run, partial(settled, permissions), workers=workers, limit=limit)
     else:
-        outcomes = _here(items, permissions)
-    for place, outcome in outcomes:
+        yield partial(_here, permissions)
+
+
+def _done(items, crew):
+    """Findings of the items as they come, each with its place."""
+    for place, outcome in crew(items):
         failed = outcome.value is None
         yield place, not_run(items[place], outcome.failure) if failed else outcome.value
 
 
-def _here(items, permissions):
+def _here(permissions, items):
     with closing(Judge(permissions)) as judge:
         for place, item in enumerate(items):
             yield place, pool.Outcome(_settled(judge, item))
