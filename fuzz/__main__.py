@@ -26,8 +26,9 @@ def main(arguments=None):
     options = _options(arguments)
     if options.case is not None:
         tried = case(options.seed, options.case)
-        print(*tried.files, tried.arguments, trial(tried) or "no fault", sep="\n")
-        return 0
+        fault = trial(tried)
+        print(*tried.files, tried.arguments, fault or "no fault", sep="\n")
+        return 1 if fault else 0
     numbers = range(options.start, options.start + options.cases)
     start = time.monotonic()
     failed = tuple(_failed([(options.seed, number) for number in numbers], options))

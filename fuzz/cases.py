@@ -31,6 +31,7 @@ COMMANDS = (
     ("invert", "0.5", "0.4", "0.3", "--roughness", "0.5"),
     ("invert", "0.5", "0.4", "0.3", "--roughness", "1", "--average"),
     ("report", "make", "textures"),
+    ("report", "diff", "results.json", "results.json"),
     ("kit", "check", "textures", "--renderer", "mine"),
     ("--version",),
     ("--help",),

@@ -41,7 +41,7 @@ def main(arguments=None):
         return _fail(130, "interrupted")
     except BrokenPipeError:  # who read our output has had enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return PASSED
+        return 141  # as of a program that SIGPIPE ended
     except OSError as error:
         return _fail(
             MISUSE, f"{error.filename or 'file'}: must be accessible; {error.strerror or error}"
@@ -49,7 +49,8 @@ def main(arguments=None):
     except (ValueError, ImportError) as error:
         return _fail(MISUSE, error)
     except RuntimeError as error:
-        return _fail(NOT_RUN if type(error).__name__ == "NotRun" else FAILED, error)
+        wrong = type(error).__name__ in ("ShaderError", "LibraryError")
+        return _fail(FAILED if wrong else NOT_RUN, error)
 
 
 def _fail(status, error):
@@ -91,7 +92,7 @@ def _check_versions(options):
 
     from mxeon import versions
 
-    arguments = [*options.files, "--workers", str(options.workers), "--limit", str(options.limit)]
+    arguments = ["--workers", str(options.workers), "--limit", str(options.limit)]
     for word in ("host", "library"):
         arguments += [each for name in getattr(options, word) or () for each in (f"--{word}", name)]
     arguments += ["--scheduler", options.scheduler] if options.scheduler else []
@@ -99,13 +100,14 @@ def _check_versions(options):
     arguments += [f"--{flag}" for flag in flags if getattr(options, flag)]
     limits = [f"max{name.capitalize()}" for name in LIMITS]
     arguments += [f"--{name}={getattr(options, name)}" for name in limits]
+    arguments += ["--", *options.files]
     with TemporaryDirectory(prefix="mxeon-versions-") as temporary:
         run = versions.check(options.materialx, arguments, options.report or temporary)
         return _judged(run, options)
 
 
 def _report_make(options):
-    from mxeon.conformance import read_run
+    from mxeon.versions import read_run
 
     return _judged(read_run(options.report), options)
 
@@ -149,7 +151,7 @@ def _judged(run, options):
     from mxeon.verdict import summarize
 
     page = report.write(run, options.report) if options.report else None
-    summary = summarize(run.results, run.missing)
+    summary = summarize(run.results, run.missing, run.errors)
     if options.json:
         print(report.to_json(run))
     else:

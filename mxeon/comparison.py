@@ -2,6 +2,7 @@
 """Two runs compared: what got worse, what got better, and what else is not the same."""
 
 import json
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,8 +61,11 @@ def read_results(folder):
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         written = found["format"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path}: must be the results.json of a report; {error}") from None
+        if written == JSON_FORMAT:
+            compare(found, found)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        reason = f"it lacks {error}" if isinstance(error, KeyError) else error
+        raise ValueError(f"{path}: must be the results.json of a report; {reason}") from None
     if written != JSON_FORMAT:
         raise ValueError(f"{path}: format must be {JSON_FORMAT}; got {written!r}: make it anew")
     return found
@@ -88,7 +92,13 @@ def compare(before, after):
 
 
 def _by(names, records):
-    return {tuple(record[name] for name in names): record for record in records}
+    """Records by the values of some names; those that share them are numbered."""
+    found, seen = {}, Counter()
+    for record in records:
+        key = tuple(record[name] for name in names)
+        seen[key] += 1
+        found[key if seen[key] == 1 else (*key, f"number {seen[key]}")] = record
+    return found
 
 
 def _results(before, after):

@@ -14,12 +14,16 @@ LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels o
 RADIANCE_SIZE = 64  # rows and columns, or little more, from which it is summed
 
 
+class ImageError(ValueError):
+    """An image that cannot be used; the message names it, in one line."""
+
+
 def read_image(path):
     """Pixels of an image file, row 0 at the top.
 
     Raises
     ------
-    ValueError
+    ImageError
         If OpenImageIO cannot read it, in OpenImageIO's words; or if it is too large, which a small
         file can be.
     """
@@ -28,11 +32,11 @@ def read_image(path):
     file = oiio.ImageInput.open(str(path))
     values = file.spec().image_pixels() * file.spec().nchannels if file else 0
     if values > LARGEST:
-        raise ValueError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
+        raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
     pixels = file.read_image(oiio.FLOAT) if file else None
     if pixels is None:
         reason = " ".join((file.geterror() if file else oiio.geterror()).split())
-        raise ValueError(f"{path}: must be an image that OpenImageIO reads; {reason}")
+        raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
     return pixels
 
 
@@ -51,14 +55,14 @@ def read_latlong(environment):
 
     Raises
     ------
-    ValueError
+    ImageError
         If it is no image that can be read, or not one of colours.
     """
     if isinstance(environment, (str, Path)):
         pixels = read_image(environment)
         if pixels.shape[-1] < 3:
             channels = pixels.shape[-1]
-            raise ValueError(f"{environment}: must have red, green and blue; got {channels} channels")
+            raise ImageError(f"{environment}: must have red, green and blue; got {channels} channels")
         return pixels[..., :3]
     return np.full((1, 1, 3), environment or 0.0, dtype=np.float32)
 

@@ -23,7 +23,7 @@ from mxeon.writing import replacing
 
 FORMAT = 1
 NAME = "journal/items.jsonl"
-PREVIOUS, LOCK = "journal.previous", "journal.lock"  # beside the folder `journal`
+PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
 
 
 @dataclass(frozen=True)

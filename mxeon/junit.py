@@ -14,7 +14,8 @@ NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def to_junit(run):
     """A run as JUnit XML text: a suite for each host and library, a case for each result.
 
-    A failed check is a failure, one that did not run is skipped, each with its message.
+    A failed check is a failure, one that did not run is skipped, a document that was refused is an
+    error in a suite of its own, each with its message.
 
     Parameters
     ----------
@@ -33,10 +34,20 @@ def to_junit(run):
             ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
         for result in results:
             _add_case(suite, result)
+    if run.errors:
+        _add_errors(root, run.errors)
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
     # Not by the library, which would name the encoding of the system's locale.
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def _add_errors(root, errors):
+    totals = {"tests": str(len(errors)), "failures": "0", "errors": str(len(errors)), "skipped": "0"}
+    suite = ElementTree.SubElement(root, "testsuite", name="documents", **totals)
+    for error in errors:
+        case = ElementTree.SubElement(suite, "testcase", classname="mxeon.documents", name="refused")
+        ElementTree.SubElement(case, "error", message=_xml(error))
 
 
 def _totals(results):

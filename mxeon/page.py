@@ -217,7 +217,7 @@ def render(run, file_of):
     environment.filters |= {"share": share, "look": LOOKS.__getitem__, "nearest": nearest}
     return environment.get_template("report.html.jinja").generate(
         run=run,
-        summary=summarize(run.results, run.missing),
+        summary=summarize(run.results, run.missing, run.errors),
         script=Markup(script),
         script_hash=b64encode(sha256(script.encode()).digest()).decode(),
         places=places,

@@ -37,6 +37,7 @@ def to_json(run):
         - verdict: "passed", "failed" or "not run"; counts: the number of checks with each.
         - sentence: the same in words.
         - missing: texts, the items that an interrupted run has not done.
+        - errors: texts, why documents were refused.
         - version: of mxeon; software: name to version; documents: paths; notes: texts.
         - hosts: objects of name, version, device.
         - results: objects with the fields of `mxeon.results.Result`; control is null or an
@@ -45,7 +46,7 @@ def to_json(run):
           beside the JSON file; largest_difference from the reference, or null without one.
         - curves: objects with the fields of `mxeon.results.Curve`.
     """
-    summary = summarize(run.results, run.missing)
+    summary = summarize(run.results, run.missing, run.errors)
     hosts = [vars(identity) for identity in run.hosts]
     data = {
         "format": JSON_FORMAT,
@@ -53,6 +54,7 @@ def to_json(run):
         "counts": summary.counts,
         "sentence": summary.sentence,
         "missing": run.missing,
+        "errors": run.errors,
         "version": run.version,
         "software": run.software,
         "documents": [str(path) for path in run.documents],

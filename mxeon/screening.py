@@ -49,9 +49,18 @@ class Screening:
         self._place = ""
 
     def read(self, file):
-        """Text of a file, as bytes; of a file that is too long, no more than shows it."""
-        with Path(file).open("rb") as opened:
-            return opened.read(self._permissions.size - self._size + 1)
+        """Text of a file, as bytes; of a file that is too long, no more than shows it.
+
+        Raises
+        ------
+        DocumentError
+            If it cannot be read.
+        """
+        try:
+            with Path(file).open("rb") as opened:
+                return opened.read(self._permissions.size - self._size + 1)
+        except OSError as error:
+            raise DocumentError(f"{file}: must be readable; {error.strerror}") from None
 
     def judge(self, text, place):
         """Nothing, if a document's text, as bytes, may be read.

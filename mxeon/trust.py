@@ -53,7 +53,9 @@ def check_inside(path, home, permissions, place):
 
 
 def check_file(element, place, permissions):
-    """Nothing, if the file or the set of textures that an input names is there and may be read.
+    """Nothing, if the file that an input names is there and may be read.
+
+    Of a set of textures, any that is there has to be one that may be read.
 
     Raises
     ------

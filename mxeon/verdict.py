@@ -27,7 +27,7 @@ class Summary:
     sentence: str
 
 
-def summarize(results, missing=()):
+def summarize(results, missing=(), errors=()):
     """Verdict on `results`, a sequence of `mxeon.results.Result`, as a Summary.
 
     Parameters
@@ -35,6 +35,8 @@ def summarize(results, missing=()):
     results : sequence of Result
     missing : sequence of str
         Items of an interrupted run that are not done yet.
+    errors : sequence of str
+        About documents that were refused.
 
     Examples
     --------
@@ -42,14 +44,15 @@ def summarize(results, missing=()):
     'No check ran.'
     """
     summary = _summarize(results)
-    if not missing:
+    if not missing and not errors:
         return summary
     verdict = FAILED if summary.verdict == FAILED else NOT_RUN
-    return replace(
-        summary,
-        verdict=verdict,
-        sentence=f"{summary.sentence} The run is not finished: {len(missing)} items are missing.",
-    )
+    sentence = summary.sentence
+    if missing:
+        sentence += f" The run is not finished: {len(missing)} items are missing."
+    if errors:
+        sentence += f" Refused: {len(errors)} documents."
+    return replace(summary, verdict=verdict, sentence=sentence)
 
 
 def _summarize(results):

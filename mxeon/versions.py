@@ -14,10 +14,12 @@ from tempfile import TemporaryDirectory
 
 from filelock import FileLock
 
-from mxeon.conformance import read_run
+from mxeon import conformance
 from mxeon.hosts import NotRun
 from mxeon.library import VERSIONS
 from mxeon.results import Run
+
+PLACE = "materialx-{}"  # in a report's folder, the run of a version
 
 
 def check(versions, arguments, folder):
@@ -45,10 +47,25 @@ def check(versions, arguments, folder):
     """
     for version in versions:
         _known(version)
-    places = {version: Path(folder, f"materialx-{version}") for version in versions}
+    places = {version: Path(folder, PLACE.format(version)) for version in versions}
     for version, place in places.items():
         check_in(environment(version), version, arguments, place)
-    return merged({version: read_run(place) for version, place in places.items()})
+    return read_run(folder)
+
+
+def read_run(folder):
+    """What the run in a folder has found so far, with one version of MaterialX or several.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds no journal that this version reads.
+    """
+    parts = sorted(Path(folder).glob(PLACE.format("*")))
+    if not parts:
+        return conformance.read_run(folder)
+    start = len(PLACE.format(""))
+    return merged({part.name[start:]: conformance.read_run(part) for part in parts})
 
 
 def environment(version):
@@ -113,7 +130,7 @@ def check_in(environment, version, arguments, place):
     if os.environ.get("PYTHONPATH"):
         paths.append(os.environ["PYTHONPATH"])
     done = subprocess.run(
-        [sys.executable, "-m", "mxeon", "check", *arguments, "--report", str(place), "--json"],
+        [sys.executable, "-m", "mxeon", "check", "--report", str(place), "--json", *arguments],
         env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE if not sys.stderr.isatty() else None,

@@ -39,7 +39,7 @@ def test_check_passes_and_writes_a_report(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert "checks passed" in printed and "report.html" in printed
     names = {path.name for path in (tmp_path / "report").iterdir()}
-    assert names == {"report.html", "results.json", "junit.xml", "pictures", "journal"}
+    assert names == {"report.html", "results.json", "junit.xml", "pictures", "journal", ".journal.lock"}
 
 
 def test_check_of_stock_fails_and_names_the_defects(capsys):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from mxeon import cluster, pool
 from mxeon.conformance.items import JUDGED, Judge, not_run, plan
+from mxeon.conformance.ledger import repaired
 from mxeon.hosts import NotRun
 from mxeon.journal import Journal, read_journal
 from mxeon.permissions import DEFAULT
@@ -124,7 +125,7 @@ def to_run(planned, findings):
         missing=tuple(str(i) for place, i in enumerate(planned.items) if place not in findings),
         **found
         | {
-            "notes": _grouped(found["notes"]),
+            "notes": _grouped(found["notes"] + repaired(found["results"], planned.software)),
             "errors": tuple(dict.fromkeys(found["errors"])),
             "hosts": tuple(dict.fromkeys(found["hosts"])),
         },

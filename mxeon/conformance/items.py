@@ -7,7 +7,6 @@ machines. Whoever works on items keeps a `Judge`, which holds what is costly to 
 
 import hashlib
 import platform
-from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import version
@@ -16,12 +15,14 @@ from pathlib import Path
 import mxeon
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.documents import MATCH, SCENES, judge_document
-from mxeon.conformance.ledger import referred, repaired
+from mxeon.conformance.ledger import referred
 from mxeon.conformance.nodes import applies, judge_curve, judge_subject, judge_twins
 from mxeon.conformance.probes import PROBES, NativeProbe, SurfaceProbe
 from mxeon.conformance.sources import check_sources
 from mxeon.conformance.subjects import NATIVE, SUBJECTS, SURFACES, Surface
+from mxeon.document import DocumentError
 from mxeon.hosts import TEXT_ONLY, NotRun, open_host
+from mxeon.images import ImageError
 from mxeon.library import LIBRARIES, assert_version, examples_folder
 from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
 
@@ -128,7 +129,7 @@ class Judge:
     def close(self):
         """Close what was opened."""
         for host in self._hosts.values():
-            with suppress(AttributeError):  # a reason for not running has nothing to close
+            if not isinstance(host, NotRun):
                 host.close()
 
     def _host(self, name):
@@ -158,15 +159,14 @@ class Judge:
             found = judge_document(
                 path, host, self._reference, item.library, self._permissions
             )
-        except ValueError as error:
+        except (DocumentError, ImageError) as error:
             return {"errors": (str(error),)}
         return dict(zip(("results", "pictures", "notes"), found, strict=True))
 
 
 def _with_ledger(findings):
-    """Findings whose failures name their pages of the ledger, with notes on what was repaired."""
-    notes = findings.notes + repaired(findings.results, version("MaterialX"))
-    return replace(findings, results=tuple(map(referred, findings.results)), notes=notes)
+    """Findings whose failures name their pages of the ledger."""
+    return replace(findings, results=tuple(map(referred, findings.results)))
 
 
 def _probe(host, title, library):
@@ -186,13 +186,13 @@ def _on_host(host, library, files):
             yield Item(row.key, TWINS, host, library)
     for subject in subjects(library):
         for row in CHECKS:
-            if applies(row, subject, kind):
+            if applies(row, subject, kind, host):
                 yield Item(row.key, subject.title, host, library)
         yield Item(CURVE, subject.title, host, library)
     if host == SURFACE_HOST:
         for subject in SURFACES:
             for row in CHECKS:
-                if library in subject.libraries and applies(row, subject, SurfaceProbe.kind):
+                if library in subject.libraries and applies(row, subject, SurfaceProbe.kind, host):
                     yield Item(row.key, subject.title, host, library)
     if host in SCENES:
         yield from (Item(PICTURE, str(file), host, library) for file in files)
@@ -203,7 +203,7 @@ def _native(host):
     if PROBES.get(host) is NativeProbe:
         for subject in NATIVE:
             for row in CHECKS:
-                if applies(row, subject, NativeProbe.kind):
+                if applies(row, subject, NativeProbe.kind, host):
                     yield Item(row.key, subject.title, host, "its own nodes")
 
 

@@ -71,26 +71,33 @@ def referred(result):
     return replace(result, diagnosis="; ".join(filter(None, (result.diagnosis, *pages))))
 
 
-def repaired(results, version):
-    """Notes on defects that are gone: a text and a page for each.
+def repaired(results, software):
+    """Notes on defects that are gone, all of whose rows pass: a text and a page for each.
 
     Parameters
     ----------
     results : sequence of Result
-    version : str
-        Of the MaterialX that was judged.
+    software : dict of str to str
+        The versions that were judged, by name.
 
     Returns
     -------
     tuple of (str, str)
     """
-    text = f"repaired in MaterialX {version}, so that its page can go"
+    verdicts = {
+        (each.host, each.check, each.subject): each.verdict
+        for each in results
+        if each.library == STOCK
+    }
     return tuple(
-        (text, f"upstream/{defect.page}.md")
-        for result in results
-        for defect in _found(result)
-        if result.verdict == PASSED and result.host == defect.host
+        (f"repaired in {_judged(defect, software)}, so that its page can go", f"upstream/{defect.page}.md")
+        for defect in DEFECTS
+        if all(verdicts.get((defect.host, *row)) == PASSED for row in defect.rows)
     )
+
+
+def _judged(defect, software):
+    return f"MaterialX {software['MaterialX']}" if defect.host != "cycles" else "this Blender"
 
 
 def _found(result):

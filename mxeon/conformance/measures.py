@@ -7,7 +7,14 @@ from itertools import product
 import numpy as np
 
 from mxeon import albedo, reference
-from mxeon.conformance.probes import GRAZING, SEED, Batch, directions, random_inputs
+from mxeon.conformance.probes import (
+    FRONT_LIT_ONLY,
+    GRAZING,
+    SEED,
+    Batch,
+    directions,
+    random_inputs,
+)
 from mxeon.conformance.subjects import FLAG
 from mxeon.quadrature import albedo_dir_quadrature
 
@@ -137,16 +144,18 @@ def lambert(probe, error):
 
 
 def flag(probe, _):
-    """The largest change that the flag makes, against the one it has to make, relative to it."""
-    change = expected = 0.0
+    """The change that the flag makes, against the one it has to make, relative to the largest."""
+    error = largest = 0.0
     for batch in probe.few:
         batch = batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
+        judged = slice(None)
+        if (probe.host.name, "qon") in FRONT_LIT_ONLY:
+            judged = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
         on, off = (probe.direct(batch.altered(**{FLAG: state})) for state in (True, False))
-        change = max(change, np.abs(on - off).max())
         models = batch.expected("eon") - batch.expected("qon")
-        expected = max(expected, np.abs(models).max())
-    figure = abs(change - expected) / expected
-    return Measurement(float(figure), {"change": [float(change)], "expected": [float(expected)]})
+        error = np.maximum(error, absolute(on - off, models)[judged].max(initial=0.0))
+        largest = max(largest, np.abs(models[judged]).max(initial=0.0))
+    return Measurement(float(error / largest), {"expected": [float(largest)]})
 
 
 def inputs(probe, _):
@@ -188,6 +197,7 @@ def twins(call, _):
         measured = call(name, wo, wi, given["color"], *parameter)
         expected = row.brdf(wo, wi, given["color"], *parameter)
         worst[name] = np.pi * absolute(measured * wi[:, 2:], expected * wi[:, 2:])
+    given = random_inputs(rng, TWIN_PAIRS, reference.model("eon"))
     mu, r, sigma = wo[:, 2], given["roughness"], 0.5 * np.pi * given["roughness"]
     for name, arguments in (
         ("qon_albedo_dir", (mu, sigma)),

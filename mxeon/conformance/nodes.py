@@ -6,21 +6,23 @@ import numpy as np
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import Diagnosis, nearest_albedo, nearest_value
 from mxeon.conformance.measures import integrated
-from mxeon.conformance.probes import PROBES, PairProbe
+from mxeon.conformance.probes import FRONT_LIT_ONLY, PROBES, PairProbe
 from mxeon.conformance.subjects import FLAG
 from mxeon.hosts import NotRun, ShaderError
 from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
 
+SURROUNDED = ("environment", "furnace")
 CURVE = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
 
-def applies(check, subject, kind):
-    """Whether a row of the table can be asked about a subject by a kind of probe."""
+def applies(check, subject, kind, host):
+    """Whether a row of the table can be asked about a subject, by a kind of probe, on a host."""
     return (
         subject.model in check.models
         and kind in check.tolerances
         and not (check.key == "flag" and FLAG not in subject.inputs)
+        and not (check.key in SURROUNDED and (host, subject.model) in FRONT_LIT_ONLY)
     )
 
 
@@ -45,8 +47,7 @@ def judge_subject(probe, checks=CHECKS):
     return tuple(
         _judge(check, probe, check.tolerances[probe.kind], place, _diagnose)
         for check in checks
-        if applies(check, probe.subject, probe.kind)
-        and not (check.key == "environment" and not probe.cosines)
+        if applies(check, probe.subject, probe.kind, probe.host.name)
     )
 
 
@@ -113,4 +114,4 @@ def _judge(check, probe, tolerance, place, diagnose):
 
 
 def _diagnose(check, probe):
-    return nearest_albedo(probe) if check.key in ("environment", "furnace") else nearest_value(probe)
+    return nearest_albedo(probe) if check.key in SURROUNDED else nearest_value(probe)

@@ -154,8 +154,6 @@ class PictureProbe:
     @cached_property
     def cosines(self):
         """The points in a white surrounding."""
-        if (self.host.name, self.subject.model) in FRONT_LIT_ONLY:
-            return ()
         scene = replace(FURNACE, size=self.size)
         return tuple(self._batch(scene, inputs) for inputs in PICTURE_INPUTS)
 

@@ -10,7 +10,10 @@ COUNT = "a count"
 
 # Targets whose text holds the BSDF itself; the others call a closure of their renderer.
 WITH_BSDF = tuple(target for target in TARGETS if target not in ("osl", "mdl"))
+STOCK_LINE = "    float LdotV = clamp(dot(L, V), M_FLOAT_EPS, 1.0);\n"
 CLAMP = re.compile(r"\bclamp\(dot\(L, V\)")
+TINT = re.compile(r"(?<=multiscatter_tint: ).*(?=\)\)\))")
+WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
 FUNCTION = {"eon": "eon_brdf_mu", "qon": "qon_brdf_mu"}
 
 
@@ -36,96 +39,87 @@ def _uses_inputs(subject, target, library):
     """Every input of the node has to occur in the source beyond its declaration."""
     text, variables = _source(subject, target, library)
     unused = _unused(text, variables)
-    dropped = {name: text.replace(variables[name], "x") for name in variables}
-    blind = [name for name in variables if not _unused(dropped[name], variables)]
+    noticed = [name for name in variables if name in _unused(_without_use(text, variables[name]), variables)]
+    caught = len(noticed) == len(variables)
     return Result(
         check="source",
         claim="Every input of the node is used by the generated source.",
         subject=f"{subject.title}, {target}",
         host="source",
         library=library,
-        verdict=FAILED if unused or blind else PASSED,
+        verdict=PASSED if caught and not unused else FAILED,
         figure=len(unused),
         unit="inputs",
         tolerance=0,
         derivation=COUNT,
         diagnosis=f"never used: {', '.join(unused)}" if unused else "",
-        control=Control("each input in turn is taken out of the text", 1.0, not blind),
+        control=Control("the uses of each input in turn are taken out", len(noticed), caught),
     )
 
 
 def _does_not_clamp(subject, target, library):
     """The cosine between the directions has to keep its sign: back-lit pairs need it."""
     text, _ = _source(subject, target, library)
-    clamps = len(CLAMP.findall(text))
+    clamps, planted = (len(CLAMP.findall(each)) for each in (text, text + STOCK_LINE))
     return Result(
         check="clamp",
         claim="The cosine between the two directions is not clamped in the generated source.",
         subject=f"{subject.title}, {target}",
         host="source",
         library=library,
-        verdict=FAILED if clamps else PASSED,
+        verdict=PASSED if clamps == 0 < planted else FAILED,
         figure=clamps,
         unit="clamps",
         tolerance=0,
         derivation=COUNT,
         diagnosis="s is wrong for back-lit pairs" if clamps else "",
-        control=_clamped(text, clamps),
+        control=Control("the stock node's line is put into the text", planted, planted > clamps),
     )
-
-
-def _clamped(text, clamps):
-    found = len(CLAMP.findall(text.replace("dot(", "clamp(dot(L, V), 0.0, 1.0) + dot(", 1)))
-    return Control("a clamp is put into the text", found, found > clamps)
 
 
 def _is_ours(subject, target, library):
     """The model's function has to be defined in the text, or another implementation was found."""
     text, _ = _source(subject, target, library)
     definition = re.compile(rf"\b(?:vec3|float3) {FUNCTION[subject.model]}\(")
-    ours = bool(definition.search(text))
-    blind = bool(definition.search(text.replace(FUNCTION[subject.model], "f")))
+    missing, renamed = (
+        float(not definition.search(each)) for each in (text, definition.sub("vec3 another(", text))
+    )
     return Result(
         check="ours",
         claim="The generated source holds the library's own function.",
         subject=f"{subject.title}, {target}",
         host="source",
         library=library,
-        verdict=PASSED if ours and not blind else FAILED,
-        figure=float(not ours),
+        verdict=PASSED if missing < renamed else FAILED,
+        figure=missing,
         unit="missing functions",
         tolerance=0,
         derivation=COUNT,
-        diagnosis="" if ours else f"{FUNCTION[subject.model]} is not defined",
-        control=Control("the function has another name", 1.0, not blind),
+        diagnosis=f"{FUNCTION[subject.model]} is not defined" if missing else "",
+        control=Control("the function is defined by another name", renamed, renamed > 0.0),
     )
 
 
 def _tints(subject, library):
     """MDL's multiple-scattering lobe has to carry the colour: white light leaves black surfaces."""
     text, variables = _source(subject, "mdl", library)
-    tinted = _tinted(text, variables)
+    white, planted = (
+        float(not _tinted(each, variables)) for each in (text, re.sub(TINT, "color(1.0)", text))
+    )
     return Result(
         check="tint",
         claim="The multiple-scattering lobe is tinted by the colour, so black stays black.",
         subject=f"{subject.title}, mdl",
         host="source",
         library=library,
-        verdict=PASSED if tinted else FAILED,
-        figure=float(not tinted),
+        verdict=PASSED if white < planted else FAILED,
+        figure=white,
         unit="untinted lobes",
         tolerance=0,
         derivation=COUNT,
-        diagnosis=""
-        if tinted
-        else "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run",
-        control=Control(
-            "the tint is white", 1.0, not _tinted(re.sub(TINT, "color(1.0)", text), variables)
-        ),
+        diagnosis=WHITE_LOBE if white else "",
+        control=Control("the tint is white", planted, planted > 0.0),
     )
-
-
-TINT = re.compile(r"(?<=multiscatter_tint: ).*(?=\)\)\))")
 
 
 def _tinted(text, variables):
@@ -137,6 +131,12 @@ def _source(subject, target, library):
     """Text of the pixel stage, and the variable that carries each input of the node."""
     shader = generate(subject.document({"normal": (0.0, 0.6, 0.8)}), target, library=library)[0]
     return shader.stages["pixel"], {name: f"lobe_{name}" for name in subject.inputs}
+
+
+def _without_use(text, word):
+    """The text with a variable declared, and not used."""
+    declared, name, rest = text.partition(word)
+    return declared + name + re.sub(rf"\b{word}\b", "x", rest)
 
 
 def _unused(text, variables):

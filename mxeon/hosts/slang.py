@@ -192,4 +192,4 @@ def _kernel_text(names, body):
 def _reason(error):
     """What slangpy says, and the remedy where it misses the compiler that it hands C++ to."""
     said = [line.strip() for line in str(error).splitlines() if "error" in line]
-    return "; ".join([*said, "it needs a C++ compiler: on Debian: apt-get install g++"])
+    return "; ".join([*said, "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"])

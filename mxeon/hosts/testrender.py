@@ -62,7 +62,7 @@ class Host:
     Raises
     ------
     NotRun
-        If one of them is missing or does not start.
+        If one of them is missing, or oslc does not start.
     """
 
     name = "testrender"
@@ -216,7 +216,7 @@ def _program(name):
         raise NotRun(
             f"testrender: no program {wanted!r}; build Open Shading Language and name it in {variable}"
         )
-    return found
+    return os.path.abspath(found)
 
 
 def _run(command, folder=None, refused=NotRun):
