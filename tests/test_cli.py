@@ -212,3 +212,14 @@ def test_a_reader_who_has_enough_is_no_error():
 def test_help_loads_no_shader_generator():
     code = "import sys, mxeon.cli; mxeon.arguments.parser(); sys.exit('MaterialX' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_reader_who_has_had_enough_is_no_success():
+    code = """import sys
+from mxeon import cli
+def show(options):
+    raise BrokenPipeError
+cli.COMMANDS["library"] = show
+sys.exit(cli.main(["library"]))"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (141, "")

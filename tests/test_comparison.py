@@ -2,6 +2,7 @@
 """Two reports compared: what got worse is said first and by the exit status."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -59,6 +60,13 @@ def test_a_check_that_went_is_worse_and_one_that_came_is_not():
     assert (found[0].after, found[1].before) == ("none", "none")
 
 
+def test_records_of_one_name_are_told_apart():
+    before, after = made_run(), made_run(FAILED)
+    passed = replace(before, results=before.results * 2)
+    (change,) = changes(passed, replace(before, results=before.results + after.results))
+    assert change.kind == WORSE and change.place == f"{PLACE}, number 2"
+
+
 @pytest.mark.parametrize("verdict, status", [(PASSED, 0), (FAILED, 1)])
 def test_the_exit_status_says_whether_anything_got_worse(tmp_path, capsys, verdict, status):
     for name, run in (("a", made_run()), ("b", made_run(verdict))):
@@ -73,6 +81,8 @@ def test_the_exit_status_says_whether_anything_got_worse(tmp_path, capsys, verdi
     [
         ("[", "must be the results.json of a report"),
         ("{}", "must be the results.json of a report"),
+        ('{"format": 1}', "must be the results.json of a report; it lacks "),
+        ('{"format": 1, "results": 3, "pictures": []}', "must be the results.json of a report"),
         ('{"format": 0}', "format must be 1; got 0: make it anew"),
     ],
 )

@@ -72,6 +72,15 @@ def test_what_oslc_refuses_is_a_shader_error(host):
         host.plane(replace(shader, stages={"pixel": wrong}), SIDE)
 
 
+def test_a_program_may_be_named_from_here(monkeypatch, programs):
+    monkeypatch.chdir(programs)
+    for name, variable in testrender.PROGRAMS.items():
+        monkeypatch.setenv(variable, f"./{name}")
+    shader = generate(SUBJECTS[0].document(), "osl")[0]
+    with closing(testrender.Host()) as host:
+        assert host.plane(shader, replace(SIDE, size=4)).shape == (16, 3)
+
+
 def test_it_says_its_version(host):
     assert host.identity().version == "OSL 1.14.8"
 

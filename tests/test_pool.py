@@ -61,6 +61,17 @@ def test_no_temporary_file_outlives_the_pool():
     assert set(Path(gettempdir()).glob("mxeon-pool-*")) == before
 
 
+def test_a_pool_that_breaks_again_and_again_is_given_up(monkeypatch):
+    monkeypatch.setattr(pool, "_serve", lambda *_: iter(()))
+    (outcome,) = dict(run(square, [3], 1, 1.0)).values()
+    assert outcome.failure == "the processes end before they begin to work"
+
+
+def test_what_the_work_raises_is_no_time_out_of_ours():
+    (outcome,) = dict(run(_late, [0], 1, 60.0)).values()
+    assert outcome.failure.startswith("TimeoutError: mine; last output:")
+
+
 def test_workers_are_other_processes():
     (_, outcome), = run(_process, [0], 1, 60.0)
     assert outcome.value != os.getpid()
@@ -77,3 +88,7 @@ def test_an_impossible_pool_is_one_line(options, words):
 
 def _process(_):
     return os.getpid()
+
+
+def _late(_):
+    raise TimeoutError("mine")

@@ -216,6 +216,17 @@ def test_an_unfinished_run_says_what_is_missing(run):
     assert json.loads(to_json(started))["verdict"] == NOT_RUN
 
 
+def test_a_run_with_refused_documents_says_so_everywhere(run):
+    refused = replace(run, results=(made_result(PASSED),), errors=(f"a.mtlx: {HOSTILE}",))
+    found = json.loads(to_json(refused))
+    assert found["verdict"] == NOT_RUN and found["errors"] == [f"a.mtlx: {HOSTILE}"]
+    assert found["sentence"].endswith("Refused: 1 documents.")
+    page = page_of(refused)
+    assert "Refused: a.mtlx: &lt;script&gt;" in page and HOSTILE not in page
+    suite = ElementTree.fromstring(to_junit(refused)).find("testsuite[@name='documents']")
+    assert suite.get("errors") == "1" and suite.find("testcase/error").get("message")[:6] == "a.mtlx"
+
+
 def test_pictures_beyond_the_first_materials_are_links_to_their_files(run, tmp_path, monkeypatch):
     monkeypatch.setattr("mxeon.page.SHOWN_MATERIALS", 1)
     many = replace(run, pictures=tuple(made_picture(name) for name in ("clay", "slate", "dust")))

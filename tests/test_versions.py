@@ -61,6 +61,18 @@ def test_a_run_with_another_version_is_the_run_of_that_version(environments, tmp
     assert [each.figure for each in run.results] == [each.figure for each in check([EXAMPLE]).results]
 
 
+def test_a_refused_document_costs_itself_alone_and_the_report_can_be_made_again(
+    environments, tmp_path, capsys
+):
+    wrong = tmp_path / "wrong.mtlx"
+    wrong.write_text("<materialx")
+    report = str(tmp_path / "report")
+    assert main(["check", EXAMPLE, str(wrong), "--materialx", HERE, "--report", report]) == 2
+    assert f"MaterialX {HERE}: {wrong}: must be a MaterialX document" in capsys.readouterr().err
+    assert main(["report", "make", report, "--json"]) == 2
+    assert f"eonlib, MaterialX {HERE}" in capsys.readouterr().out
+
+
 def test_runs_of_two_versions_become_one():
     run = check([EXAMPLE])
     both = versions.merged({"1.39.4": run, "1.39.5": run})
