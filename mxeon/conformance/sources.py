@@ -6,8 +6,6 @@ import re
 from mxeon.generation import TARGETS, generate
 from mxeon.results import FAILED, PASSED, Control, Result
 
-COUNT = "a count"
-
 # Targets whose text holds the BSDF itself; the others call a closure of their renderer.
 WITH_BSDF = tuple(target for target in TARGETS if target not in ("osl", "mdl"))
 STOCK_LINE = "    float LdotV = clamp(dot(L, V), M_FLOAT_EPS, 1.0);\n"
@@ -39,21 +37,19 @@ def _uses_inputs(subject, target, library):
     """Every input of the node has to occur in the source beyond its declaration."""
     text, variables = _source(subject, target, library)
     unused = _unused(text, variables)
-    noticed = [name for name in variables if name in _unused(_without_use(text, variables[name]), variables)]
+    noticed = [
+        name
+        for name, word in variables.items()
+        if name in _unused(_without_use(text, word), variables)
+    ]
     caught = len(noticed) == len(variables)
-    return Result(
-        check="source",
-        claim="Every input of the node is used by the generated source.",
-        subject=f"{subject.title}, {target}",
-        host="source",
-        library=library,
-        verdict=PASSED if caught and not unused else FAILED,
-        figure=len(unused),
-        unit="inputs",
-        tolerance=0,
-        derivation=COUNT,
-        diagnosis=f"never used: {', '.join(unused)}" if unused else "",
-        control=Control("the uses of each input in turn are taken out", len(noticed), caught),
+    return _result(
+        "source",
+        "Every input of the node is used by the generated source.",
+        (f"{subject.title}, {target}", library),
+        (len(unused), "inputs"),
+        f"never used: {', '.join(unused)}",
+        Control("the uses of each input in turn are taken out", len(noticed), caught),
     )
 
 
@@ -61,19 +57,13 @@ def _does_not_clamp(subject, target, library):
     """The cosine between the directions has to keep its sign: back-lit pairs need it."""
     text, _ = _source(subject, target, library)
     clamps, planted = (len(CLAMP.findall(each)) for each in (text, text + STOCK_LINE))
-    return Result(
-        check="clamp",
-        claim="The cosine between the two directions is not clamped in the generated source.",
-        subject=f"{subject.title}, {target}",
-        host="source",
-        library=library,
-        verdict=PASSED if clamps == 0 < planted else FAILED,
-        figure=clamps,
-        unit="clamps",
-        tolerance=0,
-        derivation=COUNT,
-        diagnosis="s is wrong for back-lit pairs" if clamps else "",
-        control=Control("the stock node's line is put into the text", planted, planted > clamps),
+    return _result(
+        "clamp",
+        "The cosine between the two directions is not clamped in the generated source.",
+        (f"{subject.title}, {target}", library),
+        (clamps, "clamps"),
+        "s is wrong for back-lit pairs",
+        Control("the stock node's line is put into the text", planted, planted > clamps),
     )
 
 
@@ -84,19 +74,13 @@ def _is_ours(subject, target, library):
     missing, renamed = (
         float(not definition.search(each)) for each in (text, definition.sub("vec3 another(", text))
     )
-    return Result(
-        check="ours",
-        claim="The generated source holds the library's own function.",
-        subject=f"{subject.title}, {target}",
-        host="source",
-        library=library,
-        verdict=PASSED if missing < renamed else FAILED,
-        figure=missing,
-        unit="missing functions",
-        tolerance=0,
-        derivation=COUNT,
-        diagnosis=f"{FUNCTION[subject.model]} is not defined" if missing else "",
-        control=Control("the function is defined by another name", renamed, renamed > 0.0),
+    return _result(
+        "ours",
+        "The generated source holds the library's own function.",
+        (f"{subject.title}, {target}", library),
+        (missing, "missing functions"),
+        f"{FUNCTION[subject.model]} is not defined",
+        Control("the function is defined by another name", renamed, renamed > 0.0),
     )
 
 
@@ -106,19 +90,32 @@ def _tints(subject, library):
     white, planted = (
         float(not _tinted(each, variables)) for each in (text, re.sub(TINT, "color(1.0)", text))
     )
+    return _result(
+        "tint",
+        "The multiple-scattering lobe is tinted by the colour, so black stays black.",
+        (f"{subject.title}, mdl", library),
+        (white, "untinted lobes"),
+        WHITE_LOBE,
+        Control("the tint is white", planted, planted > 0.0),
+    )
+
+
+def _result(key, claim, place, found, unless, control):
+    """Result of counting what must not be there; `unless` says what it means if it is."""
+    (subject, library), (figure, unit) = place, found
     return Result(
-        check="tint",
-        claim="The multiple-scattering lobe is tinted by the colour, so black stays black.",
-        subject=f"{subject.title}, mdl",
+        check=key,
+        claim=claim,
+        subject=subject,
         host="source",
         library=library,
-        verdict=PASSED if white < planted else FAILED,
-        figure=white,
-        unit="untinted lobes",
+        verdict=PASSED if figure == 0 and control.caught else FAILED,
+        figure=figure,
+        unit=unit,
         tolerance=0,
-        derivation=COUNT,
-        diagnosis=WHITE_LOBE if white else "",
-        control=Control("the tint is white", planted, planted > 0.0),
+        derivation="a count",
+        diagnosis=unless if figure else "",
+        control=control,
     )
 
 
