@@ -16,7 +16,7 @@ from reliability.runs import finished, start, until, verdicts, wait_for_end, wor
 SEED = 1
 LIMIT = 600
 ITEM = 10.0  # seconds for an item: several times what the longest takes
-START = 4.0  # seconds after which a worker is at work
+START = 1.5  # seconds after which a worker is at work
 
 
 def measure(count=10, progress=iter):
@@ -52,20 +52,24 @@ def _persistent(folder, tally):
     """A run whose workers are all stopped until two items have been given up."""
     process = start(folder, "--limit", "3")
     until(lambda: finished(folder) > 4, LIMIT, process)
-    before = finished(folder)
 
     def given_up():
         now = time.time()
         _stop(each for each in workers(process) if now - each.create_time() > START)
-        return finished(folder) >= before + 2
+        return len(_not_run(folder)) >= 2
 
     if not until(given_up, LIMIT, process):
         raise RuntimeError("the run came to its end before two of its items were given up")
     wait_for_end(process, LIMIT)
-    reasons = [each.reason for each in read_run(folder).results if each.verdict == NOT_RUN]
+    reasons = _not_run(folder)
     tally["persistent"] += 1
     tally["reasons"] += len(reasons)
     tally["named"] += sum("no end within 3 s" in reason for reason in reasons)
+
+
+def _not_run(folder):
+    """Why each item that did not run did not."""
+    return [each.reason for each in read_run(folder).results if each.verdict == NOT_RUN]
 
 
 def _stop(processes):
