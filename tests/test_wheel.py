@@ -92,7 +92,8 @@ def test_no_folder_of_the_wheel_hides_materialxs_libraries(wheel):
 def test_the_wheel_holds_the_package_alone(wheel):
     roots = {name.split("/")[0] for name in contents(wheel)}
     assert roots == {"mxeon", f"mxeon-{mxeon.__version__}.dist-info"}
-    assert [name for name in contents(wheel) if "__pycache__" in name or "/test" in name] == []
+    parts = {part for name in contents(wheel) for part in name.split("/")}
+    assert [part for part in parts if part in ("tests", "__pycache__") or part.startswith("test_")] == []
 
 
 def test_the_sdist_holds_what_the_tests_need_and_nothing_made(built):
