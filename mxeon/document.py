@@ -140,18 +140,23 @@ def _check(document, permissions):
 
 
 def _check_value(element, permissions):
-    place = f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
     kind, text = element.getType(), element.getValueString()
     if kind in NUMERIC:
         if element.getValue() is None:
-            raise DocumentError(f"{place} must be a valid {kind} of finite numbers; got {text}")
+            rule = f"a valid {kind} of finite numbers"
+            raise DocumentError(f"{_place(element)} must be {rule}; got {text}")
         low, high = _range(element)
         if not all(low <= float(value) <= high for value in text.split(",")):
-            raise DocumentError(f"{place} must lie in [{low:g}, {high:.6g}]; got {text}")
+            raise DocumentError(f"{_place(element)} must lie in [{low:g}, {high:.6g}]; got {text}")
     elif kind == "filename":
-        check_file(element, place, permissions)
+        check_file(element, _place(element), permissions)
     elif kind in TEXTUAL:
-        check_words(element, place)
+        check_words(element, _place(element))
+
+
+def _place(element):
+    """How messages call an element: its document, kind and path."""
+    return f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
 
 
 def _range(element):
