@@ -195,7 +195,8 @@ def generate(
     found = renderable(document)
     chosen, names = _chosen(found, element), _names(found)
     check_expansion(document, chosen, permissions, label(document))
-    generator, context = _generator(document, target, lights, _systems(target, library, profile))
+    generator = _generator(document, target, library, profile)
+    context = _context(document, target, generator, lights)
     shaders = tuple(
         _generate(document, each, names[each.getNamePath()], target, generator, context)
         for each in chosen
@@ -236,41 +237,47 @@ def _chosen(found, element):
     return chosen
 
 
-@lru_cache(maxsize=None)
-def _systems(target, library, profile):
-    """Colour and unit systems of a target, which depend on the data library alone."""
-    data, target = load_library(library, profile), GENERATORS[target].create().getTarget()
-    colors = mx_gen.DefaultColorManagementSystem.create(target)
+def _generator(document, target, library, profile):
+    """A generator that knows a document's types; the same for all that have none of their own."""
+    if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
+        return _library_generator(target, library, profile)
+    generator = _new_generator(target, library, profile)
+    generator.registerTypeDefs(document)
+    return generator
+
+
+def _new_generator(target, library, profile):
+    """A generator with the types, the colour system and the unit system of a data library."""
+    data, generator = load_library(library, profile), GENERATORS[target].create()
+    generator.registerTypeDefs(data)
+    colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
     colors.loadLibrary(data)
-    units = mx_gen.UnitSystem.create(target)
+    generator.setColorManagementSystem(colors)
+    units = mx_gen.UnitSystem.create(generator.getTarget())
     converters = mx.UnitConverterRegistry.create()
     for name in ("distance", "angle"):
         definition = data.getUnitTypeDef(name)
         converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
     units.loadLibrary(data)
     units.setUnitConverterRegistry(converters)
-    return colors, units
+    generator.setUnitSystem(units)
+    return generator
 
 
-def _generator(document, target, lights, systems):
-    """A generator with colour and unit systems, and a context of its own.
+_library_generator = lru_cache(maxsize=None)(_new_generator)
 
-    A context remembers implementations by name, so it must not outlive its document.
-    """
-    generator = GENERATORS[target].create()
+
+def _context(document, target, generator, lights):
+    """A context for one document: it remembers implementations by name."""
     context = mx_gen.GenContext(generator)
     context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
-    generator.registerTypeDefs(document)
-    colors, units = systems
-    generator.setColorManagementSystem(colors)
-    generator.setUnitSystem(units)
     context.getOptions().targetDistanceUnit = "meter"
     # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
     context.getOptions().fileTextureVerticalFlip = target == "osl"
     if lights and isinstance(generator, mx_gen.HwShaderGenerator):
         light = document.getNodeDef("ND_directional_light")
         mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
-    return generator, context
+    return context
 
 
 def _names(elements):

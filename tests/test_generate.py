@@ -280,6 +280,14 @@ def test_generation_leaves_a_document_as_it_is():
     assert mx.writeToXmlString(document) == before
 
 
+@on_each_target
+def test_a_type_stays_in_the_document_that_defines_it(target):
+    plain, grain = material(lobe()), '<typedef name="grain"><member name="size" type="float"/></typedef>'
+    before = pixel(plain, target)
+    assert "grain" in pixel(material(grain + lobe()), target)
+    assert pixel(plain, target) == before
+
+
 @of_each_example
 def test_a_file_gives_the_same_from_every_working_folder(path, tmp_path, monkeypatch):
     here = [shader.inputs for shader in generate(path.resolve(), "glsl")]
