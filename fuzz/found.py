@@ -65,6 +65,11 @@ ROWS = (
     ("nodegraphs of which each uses the last twice", doubled(60), _generate("osl")),
     ("definitions of which each inherits the last", _inherited(20_000), _generate("osl")),
     (
+        "a type of the libraries with members",
+        '<typedef name="float"><member name="a" type="float"/></typedef>' + ROUGH,
+        _generate("glsl"),
+    ),
+    (
         "a text that ends its quotes",
         IMAGE.format("uaddressmode", "string", f"x&quot;; {POISON}; //"),
         _generate("osl"),

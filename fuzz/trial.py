@@ -18,6 +18,7 @@ from mxeon.screening import STEERING
 
 STATUSES = (0, 2, 3)
 OUTPUTS = ("--outputPath", "--output", "--report")
+MAKING = ("generate", "render")  # commands that have a process for each document, which hides crashes
 JUDGING = ("check", "kit", "report", "render", "library")  # commands that may end with 1: it failed
 LONGEST_LINE = 1200  # a message of 1000 characters, its prefix, and a path
 MEMORY = 6 * 2**30
@@ -81,7 +82,8 @@ def _called(arguments):
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
-            status = main(list(arguments))
+            here = ("--workers", "0") if arguments[:1] and arguments[0] in MAKING else ()
+            status = main([*arguments[:1], *here, *arguments[1:]])
         except SystemExit as ended:
             status = ended.code or 0
         except BaseException:

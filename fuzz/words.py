@@ -65,6 +65,8 @@ SNIPPETS = (
     "</image>",
     '<token name="tok" type="string" value="../secret"/>',
     '<typedef name="stranger"><member name="a" type="float" value="1"/></typedef>',
+    '<typedef name="float"><member name="a" type="float"/></typedef>',
+    '<typedef name="stranger"><member name="a" type="stranger"/></typedef>',
     '<geompropdef name="own" type="vector3" geomprop="UV0" index="9"/>',
     '<look name="l" inherit="l"><materialassign name="m" material="look" geom="*"/></look>',
     '<collection name="c" includecollection="c" includegeom="/a"/>',

@@ -40,13 +40,6 @@ def parser():
         "--resume", action="store_true", help="go on with the interrupted run in DIR"
     )
     check.add_argument(
-        "--workers",
-        type=int,
-        default=os.cpu_count(),
-        metavar="N",
-        help="processes that share the work; 0 for none but this",
-    )
-    check.add_argument(
         "--materialx",
         nargs="+",
         metavar="VERSION",
@@ -55,9 +48,7 @@ def parser():
     check.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work"
     )
-    check.add_argument(
-        "--limit", type=float, default=300.0, metavar="SECONDS", help="for one item of work"
-    )
+    _processes(check)
     _permissions(check, runs=True)
     _json(check)
 
@@ -68,6 +59,7 @@ def parser():
     generate.add_argument("--profile", help="cycles: osl for Blender's Cycles")
     generate.add_argument("--outputPath", metavar="DIR", required=True, help="where to write")
     _library(generate)
+    _processes(generate)
     _permissions(generate)
     _json(generate)
 
@@ -80,6 +72,7 @@ def parser():
     render.add_argument("--environment", metavar="IMAGE", help="a latitude-longitude image instead")
     render.add_argument("--size", type=int, default=512, help="width and height in pixels")
     _library(render)
+    _processes(render)
     _permissions(render, runs=True)
 
     library = _command(commands, "library", "say where eonlib lies, for other hosts")
@@ -130,6 +123,19 @@ def _command(commands, name, summary):
 
 def _library(command):
     command.add_argument("--library", default="eonlib", help="eonlib (the default) or stock")
+
+
+def _processes(command):
+    command.add_argument(
+        "--workers",
+        type=int,
+        default=os.cpu_count(),
+        metavar="N",
+        help="processes that share the work; 0 for none but this",
+    )
+    command.add_argument(
+        "--limit", type=float, default=300.0, metavar="SECONDS", help="for one item of work"
+    )
 
 
 def _permissions(command, runs=False):

@@ -9,12 +9,13 @@ import os
 import sys
 import warnings
 from collections import Counter
+from functools import partial
 from pathlib import Path
 
 import mxeon
 from mxeon.arguments import MISUSE, parser, permitted
 from mxeon.permissions import LIMITS
-from mxeon.screening import one_line, printable
+from mxeon.screening import one_line
 
 PASSED, FAILED, NOT_RUN = 0, 1, 3  # and MISUSE
 
@@ -42,15 +43,19 @@ def main(arguments=None):
     except BrokenPipeError:  # who read our output has had enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141  # as of a program that SIGPIPE ended
-    except OSError as error:
-        return _fail(
-            MISUSE, f"{error.filename or 'file'}: must be accessible; {error.strerror or error}"
-        )
-    except (ValueError, ImportError) as error:
+    except (ValueError, ImportError, OSError, RuntimeError) as error:
+        return _failed(error)
+
+
+def _failed(error):
+    """The exit status that an error means, whose line is printed."""
+    if isinstance(error, OSError):
+        what = f"{error.filename or 'file'}: must be accessible; {error.strerror or error}"
+        return _fail(MISUSE, what)
+    if isinstance(error, (ValueError, ImportError)):
         return _fail(MISUSE, error)
-    except RuntimeError as error:
-        wrong = type(error).__name__ in ("ShaderError", "LibraryError")
-        return _fail(FAILED if wrong else NOT_RUN, error)
+    wrong = type(error).__name__ in ("ShaderError", "LibraryError")
+    return _fail(FAILED if wrong else NOT_RUN, error)
 
 
 def _fail(status, error):
@@ -190,88 +195,50 @@ def _not_run(results):
 
 
 def _generate(options):
+    from mxeon.making import Source, texts
     from mxeon.writing import write_text
 
-    written, errors = [], []
-    for file in map(Path, options.files):
-        for target in options.target:
-            try:
-                texts = _sources(file, target, options)
-            except ValueError as error:
-                errors.append(str(error))
-                continue
-            if taken := texts.keys() & set(written):
-                errors.append(f"{file}: must not overwrite {min(taken)} of this run; rename it")
-                continue
-            for path, text in texts.items():
-                write_text(path, text)
-            written += texts
-    print(json.dumps({"files": written, "errors": errors}) if options.json else "\n".join(written))
-    for error in errors:
-        _fail(MISUSE, error)
-    return MISUSE if errors else PASSED
+    sources = [Source(file, target) for file in options.files for target in options.target]
+    known = {name: getattr(options, name) for name in ("element", "library", "profile")}
+    written, failed = [], []
+    for source, found in zip(sources, _made(texts, sources, options, **known), strict=True):
+        if found.error:
+            failed.append(found.error)
+            continue
+        named = {str(Path(options.outputPath) / name): found.value[name] for name in found.value}
+        if taken := named.keys() & set(written):
+            rule = f"must not overwrite {min(taken)} of this run; rename it"
+            failed.append(ValueError(f"{source.file}: {rule}"))
+            continue
+        for path, text in named.items():
+            write_text(path, text)
+        written += named
+    shown = {"files": written, "errors": list(map(str, failed))}
+    print(json.dumps(shown) if options.json else "\n".join(written))
+    return min(map(_failed, failed), default=PASSED)
 
 
-def _sources(file, target, options):
-    """Texts of a document's shaders, by the path that each is written to."""
-    from mxeon.generation import generate
+def _made(work, documents, options, **known):
+    """What `work` makes of documents as the options say; its warnings are printed."""
+    from mxeon.making import make
 
-    known = {"library": options.library, "profile": options.profile}
-    known["permissions"] = permitted(options)
-    return {
-        str(Path(options.outputPath) / _file_name(file.stem, shader, stage)): text
-        for shader in generate(file, target, options.element, **known)
-        for stage, text in shader.stages.items()
-    }
-
-
-def _file_name(stem, shader, stage):
-    """As generateshader calls them, with the document in front: its elements may share names."""
-    ending = {"pixel": ".frag", "vertex": ".vert"}[stage] if len(shader.stages) > 1 else ""
-    plain = " ".join(printable(stem).split())
-    return f"{plain}.{shader.name}.{shader.target}{ending}"
+    work = partial(work, permissions=permitted(options), **known)
+    for found in make(work, documents, options.workers, options.limit):
+        for warning in found.warnings:
+            _warn(warning)
+        yield found
 
 
 def _render(options):
-    from dataclasses import replace
-
-    from mxeon import scene as scenes
-    from mxeon.generation import generate
-    from mxeon.hosts import open_host
+    from mxeon.making import picture
     from mxeon.pictures import write_picture
 
-    scene = scenes.scene(options.scene)
-    if options.environment:
-        scene = scenes.Scene("environment", environment=Path(options.environment))
-    host = open_host(options.host)
-    found = generate(
-        options.file,
-        host.target,
-        options.element,
-        library=options.library,
-        profile=host.profile,
-        lights=True,
-        permissions=permitted(options),
-    )
-    if len(found) > 1:
-        known = ", ".join(shader.element for shader in found)
-        raise ValueError(f"--element must name one of {known}; got none")
-    image = host.picture(found[0], replace(scene, size=options.size))
-    identity = host.identity()
-    write_picture(
-        options.output,
-        image,
-        {
-            "version": mxeon.__version__,
-            "host": f"{identity.name} {identity.version}",
-            "device": identity.device,
-            "library": options.library,
-            "document": options.file,
-            "element": found[0].element,
-            "scene": scene.name,
-        },
-    )
-    host.close()
+    names = ("host", "scene", "environment", "size", "element", "library")
+    known = {name: getattr(options, name) for name in names}
+    [found] = _made(picture, [options.file], options, **known)
+    if found.error:
+        raise found.error
+    write_picture(options.output, *found.value)
     return PASSED
 
 

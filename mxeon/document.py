@@ -133,10 +133,22 @@ def _check(document, permissions):
         )
     check_inheritance(document, permissions, label(document))
     check_code(document, permissions, label(document))
+    _check_types(document)
     for element in document.traverseTree():
         if element.isA(mx.ValueElement) and element.getValueString():
             _check_value(element, permissions)
     _check_validity(document)
+
+
+def _check_types(document):
+    """Refuse members of a type that the libraries define: generators would end the process."""
+    for each in document.getChildren():
+        known = each.isA(mx.TypeDef) and document.getDataLibrary().getTypeDef(each.getName())
+        if known and (members := each.getChildren()):
+            raise DocumentError(
+                f"{_place(each)} must have no members, as a type of the libraries; "
+                f"got {members[0].getName()}: rename the type"
+            )
 
 
 def _check_value(element, permissions):

@@ -76,6 +76,7 @@ def run(work, items, workers, limit):
         raise ValueError(f"workers must be at least 1; got {workers}")
     if not limit > 0.0:
         raise ValueError(f"limit must be positive; got {limit:g}")
+    workers = min(workers, len(items))
     waiting = deque((place, item, 1) for place, item in enumerate(items))
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
         breaks = 0
@@ -86,6 +87,16 @@ def run(work, items, workers, limit):
                 yield ended
     for place, _, attempt in waiting:
         yield place, Outcome(None, "the processes end before they begin to work", attempt)
+
+
+def in_order(outcomes):
+    """Outcomes by the places of their items, which those that end early wait for."""
+    early, due = {}, 0
+    for place, outcome in outcomes:
+        early[place] = outcome
+        while due in early:
+            yield early.pop(due)
+            due += 1
 
 
 def _serve(work, waiting, workers, limit, logs):

@@ -11,9 +11,11 @@ import OpenImageIO as oiio
 import pytest
 from documents import material
 
+from mxeon import making
 from mxeon.cli import FAILED, MISUSE, NOT_RUN, PASSED, main
 from mxeon.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.library import eonlib_folder, examples_folder
+from mxeon.making import Ended, Made
 
 CLAY = str(examples_folder() / "clay.mtlx")
 PLASTER = str(examples_folder() / "plaster.mtlx")
@@ -153,6 +155,13 @@ def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
     found = json.loads(printed.out)
     assert status == MISUSE and len(found["errors"]) == 1
     assert found["files"] and str(bad) in printed.err
+
+
+def test_a_document_that_ends_its_process_did_not_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(making, "make", lambda *_: iter([Made(None, error=Ended("a: must end"))]))
+    arguments = ["generate", CLAY, "--target", "osl", "--outputPath", str(tmp_path)]
+    assert main(arguments) == NOT_RUN
+    assert one_line(capsys.readouterr().err) == "mxeon: a: must end"
 
 
 # --- what the commands do -----------------------------------------------------------------------

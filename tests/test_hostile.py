@@ -231,6 +231,14 @@ def test_entities_are_refused(text):
     assert "must have no document type" in refusal(text)
 
 
+def test_a_type_of_the_libraries_gets_no_members():
+    members = '<typedef name="float"><member name="a" type="float"/></typedef>'
+    assert refusal(SMALL.replace("</materialx>", members + "</materialx>")) == (
+        'document text: typedef "float" must have no members, as a type of the libraries; got a: '
+        "rename the type"
+    )
+
+
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-32", "latin-1"])
 def test_a_document_is_utf_8(tmp_path, encoding):
     path = tmp_path / "look.mtlx"

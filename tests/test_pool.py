@@ -9,7 +9,7 @@ import pytest
 from faults import Tar, misbehave, once, square
 
 from mxeon import pool
-from mxeon.pool import ATTEMPTS, Outcome, run
+from mxeon.pool import ATTEMPTS, Outcome, in_order, run
 
 NUMBERS = [1, 2, 3, 4]
 
@@ -45,6 +45,10 @@ def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
     items = [str(tmp_path / name) for name in "ab"]
     found = dict(run(once, items, 2, 60.0))
     assert found == dict.fromkeys((0, 1), Outcome("done", attempts=2))
+
+
+def test_outcomes_are_put_in_order():
+    assert list(in_order([(1, "b"), (2, "c"), (0, "a"), (3, "d")])) == ["a", "b", "c", "d"]
 
 
 def test_what_workers_print_stays_out_of_ours(capfd):
