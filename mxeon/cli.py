@@ -33,8 +33,8 @@ def main(arguments=None):
     int
         0 all passed, 1 a check failed, 2 misuse, 3 something did not run.
     """
-    options = parser().parse_args(arguments)
     try:
+        options = parser().parse_args(arguments)
         with warnings.catch_warnings():
             warnings.showwarning = _warn
             return COMMANDS[options.command](options)
@@ -201,7 +201,7 @@ def _generate(options):
     sources = [Source(file, target) for file in options.files for target in options.target]
     known = {name: getattr(options, name) for name in ("element", "library", "profile")}
     written, failed = [], []
-    for source, found in zip(sources, _made(texts, sources, options, **known), strict=True):
+    for source, found in zip(sources, _make(texts, sources, options, **known), strict=True):
         if found.error:
             failed.append(found.error)
             continue
@@ -218,7 +218,7 @@ def _generate(options):
     return min(map(_failed, failed), default=PASSED)
 
 
-def _made(work, documents, options, **known):
+def _make(work, documents, options, **known):
     """What `work` makes of documents as the options say; its warnings are printed."""
     from mxeon.making import make
 
@@ -235,7 +235,7 @@ def _render(options):
 
     names = ("host", "scene", "environment", "size", "element", "library")
     known = {name: getattr(options, name) for name in names}
-    [found] = _made(picture, [options.file], options, **known)
+    [found] = _make(picture, [options.file], options, **known)
     if found.error:
         raise found.error
     write_picture(options.output, *found.value)

@@ -12,7 +12,9 @@ import tempfile
 import threading
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, wait
+from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from pathlib import Path
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
@@ -102,10 +104,13 @@ def in_order(outcomes):
 def _serve(work, waiting, workers, limit, logs):
     """Outcomes until nothing waits or the pool breaks, which leaves its items waiting."""
     context = multiprocessing.get_context("spawn")
+    resource_tracker.ensure_running()  # else the first process does, which lets Ctrl-C in again
     pool = ProcessPool(workers, initializer=_end_with_parent, context=context)
     running = {}
     try:
-        while (waiting or running) and pool.active:
+        with _uninterrupted():
+            begun = pool.active  # asked for the first time, it starts threads and processes
+        while begun and (waiting or running) and pool.active:
             while waiting and len(running) < 2 * workers:
                 place, item, attempt = waiting.popleft()
                 log = os.path.join(logs, f"{place}-{attempt}.txt")
@@ -124,8 +129,19 @@ def _serve(work, waiting, workers, limit, logs):
                 return
     finally:
         waiting.extend((place, item, attempt) for place, item, attempt, _ in running.values())
-        pool.stop()
-        pool.join()
+        with _uninterrupted():
+            pool.stop()
+            pool.join()
+
+
+@contextmanager
+def _uninterrupted():
+    """Put Ctrl-C off; what is started meanwhile never hears of it, as this process decides."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _outcome(future, attempt, limit, log):

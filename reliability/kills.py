@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Workers and parents of runs killed at random moments; each run has to come to its right end."""
 
+import os
 import random
 import signal
 import time
@@ -64,9 +65,9 @@ def _hit(process, victim, rng):
     """Strike; whether there was something to hit."""
     if process.poll() is not None:
         return False
-    with suppress(psutil.Error):
+    with suppress(psutil.Error, ProcessLookupError):
         if victim == "interrupt":
-            process.send_signal(signal.SIGINT)
+            os.killpg(process.pid, signal.SIGINT)  # to all in the terminal, as Ctrl-C
             return True
         target = process
         if victim == "worker":

@@ -16,11 +16,14 @@ DOCUMENT = examples_folder() / "plaster.mtlx"
 
 
 def start(folder, *options, files=(DOCUMENT,), capture=True):
-    """The process of a run that keeps its journal and report in `folder`, resumed if begun."""
+    """The process of a run that keeps its journal and report in `folder`, resumed if begun.
+
+    It leads a process group of its own, like a command in a terminal.
+    """
     command = [sys.executable, "-m", "mxeon", "check", *map(str, files)]
     command += ["--report", str(folder), "--resume", "--workers", "2", *options]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} if capture else {}
-    return psutil.Popen(command, text=True, **streams)
+    return psutil.Popen(command, text=True, process_group=0, **streams)
 
 
 def finished(folder):

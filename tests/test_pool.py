@@ -47,6 +47,10 @@ def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
     assert found == dict.fromkeys((0, 1), Outcome("done", attempts=2))
 
 
+def test_workers_do_not_hear_of_ctrl_c():
+    assert dict(run(misbehave, ["SIGINT"], 1, 60.0)) == {0: Outcome(None, attempts=1)}
+
+
 def test_outcomes_are_put_in_order():
     assert list(in_order([(1, "b"), (2, "c"), (0, "a"), (3, "d")])) == ["a", "b", "c", "d"]
 
