@@ -185,6 +185,12 @@ def test_the_nearest_model_comes_with_the_next_one():
 # --- sources, documents, hosts ------------------------------------------------------------------
 
 
+def test_a_run_says_version_and_device_of_its_hosts(run):
+    [identity] = run.hosts
+    assert identity.name == "gl"
+    assert identity.version and identity.device
+
+
 def test_the_sources_of_every_target_use_every_input():
     results = check_sources(SUBJECTS, "eonlib")
     assert len([each for each in results if each.check == "source"]) == 3 * len(TARGETS)

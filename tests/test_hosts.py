@@ -34,7 +34,8 @@ def probe(host, request):
     return PairProbe(host, request.param, "eonlib")
 
 
-def test_the_identity_names_a_version_and_a_device(host):
+def test_the_identity_names_a_version_and_a_device_after_work_too(host):
+    host.call("fon_albedo_dir", np.array([0.5]), np.array([0.0]))
     identity = host.identity()
     assert identity.name == host.name and identity.version and identity.device
 

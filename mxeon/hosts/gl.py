@@ -47,6 +47,7 @@ class Host:
         self._context.gc_mode = "auto"
         self._program = lru_cache(maxsize=PROGRAMS)(self._compile)
 
+    @_current
     def identity(self):
         """Version and device as the driver names them."""
         info = self._context.info
