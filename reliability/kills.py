@@ -17,6 +17,7 @@ from reliability.runs import done_twice, start, verdicts, wait_for_end, workers
 SEED = 1
 LIMIT = 600  # seconds for a run, whatever happens to it
 ENDED = (0, 1, 3)  # exit statuses of a run that came to its end
+INTERRUPTED = 130
 VICTIMS = ("worker", "worker", "parent", "parent", "interrupt")
 
 
@@ -27,8 +28,10 @@ def measure(count=200, progress=iter):
     -------
     dict
         runs; struck, by whom; survived: runs with the verdicts of an undisturbed one; lost and
-        twice: items; resumed: how often; tracebacks: runs that showed one.
+        twice: items; resumed: how often, and interrupted, after SIGINT; tracebacks: runs that
+        showed one.
     """
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # jobs in the background ignore it
     rng = random.Random(SEED)
     tally = Counter()
     with TemporaryDirectory(prefix="mxeon-kills-") as base:
@@ -59,6 +62,7 @@ def _strike(folder, rng, usual, tally):
         status, errors = wait_for_end(process, LIMIT)
         tally["tracebacks"] += "Traceback" in errors
         tally["resumed"] += status not in ENDED
+        tally["interrupted"] += status == INTERRUPTED
 
 
 def _hit(process, victim, rng):
