@@ -15,7 +15,7 @@ from pathlib import Path
 import mxeon
 from mxeon.arguments import MISUSE, parser, permitted
 from mxeon.permissions import LIMITS
-from mxeon.screening import one_line
+from mxeon.screening import one_line, printable
 
 PASSED, FAILED, NOT_RUN = 0, 1, 3  # and MISUSE
 
@@ -33,6 +33,7 @@ def main(arguments=None):
     int
         0 all passed, 1 a check failed, 2 misuse, 3 something did not run.
     """
+    _open_streams()
     try:
         options = parser().parse_args(arguments)
         with warnings.catch_warnings():
@@ -45,6 +46,15 @@ def main(arguments=None):
         return 141  # as of a program that SIGPIPE ended
     except (ValueError, ImportError, OSError, RuntimeError) as error:
         return _failed(error)
+
+
+def _open_streams():
+    """Give this process the streams that its own were not started with: workers print to them."""
+    for stream in range(3):
+        try:
+            os.fstat(stream)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)
 
 
 def _failed(error):
@@ -169,17 +179,17 @@ def _judged(run, options):
 
 
 def _print_run(run, summary, page):
-    for (place, reason), count in _not_run(run.results).items():
-        print(f"not run: {place}, {count} checks: {reason}")
+    from mxeon.verdict import explained, place
+
+    for (where, reason), count in _not_run(run.results).items():
+        print(one_line(f"not run: {where}, {count} checks: {reason}"))
     for result in run.results:
         if result.verdict != "failed":
             continue
-        figure = "" if result.figure is None else f" {result.figure:.3g} > {result.tolerance:.3g}"
-        print(
-            f"failed: {result.host}, {result.check}, {result.subject}:{figure} {result.diagnosis}"
-        )
+        where = f"{place(result)}, {result.check}, {result.subject}"
+        print(one_line(f"failed: {where}: {explained(result)}"))
     for note in run.notes:
-        print(f"note: {note}")
+        print(printable(" ".join(f"note: {note}".split())))
     print(summary.sentence)
     if page:
         print(f"report: {page}")

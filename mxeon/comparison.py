@@ -58,12 +58,14 @@ def read_results(folder):
         If there is none, or it is not of this format.
     """
     path = Path(folder) / "results.json" if Path(folder).is_dir() else Path(folder)
+    if not path.is_file():  # a pipe may have no end
+        raise ValueError(f"{path}: must be the results.json of a report; there is no such file")
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         written = found["format"]
         if written == JSON_FORMAT:
             compare(found, found)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         reason = f"it lacks {error}" if isinstance(error, KeyError) else error
         raise ValueError(f"{path}: must be the results.json of a report; {reason}") from None
     if written != JSON_FORMAT:

@@ -20,7 +20,9 @@ from mxeon.trust import TEXTUAL, check_code, check_file, check_inside, check_wor
 
 __all__ = ["DocumentError", "label", "read_document"]
 
-NUMERIC = ("float", "color3", "color4", "vector2", "vector3", "vector4", "matrix33", "matrix44")
+# How many numbers a value has.
+NUMERIC = {"float": 1, "color3": 3, "color4": 4, "vector2": 2, "vector3": 3, "vector4": 4}
+NUMERIC |= {"matrix33": 9, "matrix44": 16}
 TEXT = "document text"
 ERRORS = (mx.Exception, LookupError)  # what MaterialX raises
 DIFFUSE_NODES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
@@ -154,7 +156,7 @@ def _check_types(document):
 def _check_value(element, permissions):
     kind, text = element.getType(), element.getValueString()
     if kind in NUMERIC:
-        if element.getValue() is None:
+        if element.getValue() is None or text.count(",") != NUMERIC[kind] - 1:
             rule = f"a valid {kind} of finite numbers"
             raise DocumentError(f"{_place(element)} must be {rule}; got {text}")
         low, high = _range(element)

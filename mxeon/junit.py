@@ -5,7 +5,7 @@ import re
 from xml.etree import ElementTree
 
 from mxeon.results import FAILED, NOT_RUN
-from mxeon.verdict import place, summarize
+from mxeon.verdict import excess, place, summarize
 
 # What XML 1.0 cannot hold, escaped or not (section 2.2, production Char).
 NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -74,7 +74,7 @@ def _add_case(suite, result):
     if result.verdict == NOT_RUN:
         ElementTree.SubElement(case, "skipped", message=_xml(result.reason))
     if result.verdict == FAILED:
-        message = f"{result.claim}: {result.figure} > {result.tolerance} {result.unit}".rstrip()
+        message = f"{result.claim} {excess(result)}"
         failure = ElementTree.SubElement(
             case, "failure", type=_xml(result.check), message=_xml(message)
         )

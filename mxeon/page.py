@@ -15,7 +15,7 @@ from markupsafe import Markup
 from mxeon.pictures import difference, difference_scale, srgb_encoded
 from mxeon.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
 from mxeon.results import FAILED, NOT_RUN, PASSED, Result
-from mxeon.verdict import summarize
+from mxeon.verdict import explained, summarize
 
 # Hosts in plots, in order: matplotlib's marker, and the character that looks like it.
 MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
@@ -58,6 +58,16 @@ class Check:
         """The result closest to its tolerance or furthest beyond, None if none ran."""
         ran = [result for result in self.results if result.figure is not None]
         return max(ran, key=share, default=None)
+
+    @property
+    def diagnoses(self):
+        """The subjects that failed, by their diagnosis."""
+        found = {}
+        for one in self.results:
+            if one.verdict == FAILED:
+                words = one.diagnosis if one.figure is None or share(one) > 1.0 else explained(one)
+                found.setdefault(words, []).append(one.subject)
+        return found
 
     def distinct(self, attribute, verdict=None):
         """The different non-empty values of `attribute`, of results with `verdict` or of all."""

@@ -22,6 +22,7 @@ from pebble import CONSTS, ProcessExpired, ProcessPool
 ATTEMPTS = 2
 BREAKS = 3  # pools that break one after the other before any item ends
 START = 60.0  # seconds that a process may take before it begins to work
+LONGEST = 1e6  # seconds of a limit; what waits cannot count much further
 # Seconds until the lock of a process that was killed while it took or gave is taken from it.
 CONSTS.channel_lock_timeout = 10.0
 LAST_LINES = 4  # of a worker's output, in the reason
@@ -67,7 +68,7 @@ def run(work, items, workers, limit):
     Raises
     ------
     ValueError
-        If `workers` is below 1 or `limit` is not positive.
+        If `workers` is below 1 or `limit` is out of range.
 
     Notes
     -----
@@ -76,8 +77,7 @@ def run(work, items, workers, limit):
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
-    if not limit > 0.0:
-        raise ValueError(f"limit must be positive; got {limit:g}")
+    check_limit(limit)
     workers = min(workers, len(items))
     waiting = deque((place, item, 1) for place, item in enumerate(items))
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
@@ -89,6 +89,18 @@ def run(work, items, workers, limit):
                 yield ended
     for place, _, attempt in waiting:
         yield place, Outcome(None, "the processes end before they begin to work", attempt)
+
+
+def check_limit(limit):
+    """Nothing, if an item may have that many seconds.
+
+    Raises
+    ------
+    ValueError
+        If `limit` is not positive or above LONGEST.
+    """
+    if not 0.0 < limit <= LONGEST:
+        raise ValueError(f"limit must be positive and at most {LONGEST:g} s; got {limit:g}")
 
 
 def in_order(outcomes):
@@ -184,7 +196,8 @@ def _logged(work, item, log):
     Temporary files stay beside it, and go with it whatever becomes of this process.
     """
     tempfile.tempdir = os.path.dirname(log)
-    sys.stdout.flush()
+    if sys.stdout:  # a daemon may have none
+        sys.stdout.flush()
     file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(file, 1)
     os.dup2(file, 2)

@@ -72,6 +72,21 @@ def _summarize(results):
     return Summary(PASSED, counts, f"All {total} checks passed on {hosts}.")
 
 
+def excess(result):
+    """What made a check fail: a figure that is too large, or a control that was not caught."""
+    control = result.control
+    if result.figure is not None and not result.figure <= result.tolerance:
+        return f"{result.figure:.3g} > {result.tolerance:.3g} {result.unit}".rstrip()
+    if control and not control.caught:
+        return f"the negative control is not caught: {control.variant}, {control.figure:.3g}"
+    return ""
+
+
+def explained(result):
+    """Why a check failed: what made it, and what that shows."""
+    return "; ".join(filter(None, (excess(result), result.diagnosis)))
+
+
 def place(record):
     """Where a Result, Picture or Curve comes from, in words: host and library."""
     return f"{record.host} with {record.library}"

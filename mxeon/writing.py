@@ -32,8 +32,8 @@ def replacing(path):
         yield beside
         os.replace(beside, path)
     except OSError as error:
-        if error.errno:  # what the system says of a full disk names no file
-            error.filename = error.filename or str(path)
+        if error.errno:  # what the system says names the file beside it, or of a full disk, none
+            error.filename = str(path)
         raise
     finally:
         beside.unlink(missing_ok=True)

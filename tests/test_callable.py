@@ -53,6 +53,13 @@ def test_inputs_without_effect_are_found():
     assert {"inputs", "black", "lambert"} <= failed(mxeon.check_brdf(grey))
 
 
+def test_a_control_that_is_not_caught_is_said_to_be():
+    test = mxeon.brdf_test(lambda wo, wi, rho, roughness: rho / np.pi + 0.0 * wo[:, :1])
+    (check,) = [each for each in test.pytestmark[0].args[1] if each.key == "lambert"]
+    with pytest.raises(AssertionError, match="Lambert. the negative control is not caught: "):
+        test(check)
+
+
 def test_a_failing_test_says_figure_and_nearest_model():
     test = mxeon.brdf_test(reference.model("eon_rho_cubed").brdf)
     (value,) = [each for each in test.pytestmark[0].args[1] if each.key == "value"]

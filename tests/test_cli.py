@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 
@@ -143,6 +144,14 @@ def test_a_folder_that_cannot_be_written_is_one_line(tmp_path):
     folder = tmp_path / "file" / "out"
     ended = run("generate", PLASTER, "--target", "osl", "--outputPath", folder)
     assert ended.returncode == MISUSE and "must be accessible" in one_line(ended.stderr)
+
+
+def test_a_closed_output_is_no_obstacle(tmp_path):
+    command = f'exec "{sys.executable}" -m mxeon generate "{PLASTER}" --target osl --outputPath out'
+    for closed in (">&-", "<&- >&- 2>&-"):
+        ended = subprocess.run(["sh", "-c", f"{command} {closed}"], cwd=tmp_path, check=False)
+        assert ended.returncode == PASSED and list((tmp_path / "out").glob("*.osl"))
+        shutil.rmtree(tmp_path / "out")
 
 
 def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):

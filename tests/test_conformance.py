@@ -252,6 +252,8 @@ def stock():
         ("gl", "lobe", "open_pbr_surface", "EON with clamped dot(wo, wi)"),
         ("gl", "lobe", "open_pbr_surface, thin-walled", "QON tinted twice"),
         ("source", "source", f"{EON.title}, osl", "never used: energy_compensation"),
+        ("source", "clamp", f"{EON.title}, glsl", "s is wrong for back-lit pairs"),
+        ("gl", "flag", QON.title, "; see upstream/genglsl_clamped_dot.md"),
         ("source", "tint", f"{EON.title}, mdl", "FON + white lobe"),
     ],
 )
@@ -263,6 +265,11 @@ def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, 
     ]
     assert result.verdict == FAILED and words in result.diagnosis
     assert "; see upstream/" in result.diagnosis
+
+
+def test_the_text_of_the_other_model_is_not_held_against_qon(stock):
+    clamps = [each for each in stock.results if each.check == "clamp"]
+    assert clamps and all(EON.title in each.subject for each in clamps)
 
 
 def test_the_lobes_of_surface_shaders_are_judged_and_those_that_are_right_pass(stock, run):

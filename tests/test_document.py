@@ -60,6 +60,7 @@ VALUES = (
     ({"color": "0,&#10;2,&#10;0"}, 'input "lobe/color" must lie in [0, 1]; got 0, 2, 0'),
     ({"weight": "-1"}, 'input "lobe/weight" must lie in [0, 1]; got -1'),
     ({"roughness": "inf"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
+    ({"roughness": "0.5, 0.6"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
     ({"roughness": "1e999"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
     ({"roughness": "-0.1"}, 'input "lobe/roughness" must lie in [0, 1.5708]; got -0.1'),
     ({"roughness": "1.6"}, 'input "lobe/roughness" must lie in [0, 1.5708]; got 1.6'),

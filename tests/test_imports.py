@@ -20,11 +20,11 @@ SHADERS = ("library", "permissions", "screening", "trust", "expansion", "documen
 SHADERS += ("twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
-REPORT = ("verdict", "junit", "pictures", "plots", "page", "report", "comparison")
+REPORT = ("junit", "pictures", "plots", "page", "report", "comparison")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("arguments", "making", "cli", "__main__")
-RUNNING = ("pool", "cluster", "results", "writing", "journal")
+RUNNING = ("pool", "cluster", "results", "verdict", "writing", "journal")
 ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
 
@@ -32,7 +32,7 @@ ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
 REFERENCE = "hosts.reference"
 
 # What a run and its pictures consist of.
-FOR_REPORT = (*REPORT, "results", "writing", "scene", "hosts")
+FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {

@@ -238,6 +238,51 @@ def test_a_file_that_is_no_image_is_refused(kit):
     assert "must be an EXR or CSV file" in found(check_kit(kit), "file", "true_side").diagnosis
 
 
+def write_channels(kit, name, image, names, **place):
+    spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
+    spec.channelnames = names
+    for attribute, value in place.items():
+        setattr(spec, attribute, value)
+    file = oiio.ImageOutput.create(str(render(kit, name)))
+    assert file.open(str(render(kit, name)), spec) and file.write_image(image)
+    file.close()
+
+
+def test_red_green_and_blue_are_found_by_name(kit):
+    image = read(render(kit, "true_side"))
+    layers = np.concatenate([np.ones_like(image), image[..., ::-1]], axis=-1, dtype=np.float32)
+    names = [f"depth.{each}" for each in "XYZ"] + [f"beauty.{each}" for each in "BGR"]
+    write_channels(kit, "true_side", layers, names)
+    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
+
+
+@pytest.mark.parametrize("names", ["XYZ", ["a.R", "a.G", "a.B", "b.R", "b.G", "b.B"]])
+def test_channels_that_are_no_one_red_green_and_blue_are_refused(kit, names):
+    image = np.ones((SIZE, SIZE, len(names)), dtype=np.float32)
+    write_channels(kit, "true_side", image, list(names))
+    message = found(check_kit(kit), "file", "true_side").diagnosis
+    assert f"must hold one R, G and B; got channels {', '.join(names)}" in message
+
+
+def test_a_picture_beside_its_place_is_refused(kit):
+    image = read(render(kit, "true_side")).astype(np.float32)
+    write_channels(kit, "true_side", image, list("RGB"), x=5, y=9)
+    message = found(check_kit(kit), "file", "true_side").diagnosis
+    assert "must begin at the display window's corner; got (5, 9)" in message
+
+
+def test_half_a_file_is_refused(kit):
+    path = render(kit, "true_side")
+    path.write_bytes(path.read_bytes()[:900])
+    assert "true_side.exr: must be" in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+@pytest.mark.parametrize("renderer", ["", " ", "two\nlines", "\x1b[31m", "\udcff"])
+def test_a_renderer_has_a_name_that_can_be_printed(kit, renderer):
+    with pytest.raises(ValueError, match="renderer must be a name on one line"):
+        check_kit(kit, renderer)
+
+
 def srgb(image):
     curve = 1.055 * np.maximum(image, 1e-9) ** (1.0 / 2.4) - 0.055
     return np.where(image <= 0.0031308, 12.92 * image, curve)
@@ -253,6 +298,9 @@ FAULTS = {
     "clipped": lambda image: np.minimum(image, 0.35),
     "pi times as bright": lambda image: np.pi * image,
     "1/pi times as bright": lambda image: image / np.pi,
+    "100 times as bright": lambda image: 100.0 * image,
+    "1e+03 times as bright": lambda image: 1e3 * image,
+    "black": np.zeros_like,
     "1.23 times as bright": lambda image: 1.23 * image,
     "sRGB-encoded and 2 times as bright": lambda image: srgb(image * 2.0),
     "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise": lambda image: (
@@ -299,9 +347,12 @@ def test_values_may_come_as_csv(kit):
     ("old", "new", "message"),
     [
         ("row,column", "x,y", "must begin with row,column,red,green,blue; got x,y"),
-        ("5,5,", "64,5,", "must hold the row and column of a picture of 64 x 64"),
+        ("5,5,", "64,5,", "must hold row and column of a pixel, of 64 x 64"),
+        ("5,5,", "-59,5,", "must hold row and column of a pixel, of 64 x 64"),
         ("5,5,", "5,5,none,", "and three numbers"),
-        ("32,32,", "31,32,", "must be finite numbers"),
+        ("32,32,", "31,32,", "that no line before it has"),
+        ("32,32,.*\n", "", "must be finite numbers"),
+        ("5,5,", f"5,5,{'9' * 200_000},", "must be CSV in UTF-8; field larger"),
     ],
 )
 def test_a_wrong_csv_is_refused(kit, old, new, message):
@@ -310,12 +361,26 @@ def test_a_wrong_csv_is_refused(kit, old, new, message):
     assert message in found(check_kit(kit), "file", "true_side").diagnosis
 
 
+def test_csv_may_have_a_byte_order_mark_and_empty_lines(kit):
+    path = as_csv(kit, "true_side")
+    path.write_text("\ufeff" + path.read_text() + "\n\n", encoding="utf-8")
+    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
+
+
+@pytest.mark.parametrize("data", [b"", b"row\xff", "row".encode("utf-16")])
+def test_csv_that_is_none_costs_its_picture_alone(kit, data):
+    as_csv(kit, "true_side").write_bytes(data)
+    run = check_kit(kit)
+    assert "true_side.csv: must be" in found(run, "file", "true_side").diagnosis
+    assert found(run, "level", "lambert").verdict == "passed"
+
+
 def test_a_folder_that_is_no_kit_is_refused(tmp_path, capsys):
     assert main(["kit", "check", str(tmp_path)]) == 2
     assert "folder must hold kit.json" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"format": 0, "size": 64}'])
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"format": 0, "size": 64}', '{"format": 1, "size": "64"}', 9999 * "["])
 def test_a_description_of_another_format_is_refused(tmp_path, text):
     (tmp_path / "kit.json").write_text(text)
     with pytest.raises(ValueError, match="must be"):

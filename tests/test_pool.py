@@ -89,7 +89,11 @@ def test_workers_are_other_processes():
 
 @pytest.mark.parametrize(
     "options, words",
-    [((0, 1.0), "workers must be at least 1; got 0"), ((1, 0.0), "limit must be positive; got 0")],
+    [
+        ((0, 1.0), "workers must be at least 1; got 0"),
+        ((1, 0.0), "limit must be positive and at most 1e.06 s; got 0"),
+        ((1, float("inf")), "limit must be positive and at most 1e.06 s; got inf"),
+    ],
 )
 def test_an_impossible_pool_is_one_line(options, words):
     with pytest.raises(ValueError, match=f"^{words}$"):

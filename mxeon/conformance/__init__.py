@@ -149,8 +149,7 @@ def _crew(permissions, workers, limit, scheduler):
     """Who works: a function from items to their outcomes."""
     if workers < 0:
         raise ValueError(f"workers must be at least 0; got {workers}")
-    if not limit > 0.0:
-        raise ValueError(f"limit must be positive; got {limit:g}")
+    pool.check_limit(limit)
     if scheduler:
         with cluster.connected(scheduler) as found:
             at_work = partial(work, permissions)

@@ -16,6 +16,7 @@ from mxeon.conformance.nodes import judge_subject
 from mxeon.conformance.probes import FEW, SEED, Batch, PairProbe, directions, random_inputs
 from mxeon.hosts import Identity
 from mxeon.results import PASSED, Run
+from mxeon.verdict import explained
 
 # What can be asked of values alone: there is no environment branch and no flag.
 KEYS = ("value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite")
@@ -150,10 +151,7 @@ def brdf_test(brdf, model="eon", name=None):
     @pytest.mark.parametrize("check", _checks(model), ids=lambda check: check.key)
     def test_brdf(check):
         (result,) = judge_subject(probe, (check,))
-        assert result.verdict == PASSED, (
-            f"{check.claim} {result.figure:.3g} > {result.tolerance:.3g} {result.unit}; "
-            f"{result.diagnosis}"
-        )
+        assert result.verdict == PASSED, f"{check.claim} {explained(result)}"
 
     return test_brdf
 

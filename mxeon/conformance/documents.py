@@ -145,8 +145,9 @@ def _not_finite(images):
 
 def _judge_match(place, cases, tolerance, front_lit):
     limit, derivation = tolerance
-    figure, worst = max(
-        (_worst_pixel(*case, front_lit) for case in cases), key=lambda found: found[0]
+    figure, worst, light = max(
+        ((*_worst_pixel(*case, front_lit), case[0].name) for case in cases),
+        key=lambda found: found[0],
     )
     scene, image, expected = cases[0]
     brighter, _ = _worst_pixel(scene, image + np.float32(3.0 * limit), expected, front_lit)
@@ -160,6 +161,7 @@ def _judge_match(place, cases, tolerance, front_lit):
         tolerance=limit,
         derivation=derivation,
         worst=worst,
+        diagnosis="" if figure <= limit else f"most in the picture of the scene {light}",
         control=Control("the picture is brighter by three tolerances", brighter, brighter > limit),
     )
 

@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass, replace
 
+from mxeon.conformance.sources import WITH_BSDF
 from mxeon.results import FAILED, PASSED
 
 STOCK = "stock"
@@ -23,12 +24,15 @@ class Defect:
         Key of the check and subject of each result, all of which fail.
     also : tuple of str
         Other hosts that show it.
+    implied : tuple of (str, str)
+        Key and subject of other results that fail for it, on those hosts or in the text.
     """
 
     page: str
     host: str
     rows: tuple[tuple[str, str], ...]
     also: tuple[str, ...] = ()
+    implied: tuple[tuple[str, str], ...] = ()
 
 
 DEFECTS = (
@@ -36,7 +40,12 @@ DEFECTS = (
         "genglsl_clamped_dot",
         "gl",
         (("value", f"{NODE} true"), ("albedo", f"{NODE} true"), ("lobe", "open_pbr_surface")),
-        ("webgl", "vulkan", "slang"),
+        ("webgl", "vulkan", "slang", "source"),
+        (
+            ("flag", f"{NODE} true"),
+            ("flag", f"{NODE} false"),
+            *(("clamp", f"{NODE} true, {target}") for target in WITH_BSDF),
+        ),
     ),
     Defect(
         "genglsl_qon_albedo_fit",
@@ -107,5 +116,5 @@ def _found(result):
         for defect in DEFECTS
         if result.library == STOCK
         and result.host in (defect.host, *defect.also)
-        and (result.check, result.subject) in defect.rows
+        and (result.check, result.subject) in (*defect.rows, *defect.implied)
     ]

@@ -28,9 +28,15 @@ def check_sources(subjects, library):
         check(each, target, library)
         for each in subjects
         for target in WITH_BSDF
-        for check in ((_does_not_clamp, _is_ours) if library != "stock" else (_does_not_clamp,))
+        for check in _checks_of_text(each, library)
     ]
     return tuple(used + tinted + inside)
+
+
+def _checks_of_text(subject, library):
+    """Those that apply: QON's text may hold the other model's, which the flag leaves out."""
+    applies = {_does_not_clamp: subject.model == "eon", _is_ours: library != "stock"}
+    return [check for check, does in applies.items() if does]
 
 
 def _uses_inputs(subject, target, library):

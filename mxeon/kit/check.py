@@ -46,10 +46,12 @@ def check_kit(folder, renderer=RENDERER, progress=list):
     Raises
     ------
     ValueError
-        If `folder` is no kit, or one of another format.
+        If `folder` is no kit, or one of another format, or `renderer` is no name to be printed.
     ImportError
         If scipy, of the `kit` extra, is not installed.
     """
+    if not renderer.strip() or not renderer.isprintable():
+        raise ValueError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
     pictures, depth = shots(_size(folder)), unit_sphere().depth
     place = {"host": renderer, "library": LIBRARY}
@@ -82,10 +84,12 @@ def _size(folder):
     try:
         kit = json.loads(file.read_text(encoding="utf-8"))
         found, size = kit["format"], kit["size"]
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"{file}: must be a kit's description; got {error!r}") from None
     if found != KIT_FORMAT:
         raise ValueError(f"{file}: format must be {KIT_FORMAT}; got {found!r}: export it again")
+    if type(size) is not int:
+        raise ValueError(f"{file}: size must be a whole number; got {size!r}: export it again")
     return size
 
 

@@ -17,12 +17,17 @@ def _srgb_decoded(image):
     return np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
 
 
+def _tone_mapped_back(image):
+    """Infinite where x / (1 + x) cannot have come from."""
+    return np.divide(image, 1.0 - image, out=np.full_like(image, np.inf), where=image < 1.0)
+
+
 # In words, and what undoes it.
 FAULTS = (
     ("", lambda image: image),
     ("sRGB-encoded", _srgb_decoded),
     ("encoded with a power of 1/2.2", lambda image: np.clip(image, 0.0, None) ** 2.2),
-    ("tone-mapped by x / (1 + x)", lambda image: image / np.clip(1.0 - image, 1e-3, None)),
+    ("tone-mapped by x / (1 + x)", _tone_mapped_back),
     ("upside down", lambda image: image[::-1]),
     ("mirrored left to right", lambda image: image[:, ::-1]),
     ("turned by half a turn", lambda image: image[::-1, ::-1]),
@@ -45,10 +50,12 @@ def fault(image, model, mask):
     str
         "" if nothing known does and it is right within LIKENESS.
     """
+    if not image[mask].any():
+        return "black"
     likeness = {words: _likeness(undone(image)[mask], model, mask) for words, undone in FAULTS}
     words = min(likeness, key=lambda each: likeness[each][1])
     factor, miss = likeness[words]
-    if factor > 0.0 and miss <= LIKENESS:
+    if miss <= LIKENESS:
         scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{_called(factor)} times as bright"
         return " and ".join(filter(None, (words, scale)))
     if _clipped(image[mask], model.value):
@@ -57,9 +64,16 @@ def fault(image, model, mask):
 
 
 def _likeness(found, model, mask):
-    """The factor by which values are too large, and what remains then, beyond noise, relative."""
+    """The factor by which values are too large, and what remains then, beyond noise, relative.
+
+    Where no factor above 0 explains anything, infinity remains.
+    """
     value = model.value
+    if not np.isfinite(found).all():
+        return 0.0, np.inf
     factor = (found * value).sum() / (value * value).sum()
+    if not factor > 0.0:
+        return 0.0, np.inf
     error = found - factor * value
     noise = tiles(error, model.slack, mask).pixel_noise
     rest = np.sqrt(max(0.0, np.mean(error**2) - noise**2))

@@ -143,7 +143,10 @@ def answer(question, shots, images, depth, place, obstacle=""):
     if max(figure, wrong) <= 1.0:
         reason = f"too noisy to notice if {question.variant}: {noise:.2g} rms a pixel; more samples"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
-    words = _words(question.key, cases, models, images, depth, figure)
+    ranking = candidates(cases, depth) if question.key == "model" else []
+    words = named(ranking) if ranking else ""
+    if question.key == "level" and figure > 1.0:
+        words = _fault(cases[0], models[0], images)
     return Result(
         **place,
         verdict=PASSED if figure <= 1.0 < wrong else FAILED,
@@ -153,19 +156,15 @@ def answer(question, shots, images, depth, place, obstacle=""):
         derivation=DERIVATION,
         worst={"noise of a pixel, rms": [noise]},
         diagnosis=words if figure > 1.0 else "",
+        distances={each.title: each.distance for each in ranking},
         control=Control(question.variant, wrong, wrong > 1.0),
     ), words
 
 
-def _words(key, cases, models, images, depth, figure):
-    """What the pictures show: a model's name, or what is wrong with the light."""
-    if key == "model":
-        return named(candidates(cases, depth))
-    if key == "level" and figure > 1.0:
-        shot, mask = cases[0].shot, cases[0].mask
-        words = fault(images[shot.name], models[0], mask)
-        return f"{shot.name} is {words}" if words else ""
-    return ""
+def _fault(case, model, images):
+    """What is wrong with the light, in words."""
+    words = fault(images[case.shot.name], model, case.mask)
+    return f"{case.shot.name} is {words}" if words else ""
 
 
 def _ratio(found):

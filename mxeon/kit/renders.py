@@ -10,6 +10,7 @@ import OpenImageIO as oiio
 from mxeon.scene import sphere
 
 COLUMNS = ["row", "column", "red", "green", "blue"]
+CHANNELS = "RGB"
 LEVELS = 255  # steps of an eight-bit value
 FLOATS = ("half", "float", "double")
 # A smooth shading has as many values as pixels; eight bits leave far fewer than one in four.
@@ -43,8 +44,9 @@ def read_render(folder, shot):
     Missing
         If there is no file of that name.
     Unusable
-        If the file is none of EXR and CSV, has another size, fewer than three channels, eight bits
-        (also in a float file), or a pixel on the sphere that is missing or not finite.
+        If the file is none of EXR and CSV, is damaged, has another size or place, not one red, green
+        and blue, eight bits (also in a float file), or a pixel on the sphere that is missing or not
+        finite.
     """
     found = sorted(Path(folder).glob(f"{shot.name}.*"))
     if not found:
@@ -52,7 +54,7 @@ def read_render(folder, shot):
     file, size = found[0], shot.scene.size
     if len(found) > 1:
         raise Unusable(f"{shot.name}: must be one file; got {', '.join(f.name for f in found)}")
-    image = _read_csv(file, size) if file.suffix == ".csv" else _read_image(file, size)
+    image = _read_csv(file, size) if file.suffix.lower() == ".csv" else _read_image(file, size)
     mask = sphere(size).mask
     bad = ~np.isfinite(image).all(axis=-1) & mask
     if bad.any():
@@ -69,34 +71,62 @@ def _read_image(file, size):
     image = oiio.ImageInput.open(str(file))
     if image is None:
         raise Unusable(f"{file.name}: must be an EXR or CSV file; {oiio.geterror()}")
-    spec, pixels = image.spec(), image.read_image(oiio.FLOAT)
-    image.close()
+    spec = image.spec()
     if (spec.width, spec.height) != (size, size):
         raise Unusable(
             f"{file.name}: must be {size} x {size} pixels; got {spec.width} x {spec.height}"
         )
+    if (offset := (spec.x - spec.full_x, spec.y - spec.full_y)) != (0, 0):
+        raise Unusable(f"{file.name}: must begin at the display window's corner; got {offset}")
     if str(spec.format) not in FLOATS:
         raise Unusable(f"{file.name}: must hold half or float numbers; got {spec.format}")
-    if pixels is None or spec.nchannels < 3:
-        raise Unusable(f"{file.name}: must hold red, green and blue; got {spec.nchannels} channels")
-    return pixels[..., :3].astype(np.float64)
+    channels = _channels(file, spec.channelnames)
+    pixels = image.read_image(oiio.FLOAT)
+    image.close()
+    if pixels is None:
+        raise Unusable(f"{file.name}: must be a whole image; {image.geterror()}")
+    return pixels[..., channels].astype(np.float64, order="C")
+
+
+def _channels(file, names):
+    """Places of red, green and blue: the plain ones, or those of the only layer that has them."""
+    layers = {}
+    for place, name in enumerate(names):
+        layer, _, channel = name.rpartition(".")
+        layers.setdefault(layer, {})[channel.upper()] = place
+    whole = {layer: found for layer, found in layers.items() if found.keys() >= set(CHANNELS)}
+    chosen = whole.get("") or (len(whole) == 1 and next(iter(whole.values())))
+    if not chosen:
+        raise Unusable(f"{file.name}: must hold one R, G and B; got channels {', '.join(names)}")
+    return [chosen[channel] for channel in CHANNELS]
 
 
 def _read_csv(file, size):
-    with file.open(newline="", encoding="utf-8") as stream:
-        header, *rows = csv.reader(stream)
+    try:
+        with file.open(newline="", encoding="utf-8-sig") as stream:
+            return _table(file, csv.reader(stream), size)
+    except (OSError, UnicodeError, csv.Error) as error:
+        raise Unusable(f"{file.name}: must be CSV in UTF-8; {error}") from None
+
+
+def _table(file, lines, size):
+    header = next(lines, [])
     if header != COLUMNS:
         raise Unusable(f"{file.name}: must begin with {','.join(COLUMNS)}; got {','.join(header)}")
-    image = np.full((size, size, 3), np.nan)
-    for number, row in enumerate(rows, start=2):
+    image, given = np.full((size, size, 3), np.nan), np.zeros((size, size), dtype=bool)
+    for line in filter(None, lines):
         try:
-            y, x, *values = int(row[0]), int(row[1]), *map(float, row[2:])
-            image[range(size)[y], range(size)[x]] = values
+            row, column, *values = int(line[0]), int(line[1]), *map(float, line[2:])
+            fits = min(row, column) >= 0 and len(values) == 3 and not given[row, column]
         except (ValueError, IndexError):
+            fits = False
+        if not fits:
             raise Unusable(
-                f"{file.name}: line {number} must hold the row and column of a picture of {size} x "
-                f"{size} pixels, and three numbers; got {','.join(row)}"
-            ) from None
+                f"{file.name}: line {lines.line_num} must hold row and column of a pixel, of "
+                f"{size} x {size}, that no line before it has, and three numbers; "
+                f"got {','.join(line)}"
+            )
+        image[row, column], given[row, column] = values, True
     return image
 
 
