@@ -95,9 +95,17 @@ def first_frame(host, generated, numbers):
 
 def measure(rounds=7, size=SIZE):
     """The `Group` of all materials."""
-    host, figures, checks = gl.Host(), [], []
+    host = gl.Host()
     device = host.identity().device
-    clock, numbers = clock_of(device), count()
+    with host._context:  # which each verb of a host makes current, and frames do without
+        figures, checks = _timed(host, rounds, size, clock_of(device))
+    host.close()
+    title = f"Materials on {device}, {size} x {size}"
+    return Group("materials", title, tuple(figures), tuple(checks))
+
+
+def _timed(host, rounds, size, clock):
+    figures, checks, numbers = [], [], count()
     for node in NODES:
         shaders = {library: shader(node, library) for library in LIBRARIES}
         made = {
@@ -118,6 +126,4 @@ def measure(rounds=7, size=SIZE):
             figure(f"source, {node}, eonlib", "characters", lengths[:1]),
             ratio(f"source, {node}, eonlib / stock", *zip(lengths), SHORTER.get(node)),
         ]
-    host.close()
-    title = f"Materials on {device}, {size} x {size}"
-    return Group("materials", title, tuple(figures), tuple(checks))
+    return figures, checks
