@@ -19,7 +19,7 @@ from mxeon.conformance.subjects import SUBJECTS, Subject
 from mxeon.generation import TARGETS
 from mxeon.hosts import TEXT_ONLY, NotRun, ShaderError, open_host
 from mxeon.library import examples_folder
-from mxeon.results import FAILED, NOT_RUN, PASSED
+from mxeon.results import FAILED, NOT_RUN, PASSED, Result
 
 EON, QON, NODE = SUBJECTS
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
@@ -292,6 +292,14 @@ def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pas
     assert noted() == {}
     assert page not in noted("value", "albedo")
     assert noted("value", "albedo", "lobe")[page].startswith("repaired in MaterialX 2.0")
+
+
+@pytest.mark.parametrize(
+    "library, words", [("stock", "see upstream/cycles_rho_cubed.md"), ("eonlib", "")]
+)
+def test_what_follows_from_a_defect_of_stock_refers_to_its_page(library, words):
+    result = Result("inputs", "claim.", QON.title, "cycles", library, FAILED)
+    assert ledger.referred(result).diagnosis == words
 
 
 def test_every_page_that_a_check_refers_to_is_there():

@@ -66,6 +66,12 @@ DEFECTS = (
         "cycles_rho_cubed",
         "cycles",
         (("value", f"{NODE} true"), ("value", f"{NODE} false"), ("flag", f"{NODE} true")),
+        implied=(
+            ("environment", f"{NODE} true"),
+            ("flag", f"{NODE} false"),
+            ("inputs", f"{NODE} true"),
+            ("inputs", f"{NODE} false"),
+        ),
     ),
 )
 
