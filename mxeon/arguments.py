@@ -40,12 +40,6 @@ def parser():
         "--resume", action="store_true", help="go on with the interrupted run in DIR"
     )
     check.add_argument(
-        "--materialx",
-        nargs="+",
-        metavar="VERSION",
-        help="judge these versions of MaterialX, each in its own environment",
-    )
-    check.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work"
     )
     _processes(check)

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import mxeon
 from mxeon.arguments import MISUSE, parser, permitted
-from mxeon.permissions import LIMITS
 from mxeon.screening import one_line, printable
 
 PASSED, FAILED, NOT_RUN = 0, 1, 3  # and MISUSE
@@ -84,8 +83,6 @@ def _check(options):
         raise ValueError(
             "--resume needs --report DIR, the folder of the run to go on with; got none"
         )
-    if options.materialx:
-        return _check_versions(options)
     hosts = options.host or ("gl",)
     run = check(
         options.files,
@@ -102,27 +99,8 @@ def _check(options):
     return _judged(run, options)
 
 
-def _check_versions(options):
-    from tempfile import TemporaryDirectory
-
-    from mxeon import versions
-
-    arguments = ["--workers", str(options.workers), "--limit", str(options.limit)]
-    for word in ("host", "library"):
-        arguments += [each for name in getattr(options, word) or () for each in (f"--{word}", name)]
-    arguments += ["--scheduler", options.scheduler] if options.scheduler else []
-    flags = ("resume", "allowOutside", "allowCode")
-    arguments += [f"--{flag}" for flag in flags if getattr(options, flag)]
-    limits = [f"max{name.capitalize()}" for name in LIMITS]
-    arguments += [f"--{name}={getattr(options, name)}" for name in limits]
-    arguments += ["--", *options.files]
-    with TemporaryDirectory(prefix="mxeon-versions-") as temporary:
-        run = versions.check(options.materialx, arguments, options.report or temporary)
-        return _judged(run, options)
-
-
 def _report_make(options):
-    from mxeon.versions import read_run
+    from mxeon.conformance import read_run
 
     return _judged(read_run(options.report), options)
 

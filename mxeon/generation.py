@@ -15,7 +15,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.document import DocumentError, label, read_document
 from mxeon.expansion import check_expansion
-from mxeon.library import load_library
+from mxeon.library import check_closure_calls, load_library
 from mxeon.permissions import DEFAULT
 from mxeon.trust import foreign_code
 
@@ -167,6 +167,8 @@ def generate(
         If the target, the library, the profile or the element is unknown; lists the known ones.
     DocumentError
         If no shader can be made from the document.
+    InterfaceError
+        If this MaterialX calls closures in another way than eonlib's sources define them.
 
     Warns
     -----
@@ -303,6 +305,7 @@ def _generate(document, element, name, target, generator, context):
             f'{label(document)}: element "{path}" must give {target}; {reason}'
         ) from None
     stages = {stage: shader.getSourceCode(stage) for stage in STAGES if shader.hasStage(stage)}
+    check_closure_calls(stages["pixel"], target)
     return Shader(name, path, target, MappingProxyType(stages), _inputs(shader), document)
 
 

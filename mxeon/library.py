@@ -3,16 +3,24 @@
 
 MaterialX keeps the first definition of a name and says nothing of the others, so our folder is
 loaded before the standard one. What was found is then checked: see `implementations`.
+
+No version of MaterialX is refused by its number: what mxeon needs of it is looked up in it, and what
+its generators write is checked against the closure interface of eonlib's sources.
 """
 
+import re
+import warnings
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
 
-# Versions of MaterialX whose shaders hand a closure its data as eonlib's sources expect it.
-VERSIONS = ("1.39.3", "1.39.4", "1.39.5")
+import mxeon
+
+TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
+REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
 
 LIBRARIES = ("eonlib", "stock")
 PROFILES = ("cycles",)
@@ -21,9 +29,20 @@ PROFILES = ("cycles",)
 NODES = ("ND_oren_nayar_diffuse_bsdf", "ND_eon_diffuse_bsdf")
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
 
+# Functions of eonlib's GLSL sources that generated code calls.
+ENTRY_POINTS = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
+
 
 class LibraryError(RuntimeError):
     """The library that was loaded is not the one that was asked for."""
+
+
+class InterfaceError(RuntimeError):
+    """MaterialX calls closures in another way than eonlib's sources define them."""
+
+
+class UntestedVersionWarning(UserWarning):
+    """A version of MaterialX that mxeon has not been tested with."""
 
 
 @dataclass(frozen=True)
@@ -111,11 +130,18 @@ def load_library(library="eonlib", profile=None):
     ValueError
         If the library or the profile is unknown; lists the known ones.
     ImportError
-        If this MaterialX is none of VERSIONS.
+        If this MaterialX is too old; see `check_version`.
     LibraryError
         If it finds another implementation than eonlib's.
+
+    Warns
+    -----
+    UntestedVersionWarning
+        If this MaterialX is none of TESTED.
     """
-    assert_version()
+    check_version()
+    if note := untested(mx.getVersionString()):
+        warnings.warn(UntestedVersionWarning(note), stacklevel=2)
     document = mx.createDocument()
     mx.loadLibraries(_folders(library, profile), mx.getDefaultDataSearchPath(), document)
     if library == "eonlib":
@@ -123,19 +149,56 @@ def load_library(library="eonlib", profile=None):
     return document
 
 
-def assert_version():
-    """Nothing, if this MaterialX is one of VERSIONS.
+def check_version() -> None:
+    """Raise ImportError unless this MaterialX has every method of REQUIRED."""
+    for owner, method in REQUIRED:
+        if not hasattr(owner, method):
+            raise ImportError(
+                f"MaterialX {mx.getVersionString()} lacks {owner.__name__}.{method}; "
+                f"install {TESTED[0]} or later: pip install materialx=={TESTED[-1]}"
+            )
 
-    Raises
-    ------
-    ImportError
-        Otherwise: its shaders would call eonlib's functions wrongly.
+
+def untested(version: str) -> str:
+    """Note that mxeon has not been tested with a version of MaterialX; "" if it has."""
+    if version in TESTED:
+        return ""
+    return f"MaterialX {version} has not been tested with mxeon {mxeon.__version__}"
+
+
+def check_closure_calls(text: str, target: str) -> None:
+    """Raise InterfaceError unless generated text calls eonlib's functions as they are defined.
+
+    Parameters
+    ----------
+    text : str
+        Pixel stage of a generated shader.
+    target : str
+        The target it was generated for, for the message.
     """
-    if mx.getVersionString() not in VERSIONS:
-        raise ImportError(
-            f"MaterialX must be one of {', '.join(VERSIONS)}, whose closure interface eonlib is "
-            f"written for; got {mx.getVersionString()}: pip install materialx=={VERSIONS[-1]}"
-        )
+    for name in ENTRY_POINTS:
+        definition = re.search(rf"\bvoid {name}\(", text)
+        if not definition:  # the node is not used, or not eonlib's
+            continue
+        parameters = _arguments(text, definition.end())
+        for call in re.finditer(rf"(?<!void )\b{name}\w*\(", text):
+            if call[0] != f"{name}(" or len(_arguments(text, call.end())) != len(parameters):
+                raise InterfaceError(
+                    f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
+                    f"{name}({', '.join(parameters)}); use --library stock"
+                )
+
+
+def _arguments(text, start):
+    """Arguments of a call, or parameters of a definition, whose parenthesis opens before `start`."""
+    depth, commas, end = 1, [start - 1], start
+    while depth:
+        depth += {"(": 1, ")": -1}.get(text[end], 0)
+        if text[end] == "," and depth == 1:
+            commas.append(end)
+        end += 1
+    ends = [*commas[1:], end - 1]
+    return [" ".join(text[a + 1 : b].split()) for a, b in zip(commas, ends, strict=True)]
 
 
 def implementations(document):

@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every wheel of MaterialX: what mxeon says of it, and what its shaders are on each host."""
+"""Every wheel of MaterialX: whether mxeon runs with it, and what its shaders are on each host.
 
+A version is a folder that comes before all others on the path of Python, so that everything else
+is what it is here.
+"""
+
+import os
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from mxeon import versions
+import mxeon
 from mxeon.conformance import read_run
 from reliability.runs import DOCUMENT
 
@@ -21,24 +28,43 @@ def measure(progress=iter):
     -------
     dict
         hosts; rows: of each version whether its node takes the closure data that eonlib's sources
-        need, the line with which it is refused, or the verdicts by host.
+        need, and the line with which it is refused or the verdicts by host.
     """
     with TemporaryDirectory(prefix="mxeon-versions-") as base:
-        return {"hosts": HOSTS, "rows": [_row(version, Path(base, version)) for version in progress(WHEELS)]}
+        rows = [_row(version, Path(base, version)) for version in progress(WHEELS)]
+    return {"hosts": HOSTS, "rows": rows}
+
+
+def install(version, folder):
+    """Install a version of MaterialX, and nothing else, into a new folder."""
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder]
+    subprocess.run([*command, f"materialx=={version}"], check=True, capture_output=True)
+
+
+def run(folder, *arguments):
+    """The command `mxeon` with the MaterialX of a folder: the finished process."""
+    paths = [str(folder), str(Path(mxeon.__file__).resolve().parents[1])]
+    if os.environ.get("PYTHONPATH"):
+        paths.append(os.environ["PYTHONPATH"])
+    return subprocess.run(
+        [sys.executable, "-P", "-m", "mxeon", *arguments],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
+        capture_output=True,
+        text=True,
+    )
 
 
 def _row(version, folder):
-    versions.install(version, folder / "wheel")
-    node = folder / "wheel" / "MaterialX" / NODE
+    wheel, report = folder / "wheel", folder / "report"
+    install(version, wheel)
+    node = wheel / "MaterialX" / NODE
     row = {"version": version, "closure": node.is_file() and "ClosureData" in node.read_text()}
-    options = [option for host in HOSTS for option in ("--host", host)]
-    try:
-        arguments = [str(DOCUMENT), *options]
-        versions.check_in(folder / "wheel", version, arguments, folder / "report")
-    except ValueError as refused:
-        return row | {"refused": str(refused)}
+    hosts = [word for host in HOSTS for word in ("--host", host)]
+    process = run(wheel, "check", str(DOCUMENT), *hosts, "--report", str(report))
+    if process.returncode == 2:
+        return row | {"refused": process.stderr.strip()}
     tally = {host: Counter() for host in HOSTS}
-    for result in read_run(folder / "report").results:
+    for result in read_run(report).results:
         if result.host in tally:
             tally[result.host][result.verdict] += 1
     return row | {"verdicts": tally}

@@ -26,7 +26,7 @@ KIT = ("kit.*", "kit")
 COMMAND = ("arguments", "making", "cli", "__main__")
 RUNNING = ("pool", "cluster", "results", "verdict", "writing", "journal")
 ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
-ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
+ORDER += REPORT + FIGURES + KIT + COMMAND
 
 # The one host that is made of the models.
 REFERENCE = "hosts.reference"
@@ -36,15 +36,16 @@ FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
-    "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*"),
-    "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
+    "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*")
+    + ("conformance.items",),
+    "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*", "conformance.items"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal",),
     "distributed": ("cluster",),
-    "filelock": ("journal", "versions"),
+    "filelock": ("journal",),
     "jinja2": ("page",),
     "matplotlib": ("plots", "figures.*"),
-    "moderngl": ("hosts.*",),
+    "moderngl": ("hosts.*", "conformance.items"),
     "numba": ("compiled",),
     "pebble": ("pool",),
     "tqdm": ("cli",),

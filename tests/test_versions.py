@@ -1,92 +1,107 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Other versions of MaterialX: refused, or judged each in an environment of its own."""
+"""Other versions of MaterialX: what mxeon needs of them is looked up in them, not in a list."""
 
-import sys
+import shutil
+import warnings
 
 import MaterialX as mx
 import pytest
+from documents import lobe, material
 
-from mxeon import generation, hosts, versions
+from mxeon import generation, hosts, library
 from mxeon.cli import main
 from mxeon.conformance import check
 from mxeon.hosts import NotRun, open_host
-from mxeon.library import VERSIONS, examples_folder, load_library
-from mxeon.results import PASSED
+from mxeon.library import InterfaceError, UntestedVersionWarning, check_closure_calls, load_library
+from mxeon.results import NOT_RUN, PASSED
 
-HERE = mx.getVersionString()
-EXAMPLE = str(examples_folder() / "plaster.mtlx")
-KNOWN = f"materialx must be one of {', '.join(VERSIONS)}; got '1.39.2'"
+EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
+DEFINITION = "void eon_diffuse_bsdf(ClosureData closureData, float weight, inout BSDF bsdf)"
+CACHES = (load_library, generation._library_generator)
 
 
 @pytest.fixture
-def environments(tmp_path, monkeypatch):
-    """A place for environments where the MaterialX that is here stands ready."""
-    monkeypatch.setenv("MXEON_ENVIRONMENTS", str(tmp_path))
-    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    ready = tmp_path / f"materialx-{HERE}-{python}"
-    ready.mkdir()
-    (ready / "MaterialX").symlink_to(mx.__path__[0])
-    return tmp_path
+def fresh():
+    """Libraries and generators as in a new process, before the test and after it."""
+    for cache in CACHES:
+        cache.cache_clear()
+    yield
+    for cache in CACHES:
+        cache.cache_clear()
 
 
-@pytest.mark.parametrize("version", ["1.38.10", "1.39.2", "1.39.6", "1.40.0"])
-def test_a_version_with_another_interface_is_refused(monkeypatch, capsys, version):
-    monkeypatch.setattr(mx, "getVersionString", lambda: version)
-    with pytest.raises(ImportError, match=f"MaterialX must be one of .*; got {version}: pip"):
-        load_library.__wrapped__("stock")
+@pytest.fixture
+def other_interface(fresh, monkeypatch, tmp_path):
+    """A checkout whose oren_nayar_diffuse_bsdf takes one argument more than MaterialX passes."""
+    for name in ("libraries", "genglsl", "genosl", "profiles"):
+        shutil.copytree(library.data_folder() / name, tmp_path / name)
+    source = tmp_path / "genglsl" / "oren_nayar_diffuse_bsdf.glsl"
+    text = source.read_text().replace("float weight, vec3 color", "float gain, float weight, vec3 color")
+    source.write_text(text)
+    monkeypatch.setattr(library, "data_folder", lambda: tmp_path)
+
+
+@pytest.mark.parametrize("name", library.LIBRARIES)
+def test_an_untested_version_runs_with_a_warning(fresh, monkeypatch, name):
+    monkeypatch.setattr(mx, "getVersionString", lambda: "1.40.0")
+    with pytest.warns(UntestedVersionWarning, match=r"^MaterialX 1.40.0 has not been tested with"):
+        assert load_library(name).getNodeDef("ND_oren_nayar_diffuse_bsdf")
+
+
+def test_the_report_of_an_untested_version_says_so(monkeypatch):
+    monkeypatch.setattr(mx, "getVersionString", lambda: "1.40.0")
+    with warnings.catch_warnings(action="ignore"):
+        run = check([EXAMPLE])
+    assert {result.verdict for result in run.results} == {PASSED}
+    assert any(note.startswith("MaterialX 1.40.0 has not been tested with") for note in run.notes)
+
+
+def test_the_installed_version_needs_no_warning(fresh):
+    assert library.untested(mx.getVersionString()) == ""
+    with warnings.catch_warnings(action="error"):
+        load_library("stock")
+
+
+def test_a_version_that_lacks_a_method_is_refused_in_one_line(fresh, monkeypatch, capsys):
+    monkeypatch.setattr(library, "REQUIRED", ((mx.Document, "setOtherLibrary"),))
     assert main(["check", EXAMPLE]) == 2
-    assert capsys.readouterr().err.startswith("mxeon: MaterialX must be one of ")
+    assert capsys.readouterr().err.startswith(
+        f"mxeon: MaterialX {mx.getVersionString()} lacks Document.setOtherLibrary; install 1.39.3"
+    )
 
 
-def test_an_unknown_version_lists_the_known_ones(environments, capsys):
-    assert main(["check", EXAMPLE, "--materialx", "1.39.2"]) == 2
-    assert capsys.readouterr().err == f"mxeon: {KNOWN}\n"
+def test_another_closure_interface_is_refused_for_its_node_and_target(other_interface):
+    with pytest.raises(InterfaceError, match=r"^glsl: MaterialX .* does not call eonlib's function"):
+        generation.generate(material(lobe()), "glsl")
+    assert generation.generate(material(lobe()), "osl")
+    assert generation.generate(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'), "glsl")
 
 
-def test_a_version_that_cannot_be_installed_is_not_run_and_leaves_nothing(environments, monkeypatch):
-    monkeypatch.setenv("PIP_NO_INDEX", "1")
-    before = set(environments.iterdir())
-    other = next(version for version in VERSIONS if version != HERE)
-    with pytest.raises(NotRun, match=f"^MaterialX {other}: pip cannot install it; ") as error:
-        versions.environment(other)
-    assert "\n" not in str(error.value)
-    assert [path.suffix for path in set(environments.iterdir()) - before] == [".lock"]
+def test_checks_of_another_closure_interface_are_not_run(other_interface):
+    verdicts = {result.subject: result.verdict for result in check([EXAMPLE]).results}
+    assert verdicts["oren_nayar_diffuse_bsdf, energy_compensation true"] == NOT_RUN
+    assert verdicts["eon_diffuse_bsdf"] == PASSED
 
 
-def test_a_run_with_another_version_is_the_run_of_that_version(environments, tmp_path):
-    run = versions.check([HERE], [EXAMPLE], tmp_path / "report")
-    assert {each.library for each in run.results} == {f"eonlib, MaterialX {HERE}"}
-    assert {each.verdict for each in run.results} == {PASSED}
-    assert run.software["MaterialX"] == HERE and not run.missing
-    assert [each.figure for each in run.results] == [each.figure for each in check([EXAMPLE]).results]
+@pytest.mark.parametrize(
+    "call",
+    ["eon_diffuse_bsdf_reflection(L, V, P)", "eon_diffuse_bsdf(L, V)", "eon_diffuse_bsdf(c, f(a, b))"],
+)
+def test_calls_of_another_form_are_refused(call):
+    with pytest.raises(InterfaceError, match="eon_diffuse_bsdf.ClosureData closureData, float weight"):
+        check_closure_calls(f"{DEFINITION} {{}}\nvoid main() {{ {call}; }}", "glsl")
 
 
-def test_a_refused_document_costs_itself_alone_and_the_report_can_be_made_again(
-    environments, tmp_path, capsys
-):
-    wrong = tmp_path / "wrong.mtlx"
-    wrong.write_text("<materialx")
-    report = str(tmp_path / "report")
-    assert main(["check", EXAMPLE, str(wrong), "--materialx", HERE, "--report", report]) == 2
-    assert f"MaterialX {HERE}: {wrong}: must be a MaterialX document" in capsys.readouterr().err
-    assert main(["report", "make", report, "--json"]) == 2
-    assert f"eonlib, MaterialX {HERE}" in capsys.readouterr().out
-
-
-def test_runs_of_two_versions_become_one():
-    run = check([EXAMPLE])
-    both = versions.merged({"1.39.4": run, "1.39.5": run})
-    assert len(both.results) == 2 * len(run.results) and both.hosts == run.hosts
-    assert both.software["MaterialX"] == "1.39.4, 1.39.5"
-    assert {picture.library for picture in both.pictures} == {
-        "eonlib, MaterialX 1.39.4",
-        "eonlib, MaterialX 1.39.5",
-    }
-
-
-def test_what_is_refused_with_a_version_is_refused_here(environments, tmp_path):
-    with pytest.raises(ValueError, match=f"^MaterialX {HERE}: host must be one of .*; got 'none'"):
-        versions.check([HERE], [EXAMPLE, "--host", "none"], tmp_path / "report")
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{DEFINITION} {{}}\nvoid main() {{ eon_diffuse_bsdf(c, max(0.0, w), result); }}",
+        "oren_nayar_diffuse_bsdf(normal, color, roughness)",
+        "void mx_oren_nayar_diffuse_bsdf(ClosureData c)\nmx_oren_nayar_diffuse_bsdf(c, w)",
+    ],
+)
+def test_calls_of_the_same_form_and_other_functions_are_accepted(text):
+    check_closure_calls(text, "glsl")
 
 
 def test_a_host_whose_target_this_version_lacks_is_not_run(monkeypatch):

@@ -13,6 +13,7 @@ from mxeon.conformance.items import JUDGED, Judge, not_run, plan
 from mxeon.conformance.ledger import repaired
 from mxeon.hosts import NotRun
 from mxeon.journal import Journal, read_journal
+from mxeon.library import untested
 from mxeon.permissions import DEFAULT
 from mxeon.results import Findings, Run
 
@@ -125,7 +126,10 @@ def to_run(planned, findings):
         missing=tuple(str(i) for place, i in enumerate(planned.items) if place not in findings),
         **found
         | {
-            "notes": _grouped(found["notes"] + repaired(found["results"], planned.software)),
+            "notes": _grouped(
+                found["notes"] + repaired(found["results"], planned.software)
+                + _untested(planned.software)
+            ),
             "errors": tuple(dict.fromkeys(found["errors"])),
             "hosts": tuple(dict.fromkeys(found["hosts"])),
         },
@@ -183,6 +187,12 @@ def _settled(judge, item):
 @lru_cache(maxsize=1)
 def _judge(permissions):
     return Judge(permissions)
+
+
+def _untested(software):
+    """A note on a version of MaterialX that mxeon has not been tested with."""
+    note = untested(software["MaterialX"])
+    return ((note, "every result"),) if note else ()
 
 
 def _grouped(notes):

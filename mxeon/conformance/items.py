@@ -9,8 +9,12 @@ import hashlib
 import platform
 from dataclasses import replace
 from functools import lru_cache
-from importlib.metadata import version
 from pathlib import Path
+
+import MaterialX as mx
+import moderngl
+import numpy as np
+import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance.checks import CHECKS
@@ -23,10 +27,9 @@ from mxeon.conformance.subjects import NATIVE, SUBJECTS, SURFACES, Surface
 from mxeon.document import DocumentError
 from mxeon.hosts import TEXT_ONLY, NotRun, open_host
 from mxeon.images import ImageError
-from mxeon.library import LIBRARIES, assert_version, examples_folder
+from mxeon.library import LIBRARIES, InterfaceError, check_version, examples_folder
 from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
 
-SOFTWARE = ("MaterialX", "numpy", "OpenImageIO", "moderngl")
 JUDGED = (*PROBES, *TEXT_ONLY)  # hosts on the command line
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
 SURFACE_HOST = "gl"  # its pictures are exact, and made in no time
@@ -58,9 +61,9 @@ def plan(files, hosts, libraries):
     ValueError
         If a host or a library is unknown; lists the known ones.
     ImportError
-        If this MaterialX is not one that eonlib works with.
+        If this MaterialX is too old.
     """
-    assert_version()
+    check_version()
     _known("host", hosts, JUDGED)
     _known("library", libraries, LIBRARIES)
     items, documents = [], {}
@@ -71,8 +74,7 @@ def plan(files, hosts, libraries):
         for host in dict.fromkeys(hosts):
             items += _on_host(host, library, named)
     items += [item for host in dict.fromkeys(hosts) for item in _native(host)]
-    software = {"Python": platform.python_version()} | {each: version(each) for each in SOFTWARE}
-    return Plan(mxeon.__version__, software, tuple(items), documents)
+    return Plan(mxeon.__version__, _software(), tuple(items), documents)
 
 
 def subjects(library):
@@ -119,12 +121,10 @@ class Judge:
         NotRun
             If the host cannot be opened here.
         """
-        if item.check == SOURCE:
-            found = {"results": check_sources(subjects(item.library), item.library)}
-        else:
-            host = self._host(item.host)
-            found = self._on_host(item, host) | {"hosts": (host.identity(),)}
-        return _with_ledger(Findings(**found))
+        try:
+            return _with_ledger(Findings(**self._findings(item)))
+        except InterfaceError as reason:
+            return not_run(item, str(reason))
 
     def close(self):
         """Close what was opened."""
@@ -142,6 +142,12 @@ class Judge:
         if isinstance(self._hosts[name], NotRun):
             raise self._hosts[name]
         return self._hosts[name]
+
+    def _findings(self, item):
+        if item.check == SOURCE:
+            return {"results": check_sources(subjects(item.library), item.library)}
+        host = self._host(item.host)
+        return self._on_host(item, host) | {"hosts": (host.identity(),)}
 
     def _on_host(self, item, host):
         if item.check == PICTURE:
@@ -205,6 +211,17 @@ def _native(host):
             for row in CHECKS:
                 if applies(row, subject, NativeProbe.kind, host):
                     yield Item(row.key, subject.title, host, "its own nodes")
+
+
+def _software():
+    """Versions of what takes part, asked of the modules: a build of one's own has no metadata."""
+    return {
+        "Python": platform.python_version(),
+        "MaterialX": mx.getVersionString(),
+        "numpy": np.__version__,
+        "OpenImageIO": oiio.__version__,
+        "moderngl": moderngl.__version__,
+    }
 
 
 def _examples(library):

@@ -15,7 +15,7 @@ from importlib import import_module
 import MaterialX as mx
 
 from mxeon.generation import TARGETS
-from mxeon.library import VERSIONS
+from mxeon.library import TESTED
 
 
 class NotRun(RuntimeError):
@@ -64,6 +64,6 @@ def open_host(name):
     if host.target not in TARGETS:
         raise NotRun(
             f"{name}: MaterialX must have a generator for {host.target}; {mx.__version__} has none: "
-            f"pip install materialx=={VERSIONS[-1]}"
+            f"pip install materialx=={TESTED[-1]}"
         )
     return host()
