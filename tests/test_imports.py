@@ -24,7 +24,8 @@ REPORT = ("junit", "pictures", "plots", "page", "report", "comparison")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("arguments", "making", "cli", "__main__")
-RUNNING = ("pool", "cluster", "results", "verdict", "writing", "journal")
+RUNNING = ("pool", "cluster", "reading", "results", "records")
+RUNNING += ("verdict", "writing", "journal_lines", "journal")
 ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
 
@@ -32,14 +33,14 @@ ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
 REFERENCE = "hosts.reference"
 
 # What a run and its pictures consist of.
-FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
+FOR_REPORT = (*REPORT, "reading", "records", "results", "verdict", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
     "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*"),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
-    "cattrs": ("journal",),
+    "cattrs": ("journal_lines", "records"),
     "distributed": ("cluster",),
     "filelock": ("journal", "versions"),
     "jinja2": ("page",),

@@ -12,7 +12,7 @@ from mxeon import cluster, pool
 from mxeon.conformance.items import JUDGED, Judge, not_run, plan
 from mxeon.conformance.ledger import repaired
 from mxeon.hosts import NotRun
-from mxeon.journal import Journal, read_journal
+from mxeon.journal import Journal, read_journal, refusal
 from mxeon.permissions import DEFAULT
 from mxeon.results import Findings, Run
 
@@ -68,10 +68,11 @@ def check(
     Raises
     ------
     ValueError
-        If a host or a library is unknown, `folder` holds another run than the one to resume,
-        `workers` or `limit` leave their ranges, or no scheduler answers or has workers that fit.
+        If a host or a library is unknown, `folder` holds another run than the one to resume or
+        one of other drivers, `workers` or `limit` leave their ranges, or no scheduler answers or
+        has workers that fit.
     """
-    planned = plan(files, hosts, libraries)
+    planned = plan(files, hosts, libraries, permissions, kept=folder is not None)
     # Who cannot work must not touch what the folder holds.
     with (
         _crew(permissions, workers, limit, scheduler) as crew,
@@ -79,7 +80,10 @@ def check(
     ):
         places = [place for place in range(len(planned.items)) if place not in kept.findings]
         waiting = [planned.items[place] for place in places]
+        # A farm's machines may differ from each other.
+        known = {} if scheduler else _identities(kept.findings.values())
         for number, findings in progress(_done(waiting, crew), len(waiting)):
+            _assert_same_hosts(folder, known, _identities([findings]))
             kept.add(places[number], findings)
         return to_run(planned, kept.findings)
 
@@ -130,6 +134,22 @@ def to_run(planned, findings):
             "hosts": tuple(dict.fromkeys(found["hosts"])),
         },
     )
+
+
+def _identities(findings):
+    """Version and device of each host that findings are of, by its name."""
+    return {host.name: f"{host.version}, {host.device}" for part in findings for host in part.hosts}
+
+
+def _assert_same_hosts(folder, known, found):
+    """Raise ValueError if a host of a run that is resumed has another version or device."""
+    differences = [
+        f"host {name} ({known[name]}, now {found[name]})"
+        for name in known.keys() & found.keys()
+        if known[name] != found[name]
+    ]
+    if differences:
+        raise ValueError(refusal(folder, differences))
 
 
 class _Memory:
