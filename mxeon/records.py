@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plain data of a run read from JSON: each value has to be of its type, none is converted."""
 
+import math
+
 import cattrs
 import numpy as np
 
@@ -14,7 +16,7 @@ ERRORS = (
 def make_converter():
     """A converter between the dataclasses of `mxeon.results` and the types of JSON.
 
-    Numbers that are not finite may be written as the texts NOT_FINITE.
+    Numbers that are not finite are written as the texts NOT_FINITE.
 
     Returns
     -------
@@ -27,9 +29,17 @@ def make_converter():
     for kind, words in ((str, "a text"), (bool, "true or false"), (int, "a whole number")):
         converter.register_structure_hook(kind, _exactly(kind, words))
     converter.register_structure_hook(float, _number)
+    converter.register_unstructure_hook(float, spelled)
     converter.register_structure_hook(np.ndarray, lambda rows, _: np.array(rows, dtype=float))
     converter.register_unstructure_hook(np.ndarray, lambda array: array.tolist())
     return converter
+
+
+def spelled(number):
+    """A number as JSON can hold it: one that is not finite as a text."""
+    if math.isfinite(number):
+        return number
+    return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"
 
 
 def read_record(value, kind):
