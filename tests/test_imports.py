@@ -16,7 +16,7 @@ import mxeon
 # Every module, or a pattern of them, after all that it may import.
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
-SHADERS = ("library", "permissions", "screening", "trust", "expansion", "document", "generation")
+SHADERS = ("reading", "library", "permissions", "screening", "trust", "expansion", "document", "generation")
 SHADERS += ("twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
@@ -24,7 +24,7 @@ REPORT = ("junit", "pictures", "plots", "page", "report", "comparison")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("arguments", "making", "cli", "__main__")
-RUNNING = ("pool", "cluster", "reading", "results", "records")
+RUNNING = ("pool", "cluster", "results", "records")
 RUNNING += ("verdict", "writing", "journal_lines", "journal")
 ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
