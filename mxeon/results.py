@@ -85,11 +85,11 @@ class Result:
     def __post_init__(self):
         if self.verdict not in VERDICTS:
             raise ValueError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
-        if (self.figure is None) != (self.tolerance is None):
-            raise ValueError(
-                f"figure and tolerance must come together; got {self.figure} and {self.tolerance}"
-            )
-        if self.figure is not None and min(self.figure, self.tolerance) < 0:
+        if self.figure is None:
+            return
+        if self.tolerance is None:
+            raise ValueError(f"figure must have its tolerance; got {self.figure} and none")
+        if min(self.figure, self.tolerance) < 0:
             raise ValueError(
                 f"figure and tolerance must be at least 0; got {self.figure} and {self.tolerance}"
             )

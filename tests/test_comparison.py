@@ -21,10 +21,7 @@ PLACE = "gl, eonlib, value, clay"
 def made_run(verdict=PASSED, figure=1e-7, device="llvmpipe", difference=1e-7, subject="clay"):
     pixels = np.zeros((4, 4, 3))
     picture = Picture("d", "e", "gl", "eonlib", "side", pixels + difference, pixels, {})
-    result = Result(
-        "value", "claim", subject, "gl", "eonlib", verdict, figure,
-        tolerance=None if figure is None else 1e-6,
-    )  # fmt: skip
+    result = Result("value", "claim", subject, "gl", "eonlib", verdict, figure, tolerance=1e-6)
     return Run("1.0", {"Python": "3"}, (Identity("gl", "4.5", device),), (result,), (picture,))
 
 
@@ -113,7 +110,7 @@ def refusal_of(folder, capsys):
         ("figure", 10**400, "must be a number below 1.8e308; got one of 401 digits"),
         ("figure", "1e-7", "must be a number; got '1e-7'"),
         ("figure", True, "must be a number; got True"),
-        ("figure", None, "figure and tolerance must come together"),
+        ("tolerance", None, "figure must have its tolerance; got 1e-07 and none"),
         ("figure", -1.0, "figure and tolerance must be at least 0; got -1.0 and 1e-06"),
         ("figure", "-Infinity", "figure and tolerance must be at least 0; got -inf"),
         ("verdict", "maybe", "verdict must be one of passed, failed, not run; got 'maybe'"),
