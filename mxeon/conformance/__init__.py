@@ -72,20 +72,20 @@ def check(
         one of other drivers, `workers` or `limit` leave their ranges, or no scheduler answers or
         has workers that fit.
     """
-    planned = plan(files, hosts, libraries, permissions, kept=folder is not None)
+    planned = plan(files, hosts, libraries, permissions, resumable=folder is not None)
     # Who cannot work must not touch what the folder holds.
     with (
         _crew(permissions, workers, limit, scheduler) as crew,
-        _keeper(folder, planned, resume) as kept,
+        _open_journal(folder, planned, resume) as journal,
     ):
-        places = [place for place in range(len(planned.items)) if place not in kept.findings]
+        places = [place for place in range(len(planned.items)) if place not in journal.findings]
         waiting = [planned.items[place] for place in places]
         # A farm's machines may differ from each other.
-        known = {} if scheduler else _identities(kept.findings.values())
+        known = {} if scheduler else _identities(journal.findings.values())
         for number, findings in progress(_done(waiting, crew), len(waiting)):
             _assert_same_hosts(folder, known, _identities([findings]))
-            kept.add(places[number], findings)
-        return to_run(planned, kept.findings)
+            journal.add(places[number], findings)
+        return to_run(planned, journal.findings)
 
 
 def read_run(folder):
@@ -152,16 +152,16 @@ def _assert_same_hosts(folder, known, found):
         raise ValueError(refusal(folder, differences))
 
 
-class _Memory:
-    """A journal that is gone with the process."""
+class InMemoryJournal:
+    """In-memory stand-in for Journal."""
 
     def __init__(self):
         self.findings = {}
         self.add = self.findings.__setitem__
 
 
-def _keeper(folder, planned, resume):
-    return nullcontext(_Memory()) if folder is None else Journal(folder, planned, resume)
+def _open_journal(folder, planned, resume):
+    return nullcontext(InMemoryJournal()) if folder is None else Journal(folder, planned, resume)
 
 
 @contextmanager

@@ -94,14 +94,12 @@ def _names(text, elements):
 
 
 def _paths(name, folders):
-    """The regular files that a name may mean."""
+    """The regular files that a name may mean, by their real paths."""
     for folder in folders:
-        path = os.path.normpath(folder / name)
+        paths = [str(folder / name)]
         if OPEN_PART.search(name):
-            path = "*".join(map(glob.escape, OPEN_PART.split(path)))
-            yield from filter(os.path.isfile, glob.glob(path))
-        elif os.path.isfile(path):
-            yield path
+            paths = glob.glob("*".join(map(glob.escape, OPEN_PART.split(paths[0]))))
+        yield from map(os.path.realpath, filter(os.path.isfile, paths))
 
 
 def _installed():

@@ -41,7 +41,7 @@ CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
 }
 
 
-def plan(files, hosts, libraries, permissions=DEFAULT, kept=False):
+def plan(files, hosts, libraries, permissions=DEFAULT, resumable=False):
     """The items of a run, those of one host and library beside each other.
 
     Parameters
@@ -50,8 +50,8 @@ def plan(files, hosts, libraries, permissions=DEFAULT, kept=False):
         Documents; none for the bundled examples.
     hosts, libraries : sequence of str
     permissions : Permissions
-    kept : bool
-        Whether the run may be resumed, and has to know the files that it depends on.
+    resumable : bool
+        Whether the plan has to say which files the run depends on.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def plan(files, hosts, libraries, permissions=DEFAULT, kept=False):
     items += [item for host in dict.fromkeys(hosts) for item in _native(host)]
     software = {"Python": platform.python_version()} | {each: version(each) for each in SOFTWARE}
     documents = tuple(dict.fromkeys(documents))
-    files = digests(documents, permissions) if kept else {}
+    files = digests(documents, permissions) if resumable else {}
     return Plan(mxeon.__version__, software, tuple(items), documents, _options(permissions), files)
 
 
