@@ -112,7 +112,7 @@ def _report_diff(options):
     if options.json:
         print(json.dumps([vars(change) for change in changes], indent=1))
     else:
-        print("\n".join(map(str, changes)) or "no difference")
+        print("\n".join(map(one_line, changes)) or "no difference")
     return FAILED if any(change.kind == WORSE for change in changes) else PASSED
 
 
@@ -168,7 +168,7 @@ def _print_run(run, summary, page):
         print(one_line(f"failed: {where}: {explained(result)}"))
     for note in run.notes:
         print(printable(" ".join(f"note: {note}".split())))
-    print(summary.sentence)
+    print(printable(summary.sentence))
     if page:
         print(f"report: {page}")
 

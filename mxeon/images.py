@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from mxeon.reading import assert_regular
+
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
 RADIANCE_SIZE = 64  # rows and columns, or little more, from which it is summed
@@ -24,11 +26,15 @@ def read_image(path):
     Raises
     ------
     ImageError
-        If OpenImageIO cannot read it, in OpenImageIO's words; or if it is too large, which a small
-        file can be.
+        If it is no regular file, or OpenImageIO cannot read it, in OpenImageIO's words; or if it is
+        too large, which a small file can be.
     """
     import OpenImageIO as oiio
 
+    try:
+        assert_regular(path)
+    except OSError as error:
+        raise ImageError(f"{path}: must be an image file; {error.strerror}") from None
     file = oiio.ImageInput.open(str(path))
     values = file.spec().image_pixels() * file.spec().nchannels if file else 0
     if values > LARGEST:

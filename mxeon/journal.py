@@ -2,42 +2,43 @@
 """What a run has finished, on disk as it ends: one line an item, so that any end can be survived.
 
 The folder of a run holds a folder `journal`: its file `items.jsonl`, whose first line is the plan of
-the run and each further one the place of an item and its findings, and the pictures as NumPy files.
-A line counts once its newline is there.
+the run and each further one the findings of an item, and the pictures as NumPy files, called by
+their SHA-256. A line that is not what was written, or whose pictures are not, does not count: its
+item is done again. So damage costs the items that it hits, and no more.
 """
 
+import hashlib
 import json
 import os
 import shutil
-from dataclasses import dataclass, replace
+import warnings
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
-import cattrs
 import numpy as np
-from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn, override
 from filelock import FileLock, Timeout
 
-from mxeon.results import Findings, Picture, Plan
+from mxeon.journal_lines import (
+    FORMAT,
+    NAME,
+    PLAN,
+    StoredImage,
+    json_converter,
+    read_lines,
+    to_line,
+)
 from mxeon.writing import replacing
 
-FORMAT = 1
-NAME = "journal/items.jsonl"
 PREVIOUS, LOCK = "journal.previous", ".journal.lock"  # beside the folder `journal`
-
-
-@dataclass(frozen=True)
-class StoredImage:
-    """Pixels in a file, read anew by every `np.asarray`, so that a run holds none of them."""
-
-    path: Path
-
-    def __array__(self, dtype=None, copy=None):
-        return np.asarray(np.load(self.path), dtype=dtype)
+LISTED = 8  # names in a message
 
 
 class Journal:
     """The journal of one run in a folder; a context manager, since it is locked while open.
+
+    Nothing is touched before it is entered.
 
     Parameters
     ----------
@@ -56,36 +57,36 @@ class Journal:
     Raises
     ------
     ValueError
-        If another process writes here, or the run to resume is not this one.
+        On entry, if another process writes here, or the run to resume is not this one; says what
+        differs.
     OSError
-        If the folder cannot be written.
+        On entry, if the folder cannot be written.
     """
 
     def __init__(self, folder, plan, resume=False):
-        self._folder = Path(folder)
+        self._folder, self._plan, self._resume = Path(folder), plan, resume
         self._path = self._folder / NAME
-        self._folder.mkdir(parents=True, exist_ok=True)
-        self._lock = FileLock(self._folder / LOCK, timeout=0)
-        try:
-            self._lock.acquire()
-        except Timeout:
-            raise ValueError(f"{folder}: must have one writer; another run writes there") from None
-        try:
-            begun = resume and self._path.exists() and b"\n" in self._path.read_bytes()
-            self.findings = self._continue(plan) if begun else self._begin(plan)
-        except BaseException:
-            self._lock.release()
-            raise
+        self._exit = ExitStack()
+        self.findings = {}
 
     def __enter__(self):
+        with ExitStack() as stack:
+            stack.enter_context(_locked(self._folder))
+            if self._resume and self._path.exists():
+                lines = self._continue()
+            else:
+                lines = self._begin()
+            self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND)
+            stack.callback(os.close, self._file)
+            self._seed = json.loads(lines[PLAN])["digest"]
+            self._exit = stack.pop_all()
         return self
 
     def __exit__(self, *error):
-        os.close(self._file)
-        self._lock.release()
+        self._exit.close()
 
     def add(self, place, findings):
-        """Keep the findings of an item: on disk when this returns.
+        """Keep the findings of an item: on disk when this returns, the pictures first.
 
         Raises
         ------
@@ -93,41 +94,42 @@ class Journal:
             If there is no room; the journal is then as it was before.
         """
         pictures = tuple(
-            replace(
-                picture,
-                image=self._store(picture.image, f"{place}-{row}.npy"),
-                reference=self._store(picture.reference, f"{place}-{row}-reference.npy"),
-            )
-            for row, picture in enumerate(findings.pictures)
+            replace(each, image=self._store(each.image), reference=self._store(each.reference))
+            for each in findings.pictures
         )
+        if pictures:
+            _sync(self._path.parent)
         findings = replace(findings, pictures=pictures)
-        record = {"item": place, "findings": _converter(self._folder).unstructure(findings)}
-        self._append(record)
+        record = {"item": place, "findings": json_converter(self._folder).unstructure(findings)}
+        self._append(to_line(record, self._seed))
         self.findings[place] = findings
 
-    def _begin(self, plan):
+    def _begin(self):
+        """Lines of a new journal; an earlier one makes room."""
         if self._path.exists():
             shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
             os.replace(self._path.parent, self._folder / PREVIOUS)
-        self._path.parent.mkdir(exist_ok=True)
-        self._open()
-        self._append({"format": FORMAT} | _converter(self._folder).unstructure(plan))
-        return {}
+        header = {"format": FORMAT} | json_converter(self._folder).unstructure(self._plan)
+        return self._write({PLAN: to_line(header)})
 
-    def _continue(self, plan):
-        found, findings, size = _read(self._folder)
-        if found != plan:
-            raise ValueError(f"{self._folder}: --resume must go on with the same run; {_apart(found, plan)}")
-        self._open()
-        os.ftruncate(self._file, size)  # a line torn by the end of the last run
-        return findings
+    def _continue(self):
+        """Lines of the journal that is there, without those that do not count."""
+        contents = read_lines(self._folder)
+        if contents.plan != self._plan:
+            raise ValueError(refusal(self._folder, _differences(contents.plan, self._plan)))
+        _warn(self._folder, contents.damaged)
+        self.findings = contents.findings
+        return self._write(contents.lines)
 
-    def _open(self):
-        self._file = os.open(self._path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+    def _write(self, lines):
+        with replacing(self._path) as beside:
+            _write_through(beside, b"".join(lines.values()))
+        _sync(self._path.parent)
+        _sync(self._folder)
+        return lines
 
-    def _append(self, record):
-        size = os.fstat(self._file).st_size
-        line = memoryview((json.dumps(record) + "\n").encode())
+    def _append(self, line):
+        size, line = os.fstat(self._file).st_size, memoryview(line)
         try:
             while line:
                 line = line[os.write(self._file, line) :]
@@ -136,20 +138,23 @@ class Journal:
             os.ftruncate(self._file, size)
             raise OSError(error.errno, error.strerror, str(self._path)) from None
 
-    def _store(self, image, name):
+    def _store(self, image):
         """An image in a file of the folder, or None for none."""
         if image is None:
             return None
-        path = self._path.with_name(name)
         pixels = BytesIO()
         np.save(pixels, np.asarray(image, np.float32))
+        name = hashlib.sha256(pixels.getbuffer()).hexdigest()
+        path = self._path.with_name(f"{name}.npy")
         with replacing(path) as beside:
-            beside.write_bytes(pixels.getbuffer())
+            _write_through(beside, pixels.getbuffer())
         return StoredImage(path)
 
 
 def read_journal(folder):
     """The plan of the run in a folder, and what it has finished.
+
+    Warns of what is damaged, which counts as not done.
 
     Parameters
     ----------
@@ -164,55 +169,74 @@ def read_journal(folder):
     ValueError
         If the folder holds no journal that this version reads.
     """
-    plan, findings, _ = _read(Path(folder))
-    return plan, findings
+    contents = read_lines(Path(folder))
+    _warn(folder, contents.damaged)
+    return contents.plan, contents.findings
 
 
-def _read(folder):
-    """Plan and findings of a journal, and the bytes up to the end of its last whole line."""
-    path = folder / NAME
+def refusal(folder, differences):
+    """Why the run in a folder is not resumed: one line that lists what differs."""
+    listed = _listed(differences)
+    return f"{folder}: --resume must go on with the same run; these differ: {listed}"
+
+
+@contextmanager
+def _locked(folder):
+    folder.mkdir(parents=True, exist_ok=True)
     try:
-        whole = path.read_bytes().rpartition(b"\n")[0]
-    except OSError:
-        raise ValueError(f"{folder}: must hold the {NAME} of a run; there is none") from None
-    converter = _converter(folder)
-    try:
-        header, *records = map(json.loads, whole.split(b"\n"))
-        if header.pop("format") != FORMAT:
-            raise ValueError("it has another format")
-        plan = converter.structure(header, Plan)
-        found = {
-            record["item"]: converter.structure(record["findings"], Findings)
-            for record in records
-        }
-    except (ValueError, KeyError, TypeError, AttributeError, cattrs.BaseValidationError) as error:
-        raise ValueError(f"{path}: must be a journal of mxeon {FORMAT}; {error}") from None
-    return plan, found, len(whole) + 1
+        with FileLock(folder / LOCK, timeout=0):
+            yield
+    except Timeout:
+        raise ValueError(f"{folder}: must have one writer; another run writes there") from None
 
 
-def _apart(found, plan):
-    """In words, what two plans do not share."""
-    if found.version != plan.version:
-        return f"it is of mxeon {found.version}, this is {plan.version}"
-    if found.software != plan.software:
-        return f"it ran with {found.software}, this has {plan.software}"
-    if found.documents != plan.documents:
-        changed = found.documents.items() ^ plan.documents.items()
-        return f"these documents differ: {', '.join(sorted({path for path, _ in changed}))}"
-    return "its hosts, libraries or documents were others"
+def _warn(folder, damaged):
+    if damaged:
+        what = _listed(damaged)
+        warnings.warn(f"{folder}: damaged in the journal, so that --resume does it again: {what}")
 
 
-def _converter(folder):
-    """To and from JSON; images stay in their files."""
-    converter = cattrs.Converter()
-    converter.register_unstructure_hook(np.ndarray, lambda array: array.tolist())
-    converter.register_structure_hook(np.ndarray, lambda rows, _: np.array(rows))
-    image = override(
-        unstruct_hook=lambda image: image and image.path.name,
-        struct_hook=lambda name, _: name and StoredImage((folder / NAME).with_name(name)),
+def _differences(before, after):
+    """What two plans do not share: values as they were and are, and names of files."""
+    old, new = _facts(before), _facts(after)
+    facts = [
+        f"{name} ({old.get(name, 'none')}, now {new.get(name, 'none')})"
+        for name in old | new
+        if old.get(name) != new.get(name)
+    ]
+    files = {path for path, _ in before.files.items() ^ after.files.items()}
+    return (*facts, *sorted(files)) or ("the checks",)
+
+
+def _facts(plan):
+    """What a plan says, but for its files, by names that a reader knows."""
+    hosts, libraries = (
+        ", ".join(dict.fromkeys(getattr(item, name) for item in plan.items))
+        for name in ("host", "library")
     )
-    fields = {"image": image, "reference": image}
-    to_json = make_dict_unstructure_fn(Picture, converter, **fields)
-    converter.register_unstructure_hook(Picture, to_json)
-    converter.register_structure_hook(Picture, make_dict_structure_fn(Picture, converter, **fields))
-    return converter
+    facts = {"mxeon": plan.version} | plan.software | plan.options
+    return facts | {
+        "hosts": hosts, "libraries": libraries, "documents": _listed(plan.documents)
+    }
+
+
+def _listed(names):
+    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return ", ".join(names[:LISTED]) + more
+
+
+def _sync(folder):
+    """Have the names in a folder on disk."""
+    file = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(file)
+    finally:
+        os.close(file)
+
+
+def _write_through(path, data):
+    """Write a file and have it on disk."""
+    with open(path, "wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())

@@ -96,6 +96,12 @@ def examples_folder():
     return data_folder() / "examples"
 
 
+def standard_folders():
+    """Folders of MaterialX's own data libraries."""
+    paths = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
+    return [Path(path, name) for path in paths for name in mx.getDefaultDataLibraryFolders()]
+
+
 def _folders(library, profile):
     """Library folders in load order: the most particular first, MaterialX's own last."""
     if library not in LIBRARIES:

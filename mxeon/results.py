@@ -9,6 +9,7 @@ import numpy as np
 from mxeon.hosts import Identity
 
 PASSED, FAILED, NOT_RUN = "passed", "failed", "not run"
+VERDICTS = (PASSED, FAILED, NOT_RUN)
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,11 @@ class Result:
         None only where the check did not run.
     reason : str
         Why it did not run.
+
+    Raises
+    ------
+    ValueError
+        If the verdict is unknown, or a figure is negative or stands without its tolerance.
     """
 
     check: str
@@ -70,11 +76,23 @@ class Result:
     unit: str = ""
     tolerance: float | None = None
     derivation: str = ""
-    worst: dict = field(default_factory=dict)
+    worst: dict[str, list[float]] = field(default_factory=dict)
     diagnosis: str = ""
-    distances: dict = field(default_factory=dict)
+    distances: dict[str, float] = field(default_factory=dict)
     control: Control | None = None
     reason: str = ""
+
+    def __post_init__(self):
+        if self.verdict not in VERDICTS:
+            raise ValueError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
+        if self.figure is None:
+            return
+        if self.tolerance is None:
+            raise ValueError(f"figure must have its tolerance; got {self.figure} and none")
+        if min(self.figure, self.tolerance) < 0:
+            raise ValueError(
+                f"figure and tolerance must be at least 0; got {self.figure} and {self.tolerance}"
+            )
 
 
 @dataclass(frozen=True)
@@ -100,7 +118,7 @@ class Picture:
     scene: str
     image: np.ndarray
     reference: np.ndarray | None
-    metadata: dict
+    metadata: dict[str, str]
 
 
 @dataclass(frozen=True)
@@ -120,7 +138,7 @@ class Curve:
     subject: str
     host: str
     library: str
-    rho: tuple
+    rho: tuple[float, float, float]
     roughness: float
     mu: np.ndarray
     measured: np.ndarray
@@ -160,14 +178,21 @@ class Plan:
     software : dict of str to str
         Versions of what takes part (Python, NumPy, MaterialX, ...).
     items : tuple of Item
-    documents : dict of str to str
-        Path to the SHA-256 of the file, or "" where it cannot be read.
+    documents : tuple of str
+        Their paths.
+    options : dict of str to str
+        What the documents may do, by the option of the command.
+    files : dict of str to str
+        SHA-256 of each file that the findings depend on, by path; "" where it cannot be read.
+        Empty where the run is not kept.
     """
 
     version: str
     software: dict[str, str]
     items: tuple[Item, ...]
-    documents: dict[str, str]
+    documents: tuple[str, ...]
+    options: dict[str, str] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -180,6 +205,12 @@ class Findings:
     notes: tuple[tuple[str, str], ...] = ()
     errors: tuple[str, ...] = ()
     hosts: tuple[Identity, ...] = ()
+
+    def answer(self, item):
+        """Whether these are findings of an item: there are some, and all are of its place."""
+        records = (*self.results, *self.pictures, *self.curves)
+        place = (item.host, item.library)
+        return bool(records or self.errors) and all((r.host, r.library) == place for r in records)
 
 
 @dataclass(frozen=True)

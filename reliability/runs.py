@@ -9,7 +9,8 @@ from pathlib import Path
 import psutil
 
 from mxeon.conformance import read_run
-from mxeon.journal import NAME, read_journal
+from mxeon.journal import read_journal
+from mxeon.journal_lines import NAME
 from mxeon.library import examples_folder
 
 DOCUMENT = examples_folder() / "plaster.mtlx"

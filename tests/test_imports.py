@@ -16,7 +16,7 @@ import mxeon
 # Every module, or a pattern of them, after all that it may import.
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
-SHADERS = ("library", "permissions", "screening", "trust", "expansion", "document", "generation")
+SHADERS = ("reading", "library", "permissions", "screening", "trust", "expansion", "document", "generation")
 SHADERS += ("twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
@@ -24,7 +24,8 @@ REPORT = ("junit", "pictures", "plots", "page", "report", "comparison")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("arguments", "making", "cli", "__main__")
-RUNNING = ("pool", "cluster", "results", "verdict", "writing", "journal")
+RUNNING = ("pool", "cluster", "results", "records")
+RUNNING += ("verdict", "writing", "journal_lines", "journal")
 ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += REPORT + FIGURES + KIT + COMMAND
 
@@ -32,7 +33,7 @@ ORDER += REPORT + FIGURES + KIT + COMMAND
 REFERENCE = "hosts.reference"
 
 # What a run and its pictures consist of.
-FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
+FOR_REPORT = (*REPORT, "reading", "records", "results", "verdict", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
@@ -40,7 +41,7 @@ EXTERNAL = {
     + ("conformance.items",),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*", "conformance.items"),
     "bpy": ("hosts.cycles_worker",),
-    "cattrs": ("journal",),
+    "cattrs": ("journal_lines", "records"),
     "distributed": ("cluster",),
     "filelock": ("journal",),
     "jinja2": ("page",),

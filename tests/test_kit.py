@@ -2,6 +2,7 @@
 """The kit: what it holds, what it makes of pictures good and bad, and Cycles as the stranger."""
 
 import json
+import os
 import re
 import subprocess
 import warnings
@@ -384,6 +385,45 @@ def test_a_folder_that_is_no_kit_is_refused(tmp_path, capsys):
 def test_a_description_of_another_format_is_refused(tmp_path, text):
     (tmp_path / "kit.json").write_text(text)
     with pytest.raises(ValueError, match="must be"):
+        check_kit(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "key, value, words",
+    [
+        ("format", True, "format must be 1; got True"),
+        ("format", 1.0, "format must be 1; got 1.0"),
+        ("size", None, "size must be a whole number; got None"),
+        ("size", 64.0, "size must be a whole number; got 64.0"),
+        ("size", True, "size must be a whole number; got True"),
+        ("size", 10**400, r"size must lie in \[64, 2048\]"),
+        ("size", -1, r"size must lie in \[64, 2048\]"),
+        ("camera", {}, "camera must be as kit export writes it: export it again"),
+        ("sphere", None, "sphere must be as kit export writes it"),
+        ("materials", {"clay": 1}, "materials must be as kit export writes it"),
+        ("pictures", [3], "pictures must be as kit export writes it"),
+    ],
+)
+def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):
+    export_kit(tmp_path, 64)
+    content = json.loads((tmp_path / "kit.json").read_text())
+    (tmp_path / "kit.json").write_text(json.dumps(content | {key: value}))
+    assert main(["kit", "check", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert re.search(f"kit.json: {words}", error) and error.count("\n") == 1
+
+
+@pytest.mark.parametrize("suffix", [".exr", ".csv"])
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir], ids=["pipe", "folder"])
+def test_what_is_no_regular_file_is_no_picture(kit, suffix, make):
+    render(kit, "true_side").unlink()
+    make(render(kit, "true_side").with_suffix(suffix))
+    assert "; not a regular file" in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+def test_a_pipe_in_place_of_a_description_blocks_nobody(tmp_path):
+    os.mkfifo(tmp_path / "kit.json")
+    with pytest.raises(ValueError, match="kit.json: must be a kit's description; not a regular file"):
         check_kit(tmp_path)
 
 

@@ -12,7 +12,7 @@ from mxeon import cluster, pool
 from mxeon.conformance.items import JUDGED, Judge, not_run, plan
 from mxeon.conformance.ledger import repaired
 from mxeon.hosts import NotRun
-from mxeon.journal import Journal, read_journal
+from mxeon.journal import Journal, read_journal, refusal
 from mxeon.library import untested
 from mxeon.permissions import DEFAULT
 from mxeon.results import Findings, Run
@@ -69,20 +69,24 @@ def check(
     Raises
     ------
     ValueError
-        If a host or a library is unknown, `folder` holds another run than the one to resume,
-        `workers` or `limit` leave their ranges, or no scheduler answers or has workers that fit.
+        If a host or a library is unknown, `folder` holds another run than the one to resume or
+        one of other drivers, `workers` or `limit` leave their ranges, or no scheduler answers or
+        has workers that fit.
     """
-    planned = plan(files, hosts, libraries)
+    planned = plan(files, hosts, libraries, permissions, resumable=folder is not None)
     # Who cannot work must not touch what the folder holds.
     with (
         _crew(permissions, workers, limit, scheduler) as crew,
-        _keeper(folder, planned, resume) as kept,
+        _open_journal(folder, planned, resume) as journal,
     ):
-        places = [place for place in range(len(planned.items)) if place not in kept.findings]
+        places = [place for place in range(len(planned.items)) if place not in journal.findings]
         waiting = [planned.items[place] for place in places]
+        # A farm's machines may differ from each other.
+        known = {} if scheduler else _identities(journal.findings.values())
         for number, findings in progress(_done(waiting, crew), len(waiting)):
-            kept.add(places[number], findings)
-        return to_run(planned, kept.findings)
+            _assert_same_hosts(folder, known, _identities([findings]))
+            journal.add(places[number], findings)
+        return to_run(planned, journal.findings)
 
 
 def read_run(folder):
@@ -136,16 +140,32 @@ def to_run(planned, findings):
     )
 
 
-class _Memory:
-    """A journal that is gone with the process."""
+def _identities(findings):
+    """Version and device of each host that findings are of, by its name."""
+    return {host.name: f"{host.version}, {host.device}" for part in findings for host in part.hosts}
+
+
+def _assert_same_hosts(folder, known, found):
+    """Raise ValueError if a host of a run that is resumed has another version or device."""
+    differences = [
+        f"host {name} ({known[name]}, now {found[name]})"
+        for name in known.keys() & found.keys()
+        if known[name] != found[name]
+    ]
+    if differences:
+        raise ValueError(refusal(folder, differences))
+
+
+class InMemoryJournal:
+    """In-memory stand-in for Journal."""
 
     def __init__(self):
         self.findings = {}
         self.add = self.findings.__setitem__
 
 
-def _keeper(folder, planned, resume):
-    return nullcontext(_Memory()) if folder is None else Journal(folder, planned, resume)
+def _open_journal(folder, planned, resume):
+    return nullcontext(InMemoryJournal()) if folder is None else Journal(folder, planned, resume)
 
 
 @contextmanager
@@ -191,8 +211,8 @@ def _judge(permissions):
 
 def _untested(software):
     """A note on a version of MaterialX that mxeon has not been tested with."""
-    note = untested(software["MaterialX"])
-    return ((note, "every result"),) if note else ()
+    version = software.get("MaterialX")
+    return ((untested(version), "every result"),) if version and untested(version) else ()
 
 
 def _grouped(notes):

@@ -5,7 +5,6 @@ An item is a few words and its findings are plain data, so both travel to other 
 machines. Whoever works on items keeps a `Judge`, which holds what is costly to open.
 """
 
-import hashlib
 import platform
 from dataclasses import replace
 from functools import lru_cache
@@ -18,16 +17,18 @@ import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance.checks import CHECKS
+from mxeon.conformance.dependencies import digests
 from mxeon.conformance.documents import MATCH, SCENES, judge_document
 from mxeon.conformance.ledger import referred
 from mxeon.conformance.nodes import applies, judge_curve, judge_subject, judge_twins
-from mxeon.conformance.probes import PROBES, NativeProbe, SurfaceProbe
+from mxeon.conformance.probes import PROBES, NativeProbe, PairProbe, SurfaceProbe
 from mxeon.conformance.sources import check_sources
 from mxeon.conformance.subjects import NATIVE, SUBJECTS, SURFACES, Surface
 from mxeon.document import DocumentError
 from mxeon.hosts import TEXT_ONLY, NotRun, open_host
 from mxeon.images import ImageError
 from mxeon.library import LIBRARIES, InterfaceError, check_version, examples_folder
+from mxeon.permissions import DEFAULT, LIMITS
 from mxeon.results import NOT_RUN, Findings, Item, Plan, Result
 
 JUDGED = (*PROBES, *TEXT_ONLY)  # hosts on the command line
@@ -43,7 +44,7 @@ CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
 }
 
 
-def plan(files, hosts, libraries):
+def plan(files, hosts, libraries, permissions=DEFAULT, resumable=False):
     """The items of a run, those of one host and library beside each other.
 
     Parameters
@@ -51,6 +52,9 @@ def plan(files, hosts, libraries):
     files : sequence of path-like
         Documents; none for the bundled examples.
     hosts, libraries : sequence of str
+    permissions : Permissions
+    resumable : bool
+        Whether the plan has to say which files the run depends on.
 
     Returns
     -------
@@ -66,15 +70,19 @@ def plan(files, hosts, libraries):
     check_version()
     _known("host", hosts, JUDGED)
     _known("library", libraries, LIBRARIES)
-    items, documents = [], {}
+    items, documents = [], []
     for library in dict.fromkeys(libraries):
         named = [Path(file) for file in files] or _examples(library)
-        documents |= {str(file): _digest(file) for file in named}
+        documents += map(str, named)
         items.append(Item(SOURCE, EVERY_NODE, SOURCE, library))
         for host in dict.fromkeys(hosts):
             items += _on_host(host, library, named)
     items += [item for host in dict.fromkeys(hosts) for item in _native(host)]
-    return Plan(mxeon.__version__, _software(), tuple(items), documents)
+    documents = tuple(dict.fromkeys(documents))
+    files = digests(documents, permissions) if resumable else {}
+    return Plan(
+        mxeon.__version__, _software(), tuple(items), documents, _options(permissions), files
+    )
 
 
 def subjects(library):
@@ -194,7 +202,8 @@ def _on_host(host, library, files):
         for row in CHECKS:
             if applies(row, subject, kind, host):
                 yield Item(row.key, subject.title, host, library)
-        yield Item(CURVE, subject.title, host, library)
+        if PROBES[host] is PairProbe:
+            yield Item(CURVE, subject.title, host, library)
     if host == SURFACE_HOST:
         for subject in SURFACES:
             for row in CHECKS:
@@ -231,14 +240,12 @@ def _examples(library):
     return [file for file in files if not any(node in file.read_text() for node in lacking)]
 
 
-def _digest(file):
-    try:
-        if not file.is_file():  # a pipe or a device may have no end
-            return ""
-        with file.open("rb") as opened:
-            return hashlib.file_digest(opened, "sha256").hexdigest()
-    except OSError:
-        return ""
+def _options(permissions):
+    """Permissions by the options of the command that change them."""
+    return {
+        f"--{'max' if name in LIMITS else 'allow'}{name.capitalize()}": str(value)
+        for name, value in vars(permissions).items()
+    }
 
 
 def _known(rule, names, known):

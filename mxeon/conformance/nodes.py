@@ -6,7 +6,7 @@ import numpy as np
 from mxeon.conformance.checks import CHECKS
 from mxeon.conformance.diagnosis import Diagnosis, nearest_albedo, nearest_value
 from mxeon.conformance.measures import integrated
-from mxeon.conformance.probes import FRONT_LIT_ONLY, PROBES, PairProbe
+from mxeon.conformance.probes import FRONT_LIT_ONLY, PROBES
 from mxeon.conformance.subjects import FLAG
 from mxeon.hosts import NotRun, ShaderError
 from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
@@ -65,13 +65,14 @@ def judge_twins(host, library, checks=CHECKS):
 def judge_curve(probe):
     """The node's directional albedo over the cosine, integrated from its values.
 
+    Parameters
+    ----------
+    probe : PairProbe
+
     Returns
     -------
     tuple of Curve
-        Empty where the host cannot be asked for free pairs.
     """
-    if not isinstance(probe, PairProbe):
-        return ()
     measured, expected = integrated(probe, CURVE_COSINES, CURVE["color"], CURVE["roughness"])
     return (
         Curve(

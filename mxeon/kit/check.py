@@ -12,17 +12,20 @@ import mxeon
 from mxeon import reference
 from mxeon.hosts import Identity
 from mxeon.kit.expected import judged, pixel_means
-from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS
+from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
 from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.questions import QUESTIONS, answer
 from mxeon.kit.renders import Missing, Unusable, read_render
 from mxeon.kit.shots import MATERIALS, shots
+from mxeon.reading import regular
 from mxeon.results import FAILED, NOT_RUN, Picture, Result, Run
 from mxeon.scene import sphere
 
 RENDERER = "renderer"
 LIBRARY = "its own library"
 SOFTWARE = ("numpy", "scipy", "OpenImageIO")
+# Not the scenes: the last digits of a direction are those of the machine that exported it.
+EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 
 
@@ -77,20 +80,38 @@ def check_kit(folder, renderer=RENDERER, progress=list):
 
 
 def _size(folder):
-    """Width of the kit's pictures, from its description."""
+    """Width of the kit's pictures, from its description, which has to be that of this version."""
     file = folder / DESCRIPTION
-    if not file.is_file():
-        raise ValueError(f"folder must hold {DESCRIPTION}, which kit export writes; got {folder}")
-    try:
-        kit = json.loads(file.read_text(encoding="utf-8"))
-        found, size = kit["format"], kit["size"]
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise ValueError(f"{file}: must be a kit's description; got {error!r}") from None
-    if found != KIT_FORMAT:
-        raise ValueError(f"{file}: format must be {KIT_FORMAT}; got {found!r}: export it again")
+    kit = _description(file)
+    if type(kit.get("format")) is not int or kit["format"] != KIT_FORMAT:
+        got = repr(kit.get("format"))
+        raise ValueError(f"{file}: format must be {KIT_FORMAT}; got {got}: export it again")
+    size = kit.get("size")
     if type(size) is not int:
         raise ValueError(f"{file}: size must be a whole number; got {size!r}: export it again")
+    try:
+        exported = json.loads(json.dumps(description(shots(size), size)))
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}: export it again") from None
+    for key in EXACT:
+        if kit.get(key) != exported[key]:
+            raise ValueError(f"{file}: {key} must be as kit export writes it: export it again")
     return size
+
+
+def _description(file):
+    try:
+        with open(file, encoding="utf-8", opener=regular) as stream:
+            kit = json.load(stream)
+    except FileNotFoundError:
+        rule = f"folder must hold {DESCRIPTION}, which kit export writes"
+        raise ValueError(f"{rule}; got {file.parent}") from None
+    except (OSError, ValueError, RecursionError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ValueError(f"{file}: must be a kit's description; {reason}") from None
+    if not isinstance(kit, dict):
+        raise ValueError(f"{file}: must be a kit's description; got {type(kit).__name__}")
+    return kit
 
 
 def _read(folder, pictures, place):

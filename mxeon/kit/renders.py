@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 
+from mxeon.reading import assert_regular, regular
 from mxeon.scene import sphere
 
 COLUMNS = ["row", "column", "red", "green", "blue"]
@@ -68,6 +69,10 @@ def read_render(folder, shot):
 
 
 def _read_image(file, size):
+    try:
+        assert_regular(file)
+    except OSError as error:
+        raise Unusable(f"{file.name}: must be an EXR or CSV file; {error.strerror}") from None
     image = oiio.ImageInput.open(str(file))
     if image is None:
         raise Unusable(f"{file.name}: must be an EXR or CSV file; {oiio.geterror()}")
@@ -103,10 +108,11 @@ def _channels(file, names):
 
 def _read_csv(file, size):
     try:
-        with file.open(newline="", encoding="utf-8-sig") as stream:
+        with open(file, newline="", encoding="utf-8-sig", opener=regular) as stream:
             return _table(file, csv.reader(stream), size)
     except (OSError, UnicodeError, csv.Error) as error:
-        raise Unusable(f"{file.name}: must be CSV in UTF-8; {error}") from None
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise Unusable(f"{file.name}: must be CSV in UTF-8; {reason}") from None
 
 
 def _table(file, lines, size):
