@@ -46,7 +46,7 @@ def main(arguments=None):
     }
     print(json.dumps(figures, indent=1))
     if options.keep:
-        _keep(figures)
+        keep("fuzz", figures)
     return 1 if failed or fixed < len(FOUND) else 0
 
 
@@ -71,9 +71,10 @@ def _failed(keys, options):
             yield keys[place]
 
 
-def _keep(figures):
+def keep(group, figures):
+    """Put the figures of a group in place of its former ones."""
     kept = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
-    write_text(FIGURES, json.dumps(kept | {"fuzz": figures}, indent=1, sort_keys=True) + "\n")
+    write_text(FIGURES, json.dumps(kept | {group: figures}, indent=1, sort_keys=True) + "\n")
 
 
 if __name__ == "__main__":

@@ -30,13 +30,23 @@ def numbered(key):
 
 
 def guarded(tried):
-    """A trial in a process that may have so much memory and no more."""
+    """What `mxeon` did wrong with a case, in a process that may have so much memory and no more."""
+    return judged(tried)[1]
+
+
+def judged(tried):
+    """Exit status of a case and what was wrong, in a process of limited memory."""
     _limit_memory()
-    return trial(tried)
+    return _run(tried)
 
 
 def trial(tried):
     """What `mxeon` did wrong with a case, in one line, or ""."""
+    return _run(tried)[1]
+
+
+def _run(tried):
+    """Exit status of a case, and what `mxeon` did wrong in one line, or ""."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)
@@ -45,9 +55,8 @@ def trial(tried):
             status, out, err = _called(tried.arguments)
         judging = set(tried.arguments[:1]) & set(JUDGING)
         named = tuple(os.path.normpath(home / each) for each in _outputs(tried.arguments))
-        if status == 1 and judging:
-            status = 0
-        return "; ".join(_faults(root, named, before, status, out, err))
+        allowed = 0 if status == 1 and judging else status
+        return status, "; ".join(_faults(root, named, before, allowed, out, err))
 
 
 def _outputs(arguments):

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from fuzz.attack import FAMILIES, cases
 from fuzz.cases import OUT, Case, case
 from fuzz.found import FOUND
 from fuzz.trial import guarded, numbered, trial
@@ -30,6 +31,15 @@ def test_what_was_found_stays_fixed():
 
 def test_a_slice_of_the_fuzz_run_ends_without_fault():
     assert faults(numbered, [(2, number) for number in range(100)]) == {}
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_slice_of_each_family_of_the_attack_ends_without_fault(family):
+    assert faults(guarded, cases(family, 15)) == {}
+
+
+def test_a_family_gives_the_same_cases_again():
+    assert cases("attributes", 5) == cases("attributes", 5)
 
 
 def write(path, text):
