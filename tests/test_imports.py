@@ -14,6 +14,7 @@ import pytest
 import mxeon
 
 # Every module, or a pattern of them, after all that it may import.
+BASE = ("errors", "signals", "processes", "writing")
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
 SHADERS = ("library", "permissions", "screening", "trust", "expansion", "document", "generation")
@@ -24,8 +25,8 @@ REPORT = ("junit", "pictures", "plots", "page", "report", "comparison")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("arguments", "making", "cli", "__main__")
-RUNNING = ("pool", "cluster", "results", "verdict", "writing", "journal")
-ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
+RUNNING = ("pool", "cluster", "results", "verdict", "journal")
+ORDER = BASE + MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += ("versions",) + REPORT + FIGURES + KIT + COMMAND
 
 # The one host that is made of the models.
@@ -37,7 +38,7 @@ FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
 # Packages from outside, and who may import them.
 EXTERNAL = {
     "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*"),
-    "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
+    "OpenImageIO": ("images", "writing", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal",),
     "distributed": ("cluster",),
