@@ -11,6 +11,8 @@ from pathlib import Path
 
 import MaterialX as mx
 
+from mxeon.errors import Failure
+
 # Versions of MaterialX whose shaders hand a closure its data as eonlib's sources expect it.
 VERSIONS = ("1.39.3", "1.39.4", "1.39.5")
 
@@ -22,8 +24,10 @@ NODES = ("ND_oren_nayar_diffuse_bsdf", "ND_eon_diffuse_bsdf")
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
 
 
-class LibraryError(RuntimeError):
+class LibraryError(Failure):
     """The library that was loaded is not the one that was asked for."""
+
+    status = 1
 
 
 @dataclass(frozen=True)
