@@ -17,6 +17,7 @@ from filelock import FileLock
 from mxeon import conformance
 from mxeon.hosts import NotRun
 from mxeon.library import VERSIONS
+from mxeon.processes import HOME, PYTHON
 from mxeon.results import Run
 
 PLACE = "materialx-{}"  # in a report's folder, the run of a version
@@ -101,7 +102,7 @@ def install(version, folder):
     NotRun
         If pip cannot; says why.
     """
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target"]
+    command = [*PYTHON, "-m", "pip", "install", "--quiet", "--no-deps", "--target"]
     done = subprocess.run([*command, folder, f"materialx=={version}"], capture_output=True, text=True)
     if done.returncode != 0:
         reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
@@ -126,11 +127,11 @@ def check_in(environment, version, arguments, place):
     ValueError
         If it refuses; in its words.
     """
-    paths = [str(environment), str(Path(__file__).resolve().parents[1])]
+    paths = [str(environment), HOME]
     if os.environ.get("PYTHONPATH"):
         paths.append(os.environ["PYTHONPATH"])
     done = subprocess.run(
-        [sys.executable, "-m", "mxeon", "check", "--report", str(place), "--json", *arguments],
+        [*PYTHON, "-m", "mxeon", "check", "--report", str(place), "--json", *arguments],
         env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE if not sys.stderr.isatty() else None,

@@ -53,6 +53,15 @@ def test_a_version_that_cannot_be_installed_is_not_run_and_leaves_nothing(enviro
     assert [path.suffix for path in set(environments.iterdir()) - before] == [".lock"]
 
 
+def test_a_folder_that_holds_a_pip_installs_nothing_and_is_not_imported(tmp_path, monkeypatch):
+    (tmp_path / "pip.py").write_text("open('RAN', 'w')")
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(NotRun, match="pip cannot install it"):
+        versions.install(HERE, tmp_path / "new")
+    assert not (tmp_path / "RAN").exists()
+
+
 def test_a_run_with_another_version_is_the_run_of_that_version(environments, tmp_path):
     run = versions.check([HERE], [EXAMPLE], tmp_path / "report")
     assert {each.library for each in run.results} == {f"eonlib, MaterialX {HERE}"}
