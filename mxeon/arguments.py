@@ -51,6 +51,13 @@ def parser():
     check.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work"
     )
+    check.add_argument(
+        "--waitForWorkers",
+        type=float,
+        default=60.0,
+        metavar="SECONDS",
+        help="how long the cluster may be without a worker that fits; 60",
+    )
     _processes(check)
     _permissions(check, runs=True)
     _json(check)

@@ -150,6 +150,7 @@ def _check(options):
         folder=options.report,
         resume=options.resume,
         scheduler=options.scheduler,
+        wait=options.waitForWorkers,
         permissions=permitted(options),
         progress=_progress("mxeon check"),
     )
@@ -164,6 +165,7 @@ def _check_versions(options):
     arguments = ["--workers", str(options.workers), "--limit", str(options.limit)]
     for word in ("host", "library"):
         arguments += [each for name in getattr(options, word) or () for each in (f"--{word}", name)]
+    arguments += ["--waitForWorkers", str(options.waitForWorkers)]
     arguments += ["--scheduler", options.scheduler] if options.scheduler else []
     flags = ("resume", "allowOutside", "allowCode")
     arguments += [f"--{flag}" for flag in flags if getattr(options, flag)]

@@ -96,7 +96,7 @@ def run(work, items, workers, limit):
         yield place, Outcome(None, "the processes end before they begin to work", attempt)
 
 
-def check_limit(limit):
+def check_limit(limit, name="limit"):
     """Nothing, if an item may have that many seconds.
 
     Raises
@@ -105,7 +105,7 @@ def check_limit(limit):
         If `limit` is not positive or above LONGEST.
     """
     if not 0.0 < limit <= LONGEST:
-        raise ValueError(f"limit must be positive and at most {LONGEST:g} s; got {limit:g}")
+        raise ValueError(f"{name} must be positive and at most {LONGEST:g} s; got {limit:g}")
 
 
 def _check_working_folder():

@@ -159,7 +159,9 @@ class room_for:
 def test_a_killed_run_is_resumed_to_the_same_end(tmp_path):
     command = [sys.executable, "-m", "mxeon", "check", str(EXAMPLE), "--report", str(tmp_path)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    end = time.monotonic() + 300.0
     while not (tmp_path / NAME).exists() or (tmp_path / NAME).read_bytes().count(b"\n") < 4:
+        assert process.poll() is None and time.monotonic() < end
         time.sleep(0.01)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
