@@ -10,6 +10,9 @@ from mxeon.screening import one_line
 
 MISUSE = 2  # exit status
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
+DESCRIPTION = (
+    "Rough diffuse reflection made right in every MaterialX target, and proved by running it."
+)
 STATUS = "Exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run."
 HOSTS = (
     "gl (the default), webgl, vulkan, slang, cycles, cycles-native, testrender, msl, mdl, wgsl, all"
@@ -25,7 +28,7 @@ class _Parser(argparse.ArgumentParser):
 
 def parser():
     """The parser of the command `mxeon`; its result has the name of what to do in `command`."""
-    root = _Parser(prog="mxeon", description=mxeon.__doc__.splitlines()[0], epilog=STATUS)
+    root = _Parser(prog="mxeon", description=DESCRIPTION, epilog=STATUS)
     root.add_argument("--version", action="version", version=f"mxeon {mxeon.__version__}")
     commands = root.add_subparsers(required=True, metavar="COMMAND")
 
@@ -41,6 +44,13 @@ def parser():
     )
     check.add_argument(
         "--scheduler", metavar="ADDRESS", help="of a Dask cluster that does the work"
+    )
+    check.add_argument(
+        "--waitForWorkers",
+        type=float,
+        default=60.0,
+        metavar="SECONDS",
+        help="how long the cluster may be without a worker that fits; 60",
     )
     _processes(check)
     _permissions(check, runs=True)

@@ -7,14 +7,16 @@ Modules are imported by the sub-command that needs them, so that `mxeon --help` 
 import json
 import os
 import sys
+import traceback
 import warnings
 from collections import Counter
 from functools import partial
 from pathlib import Path
 
-import mxeon
 from mxeon.arguments import MISUSE, parser, permitted
+from mxeon.errors import WORDED
 from mxeon.screening import one_line, printable
+from mxeon.signals import Ended, raised
 
 PASSED, FAILED, NOT_RUN = 0, 1, 3  # and MISUSE
 
@@ -30,21 +32,63 @@ def main(arguments=None):
     Returns
     -------
     int
-        0 all passed, 1 a check failed, 2 misuse, 3 something did not run.
+        0 all passed, 1 a check failed, 2 misuse, 3 something did not run; above 128, the number
+        of the signal that ended it and 128.
     """
     _open_streams()
     try:
+        with raised():
+            return _flushed(_run(sys.argv[1:] if arguments is None else arguments))
+    except Ended as ended:
+        return _fail(ended.status, ended)
+
+
+def _run(arguments):
+    """The exit status of the command with these arguments; says why, if it cannot be 0."""
+    try:
+        _check_encoding(arguments)
         options = parser().parse_args(arguments)
         with warnings.catch_warnings():
             warnings.showwarning = _warn
             return COMMANDS[options.command](options)
-    except KeyboardInterrupt:
-        return _fail(130, "interrupted")
+    except SystemExit as ended:  # of the parser, which has printed why
+        return ended.code
     except BrokenPipeError:  # who read our output has had enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard(sys.stdout)
         return 141  # as of a program that SIGPIPE ended
-    except (ValueError, ImportError, OSError, RuntimeError) as error:
+    except WORDED as error:
         return _failed(error)
+    except MemoryError:
+        return _fail(NOT_RUN, "memory must suffice for the work; there is no more")
+    except Exception:  # a bug of ours
+        traceback.print_exc()
+        return NOT_RUN
+
+
+def _flushed(status):
+    """The exit status once all is printed that was to be."""
+    try:
+        if sys.stdout:
+            sys.stdout.flush()
+    except OSError as error:
+        _discard(sys.stdout)
+        error.filename = "standard output"
+        status = 141 if isinstance(error, BrokenPipeError) else status or _failed(error)
+    try:
+        if sys.stderr:
+            sys.stderr.flush()
+    except OSError:
+        _discard(sys.stderr)
+    return status
+
+
+def _check_encoding(arguments):
+    """Raise ValueError unless all arguments are text: other file names reach no library in C++."""
+    for argument in arguments:
+        try:
+            argument.encode()
+        except UnicodeEncodeError:
+            raise ValueError(f"arguments must be UTF-8, file names too; got {argument!r}") from None
 
 
 def _open_streams():
@@ -59,21 +103,31 @@ def _open_streams():
 def _failed(error):
     """The exit status that an error means, whose line is printed."""
     if isinstance(error, OSError):
-        what = f"{error.filename or 'file'}: must be accessible; {error.strerror or error}"
-        return _fail(MISUSE, what)
-    if isinstance(error, (ValueError, ImportError)):
-        return _fail(MISUSE, error)
-    wrong = type(error).__name__ in ("ShaderError", "LibraryError")
-    return _fail(FAILED if wrong else NOT_RUN, error)
+        reason = error.strerror or str(error) or type(error).__name__
+        return _fail(MISUSE, f"{error.filename or 'file'}: must be accessible; {reason}")
+    return _fail(getattr(error, "status", MISUSE), error)
 
 
 def _fail(status, error):
-    print(f"mxeon: {one_line(error)}", file=sys.stderr)
+    _say(one_line(error) or type(error).__name__)
     return status
 
 
 def _warn(message, *_, **__):
-    print(f"mxeon: warning: {one_line(message)}", file=sys.stderr)
+    _say(f"warning: {one_line(message)}")
+
+
+def _say(line):
+    """Print a line on standard error, unless that takes none."""
+    try:
+        print(f"mxeon: {line}", file=sys.stderr, flush=True)
+    except OSError:
+        _discard(sys.stderr)
+
+
+def _discard(stream):
+    """Let a stream that failed end at nothing, else it fails again when Python ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _check(options):
@@ -93,6 +147,7 @@ def _check(options):
         folder=options.report,
         resume=options.resume,
         scheduler=options.scheduler,
+        wait=options.waitForWorkers,
         permissions=permitted(options),
         progress=_progress("mxeon check"),
     )

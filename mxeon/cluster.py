@@ -7,38 +7,46 @@ know: which workers fit, that an item one machine cannot do may be done by anoth
 
 import faulthandler
 import sys
+import time
 import warnings
 from collections import deque
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 
 import mxeon
-from mxeon.pool import Outcome
+from mxeon.errors import Failure
+from mxeon.pool import Outcome, check_limit
 
 WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
-PATIENCE = 10.0  # seconds until a scheduler answers
+ANSWER = 10.0  # seconds until a scheduler answers
+WAIT = 60.0  # seconds for workers to come, or to come back when all restart at once
 POLL = 1.0  # seconds between looks at the workers that come and go
 
 
 @contextmanager
-def connected(address):
+def connected(address, wait=WAIT):
     """The workers of a cluster.
 
     Parameters
     ----------
     address : str
         Of the scheduler, "tcp://host:8786".
+    wait : float
+        Seconds that the cluster may be without a worker that fits, now and later.
 
     Raises
     ------
     ValueError
-        If no scheduler answers at the address, or none of its workers fits.
+        If no scheduler answers at the address, none of its workers fits, or `wait` is out of range.
+    Failure
+        If it has no workers and none comes in time.
     ImportError
         If Dask is not installed; says what to install.
     """
+    check_limit(wait, "waitForWorkers")
     client = _connect(address)
     try:
-        yield _Workers(client)
+        yield _Workers(client, wait)
     finally:
         client.close()
 
@@ -63,8 +71,8 @@ def run(work, items, workers, limit, elsewhere):
 
     Raises
     ------
-    ValueError
-        If no worker that fits is left.
+    Failure
+        If the cluster is without a worker that fits for too long, or its scheduler is gone.
     """
     from distributed import wait
 
@@ -78,7 +86,8 @@ def run(work, items, workers, limit, elsewhere):
             future = workers.submit(_timed, work, task.item, limit, elsewhere, among=chosen)
             running[future] = replace(task, chosen=chosen)
         if not running:
-            raise ValueError("cluster must keep a worker that fits; all are gone")
+            workers.await_fit()
+            continue
         with suppress(TimeoutError):
             wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
         for future, task in list(running.items()):
@@ -111,7 +120,7 @@ def _connect(address):
     except ModuleNotFoundError:
         raise ImportError("--scheduler needs distributed: pip install 'mxeon[dask]'") from None
     try:
-        return Client(address, timeout=PATIENCE)
+        return Client(address, timeout=ANSWER)
     except (OSError, ValueError) as error:
         reason = str(error).partition("\n")[0]
         raise ValueError(
@@ -140,21 +149,38 @@ def _outcome(future, error):
 class _Workers:
     """The workers of a cluster, of which those fit that have this version and one thread."""
 
-    def __init__(self, client):
+    def __init__(self, client, wait):
         self.client = client
+        self._wait = wait
         self._fits = {}
-        if not self.fit():
+        if not self.fit() and self._fits:  # who is there will not change
             raise ValueError(
                 f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
                 f"got {len(self._fits)} others"
             )
+        self.await_fit()
+
+    def await_fit(self):
+        """Wait for a worker that fits.
+
+        Raises
+        ------
+        Failure
+            If none comes in time.
+        """
+        end = time.monotonic() + self._wait
+        while not self.fit():
+            if time.monotonic() > end:
+                rule = f"cluster must have a worker that fits; none came within {self._wait:g} s"
+                raise Failure(f"{rule}: --waitForWorkers moves the limit")
+            time.sleep(min(POLL, self._wait))
 
     def fit(self):
         """Addresses of the workers that fit; a warning for each other one when it is first seen."""
-        threads = {
-            address: worker["nthreads"]
-            for address, worker in self.client.scheduler_info(n_workers=-1)["workers"].items()
-        }
+        known = self.client.scheduler_info(n_workers=-1)
+        if "workers" not in known:  # the client has closed
+            raise Failure("scheduler must run until the end; it answers no more")
+        threads = {address: each["nthreads"] for address, each in known["workers"].items()}
         unknown = sorted(threads.keys() - self._fits.keys())
         versions = self.client.run(_version, workers=unknown, on_error="return") if unknown else {}
         for address, version in versions.items():

@@ -18,6 +18,7 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 import mxeon
+from mxeon.errors import Failure
 
 TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
 REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
@@ -33,11 +34,13 @@ TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
 ENTRY_POINTS = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
-class LibraryError(RuntimeError):
+class LibraryError(Failure):
     """The library that was loaded is not the one that was asked for."""
 
+    status = 1
 
-class InterfaceError(RuntimeError):
+
+class InterfaceError(Failure):
     """MaterialX calls closures in another way than eonlib's sources define them."""
 
 

@@ -2,18 +2,19 @@
 """What the commands make of documents, in processes that a document may bring down."""
 
 import warnings
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import mxeon
 from mxeon import pool
+from mxeon.errors import WORDED, Failure
 from mxeon.screening import printable
 
-RAISED = (ValueError, ImportError, OSError, RuntimeError)  # errors that have words for the user
 
 
-class Ended(RuntimeError):
+class Ended(Failure):
     """The process that worked on a document ended, or did not end in time."""
 
 
@@ -78,7 +79,7 @@ def _made(work, document):
         warnings.simplefilter("always")
         try:
             value, error = work(document), None
-        except RAISED as raised:
+        except WORDED as raised:
             value, error = None, raised
     return Made(value, tuple(str(each.message) for each in caught), error)
 
@@ -135,15 +136,14 @@ def picture(file, host, scene, environment, size, element, library, permissions)
     shown = scenes.scene(scene)
     if environment:
         shown = scenes.Scene("environment", environment=Path(environment))
-    engine = open_host(host)
-    options = {"library": library, "profile": engine.profile, "lights": True}
-    found = generate(file, engine.target, element, permissions=permissions, **options)
-    if len(found) > 1:
-        known = ", ".join(shader.element for shader in found)
-        raise ValueError(f"--element must name one of {known}; got none")
-    image = engine.picture(found[0], replace(shown, size=size))
-    identity = engine.identity()
-    engine.close()
+    with closing(open_host(host)) as engine:
+        options = {"library": library, "profile": engine.profile, "lights": True}
+        found = generate(file, engine.target, element, permissions=permissions, **options)
+        if len(found) > 1:
+            known = ", ".join(shader.element for shader in found)
+            raise ValueError(f"--element must name one of {known}; got none")
+        image = engine.picture(found[0], replace(shown, size=size))
+        identity = engine.identity()
     return image, {
         "version": mxeon.__version__,
         "host": f"{identity.name} {identity.version}",

@@ -4,9 +4,8 @@
 from pathlib import Path
 
 import numpy as np
-import OpenImageIO as oiio
 
-from mxeon.writing import replacing
+from mxeon.writing import write_image
 
 # What a pixel that is not a finite number looks like, in code values.
 NOT_FINITE = (255, 0, 255)
@@ -128,24 +127,14 @@ def write_exr(path, image, metadata):
         If the file cannot be written; says why.
     """
     pixels = np.ascontiguousarray(image, dtype=np.float32)
-    _write(path, pixels, oiio.FLOAT, "lin_rec709_scene", metadata)
+    write_image(path, pixels, _attributes("lin_rec709_scene", metadata))
 
 
 def write_png(path, image, metadata):
     """Writes a linear picture as an eight-bit sRGB PNG; parameters as in `write_exr`."""
-    _write(path, srgb_encoded(image), oiio.UINT8, "srgb_rec709_scene", metadata)
+    write_image(path, srgb_encoded(image), _attributes("srgb_rec709_scene", metadata))
 
 
-def _write(path, pixels, channel_type, space, metadata):
-    height, width, channels = pixels.shape
-    spec = oiio.ImageSpec(width, height, channels, channel_type)
-    spec.attribute("oiio:ColorSpace", space)
-    spec.attribute("Software", "mxeon")
-    for key, value in metadata.items():
-        spec.attribute(f"mxeon:{key}", str(value))
-    with replacing(path) as beside:
-        output = oiio.ImageOutput.create(str(beside))
-        if output is None:
-            raise OSError(f"{path} cannot be written: {oiio.geterror()}")
-        if not (output.open(str(beside), spec) and output.write_image(pixels) and output.close()):
-            raise OSError(f"{path} cannot be written: {output.geterror()}")
+def _attributes(space, metadata):
+    named = {f"mxeon:{key}": str(value) for key, value in metadata.items()}
+    return {"oiio:ColorSpace": space, "Software": "mxeon"} | named

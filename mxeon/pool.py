@@ -12,19 +12,21 @@ import tempfile
 import threading
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, wait
-from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from pathlib import Path
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
+from mxeon.errors import Failure
+from mxeon.processes import Context, safe_path
+from mxeon.signals import blocked
+
 ATTEMPTS = 2
 BREAKS = 3  # pools that break one after the other before any item ends
 START = 60.0  # seconds that a process may take before it begins to work
 LONGEST = 1e6  # seconds of a limit; what waits cannot count much further
-# Seconds until the lock of a process that was killed while it took or gave is taken from it.
-CONSTS.channel_lock_timeout = 10.0
+LOCK = 10.0  # seconds until workers take the lock of one that was killed with it from it
 LAST_LINES = 4  # of a worker's output, in the reason
 
 
@@ -69,15 +71,18 @@ def run(work, items, workers, limit):
     ------
     ValueError
         If `workers` is below 1 or `limit` is out of range.
+    Failure
+        If no process can start; says why.
 
     Notes
     -----
-    No more than two items a worker are under way, so results do not pile up in memory. Whatever a
+    No process imports anything from the working folder. No more than two items a worker are under way, so results do not pile up in memory. Whatever a
     worker prints goes to a file; its last lines are quoted when it fails.
     """
     if workers < 1:
         raise ValueError(f"workers must be at least 1; got {workers}")
     check_limit(limit)
+    _check_working_folder()
     workers = min(workers, len(items))
     waiting = deque((place, item, 1) for place, item in enumerate(items))
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
@@ -91,7 +96,7 @@ def run(work, items, workers, limit):
         yield place, Outcome(None, "the processes end before they begin to work", attempt)
 
 
-def check_limit(limit):
+def check_limit(limit, name="limit"):
     """Nothing, if an item may have that many seconds.
 
     Raises
@@ -100,7 +105,16 @@ def check_limit(limit):
         If `limit` is not positive or above LONGEST.
     """
     if not 0.0 < limit <= LONGEST:
-        raise ValueError(f"limit must be positive and at most {LONGEST:g} s; got {limit:g}")
+        raise ValueError(f"{name} must be positive and at most {LONGEST:g} s; got {limit:g}")
+
+
+def _check_working_folder():
+    """Raise Failure unless the folder exists in which processes start."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        rule = "working folder must exist, as worker processes start in it"
+        raise Failure(f"{rule}; it was deleted") from None
 
 
 def in_order(outcomes):
@@ -115,13 +129,10 @@ def in_order(outcomes):
 
 def _serve(work, waiting, workers, limit, logs):
     """Outcomes until nothing waits or the pool breaks, which leaves its items waiting."""
-    context = multiprocessing.get_context("spawn")
-    resource_tracker.ensure_running()  # else the first process does, which lets Ctrl-C in again
-    pool = ProcessPool(workers, initializer=_end_with_parent, context=context)
+    pool = ProcessPool(workers, initializer=_prepare, context=Context())
     running = {}
     try:
-        with _uninterrupted():
-            begun = pool.active  # asked for the first time, it starts threads and processes
+        begun = _started(pool)
         while begun and (waiting or running) and pool.active:
             while waiting and len(running) < 2 * workers:
                 place, item, attempt = waiting.popleft()
@@ -141,19 +152,22 @@ def _serve(work, waiting, workers, limit, logs):
                 return
     finally:
         waiting.extend((place, item, attempt) for place, item, attempt, _ in running.values())
-        with _uninterrupted():
+        with blocked():
             pool.stop()
             pool.join()
 
 
-@contextmanager
-def _uninterrupted():
-    """Put Ctrl-C off; what is started meanwhile never hears of it, as this process decides."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+def _started(pool):
+    """Start the threads and processes of a pool; whether it is at work then."""
     try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        with blocked(), safe_path():
+            resource_tracker.ensure_running()  # else the first process does, and unblocks signals
+        with blocked():
+            return pool.active
+    except (OSError, RuntimeError) as error:
+        cause = error.__cause__ or error  # pebble's own error has no words
+        reason = getattr(cause, "strerror", None) or cause
+        raise Failure(f"worker processes must start; {reason}") from error
 
 
 def _outcome(future, attempt, limit, log):
@@ -180,8 +194,9 @@ def _signal(number):
         return f"signal {number}"
 
 
-def _end_with_parent():
-    """Let this process die with its parent, however that ends."""
+def _prepare():
+    """Make this process a worker that ends with its parent, however that ends."""
+    CONSTS.channel_lock_timeout = LOCK
 
     def wait_for_end():
         multiprocessing.parent_process().join()

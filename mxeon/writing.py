@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that appear whole or not at all."""
+"""Files that appear whole or not at all, and are on disk when they do."""
 
+import errno
 import os
 from contextlib import contextmanager
 from pathlib import Path
+
+PNG_END = b"IEND\xaeB`\x82"  # its last chunk
+PART = "not all of it is in the file; the disk may be full"
 
 
 @contextmanager
@@ -30,6 +34,8 @@ def replacing(path):
     beside = path.with_name(f".{os.getpid()}.{path.name}")
     try:
         yield beside
+        with beside.open("rb") as file:
+            os.fsync(file.fileno())  # some file systems tell only now that there is no room
         os.replace(beside, path)
     except OSError as error:
         if error.errno:  # what the system says names the file beside it, or of a full disk, none
@@ -46,3 +52,49 @@ def write_text(path, text):
     """
     with replacing(path) as beside:
         beside.write_text(text, encoding="utf-8", errors="replace")
+
+
+def write_image(path, pixels, attributes):
+    """Write pixels to an image file in the format that the ending of `path` names.
+
+    Parameters
+    ----------
+    path : path-like
+        Replaced whole; see `replacing`.
+    pixels : ndarray of float32 or uint8, shape (height, width, channels)
+        Contiguous, of a type that the format keeps as it is.
+    attributes : mapping of str to str
+        Kept in the file, by OpenImageIO's names.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; says why.
+
+    Notes
+    -----
+    The file is read again: OpenImageIO's PNG writer, and any whose last bytes wait in a buffer of
+    the C library, report no full disk.
+    """
+    import OpenImageIO as oiio
+
+    image = oiio.ImageBuf(pixels)
+    for name, value in attributes.items():
+        image.specmod().attribute(name, value)
+    with replacing(path) as beside:
+        if not image.write(str(beside)):
+            raise OSError(errno.EIO, image.geterror().replace(str(beside), str(path)))
+        if not _holds(beside, pixels):
+            raise OSError(errno.EIO, PART)
+
+
+def _holds(path, pixels):
+    """Whether an image file holds these pixels."""
+    import OpenImageIO as oiio
+
+    if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
+        return False  # libpng would print that
+    file = oiio.ImageInput.open(str(path))
+    stored = file.read_image(oiio.UNKNOWN) if file else None
+    oiio.geterror()  # else it is printed when Python ends
+    return stored is not None and stored.tobytes() == pixels.tobytes()

@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from distributed import LocalCluster
 
 from mxeon.conformance import check
+from mxeon.processes import safe_path
 from reliability.memory import document
 
 WORKERS = (1, 2, 4)
@@ -40,7 +41,7 @@ def measure(workers=WORKERS, documents=DOCUMENTS, progress=iter):
 
 def _seconds(files, workers):
     options = {"threads_per_worker": 1, "dashboard_address": ":0"}
-    with LocalCluster(n_workers=workers, **options) as cluster:
+    with safe_path(), LocalCluster(n_workers=workers, **options) as cluster:
         check(files[:1], scheduler=cluster.scheduler_address)  # opens the hosts
         began = time.monotonic()
         run = check(files, scheduler=cluster.scheduler_address)

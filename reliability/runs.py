@@ -2,7 +2,6 @@
 """A run of `mxeon check` as a user starts it, in a folder of its own."""
 
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from mxeon.conformance import read_run
 from mxeon.journal import read_journal
 from mxeon.journal_lines import NAME
 from mxeon.library import examples_folder
+from mxeon.processes import PYTHON
 
 DOCUMENT = examples_folder() / "plaster.mtlx"
 
@@ -21,7 +21,7 @@ def start(folder, *options, files=(DOCUMENT,), capture=True):
 
     It leads a process group of its own, like a command in a terminal.
     """
-    command = [sys.executable, "-m", "mxeon", "check", *map(str, files)]
+    command = [*PYTHON, "-m", "mxeon", "check", *map(str, files)]
     command += ["--report", str(folder), "--resume", "--workers", "2", *options]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} if capture else {}
     return psutil.Popen(command, text=True, process_group=0, **streams)

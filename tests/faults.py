@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work that goes wrong on purpose, in processes that the tests of the pool start."""
+"""Work that goes wrong on purpose, in processes that the tests of the pool start; full disks."""
 
 import os
+import resource
 import signal
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 from mxeon.hosts import NotRun
@@ -55,3 +57,14 @@ def need(item):
     if item not in os.environ:
         raise NotRun(f"{item}: missing")
     return os.environ[item]
+
+
+@contextmanager
+def room_for(size):
+    """Let no file grow beyond so many bytes: what a full disk does, without one."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)

@@ -14,6 +14,7 @@ from faults import need, once, process, square
 import mxeon
 from mxeon import cluster
 from mxeon.conformance import check
+from mxeon.errors import Failure
 from mxeon.hosts import NotRun
 from mxeon.library import examples_folder
 from mxeon.pool import Outcome
@@ -44,12 +45,12 @@ def farm(*workers):
             paths = os.pathsep.join(filter(None, sys.path))
             process = subprocess.Popen(
                 [*command, "--no-dashboard", *arguments],
-                env=os.environ | {"PYTHONPATH": paths} | more,
+                env=os.environ | {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1"} | more,
                 stderr=subprocess.DEVNULL,
             )
             stack.callback(process.wait)
             stack.callback(process.terminate)
-        started.wait_for_workers(len(workers), timeout=60)
+        started.wait_for_workers(len(workers), timeout=300)
         yield started.scheduler_address
 
 
@@ -108,8 +109,49 @@ def test_a_cluster_without_a_fitting_worker_is_one_line():
             run(square, [1], address)
 
 
+class Client:
+    """A client of a scheduler that answers with these workers, one after the other."""
+
+    def __init__(self, *answers):
+        self._answers = list(answers)
+
+    def scheduler_info(self, n_workers):
+        return self._answers.pop(0) if len(self._answers) > 1 else self._answers[0]
+
+    def run(self, function, workers, on_error):
+        return dict.fromkeys(workers, mxeon.__version__)
+
+
+NOBODY, SOMEBODY = {"workers": {}}, {"workers": {"tcp://a": {"nthreads": 1}}}
+
+
+def test_workers_that_all_restart_are_waited_for(monkeypatch):
+    monkeypatch.setattr(cluster, "POLL", 0.0)
+    workers = cluster._Workers(Client(NOBODY, NOBODY, SOMEBODY, NOBODY, NOBODY, SOMEBODY), 60.0)
+    workers.await_fit()
+    assert workers.fit() == {"tcp://a"}
+
+
+@pytest.mark.parametrize("answers", [(NOBODY,), (SOMEBODY, NOBODY)], ids=["at first", "later"])
+def test_workers_that_do_not_come_are_one_line(answers):
+    rule = "cluster must have a worker that fits; none came within 0.01 s: --waitForWorkers moves"
+    with pytest.raises(Failure, match=rule):
+        list(cluster.run(square, [1], cluster._Workers(Client(*answers), 0.01), 1.0, NotRun))
+
+
+def test_a_scheduler_that_ends_is_one_line():
+    workers = cluster._Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
+    with pytest.raises(Failure, match="scheduler must run until the end; it answers no more"):
+        list(cluster.run(square, [1], workers, 1.0, NotRun))
+
+
+def test_an_impossible_wait_is_one_line():
+    with pytest.raises(ValueError, match="waitForWorkers must be positive and at most"):
+        check([EXAMPLE], scheduler="tcp://127.0.0.1:9", wait=0.0)
+
+
 def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch):
-    monkeypatch.setattr(cluster, "PATIENCE", 1.0)
+    monkeypatch.setattr(cluster, "ANSWER", 1.0)
     with pytest.raises(ValueError, match="scheduler must be the address of a running") as error:
         run(square, [1], "tcp://127.0.0.1:9")
     assert "\n" not in str(error.value)

@@ -106,10 +106,20 @@ def test_a_missing_blender_is_not_run_and_names_the_remedy(monkeypatch):
 
 def test_a_missing_folder_is_not_run(monkeypatch, tmp_path):
     monkeypatch.delenv("MXEON_CYCLES_PYTHON", raising=False)
-    monkeypatch.setattr(cycles_process, "__file__", str(tmp_path / "a" / "b" / "c.py"))
-    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(cycles_process, "HOME", str(tmp_path))
     with pytest.raises(NotRun, match="no folder .venv-cycles"):
         cycles.Host()
+
+
+def test_an_interpreter_in_the_working_folder_is_not_started(monkeypatch, tmp_path):
+    monkeypatch.delenv("MXEON_CYCLES_PYTHON", raising=False)
+    monkeypatch.setattr(cycles_process, "HOME", str(tmp_path / "elsewhere"))
+    python = tmp_path / ".venv-cycles" / "bin" / "python"
+    python.parent.mkdir(parents=True)
+    python.symlink_to(sys.executable)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(NotRun, match="no folder .venv-cycles"):
+        cycles_process.interpreter()
 
 
 def test_an_interpreter_without_blender_is_not_run(monkeypatch):

@@ -14,6 +14,7 @@ import pytest
 import mxeon
 
 # Every module, or a pattern of them, after all that it may import.
+BASE = ("errors", "signals", "processes", "writing")
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
 SHADERS = ("reading", "library", "permissions", "screening", "trust", "expansion", "document", "generation")
@@ -24,9 +25,8 @@ REPORT = ("junit", "pictures", "plots", "page", "report", "comparison")
 FIGURES = ("figures.*", "figures")
 KIT = ("kit.*", "kit")
 COMMAND = ("arguments", "making", "cli", "__main__")
-RUNNING = ("pool", "cluster", "results", "records")
-RUNNING += ("verdict", "writing", "journal_lines", "journal")
-ORDER = MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
+RUNNING = ("pool", "cluster", "results", "records", "verdict", "journal_lines", "journal")
+ORDER = BASE + MODELS + ("compiled",) + SHADERS + RUNNING + CONFORMANCE
 ORDER += REPORT + FIGURES + KIT + COMMAND
 
 # The one host that is made of the models.
@@ -39,7 +39,7 @@ FOR_REPORT = (*REPORT, "reading", "records", "results", "verdict", "writing", "s
 EXTERNAL = {
     "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*")
     + ("conformance.items",),
-    "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*", "conformance.items"),
+    "OpenImageIO": ("images", "writing", "kit.*", "conformance.items"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal_lines", "records"),
     "distributed": ("cluster",),

@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from faults import room_for
 
 from mxeon.hosts import Identity
 from mxeon.pictures import difference_scale, srgb_encoded
@@ -348,12 +349,24 @@ def test_a_folder_that_cannot_be_written_is_an_error(run, tmp_path):
         write(run, tmp_path / "file" / "report")
 
 
+@pytest.mark.parametrize("name", ["results.json", "pictures", "report.html"])
+def test_on_a_full_disk_each_file_is_whole_or_missing_and_said_so(run, tmp_path, name):
+    write(run, tmp_path / "whole")
+    sizes = {file.name: file.stat().st_size for file in (tmp_path / "whole").rglob("*.*")}
+    room = max(file.stat().st_size for file in (tmp_path / "whole").rglob("*.*") if name in str(file))
+    with room_for(room - 1), pytest.raises(OSError) as error:
+        write(run, tmp_path / "part")
+    assert not Path(error.value.filename).exists()
+    for file in (tmp_path / "part").rglob("*.*"):
+        assert file.stat().st_size == sizes[file.name]
+
+
 def test_a_picture_that_cannot_be_written_leaves_the_old_one(run, tmp_path):
     path = tmp_path / "pictures" / "clay-clay-gl-eonlib-side.exr"
     path.parent.mkdir()
     path.write_text("old")
     wrong = replace(run.pictures[0], image=np.zeros((0, 0, 3)), reference=None)
-    with pytest.raises(OSError, match=r"clay-clay.*\.exr cannot be written"):
+    with pytest.raises(OSError, match=r"clay-clay.*\.exr"):
         write(replace(run, pictures=(wrong,)), tmp_path)
     assert [entry.read_text() for entry in path.parent.iterdir()] == ["old"]
 

@@ -32,6 +32,7 @@ def check(
     folder=None,
     resume=False,
     scheduler=None,
+    wait=cluster.WAIT,
     permissions=DEFAULT,
     progress=lambda items, total: items,
 ):
@@ -56,6 +57,8 @@ def check(
         Go on with the run that `folder` holds.
     scheduler : str or None
         Address of a Dask scheduler whose workers do the work instead.
+    wait : float
+        Seconds that its cluster may be without a worker that fits.
     permissions : Permissions
         What the documents may do, and how large they may be.
     progress : callable (iterable, int) -> iterable
@@ -70,13 +73,15 @@ def check(
     ------
     ValueError
         If a host or a library is unknown, `folder` holds another run than the one to resume or
-        one of other drivers, `workers` or `limit` leave their ranges, or no scheduler answers or
-        has workers that fit.
+        one of other drivers, `workers`, `limit` or `wait` leave their ranges, or no scheduler
+        answers or has workers that fit.
+    Failure
+        If no process can start, or the cluster has no workers for too long.
     """
     planned = plan(files, hosts, libraries, permissions, resumable=folder is not None)
     # Who cannot work must not touch what the folder holds.
     with (
-        _crew(permissions, workers, limit, scheduler) as crew,
+        _crew(permissions, workers, limit, scheduler, wait) as crew,
         _open_journal(folder, planned, resume) as journal,
     ):
         places = [place for place in range(len(planned.items)) if place not in journal.findings]
@@ -169,13 +174,13 @@ def _open_journal(folder, planned, resume):
 
 
 @contextmanager
-def _crew(permissions, workers, limit, scheduler):
+def _crew(permissions, workers, limit, scheduler, wait):
     """Who works: a function from items to their outcomes."""
     if workers < 0:
         raise ValueError(f"workers must be at least 0; got {workers}")
     pool.check_limit(limit)
     if scheduler:
-        with cluster.connected(scheduler) as found:
+        with cluster.connected(scheduler, wait) as found:
             at_work = partial(work, permissions)
             yield partial(cluster.run, at_work, workers=found, limit=limit, elsewhere=NotRun)
     elif workers:

@@ -14,16 +14,19 @@ from importlib import import_module
 
 import MaterialX as mx
 
+from mxeon.errors import Failure
 from mxeon.generation import TARGETS
 from mxeon.library import TESTED
 
 
-class NotRun(RuntimeError):
+class NotRun(Failure):
     """Something could not be executed here; the message says what and why, in one line."""
 
 
-class ShaderError(RuntimeError):
+class ShaderError(Failure):
     """A shader that the host's compiler refuses; the message holds the compiler's own words."""
+
+    status = 1
 
 
 @dataclass(frozen=True)

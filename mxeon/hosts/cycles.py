@@ -12,12 +12,13 @@ from tempfile import TemporaryDirectory
 
 import MaterialX as mx
 import numpy as np
-import OpenImageIO as oiio
 
 from mxeon.hosts import Identity, NotRun, ShaderError
 from mxeon.hosts.cycles_process import Worker, interpreter
+from mxeon.images import ImageError, read_image
 from mxeon.library import data_folder
 from mxeon.scene import sphere
+from mxeon.writing import write_image
 
 # Samples per pixel under an environment, 1 being enough under a distant light.
 ENVIRONMENT_SAMPLES = 256
@@ -240,7 +241,10 @@ class Host:
         for line in self.worker.printed():
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")
-        return _read(output)
+        try:
+            return read_image(output)
+        except ImageError as error:
+            raise NotRun(f"cycles: Blender wrote no picture; {error}") from None
 
 
 def _frame(scene):
@@ -272,15 +276,4 @@ def _write(path, rows, size):
     channels = rows.shape[1]
     pixels = np.zeros((size * size, channels), np.float32)
     pixels[: len(rows)] = rows
-    image = oiio.ImageOutput.create(str(path))
-    image.open(str(path), oiio.ImageSpec(size, size, channels, oiio.FLOAT))
-    image.write_image(pixels.reshape(size, size, channels))
-    image.close()
-
-
-def _read(path):
-    """The pixels of a float32 image."""
-    image = oiio.ImageInput.open(str(path))
-    pixels = image.read_image(oiio.FLOAT)
-    image.close()
-    return pixels
+    write_image(path, pixels.reshape(size, size, channels), {})

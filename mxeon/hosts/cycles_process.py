@@ -14,10 +14,13 @@ from subprocess import PIPE, Popen
 from threading import Timer
 
 from mxeon.hosts import NotRun
+from mxeon.processes import HOME
 
 
 def interpreter():
-    """The Python that has `bpy`: MXEON_CYCLES_PYTHON, else the one in `.venv-cycles`.
+    """The Python that has `bpy`: MXEON_CYCLES_PYTHON, else that of `.venv-cycles` in the checkout.
+
+    A `.venv-cycles` in the working folder does not count: it may be anyone's.
 
     Raises
     ------
@@ -25,11 +28,9 @@ def interpreter():
         If there is none; says how to get one.
     """
     named = os.environ.get("MXEON_CYCLES_PYTHON")
-    folders = (Path.cwd(), Path(__file__).resolve().parents[2])
-    usual = (folder / ".venv-cycles" / "bin" / "python" for folder in folders)
-    for python in [Path(named)] if named else usual:
-        if python.is_file() and os.access(python, os.X_OK):
-            return python
+    python = Path(named or Path(HOME, ".venv-cycles", "bin", "python"))
+    if python.is_file() and os.access(python, os.X_OK):
+        return python
     missing = f"no interpreter {named}" if named else "no folder .venv-cycles"
     raise NotRun(
         f"cycles: {missing}; pip install bpy==5.0.1 in an environment of Python 3.11 "
