@@ -18,6 +18,7 @@ from mxeon.expansion import check_expansion
 from mxeon.library import load_library
 from mxeon.permissions import DEFAULT
 from mxeon.trust import foreign_code
+from mxeon.values import plain
 
 # Target -> module of MaterialX and class in it. MaterialX has slang since 1.39.5, wgsl since 1.39.4.
 CLASSES = {
@@ -89,8 +90,9 @@ class Input:
         The variable in the source.
     type : str
         MaterialX type word.
-    value : float, int, bool, str, tuple of float or None
-        The default.
+    value : float, int, bool, str, tuple or None
+        The default, as `mxeon.values.plain` has it: a matrix is the flat tuple of its numbers, row
+        after row, which GLSL takes as the columns of its own; a structure the tuple of its members.
     path : str
         The element of the document that it comes from.
     """
@@ -303,25 +305,19 @@ def _generate(document, element, name, target, generator, context):
             f'{label(document)}: element "{path}" must give {target}; {reason}'
         ) from None
     stages = {stage: shader.getSourceCode(stage) for stage in STAGES if shader.hasStage(stage)}
-    return Shader(name, path, target, MappingProxyType(stages), _inputs(shader), document)
+    return Shader(name, path, target, MappingProxyType(stages), _inputs(shader, document), document)
 
 
-def _inputs(shader):
+def _inputs(shader, document):
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
     return tuple(
-        Input(port.getVariable(), kind.getName(), _plain(port.getValue()), path)
+        Input(port.getVariable(), kind.getName(), plain(port.getValue(), document), path)
         for name, block in blocks.items()
         if name != "PrivateUniforms"
         for port in block
         if (path := port.getPath()) and not (kind := port.getType()).isClosure()
     )
-
-
-def _plain(value):
-    """A MaterialX value as a number, a string or a tuple of numbers."""
-    data = value.getData() if value else None
-    return data if isinstance(data, (type(None), bool, int, float, str)) else tuple(data)
 
 
 def _warn_of_code(document):
