@@ -12,6 +12,7 @@ from pathlib import Path
 
 import MaterialX as mx
 
+from mxeon.encoding import decode, strict
 from mxeon.expansion import check_inheritance
 from mxeon.library import load_library
 from mxeon.permissions import DEFAULT
@@ -58,7 +59,7 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
         document.copyContentFrom(source)
         document.setSourceUri(source.getSourceUri())
     elif str(source).lstrip().startswith("<"):
-        _Reader(permissions, Path.cwd()).parse(document, str(source).encode(errors="replace"), TEXT)
+        _Reader(permissions, Path.cwd()).text(document, str(source))
     elif os.path.isfile(source):  # a pipe or a device may have no end
         _Reader(permissions, Path(source).resolve().parent).file(document, str(source))
     else:
@@ -86,14 +87,21 @@ class _Reader:
 
     def file(self, document, name):
         """Read a file into a document."""
-        text = self._screening.read(name)
+        data = self._screening.read(name)
+        self._screening.measure(data, name)
         self._open.append(os.path.realpath(name))
-        self.parse(document, text, name)
+        self._parse(document, decode(data, name), name)
         self._open.pop()
         document.setSourceUri(name)
 
-    def parse(self, document, text, place):
-        """Read bytes into a document."""
+    def text(self, document, text):
+        """Read XML text into a document."""
+        data = text.encode(errors="replace")  # halves of characters
+        self._screening.measure(data, TEXT)
+        self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
+
+    def _parse(self, document, text, place):
+        text = strict(text)
         self._screening.judge(text, place)
 
         def include(part, name, *_):

@@ -28,7 +28,7 @@ A = '<a name="lobe" type="BSDF"/>'
 FILES = {
     "empty": ("", "must be a MaterialX document; XML parse error"),
     "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
-    "binary": ("".join(map(chr, range(256))), "must be a MaterialX document; XML parse error"),
+    "binary": ("".join(map(chr, range(256))), "must be a MaterialX document in UTF-8; invalid"),
     "cut short": (material(lobe())[:150], "must be a MaterialX document; XML parse error"),
     "html": ("<html><body/></html>", "must be a MaterialX document; No root MaterialX element"),
     "too deep": (material("<a>" * 1000 + "</a>" * 1000), "must have at most 64 elements within each other; got 65"),

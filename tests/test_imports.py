@@ -16,7 +16,8 @@ import mxeon
 # Every module, or a pattern of them, after all that it may import.
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
-SHADERS = ("library", "permissions", "screening", "trust", "expansion", "document", "generation")
+SHADERS = ("library", "permissions", "screening", "encoding", "trust", "values", "expansion")
+SHADERS += ("document", "generation")
 SHADERS += ("twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
@@ -36,7 +37,8 @@ FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
-    "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*"),
+    "MaterialX": ("library", "trust", "values", "expansion", "document", "generation")
+    + ("hosts", "hosts.*"),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal",),
