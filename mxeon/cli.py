@@ -111,6 +111,7 @@ def _check_versions(options):
     for word in ("host", "library"):
         arguments += [each for name in getattr(options, word) or () for each in (f"--{word}", name)]
     arguments += ["--scheduler", options.scheduler] if options.scheduler else []
+    arguments += [f"--path={folder}" for folder in options.path]
     flags = ("resume", "allowOutside", "allowCode")
     arguments += [f"--{flag}" for flag in flags if getattr(options, flag)]
     limits = [f"max{name.capitalize()}" for name in LIMITS]

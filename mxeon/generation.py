@@ -16,6 +16,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.document import DocumentError, label, read_document
 from mxeon.expansion import check_expansion
 from mxeon.library import load_library
+from mxeon.notes import warn_of_files
 from mxeon.permissions import DEFAULT
 from mxeon.trust import foreign_code
 from mxeon.values import plain
@@ -176,6 +177,10 @@ def generate(
         If the profile cannot express a model that the document asks for.
     CodeWarning
         If the document brings shader code of its own, which has to be permitted.
+    MissingFileWarning
+        If a file that a shader names is not there; the name stays as it is.
+    DocumentWarning
+        As `mxeon.document.read_document` does.
 
     Examples
     --------
@@ -198,12 +203,13 @@ def generate(
     chosen, names = _chosen(found, element), _names(found)
     check_expansion(document, chosen, permissions, label(document))
     generator = _generator(document, target, library, profile)
-    context = _context(document, target, generator, lights)
+    context = _context(document, target, generator, lights, permissions.path)
     shaders = tuple(
         _generate(document, each, names[each.getNamePath()], target, generator, context)
         for each in chosen
     )
     _warn_of_code(document)
+    warn_of_files(shaders, document)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
     return shaders
@@ -269,10 +275,12 @@ def _new_generator(target, library, profile):
 _library_generator = lru_cache(maxsize=None)(_new_generator)
 
 
-def _context(document, target, generator, lights):
+def _context(document, target, generator, lights, path):
     """A context for one document: it remembers implementations by name."""
     context = mx_gen.GenContext(generator)
     context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+    for folder in path:
+        context.registerSourceCodeSearchPath(mx.FilePath(folder))
     context.getOptions().targetDistanceUnit = "meter"
     # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
     context.getOptions().fileTextureVerticalFlip = target == "osl"

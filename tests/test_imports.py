@@ -16,8 +16,8 @@ import mxeon
 # Every module, or a pattern of them, after all that it may import.
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
-SHADERS = ("library", "permissions", "screening", "encoding", "trust", "values", "expansion")
-SHADERS += ("document", "generation")
+SHADERS = ("library", "permissions", "screening", "encoding", "trust", "values", "notes")
+SHADERS += ("expansion", "document", "generation")
 SHADERS += ("twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
@@ -37,7 +37,7 @@ FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
-    "MaterialX": ("library", "trust", "values", "expansion", "document", "generation")
+    "MaterialX": ("library", "trust", "values", "notes", "expansion", "document", "generation")
     + ("hosts", "hosts.*"),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),

@@ -9,7 +9,7 @@ import pytest
 from documents import material
 
 from mxeon.generation import TARGETS, generate
-from mxeon.hosts import open_host
+from mxeon.hosts import NotRun, open_host
 from mxeon.library import load_library
 from mxeon.permissions import Permissions
 from mxeon.scene import FURNACE
@@ -99,7 +99,10 @@ def test_a_public_matrix_is_its_numbers_row_after_row(target, size):
 
 @pytest.fixture(scope="module", params=["gl", "webgl"])
 def host(request):
-    host = open_host(request.param)
+    try:
+        host = open_host(request.param)
+    except NotRun as reason:
+        pytest.skip(str(reason))
     yield host
     host.close()
 
@@ -117,8 +120,9 @@ def test_a_host_sets_a_matrix(host, size):
     matrix = np.arange(size * size).reshape(size, size) / 32
     vector = np.array([0.1, 0.2, 0.3, 0.4])[:size]
     assert brightness(host, MATRICES[size]) == pytest.approx((vector @ matrix)[1], rel=1e-5)
-    double = {"t/mat": tuple(2.0 * matrix.ravel())}
-    assert brightness(host, MATRICES[size], **double) == pytest.approx(2 * (vector @ matrix)[1], rel=1e-5)
+    other = {"t/mat": tuple(matrix.T.ravel())}
+    transposed = brightness(host, MATRICES[size], **other)
+    assert transposed == pytest.approx((matrix @ vector)[1], rel=1e-5)
 
 
 def test_a_host_sets_the_members_of_a_structure(host):
