@@ -5,7 +5,7 @@ import argparse
 import os
 
 import mxeon
-from mxeon.permissions import LIMITS, Permissions
+from mxeon.permissions import LIMITS, SEARCH_PATH, Permissions, environment_path
 from mxeon.screening import one_line
 
 MISUSE = 2  # exit status
@@ -144,6 +144,15 @@ def _processes(command):
 
 def _permissions(command, runs=False):
     """Options for what documents may do; code can only be forbidden where it would run."""
+    command.add_argument(
+        "--path",
+        action="append",
+        type=_folder,
+        default=[],
+        metavar="FOLDER",
+        help="search it for the files that documents name, after their own folders and before "
+        f"those of {SEARCH_PATH}; may be repeated",
+    )
     group = command.add_argument_group("documents from strangers")
     group.add_argument(
         "--allowOutside",
@@ -167,10 +176,18 @@ def _permissions(command, runs=False):
         )
 
 
+def _folder(name):
+    """The name of a folder."""
+    if not os.path.isdir(name):
+        raise argparse.ArgumentTypeError(f"must name a folder that exists; got {name!r}")
+    return name
+
+
 def permitted(options):
     """What documents may do, as the options say."""
     limits = {name: getattr(options, f"max{name.capitalize()}") for name in LIMITS}
-    return Permissions(options.allowOutside, getattr(options, "allowCode", True), **limits)
+    path = (*map(os.path.abspath, options.path), *environment_path())
+    return Permissions(options.allowOutside, getattr(options, "allowCode", True), path, **limits)
 
 
 def _json(command):

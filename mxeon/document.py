@@ -12,20 +12,26 @@ from pathlib import Path
 
 import MaterialX as mx
 
+from mxeon.encoding import decode, strict
 from mxeon.expansion import check_inheritance
 from mxeon.library import load_library
+from mxeon.notes import TEXT, DocumentWarning, label, numbers, place_of, warn_of_elements
 from mxeon.permissions import DEFAULT
 from mxeon.screening import DocumentError, Screening, check_limit
-from mxeon.trust import TEXTUAL, check_code, check_file, check_inside, check_words, folder
+from mxeon.trust import (
+    TEXTUAL,
+    check_code,
+    check_file,
+    check_inside,
+    check_words,
+    files,
+    folder,
+)
+from mxeon.values import NUMERIC
 
-__all__ = ["DocumentError", "label", "read_document"]
+__all__ = ["DocumentError", "DocumentWarning", "label", "read_document"]
 
-# How many numbers a value has.
-NUMERIC = {"float": 1, "color3": 3, "color4": 4, "vector2": 2, "vector3": 3, "vector4": 4}
-NUMERIC |= {"matrix33": 9, "matrix44": 16}
-TEXT = "document text"
 ERRORS = (mx.Exception, LookupError)  # what MaterialX raises
-DIFFUSE_NODES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
 def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
@@ -34,12 +40,13 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
     Parameters
     ----------
     source : path-like, str or MaterialX.Document
-        A file; or XML text, recognised by its first character `<`; or a document, which is copied.
-        XIncludes and relative file names are resolved from the folder of the file.
+        A file; or XML text, a str that begins with `<` and names no file; or a document, which is
+        copied. XIncludes and relative file names are looked for in the folder of the file, or the
+        working folder, and then on the search path that the permissions name.
     library, profile : str
         See `mxeon.library.load_library`.
     permissions : Permissions
-        What the document may do, and how large it may be.
+        What the document may do, how large it may be, and where its files are looked for.
 
     Returns
     -------
@@ -49,24 +56,48 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
     ------
     DocumentError
         If it cannot be read, is not MaterialX or breaks its rules, comes from a later version,
-        contains a number that is not finite or out of range, names a file that does not exist,
-        includes itself, or does what it may not.
+        contains a number that is none or not finite, includes itself, or does what it may not.
+
+    Warns
+    -----
+    DocumentWarning
+        If a number is not what MaterialX reads, a value leaves the range of its model, or there is
+        no transform from a color space: once each, for the first place.
     """
     data = load_library(library, profile)
     document = mx.createDocument()
     if isinstance(source, mx.Document):
         document.copyContentFrom(source)
         document.setSourceUri(source.getSourceUri())
-    elif str(source).lstrip().startswith("<"):
-        _Reader(permissions, Path.cwd()).parse(document, str(source).encode(errors="replace"), TEXT)
+    elif _is_text(source):
+        _Reader(permissions, Path.cwd()).text(document, source)
     elif os.path.isfile(source):  # a pipe or a device may have no end
         _Reader(permissions, Path(source).resolve().parent).file(document, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
-    mx.flattenFilenames(document, mx.FileSearchPath(str(folder(document))))
+    _find_files(document, [folder(document), *map(Path, permissions.path)])
     document.setDataLibrary(data)
     _check(document, permissions)
     return document
+
+
+def _is_text(source):
+    """Whether a source is XML text: a path is none, whatever the name of its file begins with."""
+    starts = isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<")
+    return starts and not os.path.isfile(source)
+
+
+def _find_files(document, folders):
+    """Make names of files that are in one of the folders absolute, those of sets of files too."""
+    path = mx.FileSearchPath()
+    for each in folders:
+        path.append(mx.FilePath(str(each)))
+    mx.flattenFilenames(document, path)
+    for element in document.traverseTree():
+        name = element.getValueString() if element.isA(mx.ValueElement) else ""
+        if "<" in name and element.getType() == "filename":
+            sets = (each / name for each in folders if files(each / name))
+            element.setValueString(str(next(sets, name)))
 
 
 class _Reader:
@@ -86,14 +117,21 @@ class _Reader:
 
     def file(self, document, name):
         """Read a file into a document."""
-        text = self._screening.read(name)
+        data = self._screening.read(name)
+        self._screening.measure(data, name)
         self._open.append(os.path.realpath(name))
-        self.parse(document, text, name)
+        self._parse(document, decode(data, name), name)
         self._open.pop()
         document.setSourceUri(name)
 
-    def parse(self, document, text, place):
-        """Read bytes into a document."""
+    def text(self, document, text):
+        """Read XML text into a document."""
+        data = text.encode(errors="replace")  # halves of characters
+        self._screening.measure(data, TEXT)
+        self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
+
+    def _parse(self, document, text, place):
+        text = strict(text)
         self._screening.judge(text, place)
 
         def include(part, name, *_):
@@ -106,11 +144,14 @@ class _Reader:
         except (*ERRORS, mx.ExceptionParseError) as error:
             reason = str(error).strip().splitlines()[0]
             raise DocumentError(f"{place}: must be a MaterialX document; {reason}") from None
+        _check_version(document, place)
 
     def _include(self, document, name, place):
         """Read what the document at `place` includes, which is called by its real path."""
         base = self._home if place == TEXT else Path(place).parent
-        path, rule = os.path.realpath(base / name), f"{place}: include must"
+        folders = (base, self._home, *self._permissions.path)
+        paths = [os.path.realpath(Path(each, name)) for each in folders]
+        path, rule = next(filter(os.path.isfile, paths), paths[0]), f"{place}: include must"
         check_inside(path, self._home, self._permissions, f"{place}: include")
         if path in self._open:
             raise DocumentError(f"{rule} not lead back to the same document; got {name}")
@@ -120,19 +161,9 @@ class _Reader:
         self.file(document, path)
 
 
-def label(document):
-    """How messages call a document: the file it was read from, or a word for text."""
-    return document.getSourceUri() or TEXT
-
-
 def _check(document, permissions):
     """Refuse what MaterialX lets through. The order matters: a later check relies on the former."""
-    version, known = document.getVersionIntegers(), mx.getVersionIntegers()[:2]
-    if tuple(version) > tuple(known):
-        raise DocumentError(
-            f"{label(document)}: version must be at most {known[0]}.{known[1]}; "
-            f"got {version[0]}.{version[1]}"
-        )
+    _check_version(document, label(document))
     check_inheritance(document, permissions, label(document))
     check_code(document, permissions, label(document))
     _check_types(document)
@@ -140,6 +171,17 @@ def _check(document, permissions):
         if element.isA(mx.ValueElement) and element.getValueString():
             _check_value(element, permissions)
     _check_validity(document)
+    warn_of_elements(document)
+
+
+def _check_version(document, place):
+    """Raise DocumentError for a version that MaterialX did not make its own while it was read."""
+    known = mx.getVersionIntegers()[:2]
+    if tuple(document.getVersionIntegers()) != tuple(known):
+        raise DocumentError(
+            f"{place}: version must be one that MaterialX upgrades to {known[0]}.{known[1]}; "
+            f"got {document.getVersionString()!r}"
+        )
 
 
 def _check_types(document):
@@ -148,7 +190,7 @@ def _check_types(document):
         known = each.isA(mx.TypeDef) and document.getDataLibrary().getTypeDef(each.getName())
         if known and (members := each.getChildren()):
             raise DocumentError(
-                f"{_place(each)} must have no members, as a type of the libraries; "
+                f"{place_of(each)} must have no members, as a type of the libraries; "
                 f"got {members[0].getName()}: rename the type"
             )
 
@@ -156,36 +198,14 @@ def _check_types(document):
 def _check_value(element, permissions):
     kind, text = element.getType(), element.getValueString()
     if kind in NUMERIC:
-        if element.getValue() is None or text.count(",") != NUMERIC[kind] - 1:
+        read = numbers(element)
+        if not read or not all(map(math.isfinite, read)):
             rule = f"a valid {kind} of finite numbers"
-            raise DocumentError(f"{_place(element)} must be {rule}; got {text}")
-        low, high = _range(element)
-        if not all(low <= float(value) <= high for value in text.split(",")):
-            raise DocumentError(f"{_place(element)} must lie in [{low:g}, {high:.6g}]; got {text}")
+            raise DocumentError(f"{place_of(element)} must be {rule}; got {text}")
     elif kind == "filename":
-        check_file(element, _place(element), permissions)
+        check_file(element, place_of(element), permissions)
     elif kind in TEXTUAL:
-        check_words(element, _place(element))
-
-
-def _place(element):
-    """How messages call an element: its document, kind and path."""
-    return f'{label(element.getDocument())}: {element.getCategory()} "{element.getNamePath()}"'
-
-
-def _range(element):
-    """Range of an input of a rough diffuse node; any number elsewhere."""
-    node = element.getParent()
-    lobe = node.isA(mx.Node) and node.getCategory() in DIFFUSE_NODES
-    if not lobe or not element.isA(mx.Input):
-        return -math.inf, math.inf
-    if element.getName() in ("weight", "color"):
-        return 0.0, 1.0
-    if element.getName() != "roughness":
-        return -math.inf, math.inf
-    flag = node.getInputValue("energy_compensation")
-    qualitative = node.getCategory() == "oren_nayar_diffuse_bsdf" and not flag
-    return 0.0, math.pi / 2.0 if qualitative else 1.0
+        check_words(element, place_of(element))
 
 
 def _check_validity(document):

@@ -16,8 +16,10 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.document import DocumentError, label, read_document
 from mxeon.expansion import check_expansion
 from mxeon.library import check_closure_calls, load_library
+from mxeon.notes import warn_of_files
 from mxeon.permissions import DEFAULT
 from mxeon.trust import foreign_code
+from mxeon.values import plain
 
 # Target -> module of MaterialX and class in it. MaterialX has slang since 1.39.5, wgsl since 1.39.4.
 CLASSES = {
@@ -89,8 +91,9 @@ class Input:
         The variable in the source.
     type : str
         MaterialX type word.
-    value : float, int, bool, str, tuple of float or None
-        The default.
+    value : float, int, bool, str, tuple or None
+        The default, as `mxeon.values.plain` has it: a matrix is the flat tuple of its numbers, row
+        after row, which GLSL takes as the columns of its own; a structure the tuple of its members.
     path : str
         The element of the document that it comes from.
     """
@@ -176,6 +179,10 @@ def generate(
         If the profile cannot express a model that the document asks for.
     CodeWarning
         If the document brings shader code of its own, which has to be permitted.
+    MissingFileWarning
+        If a file that a shader names is not there; the name stays as it is.
+    DocumentWarning
+        As `mxeon.document.read_document` does.
 
     Examples
     --------
@@ -198,12 +205,13 @@ def generate(
     chosen, names = _chosen(found, element), _names(found)
     check_expansion(document, chosen, permissions, label(document))
     generator = _generator(document, target, library, profile)
-    context = _context(document, target, generator, lights)
+    context = _context(document, target, generator, lights, permissions.path)
     shaders = tuple(
         _generate(document, each, names[each.getNamePath()], target, generator, context)
         for each in chosen
     )
     _warn_of_code(document)
+    warn_of_files(shaders, document)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
     return shaders
@@ -269,10 +277,12 @@ def _new_generator(target, library, profile):
 _library_generator = lru_cache(maxsize=None)(_new_generator)
 
 
-def _context(document, target, generator, lights):
+def _context(document, target, generator, lights, path):
     """A context for one document: it remembers implementations by name."""
     context = mx_gen.GenContext(generator)
     context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+    for folder in path:
+        context.registerSourceCodeSearchPath(mx.FilePath(folder))
     context.getOptions().targetDistanceUnit = "meter"
     # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
     context.getOptions().fileTextureVerticalFlip = target == "osl"
@@ -306,25 +316,19 @@ def _generate(document, element, name, target, generator, context):
         ) from None
     stages = {stage: shader.getSourceCode(stage) for stage in STAGES if shader.hasStage(stage)}
     check_closure_calls(stages["pixel"], target)
-    return Shader(name, path, target, MappingProxyType(stages), _inputs(shader), document)
+    return Shader(name, path, target, MappingProxyType(stages), _inputs(shader, document), document)
 
 
-def _inputs(shader):
+def _inputs(shader, document):
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
     return tuple(
-        Input(port.getVariable(), kind.getName(), _plain(port.getValue()), path)
+        Input(port.getVariable(), kind.getName(), plain(port.getValue(), document), path)
         for name, block in blocks.items()
         if name != "PrivateUniforms"
         for port in block
         if (path := port.getPath()) and not (kind := port.getType()).isClosure()
     )
-
-
-def _plain(value):
-    """A MaterialX value as a number, a string or a tuple of numbers."""
-    data = value.getData() if value else None
-    return data if isinstance(data, (type(None), bool, int, float, str)) else tuple(data)
 
 
 def _warn_of_code(document):

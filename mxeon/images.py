@@ -13,6 +13,7 @@ from mxeon.reading import assert_regular
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
+FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
 RADIANCE_SIZE = 64  # rows and columns, or little more, from which it is summed
 
 
@@ -47,8 +48,22 @@ def read_image(path):
 
 
 def read_texture(path):
-    """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0."""
-    return read_image(path)[::-1]
+    """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
+
+    Of a set of textures it is the one of [0, 1]^2, in which all coordinates of a sphere lie. One
+    channel is that of all colors, as MaterialX has it.
+
+    Raises
+    ------
+    ImageError
+        As `read_image` does; or if it has more channels than a color.
+    """
+    for token, word in FIRST_TILE.items():
+        path = str(path).replace(token, word)
+    pixels = read_image(path)
+    if pixels.shape[-1] > 4:
+        raise ImageError(f"{path}: must have at most 4 channels; got {pixels.shape[-1]}")
+    return (np.repeat(pixels, 3, axis=-1) if pixels.shape[-1] == 1 else pixels)[::-1]
 
 
 def read_latlong(environment):

@@ -132,13 +132,16 @@ def picture(file, host, scene, environment, size, element, library, permissions)
     from mxeon import scene as scenes
     from mxeon.generation import generate
     from mxeon.hosts import open_host
+    from mxeon.notes import MissingFileWarning
 
     shown = scenes.scene(scene)
     if environment:
         shown = scenes.Scene("environment", environment=Path(environment))
     with closing(open_host(host)) as engine:
         options = {"library": library, "profile": engine.profile, "lights": True}
-        found = generate(file, engine.target, element, permissions=permissions, **options)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", MissingFileWarning)
+            found = generate(file, engine.target, element, permissions=permissions, **options)
         if len(found) > 1:
             known = ", ".join(shader.element for shader in found)
             raise ValueError(f"--element must name one of {known}; got none")

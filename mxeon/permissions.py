@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a material document may do and how large it may be: documents come from strangers."""
 
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, field
+
+SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
 
 # The limits, each of which the command has an option for, and what they count.
 LIMITS = {
@@ -15,6 +18,12 @@ LIMITS = {
 }
 
 
+def environment_path():
+    """Folders that MATERIALX_SEARCH_PATH names, as absolute paths."""
+    names = os.environ.get(SEARCH_PATH, "").split(os.pathsep)
+    return tuple(os.path.abspath(name) for name in names if name)
+
+
 @dataclass(frozen=True)
 class Permissions:
     """What `mxeon.document.read_document` lets a document do. Plain data, so it travels.
@@ -25,6 +34,9 @@ class Permissions:
         Whether it may name files outside its own folder and the libraries.
     code : bool
         Whether it may bring shader code of its own, in text or in files.
+    path : tuple of str
+        Folders that are searched after its own for the files it names, which it may name therefore;
+        by default those of the environment variable MATERIALX_SEARCH_PATH.
     size : int
         Bytes of the document and all that it includes.
     length : int
@@ -56,6 +68,7 @@ class Permissions:
 
     outside: bool = False
     code: bool = False
+    path: tuple[str, ...] = field(default_factory=environment_path)
     size: int = 16 * 2**20
     length: int = 65_536
     depth: int = 64

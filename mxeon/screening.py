@@ -62,25 +62,28 @@ class Screening:
         except OSError as error:
             raise DocumentError(f"{file}: must be readable; {error.strerror}") from None
 
+    def measure(self, data, place):
+        """Raise DocumentError if a document, as bytes, makes all that was read too long."""
+        self._place = place
+        self._size += len(data)
+        self._limit("size", self._size, "bytes, with all that it includes")
+
     def judge(self, text, place):
-        """Nothing, if a document's text, as bytes, may be read.
+        """Raise DocumentError unless a document's text may be read.
 
         Raises
         ------
         DocumentError
-            If it is no XML in UTF-8, has a document type or control characters, or breaks a limit.
+            If it is no XML, has a document type or control characters, or breaks a limit.
         """
         self._place, self._depth = place, 0
-        self._size += len(text)
-        self._limit("size", self._size, "bytes, with all that it includes")
         parser = expat.ParserCreate()
         parser.StartDoctypeDeclHandler = self._refuse_type
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
         try:
-            text.decode("utf-8")
             parser.Parse(text, True)
-        except (expat.ExpatError, UnicodeDecodeError) as error:
+        except expat.ExpatError as error:
             self._refuse(f"must be a MaterialX document; XML parse error: {error}")
 
     def _start(self, name, attributes):

@@ -31,10 +31,11 @@ def folder(document):
     return Path(file).resolve().parent if file else Path.cwd()
 
 
-def inside(path, home):
-    """Whether a path, its symbolic links resolved, lies in a folder or in the libraries."""
+def inside(path, home, others=()):
+    """Whether a path, its symbolic links resolved, lies in a folder, in others or the libraries."""
     real = Path(os.path.realpath(path))
-    return any(real.is_relative_to(root) for root in (home, *_libraries()))
+    roots = (home, *map(os.path.realpath, others), *_libraries())
+    return any(real.is_relative_to(root) for root in roots)
 
 
 def check_inside(path, home, permissions, place):
@@ -45,15 +46,15 @@ def check_inside(path, home, permissions, place):
     DocumentError
         Otherwise.
     """
-    if not permissions.outside and not inside(path, home):
+    if not permissions.outside and not inside(path, home, permissions.path):
         raise DocumentError(
-            f"{place} must name a file in {home} or in the libraries; got {path}: "
-            "--allowOutside lets it"
+            f"{place} must name a file in {home}, on the search path or in the libraries; got "
+            f"{path}: --allowOutside lets it"
         )
 
 
 def check_file(element, place, permissions):
-    """Nothing, if the file that an input names is there and may be read.
+    """Nothing, if the file that an input names may be read, should it be there.
 
     Of a set of textures, any that is there has to be one that may be read.
 
@@ -67,14 +68,17 @@ def check_file(element, place, permissions):
         raise DocumentError(f"{place} must name a file without quotes and backslashes; got {text}")
     path = home / text  # what MaterialX did not find there is relative still
     check_inside(path, home, permissions, place)
-    if "<" not in text:
-        if not os.path.isfile(path):
-            raise DocumentError(f"{place} must name a file that exists; got {text}")
-        return
     if "<" in str(path.parent):
         raise DocumentError(f"{place} must name one folder; got {text}")
-    for each in path.parent.glob(re.sub(r"<\w*>", "*", glob.escape(path.name))):
+    for each in files(path):
         check_inside(each, home, permissions, place)
+
+
+def files(path):
+    """The files that a name stands for: its own, or those of a set, which has `<UDIM>` in it."""
+    if "<" not in path.name:
+        return [path] if os.path.isfile(path) else []
+    return list(path.parent.glob(re.sub(r"(<\w*>)+", "*", glob.escape(path.name))))
 
 
 def check_words(element, place):
@@ -110,7 +114,7 @@ def check_code(document, permissions, called):
             raise DocumentError(
                 f"{place} must not bring code of its own; got {_code(element)}: --allowCode lets it"
             )
-        for path in _sources(element, home):
+        for path in _sources(element, home, permissions.path):
             check_inside(path, home, permissions, place)
 
 
@@ -119,11 +123,11 @@ def _code(element):
     return f'{name} "{element.getAttribute(name)}"'
 
 
-def _sources(element, home):
+def _sources(element, home, path):
     """The files that an implementation's `file` may mean to a generator."""
     name = element.getAttribute("file")
     origin = Path(element.getActiveSourceUri() or home / "document").parent
-    bases = (origin, home, Path.cwd(), *_libraries())
+    bases = (origin, home, Path.cwd(), *map(Path, path), *_libraries())
     return [base / name for base in bases if name and os.path.lexists(base / name)]
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenGL pictures: exact points, the right way up, and light as it is asked for."""
 
+import gc
 from dataclasses import replace
 
 import moderngl
@@ -15,7 +16,7 @@ from mxeon.generation import Shader, generate
 from mxeon.hosts import NotRun, ShaderError, open_host
 from mxeon.images import irradiance, read_latlong
 from mxeon.permissions import Permissions
-from mxeon.scene import SCENES, Scene, sphere
+from mxeon.scene import FURNACE, SCENES, Scene, sphere
 
 SIZE = 96
 ROUGH = '<input name="roughness" type="float" value="0.9"/>'
@@ -57,6 +58,21 @@ def test_every_pixel_is_the_models(gl, reference, name, scene):
     error = np.abs(image - expected)[mask].max(axis=1) * wo[:, 2]
     assert error.max() <= PICTURE
     assert not image[~mask].any()
+
+
+def test_a_closed_host_takes_no_program_from_the_next():
+    closed = open_host("gl")
+    for name in LOBES:
+        picture(closed, LOBES[name], FURNACE)
+    closed.close()
+    following = open_host("gl")
+    before = [picture(following, LOBES[name], FURNACE) for name in LOBES]
+    del closed
+    with following._context:
+        gc.collect()
+    after = [picture(following, LOBES[name], FURNACE) for name in LOBES]
+    following.close()
+    assert np.array_equal(before, after)
 
 
 def test_light_from_the_right_lights_the_right_and_from_above_the_top(gl):

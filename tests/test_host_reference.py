@@ -3,8 +3,10 @@
 
 import numpy as np
 import pytest
-from documents import EON, OREN_NAYAR, material
+from documents import EON, OREN_NAYAR, connected, lobe, material
 
+from mxeon.conformance.documents import judge_document
+from mxeon.document import DocumentWarning
 from mxeon.generation import generate
 from mxeon.hosts import NotRun, open_host
 from mxeon.models import eon_brdf, qon_brdf
@@ -12,6 +14,11 @@ from mxeon.scene import FRONT, FURNACE, Scene
 
 A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
 B = f'<{EON} name="b" type="BSDF"><input name="color" type="color3" value="0.1, 0.2, 0.6"/></{EON}>'
+OUTSIDE = (
+    ({"color": "0.5, 1.5, 0.5"}, "rho must lie in [0, 1]; got 1.5"),
+    ({"weight": "1.5"}, "weight must lie in [0, 1]; got 1.5"),
+    ({"roughness": "1.6"}, "sigma must lie in [0, pi/2]; got 1.6"),
+)
 CENTRE = np.s_[15:17, 15:17]
 SMALL = Scene("front", light=(0.0, 0.0, 1.0), size=32)
 
@@ -150,3 +157,27 @@ def test_a_white_furnace_of_eon_is_white():
       <input name="roughness" type="float" value="1"/></{EON}>"""
     image = open_host("reference").picture(generate(material(node), "glsl")[0], FURNACE)
     assert set(np.unique(image)) == {0.0, 1.0}
+
+
+@pytest.mark.parametrize("inputs, rule", OUTSIDE, ids=str)
+def test_a_value_outside_its_model_is_not_judged(tmp_path, inputs, rule):
+    path = tmp_path / "look.mtlx"
+    path.write_text(material(lobe(**inputs)))
+    hosts = open_host("gl"), open_host("reference")
+    [result], pictures, notes = judge_document(path, *hosts, "eonlib")
+    assert result.verdict == "not run" and not pictures
+    assert f"reference: node 'lobe': {rule}" in result.reason
+    assert "where its model is defined" in notes[0][0]
+
+
+def test_the_largest_sigma_of_float32_is_a_quarter_turn():
+    text = material(lobe(roughness="1.5707963267948966"))
+    assert open_host("reference").picture(generate(text, "glsl")[0], SMALL).any()
+
+
+def test_an_ignored_connection_leaves_the_default():
+    graph = """<nodegraph name="ng"><constant name="c" type="color3"/>
+      <output name="out" type="color3" nodename="c"/></nodegraph>"""
+    with pytest.warns(DocumentWarning, match="which MaterialX ignores"):
+        shown = centre(material(graph + connected(color='nodename="ng"')))
+    assert shown == pytest.approx(colour(0.18, 0.18, 0.18), abs=1e-3)

@@ -10,7 +10,8 @@ from mxeon.conformance.checks import ROUNDING
 from mxeon.conformance.measures import absolute
 from mxeon.conformance.probes import picture_pairs
 from mxeon.generation import ApproximationWarning, CodeWarning, generate
-from mxeon.hosts import NotRun, ShaderError
+from mxeon.hosts import NotRun, OutsideModel, ShaderError
+from mxeon.notes import DocumentWarning, MissingFileWarning
 from mxeon.permissions import DEFAULT
 from mxeon.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.scene import BACK, FURNACE, SIDE, sphere
@@ -65,6 +66,7 @@ def judge_document(file, host, judge, library, permissions=DEFAULT):
     options = {"library": library, "profile": host.profile, "lights": True}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
+        warnings.simplefilter("error", MissingFileWarning)
         shaders = generate(file, host.target, permissions=permissions, **options)
     said = [each.message for each in caught]
     approximations = [each for each in said if isinstance(each, ApproximationWarning)]
@@ -76,7 +78,8 @@ def judge_document(file, host, judge, library, permissions=DEFAULT):
         results.append(result)
         pictures += shown
     notes = [(text, f"{file.name}: {place}") for place, text in approximated.items()]
-    notes += [(str(each), file.name) for each in said if isinstance(each, CodeWarning)]
+    others = (CodeWarning, DocumentWarning)
+    notes += [(str(each), file.name) for each in said if isinstance(each, others)]
     return tuple(results), tuple(pictures), tuple(notes)
 
 
@@ -93,6 +96,8 @@ def _judge_material(file, shader, host, judge, library, front_lit):
         return Result("picture", MATCH, **place, verdict=FAILED, diagnosis=str(error)), ()
     try:
         references = [judge.picture(shader, scene) for scene in scenes]
+    except OutsideModel as reason:
+        return Result("picture", MATCH, **place, verdict=NOT_RUN, reason=str(reason)), ()
     except NotRun as reason:
         references = [None] * len(scenes)
         result = _judge_finite(place, images, str(reason))

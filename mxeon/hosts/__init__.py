@@ -23,6 +23,10 @@ class NotRun(Failure):
     """Something could not be executed here; the message says what and why, in one line."""
 
 
+class OutsideModel(NotRun):
+    """Something could not be executed here since a value lies where no model is defined."""
+
+
 class ShaderError(Failure):
     """A shader that the host's compiler refuses; the message holds the compiler's own words."""
 

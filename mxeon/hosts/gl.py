@@ -117,6 +117,8 @@ class Host:
 
     def close(self):
         """Give the context back; the host is of no use afterwards."""
+        with self._context:  # later, programs would be deleted in whatever context is current then
+            self._program.cache_clear()
         self._context.release()
 
     def _evaluate(self, vertex, pixel, arguments):

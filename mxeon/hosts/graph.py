@@ -13,7 +13,7 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.expansion import reached
-from mxeon.hosts import NotRun
+from mxeon.hosts import NotRun, OutsideModel
 from mxeon.images import read_texture
 
 # Operations on values and on lobes alike: node category -> its inputs, and the result from them.
@@ -32,6 +32,7 @@ OPERATIONS = {
     "surfacematerial": (("surfaceshader",), lambda shader: shader),
 }
 CLOSURES = ("BSDF", "EDF", "surfaceshader")  # black where nothing is connected
+CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
 LOBES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
@@ -102,7 +103,8 @@ class Graph:
         node = self._elements[place]
         category = node.getCategory()
         if category in LOBES:
-            names, make = ("normal", "color", "roughness", "weight"), self._diffuse
+            names = ("normal", "color", "roughness", "weight")
+            make = partial(self._diffuse, node.getNamePath())
             if category == "eon_diffuse_bsdf":
                 return partial(make, True), self._sources(place, names)
             return make, self._sources(place, ("energy_compensation", *names))
@@ -139,7 +141,10 @@ class Graph:
         declared = definition.getActiveInput(name) if definition else None
         if declared and declared.hasDefaultGeomPropString():
             return self._constant(place, name, None)  # the surface's own: nothing sets it
-        value = 0.0 if given.getType() in CLOSURES else _plain(given.getValue())
+        written = given.getValue()
+        if written is None and declared:  # a connection that MaterialX ignores
+            written = declared.getValue()
+        value = 0.0 if given.getType() in CLOSURES else _plain(written)
         linear = self._linear(given, value) if given.getType() == "color3" else value
         return self._constant(place, name, linear)
 
@@ -173,11 +178,22 @@ class Graph:
             raise NotRun(f"reference: there is no transform for colour space {space!r}")
         return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
 
-    def _diffuse(self, compensated, normal, color, roughness, weight):
+    def _diffuse(self, name, compensated, normal, color, roughness, weight):
         if normal is not None:
             raise NotRun("reference: there are no models for a normal other than the surface's")
         model = "eon" if compensated else "qon"
-        return self._lobe(model, color, np.reshape(roughness, -1)) * np.reshape(weight, (-1, 1))
+        weight = np.reshape(weight, (-1, 1))
+        if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
+            rule = f"weight must lie in [0, 1]; got {beyond[0]:g}"
+            raise OutsideModel(f"reference: node {name!r}: {rule}")
+        # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
+        rounded = np.float32(roughness) == np.float32(np.pi / 2.0)
+        roughness = np.where(rounded & (not compensated), np.pi / 2.0, roughness)
+        try:
+            lobe = self._lobe(model, color, np.reshape(roughness, -1))
+        except ValueError as error:
+            raise OutsideModel(f"reference: node {name!r}: {error}") from None
+        return lobe * weight
 
     def _image(self, node):
         """Bilinear, periodic look-up; texel centres at half-integers, v = 0 at the bottom."""
@@ -187,7 +203,12 @@ class Graph:
         if not file or not file.getValueString():
             raise NotRun("reference: an image must name its file itself")
         texels = read_texture(file.getValueString()).astype(np.float64)
-        channels = 3 if node.getType() == "color3" else 1
+        channels = CHANNELS.get(node.getType(), 0)
+        if not 0 < channels <= texels.shape[-1]:
+            raise NotRun(
+                f"reference: {file.getValueString()}: must be read as float, or as color3 from an "
+                f"image of 3 channels; got {node.getType()} from {texels.shape[-1]}"
+            )
         height, width = texels.shape[:2]
         place = self._texcoord * [width, height] - 0.5
         corner = np.floor(place).astype(int)

@@ -9,6 +9,7 @@ import numpy as np
 
 from mxeon.images import irradiance, read_latlong, read_texture
 from mxeon.scene import sphere
+from mxeon.values import members
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
@@ -27,12 +28,21 @@ def textures(shader, scene):
 
 
 def inputs(shader):
-    """Values of the uniforms that carry a shader's inputs, but for its images."""
-    return {
-        each.name: each.value
-        for each in shader.inputs
-        if each.value is not None and not isinstance(each.value, str)
-    }
+    """Values of the uniforms that carry a shader's inputs, but for its images.
+
+    A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
+    is a uniform of its own.
+    """
+    found = [(each.name, each.type, each.value) for each in shader.inputs]
+    uniforms = {}
+    while found:
+        name, kind, value = found.pop()
+        if parts := members(kind, shader.document):
+            named = zip(parts, value or (), strict=False)
+            found += [(f"{name}.{part}", each, inner) for (part, each), inner in named]
+        elif value is not None and not isinstance(value, str):
+            uniforms[name] = value
+    return uniforms
 
 
 def light(scene):

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of MaterialX as plain Python values, and whether their text is what MaterialX reads."""
+
+import re
+
+import MaterialX as mx
+
+# How numbers are written. MaterialX reads as much of a word as is one and ignores the rest.
+FLOAT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*", re.ASCII | re.IGNORECASE)
+INTEGER = re.compile(r"\s*[+-]?\d+\s*", re.ASCII)
+SCALARS = {"float": FLOAT, "integer": INTEGER}
+VECTORS = ("color3", "color4", "vector2", "vector3", "vector4", "matrix33", "matrix44")
+ARRAYS = {"floatarray": FLOAT, "integerarray": INTEGER}
+NUMERIC = (*SCALARS, *VECTORS, *ARRAYS)
+
+
+def plain(value, document):
+    """A value of any type of MaterialX without MaterialX.
+
+    Parameters
+    ----------
+    value : MaterialX.Value, what is in one, or None
+    document : MaterialX.Document
+        Where the types of structures are defined, if not in its data library.
+
+    Returns
+    -------
+    bool, int, float, str, tuple or None
+        A color, a vector or an array is the tuple of its parts; a matrix that of its numbers, row
+        after row, as documents write it; a structure that of its members' plain values, in order.
+    """
+    if isinstance(value, mx.Value):
+        if not hasattr(value, "getData"):  # of structures Python sees the text alone
+            return _members(value.getValueString(), value.getTypeString(), document)
+        value = value.getData()
+    if isinstance(value, (mx.Matrix33, mx.Matrix44)):
+        rows, columns = range(value.numRows()), range(value.numColumns())
+        return tuple(value[row, column] for row in rows for column in columns)
+    return value if isinstance(value, (type(None), bool, int, float, str)) else tuple(value)
+
+
+def members(kind, document):
+    """Names and types of a structure's members; none for a type that is no structure."""
+    definition = document.getTypeDef(kind)
+    found = definition.getMembers() if definition else ()
+    return tuple((each.getName(), each.getType()) for each in found)
+
+
+def is_exact(text, kind):
+    """Whether MaterialX reads the whole of a text as a numeric value, not its first part alone."""
+    if kind in SCALARS:
+        return bool(SCALARS[kind].fullmatch(text))
+    if kind in ARRAYS:
+        return all(map(ARRAYS[kind].fullmatch, text.split(",")))
+    return all(map(FLOAT.fullmatch, filter(None, re.split("[, ]", text))))
+
+
+def _members(text, kind, document):
+    parts = _parts(text)
+    return tuple(
+        _members(part, kind, document)
+        if members(kind, document)
+        else plain(mx.Value.createValueFromStrings(part, kind), document)
+        for part, (_, kind) in zip(parts, members(kind, document), strict=False)
+    )
+
+
+def _parts(text):
+    """What stands between the semicolons of `{a;b;{c;d}}`, but for those of inner braces."""
+    parts, depth = [""], 0
+    for sign in text[1:-1]:
+        depth += (sign == "{") - (sign == "}")
+        if sign == ";" and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += sign
+    return parts
