@@ -46,6 +46,7 @@ def seen(file, **permissions):
         ([FILE.format("images/grid.png")], "", "images/grid.png"),
         ([FILE.format("grid.png")], 'fileprefix="images/"', "images/grid.png"),
         ([FILE.format("set.&lt;UDIM&gt;.png")], "", "set.1001.png"),
+        ([FILE.format("set.<UDIM>.png")], "", "set.1001.png"),
         ([FILE.format("[which].png")], "", "wood.png"),
         (['<implementation name="i" file="own.glsl"/>'], "", "own.glsl"),
         ([INCLUDE.format("part.mtlx")], "", "part.mtlx"),
@@ -65,6 +66,21 @@ def test_what_an_included_document_names_is_a_dependency(tmp_path):
     document(tmp_path / "parts" / "c.mtlx", FILE.format("grid.png"))
     texture(tmp_path / "parts" / "grid.png")
     assert seen(file) == {"b.mtlx", "c.mtlx", "grid.png"}
+
+
+def test_files_on_the_search_path_are_dependencies(tmp_path):
+    file = document(tmp_path / "home" / "a.mtlx", FILE.format("images/grid.png"))
+    texture(tmp_path / "shared" / "images" / "grid.png")
+    assert seen(file) == set()
+    assert seen(file, path=(str(tmp_path / "shared"),)) == {"grid.png"}
+
+
+def test_a_document_in_another_encoding_has_dependencies(tmp_path):
+    text = f'<materialx version="1.39">{FILE.format("grid.png")}</materialx>'
+    file = tmp_path / "a.mtlx"
+    file.write_bytes(text.encode("utf-16"))
+    texture(tmp_path / "grid.png")
+    assert seen(file) == {"grid.png"}
 
 
 def test_files_that_a_document_may_not_name_are_not_looked_at(tmp_path):

@@ -14,8 +14,10 @@ from pathlib import Path
 from xml.parsers import expat
 
 import mxeon
+from mxeon.encoding import decode, strict
 from mxeon.library import data_folder, eonlib_folder, standard_folders
 from mxeon.reading import regular
+from mxeon.screening import DocumentError
 from mxeon.trust import inside
 
 INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
@@ -53,8 +55,10 @@ def _named(document, permissions):
     while waiting:
         text_file = waiting.pop()
         for key, name in _names(_text(text_file, permissions), permissions.elements):
-            for path in _paths(name, {home, Path(os.path.realpath(text_file)).parent, Path.cwd()}):
-                if path in seen or not (permissions.outside or inside(path, home)):
+            folders = {home, Path(os.path.realpath(text_file)).parent, Path.cwd()}
+            for path in _paths(name, folders | set(map(Path, permissions.path))):
+                allowed = permissions.outside or inside(path, home, permissions.path)
+                if path in seen or not allowed:
                     continue
                 seen.add(path)
                 if key == INCLUDE:
@@ -63,11 +67,11 @@ def _named(document, permissions):
 
 
 def _text(path, permissions):
-    """Text of a document as bytes, or of one that is too large or cannot be read, none."""
-    with suppress(OSError), open(path, "rb", opener=regular) as file:
-        text = file.read(permissions.size + 1)
-        return text if len(text) <= permissions.size else b""
-    return b""
+    """Text of a document, or "" of one that is too large or cannot be read."""
+    with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
+        data = file.read(permissions.size + 1)
+        return strict(decode(data, str(path))) if len(data) <= permissions.size else ""
+    return ""
 
 
 def _names(text, elements):

@@ -5,6 +5,7 @@ An item is a few words and its findings are plain data, so both travel to other 
 machines. Whoever works on items keeps a `Judge`, which holds what is costly to open.
 """
 
+import os
 import platform
 from dataclasses import replace
 from functools import lru_cache
@@ -242,9 +243,11 @@ def _examples(library):
 
 def _options(permissions):
     """Permissions by the options of the command that change them."""
+    prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
+    values = vars(permissions) | {"path": os.pathsep.join(permissions.path) or "none"}
     return {
-        f"--{'max' if name in LIMITS else 'allow'}{name.capitalize()}": str(value)
-        for name, value in vars(permissions).items()
+        f"--{prefixes[name]}{name.capitalize()}" if name in prefixes else f"--{name}": str(value)
+        for name, value in values.items()
     }
 
 
