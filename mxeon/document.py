@@ -60,6 +60,7 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
     elif str(source).lstrip().startswith("<"):
         _Reader(permissions, Path.cwd()).parse(document, str(source).encode(errors="replace"), TEXT)
     elif os.path.isfile(source):  # a pipe or a device may have no end
+        _check_path(source)
         _Reader(permissions, Path(source).resolve().parent).file(document, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
@@ -67,6 +68,14 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
     document.setDataLibrary(data)
     _check(document, permissions)
     return document
+
+
+def _check_path(source):
+    """Raise DocumentError unless MaterialX can hold the path of a file."""
+    try:
+        str(Path(source).resolve()).encode()
+    except UnicodeEncodeError:
+        raise DocumentError(f"document must lie at a path in UTF-8; got {source!r}") from None
 
 
 class _Reader:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bad documents: each ends in one line that names the place, the rule and the value."""
 
+import os
 from math import pi
 
 import MaterialX as mx
@@ -237,3 +238,12 @@ def test_a_document_is_copied_and_stays_as_it_is():
     read.getNode("lobe").setName("other")
     assert mx.writeToXmlString(document) == before
     assert document.getDataLibrary() is None
+
+
+@pytest.mark.parametrize("name", [b"\xff.mtlx", b"\xff/a.mtlx"])
+def test_a_path_that_is_no_text_is_refused(tmp_path, name):
+    path = tmp_path / os.fsdecode(name)
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(material(lobe()))
+    with pytest.raises(DocumentError, match="document must lie at a path in UTF-8; got"):
+        read_document(path)
