@@ -72,6 +72,7 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
     elif _is_text(source):
         _Reader(permissions, Path.cwd()).text(document, source)
     elif os.path.isfile(source):  # a pipe or a device may have no end
+        _check_path(source)
         _Reader(permissions, Path(source).resolve().parent).file(document, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
@@ -98,6 +99,14 @@ def _find_files(document, folders):
         if "<" in name and element.getType() == "filename":
             sets = (each / name for each in folders if files(each / name))
             element.setValueString(str(next(sets, name)))
+
+
+def _check_path(source):
+    """Raise DocumentError unless MaterialX can hold the path of a file."""
+    try:
+        str(Path(source).resolve()).encode()
+    except UnicodeEncodeError:
+        raise DocumentError(f"document must lie at a path in UTF-8; got {source!r}") from None
 
 
 class _Reader:

@@ -5,12 +5,13 @@ MaterialX keeps what it reads in memory and follows every include at once, so si
 number are counted here, by a parser that keeps nothing.
 """
 
+import os
 import re
 from pathlib import Path
-from textwrap import shorten
 from xml.parsers import expat
 
 LONGEST = 1000  # characters of a message, which may quote the document
+CUT = " [...]"  # ends one that is cut there
 # Controls, changes of the direction of writing, and halves of characters.
 STEERING = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
@@ -32,7 +33,8 @@ def printable(text):
 
 def one_line(text):
     """A message as one line that steers nothing and is not too long to read."""
-    return shorten(printable(str(text)), LONGEST)
+    line = " ".join(printable(str(text)).split())
+    return line if len(line) <= LONGEST else f"{line[: LONGEST - len(CUT)]}{CUT}"
 
 
 class Screening:
@@ -58,7 +60,8 @@ class Screening:
         """
         try:
             with Path(file).open("rb") as opened:
-                return opened.read(self._permissions.size - self._size + 1)
+                size = min(self._permissions.size - self._size, os.fstat(opened.fileno()).st_size)
+                return opened.read(size + 1)
         except OSError as error:
             raise DocumentError(f"{file}: must be readable; {error.strerror}") from None
 

@@ -78,6 +78,10 @@ def write_image(path, pixels, attributes):
     """
     import OpenImageIO as oiio
 
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise OSError(errno.EILSEQ, "the name must be UTF-8", str(path)) from None
     image = oiio.ImageBuf(pixels)
     for name, value in attributes.items():
         image.specmod().attribute(name, value)

@@ -2,6 +2,7 @@
 """Bad documents: each ends in one line that names the place, the rule and the value."""
 
 import warnings
+import os
 from math import pi
 from pathlib import Path
 
@@ -322,3 +323,12 @@ def test_a_document_is_copied_and_stays_as_it_is():
     read.getNode("lobe").setName("other")
     assert mx.writeToXmlString(document) == before
     assert document.getDataLibrary() is None
+
+
+@pytest.mark.parametrize("name", [b"\xff.mtlx", b"\xff/a.mtlx"])
+def test_a_path_that_is_no_text_is_refused(tmp_path, name):
+    path = tmp_path / os.fsdecode(name)
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(material(lobe()))
+    with pytest.raises(DocumentError, match="document must lie at a path in UTF-8; got"):
+        read_document(path)

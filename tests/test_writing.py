@@ -65,6 +65,13 @@ def test_an_image_is_kept_as_it_is(tmp_path, ending):
     assert image.spec().get_string_attribute("mxeon:host") == "gl"
 
 
+@pytest.mark.parametrize("ending", IMAGES)
+def test_an_image_whose_name_is_no_text_is_an_error(tmp_path, ending):
+    with pytest.raises(OSError, match="the name must be UTF-8"):
+        write_image(tmp_path / f"\udcff{ending}", IMAGES[ending], {})
+    assert not files(tmp_path)
+
+
 def test_text_that_finds_no_room_leaves_the_old_file(tmp_path):
     write_text(tmp_path / "a", "old")
     with room_for(100), pytest.raises(OSError, match="File too large"):
