@@ -16,7 +16,8 @@ from mxeon.expansion import check_inheritance
 from mxeon.library import load_library
 from mxeon.permissions import DEFAULT
 from mxeon.screening import DocumentError, Screening, check_limit
-from mxeon.trust import TEXTUAL, check_code, check_file, check_inside, check_words, folder
+from mxeon.trust import check_code, check_file, check_inside, folder
+from mxeon.words import check_words
 
 __all__ = ["DocumentError", "label", "read_document"]
 
@@ -135,6 +136,7 @@ def _check(document, permissions):
         )
     check_inheritance(document, permissions, label(document))
     check_code(document, permissions, label(document))
+    check_words(document, label(document))
     _check_types(document)
     for element in document.traverseTree():
         if element.isA(mx.ValueElement) and element.getValueString():
@@ -164,8 +166,6 @@ def _check_value(element, permissions):
             raise DocumentError(f"{_place(element)} must lie in [{low:g}, {high:.6g}]; got {text}")
     elif kind == "filename":
         check_file(element, _place(element), permissions)
-    elif kind in TEXTUAL:
-        check_words(element, _place(element))
 
 
 def _place(element):

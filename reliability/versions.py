@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every wheel of MaterialX: what mxeon says of it, and what its shaders are on each host."""
 
+import os
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,6 +14,7 @@ from reliability.runs import DOCUMENT
 
 WHEELS = ("1.38.10", "1.39.0", "1.39.1", "1.39.2", "1.39.3", "1.39.4", "1.39.5")
 HOSTS = ("gl", "webgl", "vulkan", "slang")
+ROOT = Path(__file__).resolve().parents[1]
 NODE = "libraries/pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl"
 
 
@@ -21,7 +25,8 @@ def measure(progress=iter):
     -------
     dict
         hosts; rows: of each version whether its node takes the closure data that eonlib's sources
-        need, the line with which it is refused, or the verdicts by host.
+        need, the line with which it is refused, or the verdicts by host and what text of a document
+        reaches source unjudged.
     """
     with TemporaryDirectory(prefix="mxeon-versions-") as base:
         return {"hosts": HOSTS, "rows": [_row(version, Path(base, version)) for version in progress(WHEELS)]}
@@ -41,4 +46,13 @@ def _row(version, folder):
     for result in read_run(folder / "report").results:
         if result.host in tally:
             tally[result.host][result.verdict] += 1
-    return row | {"verdicts": tally}
+    return row | {"verdicts": tally, "unjudged": _unjudged(folder / "wheel")}
+
+
+def _unjudged(environment):
+    """Lines of `fuzz.reach`, run with the MaterialX of a folder, of what is not judged."""
+    paths = os.pathsep.join(map(str, (environment, ROOT)))
+    command = [sys.executable, "-P", "-m", "fuzz.reach"]
+    done = subprocess.run(command, env=os.environ | {"PYTHONPATH": paths}, capture_output=True, text=True)
+    lines = [line for line in done.stdout.splitlines() if line.startswith("not judged")]
+    return lines or ([] if done.returncode == 0 else [done.stderr.strip().splitlines()[-1]])

@@ -16,8 +16,8 @@ import mxeon
 # Every module, or a pattern of them, after all that it may import.
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
-SHADERS = ("library", "permissions", "screening", "trust", "expansion", "document", "generation")
-SHADERS += ("twins", "scene", "images", "tracer", "hosts")
+SHADERS = ("library", "permissions", "screening", "expansion", "words", "trust", "document")
+SHADERS += ("generation", "twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
 REPORT = ("junit", "pictures", "plots", "page", "report", "comparison")
@@ -36,7 +36,9 @@ FOR_REPORT = (*REPORT, "results", "verdict", "writing", "scene", "hosts")
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
-    "MaterialX": ("library", "trust", "expansion", "document", "generation", "hosts", "hosts.*"),
+    "MaterialX": (
+        *("library", "expansion", "words", "trust", "document", "generation", "hosts", "hosts.*"),
+    ),
     "OpenImageIO": ("images", "pictures", "hosts.*", "kit.*"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal",),
