@@ -18,16 +18,9 @@ from mxeon.library import load_library
 from mxeon.notes import TEXT, DocumentWarning, label, numbers, place_of, warn_of_elements
 from mxeon.permissions import DEFAULT
 from mxeon.screening import DocumentError, Screening, check_limit
-from mxeon.trust import (
-    TEXTUAL,
-    check_code,
-    check_file,
-    check_inside,
-    check_words,
-    files,
-    folder,
-)
+from mxeon.trust import check_code, check_file, check_inside, files, folder
 from mxeon.values import NUMERIC
+from mxeon.words import check_words
 
 __all__ = ["DocumentError", "DocumentWarning", "label", "read_document"]
 
@@ -175,6 +168,7 @@ def _check(document, permissions):
     _check_version(document, label(document))
     check_inheritance(document, permissions, label(document))
     check_code(document, permissions, label(document))
+    check_words(document, label(document))
     _check_types(document)
     for element in document.traverseTree():
         if element.isA(mx.ValueElement) and element.getValueString():
@@ -213,8 +207,6 @@ def _check_value(element, permissions):
             raise DocumentError(f"{place_of(element)} must be {rule}; got {text}")
     elif kind == "filename":
         check_file(element, place_of(element), permissions)
-    elif kind in TEXTUAL:
-        check_words(element, place_of(element))
 
 
 def _check_validity(document):

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files a document may name, what its words may be, and whether it brings code.
-
-Generators write the words of a document into shaders as they are, so a word that is more than a
-word is code too.
-"""
+"""Which files a document may name, and whether it brings code."""
 
 import glob
 import os
@@ -15,14 +11,9 @@ import MaterialX as mx
 
 from mxeon.library import data_folder, eonlib_folder
 from mxeon.screening import DocumentError
+from mxeon.words import ENDS_A_STRING
 
-# What a value of type string may hold: words, lists of words, paths; nothing that ends a string or
-# calls a function in any target.
-STRING = re.compile(r"[\w .,:/+<>\[\]-]*", re.ASCII)
-WORD = re.compile(r"\w*", re.ASCII)
-ENDS_A_STRING = re.compile(r'["\\\r\n]')
 CODE = ("file", "sourcecode")
-TEXTUAL = ("string", "stringarray", "geomname", "geomnamearray")
 
 
 def folder(document):
@@ -79,15 +70,6 @@ def files(path):
     if "<" not in path.name:
         return [path] if os.path.isfile(path) else []
     return list(path.parent.glob(re.sub(r"(<\w*>)+", "*", glob.escape(path.name))))
-
-
-def check_words(element, place):
-    """Nothing, if a text value is made of words; one that becomes a variable's name, of one."""
-    text = element.getValueString()
-    one = element.getName() == "geomprop"
-    if not (WORD if one else STRING).fullmatch(text):
-        rule = "one word of letters, digits and _" if one else "words of letters, digits and .,:/+-"
-        raise DocumentError(f"{place} must be {rule}; got {text}")
 
 
 def foreign_code(document):

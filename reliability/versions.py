@@ -28,7 +28,8 @@ def measure(progress=iter):
     -------
     dict
         hosts; rows: of each version whether its node takes the closure data that eonlib's sources
-        need, and the line with which it is refused or the verdicts by host.
+        need, and the line with which it is refused or the verdicts by host and what text of a
+        document reaches source unjudged.
     """
     with TemporaryDirectory(prefix="mxeon-versions-") as base:
         rows = [_row(version, Path(base, version)) for version in progress(WHEELS)]
@@ -41,13 +42,13 @@ def install(version, folder):
     subprocess.run([*command, f"materialx=={version}"], check=True, capture_output=True)
 
 
-def run(folder, *arguments):
-    """The command `mxeon` with the MaterialX of a folder: the finished process."""
+def run(folder, *arguments, module="mxeon"):
+    """A module run as a command with the MaterialX of a folder: the finished process."""
     paths = [str(folder), str(Path(mxeon.__file__).resolve().parents[1])]
     if os.environ.get("PYTHONPATH"):
         paths.append(os.environ["PYTHONPATH"])
     return subprocess.run(
-        [sys.executable, "-P", "-m", "mxeon", *arguments],
+        [sys.executable, "-P", "-m", module, *arguments],
         env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
         capture_output=True,
         text=True,
@@ -67,4 +68,11 @@ def _row(version, folder):
     for result in read_run(report).results:
         if result.host in tally:
             tally[result.host][result.verdict] += 1
-    return row | {"verdicts": tally}
+    return row | {"verdicts": tally, "unjudged": _unjudged(wheel)}
+
+
+def _unjudged(wheel):
+    """Lines of `fuzz.reach`, run with the MaterialX of a folder, of what is not judged."""
+    process = run(wheel, module="fuzz.reach")
+    lines = [line for line in process.stdout.splitlines() if line.startswith("not judged")]
+    return lines or ([] if process.returncode == 0 else [process.stderr.strip().splitlines()[-1]])

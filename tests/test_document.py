@@ -130,7 +130,7 @@ NODES = {
         connected(color="").replace('name="color"', 'name="colour"'),
         "Input 'colour' doesn't match declaration",
     ),
-    "odd name": (lobe(name="l o;b"), 'Invalid element name: <oren_nayar_diffuse_bsdf name="l o;b"'),
+    "odd name": (lobe(name="l o;b"), "'name' must be a name of letters, digits, _ and :; got 'l o;b'"),
     "node without name": (lobe(name=""), 'Invalid port connection: <input name="bsdf"'),
     "name of a type": (
         lobe(name="float") + '<add name="lobe" type="BSDF">'

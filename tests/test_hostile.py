@@ -248,7 +248,7 @@ def test_control_characters_are_refused(character):
 @pytest.mark.parametrize("name", ["../look", "/look", "look.", "lo ok", "l" * 200, "..", "ng/look"])
 def test_names_are_no_paths(name):
     message = refusal(SMALL.replace('"look"', f'"{name}"'))
-    assert "Invalid element name" in message or "name of at most 128 characters" in message
+    assert "must be a name of letters" in message or "name of at most 128 characters" in message
 
 
 def test_the_name_of_a_file_steers_no_terminal(tmp_path, capsys):

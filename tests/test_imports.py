@@ -17,8 +17,8 @@ import mxeon
 BASE = ("errors", "signals", "processes", "writing")
 MODELS = ("geometry", "formulas", "quadrature", "models", "albedo", "defects", "inversion")
 MODELS += ("hemisphere", "ltc", "cltc", "eon_sampling", "sampling", "reference")
-SHADERS = ("reading", "library", "permissions", "screening", "encoding", "trust", "values", "notes")
-SHADERS += ("expansion", "document", "generation")
+SHADERS = ("reading", "library", "permissions", "screening", "encoding", "values", "notes")
+SHADERS += ("expansion", "words", "trust", "document", "generation")
 SHADERS += ("twins", "scene", "images", "tracer", "hosts")
 SHADERS += ("hosts.*",)
 CONFORMANCE = ("conformance.*", "conformance")
@@ -38,8 +38,8 @@ FOR_REPORT = (*REPORT, "reading", "records", "results", "verdict", "writing", "s
 
 # Packages from outside, and who may import them.
 EXTERNAL = {
-    "MaterialX": ("library", "trust", "values", "notes", "expansion", "document", "generation")
-    + ("hosts", "hosts.*", "conformance.items"),
+    "MaterialX": ("library", "trust", "values", "notes", "expansion", "words", "document")
+    + ("generation", "hosts", "hosts.*", "conformance.items"),
     "OpenImageIO": ("images", "writing", "kit.*", "conformance.items"),
     "bpy": ("hosts.cycles_worker",),
     "cattrs": ("journal_lines", "records"),
