@@ -5,7 +5,7 @@ from copy import deepcopy
 from functools import cache
 from xml.etree import ElementTree
 
-from fuzz.words import ATTRIBUTES, CATEGORIES, NODEDEF, PATHS, SNIPPETS, TYPES, VALUES
+from fuzz.words import ATTRIBUTES, CATEGORIES, ENCODINGS, NODEDEF, PATHS, SNIPPETS, TYPES, VALUES
 from mxeon.library import examples_folder
 
 XI = 'xmlns:xi="http://www.w3.org/2001/XInclude"'
@@ -15,7 +15,11 @@ GRAPH = f"""<materialx version="1.39" {XI}>{NODEDEF}
   <nodegraph name="NG_x" nodedef="ND_x"><oren_nayar_diffuse_bsdf name="inner" type="BSDF"/>
     <output name="out" type="BSDF" nodename="inner"/></nodegraph>
   <nodegraph name="ng"><input name="tint" type="color3" value="0.5, 0.4, 0.3"/>
-    <multiply name="m" type="color3"><input name="in1" type="color3" interfacename="tint"/>
+    <convert name="v" type="vector3"><input name="in" type="color3" interfacename="tint"/></convert>
+    <transformmatrix name="t" type="vector3"><input name="in" type="vector3" nodename="v"/>
+      <input name="mat" type="matrix33" value="1,0,0, 0,1,0, 0,0,1"/></transformmatrix>
+    <convert name="k" type="color3"><input name="in" type="vector3" nodename="t"/></convert>
+    <multiply name="m" type="color3"><input name="in1" type="color3" nodename="k"/>
       <input name="in2" type="float" value="0.5"/></multiply>
     <geompropvalue name="g" type="float"><input name="geomprop" type="string" value="wear"/>
     </geompropvalue>
@@ -255,7 +259,10 @@ def _splice(rng, data):
 
 def _encode(rng, data):
     encoding = rng.choice(("utf-16", "utf-32", "utf-8-sig", "utf-7", "latin-1"))
-    return data.decode("utf-8", "replace").encode(encoding, "replace")
+    text = data.decode("utf-8", "replace")
+    if rng.random() < 0.5:
+        text = f'<?xml version="1.0" encoding="{rng.choice(ENCODINGS)}"?>{text}'
+    return text.encode(encoding, "replace")
 
 
 BYTES = (_flip, _flip, _flip, _cut, _insert, _insert, _repeat, _splice, _encode)

@@ -8,6 +8,7 @@ VALUES = (
     "", " ", "0", "-1", "1", "2", "1.5707964", "nan", "inf", "-inf", "1e999", "1e-400", "0x10",
     "0,0,0", "1, 1, 1", "0.5,0.5", "1,2,3,4,5", "true", "false", "none", "default", "%s%n", "{}",
     "{1;2}", "$HOME", "`id`", "99999999999999999999", "-0", "1_0", "١", "０.5", "0.5;1", "[tok]",
+    "0.5f", "50%", "0.5.0", "1 1,1", "0.5 0.5",
     "a" * 300, "a" * 70_000, "\u202ereverse", "naïve", "\U0001f600", "\x7f", "\x85", "a\tb", "a\nb",
     '"', "'", "\\", 'x"; ' + POISON + '; "', ");" + POISON + ";(", "x;" + POISON, "*/" + POISON,
     "<script>" + POISON + "</script>", "&amp;", "]]>", "--", "//", "/*",
@@ -41,6 +42,11 @@ CATEGORIES = (
     "UsdPreviewSurface", "gltf_pbr", "LamaDiffuse", "geompropvalue", "switch", "dot", "separate3",
     "uniform_edf", "position", "normalmap", "artistic_ior", "shaderref", "bindinput", "parameter",
     "geomattr", "compare", "curveadjust", "convert", "combine2", "materialx", "propertyset",
+)  # fmt: skip
+
+ENCODINGS = (
+    "utf-8", "utf-16", "iso-8859-1", "us-ascii", "ebcdic", "hex", "zlib", "rot13", "idna", "shift_jis",
+    "unicode_escape", "mbcs", "", "a" * 300,
 )  # fmt: skip
 
 TYPES = (
