@@ -123,7 +123,7 @@ class Journal:
 
     def _write(self, lines):
         with replacing(self._path) as beside:
-            _write_through(beside, b"".join(lines.values()))
+            beside.write_bytes(b"".join(lines.values()))
         _sync(self._path.parent)
         _sync(self._folder)
         return lines
@@ -147,7 +147,7 @@ class Journal:
         name = hashlib.sha256(pixels.getbuffer()).hexdigest()
         path = self._path.with_name(f"{name}.npy")
         with replacing(path) as beside:
-            _write_through(beside, pixels.getbuffer())
+            beside.write_bytes(pixels.getbuffer())
         return StoredImage(path)
 
 
@@ -232,11 +232,3 @@ def _sync(folder):
         os.fsync(file)
     finally:
         os.close(file)
-
-
-def _write_through(path, data):
-    """Write a file and have it on disk."""
-    with open(path, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
