@@ -15,8 +15,8 @@ NORMAL = (0.258831, 0.98995)
 AVERAGE = 0.189468
 
 # Our fits to the same forms, fits/eon_inversion.py; largest error of rho 2.96e-3 and 1.86e-3.
-NORMAL_REFIT = (0.2531109, 0.9883164)
-AVERAGE_REFIT = 0.1843290
+NORMAL_REFIT = (0.2531091, 0.9883170)
+AVERAGE_REFIT = 0.1843278
 
 
 def eon_rho_from_albedo_normal(color, roughness):
@@ -244,7 +244,7 @@ def eon_rho_from_albedo_avg_refit_approx(color, roughness):
     Examples
     --------
     >>> eon_rho_from_albedo_avg_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.207207, 0.829493, 1.      ])
+    array([0.      , 0.207207, 0.829492, 1.      ])
     """
     return _polynomial(color, roughness, AVERAGE_REFIT, 1.0)
 

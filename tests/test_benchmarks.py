@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
 
-import runpy
 from pathlib import Path
 
 import numpy as np
@@ -144,11 +143,3 @@ def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_sha
     for pairs, channels in ((0, 3), (1, 3), (5, 2), (5, 3)):
         rho, r = np.full((pairs, channels), 0.5), np.full(pairs, 0.5)
         assert compiled.eon_brdf(up[:pairs], up[:pairs], rho, r).shape == (pairs, channels)
-
-
-def test_script_gives_the_arc_tangent_of_the_compiled_models():
-    compiled = pytest.importorskip("mxeon.compiled")
-    fit = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "arc_tangent.py"))
-    found = fit["coefficients"](**fit["COMPILED"])
-    assert np.ravel(compiled.ATAN).tolist() == found
-    assert fit["largest_error"](found, 1.0, 101) <= tolerances.ROUNDING

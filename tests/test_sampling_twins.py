@@ -7,8 +7,6 @@ although all is right: each of them runs at its share of it.
 
 import inspect
 import re
-import runpy
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,8 +15,6 @@ from scipy import stats
 from test_sampling_statistics import binned, expected
 from test_twins import directions, text
 from tolerances import (
-    FIT_ROOT,
-    REFIT,
     TWIN_DIRECTION,
     TWIN_DIRECTION_SHARE,
     TWIN_LENGTH,
@@ -34,7 +30,6 @@ FALSE_ALARM = 1e-4
 DRAWS = [(sampler, mu, r) for sampler in SAMPLERS for mu, r in ((0.1, 1.0), (0.7, 0.3))]
 DRAWS += [(BY_NAME["eon"], mu, r) for mu, r in ((0.0, 1.0), (1e-3, 0.5), (0.97, 1.0), (1.0, 1.0))]
 SHARE = FALSE_ALARM / len(DRAWS)
-FITS = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "eon_sampling.py"))
 
 
 @pytest.fixture(scope="module", params=("gl", "cycles"))
@@ -93,13 +88,6 @@ def test_sampling_twins_take_the_arguments_of_the_python_package(sampler, suffix
 def test_sampling_twins_have_the_coefficients_of_the_python_package(name):
     found = re.findall(rf"#define EON_{name}\d (\S+)", text("glsl", "eon_sampling"))
     assert tuple(map(float, found)) == getattr(eon_sampling, name)
-
-
-def test_script_gives_the_root_of_the_sampling_twins():
-    found = re.findall(r"#define EON_ROOT\d (\S+)", text("glsl", "eon_sampling"))
-    kept, error = FITS["root_fit"]()
-    np.testing.assert_allclose([float(each) for each in found], kept, rtol=0.0, atol=REFIT)
-    assert error <= FIT_ROOT
 
 
 @every_sampler
