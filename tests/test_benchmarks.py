@@ -1,24 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
 
-from pathlib import Path
 
 import numpy as np
 import pytest
-import tolerances
+from availability import available
 
 from benchmarks import __main__ as command
 from benchmarks import cycles, materials, models, page, record, shaders, tool
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
-from mxeon.hosts import NotRun, open_host
-
-
-@pytest.fixture(scope="module")
-def gl():
-    try:
-        return open_host("gl")
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def assert_right(group):
@@ -131,10 +121,8 @@ def test_names_of_table_1_are_names_of_rivals():
 
 
 def test_pictures_of_cycles_have_the_albedos_that_they_are_compared_with():
-    try:
+    with available("cycles"):
         assert_right(cycles.measure(rounds=1, size=32, samples=(64,)))
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_shape():

@@ -6,10 +6,10 @@ import re
 
 import numpy as np
 import pytest
+from cases import directions_32
 from tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
 
 from mxeon import albedo, formulas, models, twins
-from mxeon.hosts import NotRun, open_host
 from mxeon.library import data_folder
 
 STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling")
@@ -41,27 +41,12 @@ by_stem = pytest.mark.parametrize("stem", STEMS)
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
 
-@pytest.fixture(scope="module")
-def gl():
-    try:
-        return open_host("gl")
-    except NotRun as reason:
-        pytest.skip(str(reason))
-
-
 def text(language, stem):
     return (data_folder() / f"gen{language}" / f"{stem}.{language}").read_text(encoding="utf-8")
 
 
 def code(stem):
     return re.sub(r"//.*", "", text("glsl", stem))
-
-
-def directions(rng, count):
-    """Unit vectors in float32: half uniform, half with log-uniform cosines down to 1e-6."""
-    z = np.where(rng.random(count) < 0.5, rng.random(count), 10.0 ** rng.uniform(-6, 0, count))
-    phi, S = rng.uniform(0, 2 * np.pi, count), np.sqrt(1 - z * z)
-    return np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1).astype("f4")
 
 
 def materials(rng, count):
@@ -125,7 +110,7 @@ def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():
 @pytest.mark.parametrize("function", VALUES, ids=name_of)
 def test_twin_values_agree_with_float64_down_to_grazing(gl, function):
     rng = np.random.default_rng(1)
-    wo, wi = directions(rng, 100_000), directions(rng, 100_000)
+    wo, wi = directions_32(rng, 100_000), directions_32(rng, 100_000)
     error = twin_error(gl, function, {"wo": wo, "wi": wi} | materials(rng, 100_000))
     assert np.max(np.abs(np.pi * error * wi[:, 2:])) <= TWIN_VALUE
 

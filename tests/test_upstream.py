@@ -4,8 +4,8 @@
 from functools import lru_cache
 
 import pytest
+from availability import available
 
-from mxeon.hosts import NotRun
 from upstream import ledger
 
 PAGES = [defect.page for defect in ledger.DEFECTS] + list(ledger.OF_QUANTITIES)
@@ -16,10 +16,8 @@ of_each_defect = pytest.mark.parametrize("defect", ledger.DEFECTS, ids=lambda ea
 
 @lru_cache(maxsize=None)
 def judged(host):
-    try:
+    with available(host):
         return ledger.judged(host)
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def test_every_page_is_in_the_ledger():
