@@ -195,3 +195,9 @@ KIT_FALSE_ALARMS = 2
 # A component of a vertex is printed with 9 digits after the point, half a unit off at most; of its
 # length three are.
 KIT_PRINTED = 1.5e-9
+
+# --- pages of upstream -----------------------------------------------------------------------
+
+# A figure with two digits against another such, relative: each is off by half a unit of the second
+# digit, 5 % at most, and drivers part by 1e-5 of 1, one unit in the third digit of the least, 0.01.
+PRINTED = 0.11
