@@ -7,7 +7,7 @@ Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no o
 import numpy as np
 
 from mxeon.formulas import C1, C2
-from mxeon.geometry import checked
+from mxeon.geometry import checked, lead_shape
 
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
 # where the paper states less than 0.3 %, and 2.84e-3.
@@ -251,8 +251,10 @@ def eon_rho_from_albedo_avg_refit_approx(color, roughness):
 
 def _checked(color, roughness):
     """Checked arguments as float64 arrays: colors (..., C), roughness (..., 1)."""
-    color = np.atleast_1d(np.float64(checked("color", color)))
-    return color, np.float64(checked("roughness", roughness))[..., np.newaxis]
+    color = np.atleast_1d(np.asarray(checked("color", color), np.float64))
+    roughness = np.asarray(checked("roughness", roughness), np.float64)
+    lead_shape({"color": color}, {"roughness": roughness})
+    return color, roughness[..., np.newaxis]
 
 
 def _polynomial(color, roughness, slope, zero):
