@@ -1,52 +1,52 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fit of the polynomials of `mxeon.inversion` for rho; prints coefficients and errors.
 
-    python fits/eon_inversion.py
+    python -m fits.eon_inversion
 
 The forms are those of [Portsmouth2025], Eqs. (32) and (34), C + a (b - C) C r, in the second with
-b = 1. The largest error over colors and roughness in [0, 1] is least: a linear program.
+b = 1. The largest error over colors and roughness in [0, 1] is least.
 """
 
-import numpy as np
-from scipy.optimize import linprog
+from fits.minimax import least_largest, mp
 
-from mxeon import inversion
+C1 = mp.one / 2 - 2 / (3 * mp.pi)
+C2 = mp.mpf(2) / 3 - 28 / (15 * mp.pi)
 
-COLORS, ROUGHNESS = np.meshgrid(np.linspace(0.0, 1.0, 401), np.linspace(0.0, 1.0, 101))
-
-
-def least_largest(columns, right):
-    """Coefficients whose combination of the columns comes nearest to `right`, and how near."""
-    matrix = np.stack([column.ravel() for column in columns], axis=-1)
-    bound = np.ones((len(matrix), 1))
-    constraints = np.block([[matrix, -bound], [-matrix, -bound]])
-    cost = np.append(np.zeros(len(columns)), 1.0)
-    right = right.ravel()
-    free = [(None, None)] * len(cost)
-    return linprog(cost, constraints, np.append(right, -right), bounds=free).x
+# Where color or roughness is 0, the polynomials are exact whatever their coefficients are; so is
+# that for the average albedo where the color is 1.
+GRID = [(mp.mpf(i) / 200, mp.mpf(j) / 20) for i in range(1, 201) for j in range(1, 21)]
+INNER = [(color, r) for color, r in GRID if color < 1]
 
 
-def exact(function):
-    """What one of the exact inversions adds to the color, on the grid."""
-    return function(COLORS[..., np.newaxis], ROUGHNESS)[..., 0] - COLORS
+def rho_normal(color, r):
+    """rho for the albedo at normal incidence: [Portsmouth2025], Eqs. (29) and (30)."""
+    normal, mean = 1 / (1 + C1 * r), (1 + C2 * r) / (1 + C1 * r)
+    a, b = mean - normal, normal + color * (1 - mean)
+    return (mp.sqrt(b * b + 4 * a * color) - b) / (2 * a)
+
+
+def rho_average(color, r):
+    """rho for the average albedo: [Portsmouth2025], Eqs. (29) and (33)."""
+    return color / (color + (1 + C2 * r) / (1 + C1 * r) * (1 - color))
 
 
 def normal():
-    """Coefficients a, b for the albedo at normal incidence, and the largest error."""
-    columns = [COLORS * ROUGHNESS, -(COLORS**2) * ROUGHNESS]
-    ab, a, error = least_largest(columns, exact(inversion.eon_rho_from_albedo_normal))
-    return a, ab / a, error
+    """Coefficients (a, b) for the albedo at normal incidence, and the largest error."""
+    rows = [[color * r, -(color**2) * r] for color, r in GRID]
+    (ab, a), error = least_largest(rows, [rho_normal(*point) - point[0] for point in GRID])
+    return (float(a), float(ab / a)), float(error)
 
 
 def average():
     """Coefficient a for the average albedo, and the largest error."""
-    column = (1.0 - COLORS) * COLORS * ROUGHNESS
-    return least_largest([column], exact(inversion.eon_rho_from_albedo_avg))
+    rows = [[(1 - color) * color * r] for color, r in INNER]
+    (a,), error = least_largest(rows, [rho_average(*point) - point[0] for point in INNER])
+    return float(a), float(error)
 
 
 def main():
     """Print each fit as it stands in the package."""
-    a, b, error = normal()
+    (a, b), error = normal()
     print(f"NORMAL_REFIT = ({a:.7f}, {b:.7f})\nlargest error {error:.3g}")
     a, error = average()
     print(f"AVERAGE_REFIT = {a:.7f}\nlargest error {error:.3g}")

@@ -5,21 +5,20 @@
 
 P takes the even part of H in S, and Q the odd part, which vanishes like 1 - mu at normal incidence.
 With 1 - S in place of S the second term also vanishes at grazing, so that nothing cancels there.
-The largest relative error of H is made least by linear programming, from the closed form alone.
+The largest relative error of H is made least, from the closed form alone.
 
-    python fits/fon_loss.py
+    python -m fits.fon_loss
 """
 
 import numpy as np
-from scipy.optimize import linprog
+
+from fits.minimax import least_largest, mp
+from mxeon import formulas
 
 # One degree less in either costs a factor above ten; the table that this script prints says so.
 DEGREE_P, DEGREE_Q = 4, 3
 DIGITS = 9  # decimal digits that tell any two float32 numbers apart
-SCALE = 1e6  # brings errors near 1e-7 above the solver's tolerance of 1e-7
-
-# Extrema of a Chebyshev polynomial, dense towards both ends, where errors of fits are largest.
-NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 401)[1:])
+COUNT = 200  # points of the fit
 
 # Every decade from 1e-8 and every part of [0, 1], exactly representable.
 CHECKED = np.unique(
@@ -28,15 +27,10 @@ CHECKED = np.unique(
 
 
 def closed_form(mu):
-    """H(mu) = c1 - G_F(mu) / pi, [Portsmouth2025], Eq. (13), in float64, without cancellation.
-
-    Put theta = pi / 2 - 2 atan(t), t = mu / (1 + S), and 1 - S = mu t into Eq. (13).
-    """
-    mu = np.float64(mu)
-    c1 = 0.5 - 2.0 / (3.0 * np.pi)
-    S = np.sqrt((1.0 - mu) * (1.0 + mu))
-    t = mu / (1.0 + S)
-    return mu * t * (c1 - S * t * (2.0 + S) / (3.0 * np.pi)) + 2.0 / np.pi * S * np.arctan(t)
+    """H(mu) = c1 - G_F(mu) / pi, [Portsmouth2025], Eq. (13), in 40 digits, mu > 0."""
+    S = mp.sqrt((1 - mu) * (1 + mu))
+    G = S * (mp.acos(mu) - mu * S) + mp.mpf(2) / 3 * (S * (1 - S**3) / mu - S)
+    return mp.mpf(1) / 2 - 2 / (3 * mp.pi) - G / mp.pi
 
 
 def fitted(mu, p, q):
@@ -48,7 +42,7 @@ def fitted(mu, p, q):
 
 
 def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
-    """Coefficients with the least largest relative error on `NODES`.
+    """Coefficients with the least largest relative error on `COUNT` points.
 
     Parameters
     ----------
@@ -60,24 +54,15 @@ def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
     p, q : ndarray, shapes (degree_p + 1,) and (degree_q + 1,)
         Rounded to `DIGITS` digits, lowest power first.
     """
-    m, S = 1.0 - NODES, np.sqrt(1.0 - NODES**2)
-    even = [NODES**k for k in range(degree_p + 1)]
-    odd = [(1.0 - S) * m * NODES**k for k in range(degree_q + 1)]
-    basis = np.stack(even + odd, axis=1) * (NODES / closed_form(NODES))[:, None] * SCALE
-
-    # Minimise e with |basis x - 1| <= e, both sides scaled.
-    e, target = np.ones((len(NODES), 1)), np.full(len(NODES), SCALE)
-    constraints = np.block([[basis, -e], [-basis, -e]])
-    cost = np.append(np.zeros(basis.shape[1]), 1.0)
-    bounds = np.append(target, -target)
-    found = linprog(cost, constraints, bounds, bounds=(None, None), method="highs-ds")
-    rounded = np.array([float(f"{x:.{DIGITS}g}") for x in found.x[:-1]])
+    rows = [_row(mu, degree_p, degree_q) for mu in _points()]
+    x, _ = least_largest(rows, [mp.one] * len(rows))
+    rounded = np.array([float(mp.nstr(each, DIGITS)) for each in x])
     return rounded[: degree_p + 1], rounded[degree_p + 1 :]
 
 
 def largest_errors(p, q):
     """Largest relative error of H over `CHECKED` in float64, and in simulated float32."""
-    exact = closed_form(CHECKED)
+    exact = formulas.loss(np.float64(CHECKED))
     double = fitted(np.float64(CHECKED), p, q)
     single = fitted(CHECKED, np.float32(p), np.float32(q))
     return tuple(float(np.max(np.abs(each / exact - 1.0))) for each in (double, single))
@@ -94,6 +79,19 @@ def defines():
     return [
         f"#define EON_{name}{k} {x:.{DIGITS}g}" for name, row in rows for k, x in enumerate(row)
     ]
+
+
+def _points():
+    """Extrema of a Chebyshev polynomial, dense towards both ends, where errors are largest."""
+    return [(1 - mp.cos(mp.pi * k / COUNT)) / 2 for k in range(1, COUNT + 1)]
+
+
+def _row(mu, degree_p, degree_q):
+    """What each coefficient stands before, in relation to H(mu)."""
+    factor = mu / closed_form(mu)
+    odd = factor * (1 - mp.sqrt(1 - mu**2)) * (1 - mu)
+    even = [factor * mu**k for k in range(degree_p + 1)]
+    return even + [odd * mu**k for k in range(degree_q + 1)]
 
 
 def _horner(mu, coefficients):

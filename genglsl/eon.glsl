@@ -15,14 +15,14 @@
 // Source: fits/fon_loss.py. Domain: mu in [0, 1]. Largest relative error: 2.7e-7, and 4.9e-7 with
 // the roundings of float32.
 #define EON_P0 0.318309971
-#define EON_P1 0.143885058
-#define EON_P2 -0.449164533
-#define EON_P3 0.421913291
-#define EON_P4 -0.147150417
-#define EON_Q0 0.527492043
-#define EON_Q1 -0.248903972
-#define EON_Q2 -0.125386038
-#define EON_Q3 0.0571941121
+#define EON_P1 0.143885045
+#define EON_P2 -0.449159307
+#define EON_P3 0.42190335
+#define EON_P4 -0.147145689
+#define EON_Q0 0.527481849
+#define EON_Q1 -0.248895342
+#define EON_Q2 -0.125382218
+#define EON_Q3 0.0571913429
 
 // H(mu) = c1 - G_F(mu) / pi, with G_F of [Portsmouth2025], Eq. (13). It carries the energy that FON
 // loses, 1 - E(mu) = r H(mu) / (1 + c1 r), and vanishes at grazing like mu / pi.

@@ -8,7 +8,7 @@ and work on the closed domain; H is `fon_loss`.
 import numpy as np
 
 from mxeon.formulas import C1, C2, loss, loss_approx, qon_a, qon_b, recaptured
-from mxeon.geometry import checked
+from mxeon.geometry import checked, lead_shape
 from mxeon.quadrature import albedo_dir_quadrature  # noqa: F401, public here
 
 
@@ -45,7 +45,8 @@ def fon_loss(mu):
     >>> fon_loss([0.0, 0.5, 1.0]).round(6)
     array([0.      , 0.173441, 0.287793])
     """
-    return loss(_float("mu", mu))
+    (mu,) = _floats(mu=mu)
+    return loss(mu)
 
 
 def qon_albedo_dir(mu, sigma):
@@ -83,7 +84,7 @@ def qon_albedo_dir(mu, sigma):
     >>> qon_albedo_dir([0.0, 1.0], 0.5).round(6)
     array([0.949924, 0.784483])
     """
-    mu, sigma = _float("mu", mu), _float("sigma", sigma)
+    mu, sigma = _floats(mu=mu, sigma=sigma)
     g_over_pi = C1 - loss(mu) + 2.0 / (3.0 * np.pi) * np.sqrt((1.0 - mu) * (1.0 + mu))
     return qon_a(sigma) + qon_b(sigma) * g_over_pi
 
@@ -117,7 +118,7 @@ def qon_albedo_avg(sigma):
     >>> qon_albedo_avg(0.5).round(6)
     np.float64(0.855278)
     """
-    sigma = _float("sigma", sigma)
+    (sigma,) = _floats(sigma=sigma)
     return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_b(sigma)
 
 
@@ -156,7 +157,7 @@ def fon_albedo_dir(mu, roughness):
     >>> fon_albedo_dir([0.0, 1.0], 1.0).round(6)
     array([1.      , 0.776522])
     """
-    mu, r = _float("mu", mu), _float("roughness", roughness)
+    mu, r = _floats(mu=mu, roughness=roughness)
     return 1.0 - r * loss(mu) / (1.0 + C1 * r)
 
 
@@ -195,7 +196,7 @@ def fon_albedo_dir_approx(mu, roughness):
     >>> fon_albedo_dir_approx([0.0, 1.0], 1.0).round(6)
     array([1.000356, 0.776522])
     """
-    mu, r = _float("mu", mu), _float("roughness", roughness)
+    mu, r = _floats(mu=mu, roughness=roughness)
     return 1.0 - r * loss_approx(mu) / (1.0 + C1 * r)
 
 
@@ -228,7 +229,7 @@ def fon_albedo_avg(roughness):
     >>> fon_albedo_avg([0.0, 1.0]).round(6)
     array([1.      , 0.832811])
     """
-    r = _float("roughness", roughness)
+    (r,) = _floats(roughness=roughness)
     return (1.0 + C2 * r) / (1.0 + C1 * r)
 
 
@@ -271,7 +272,8 @@ def eon_albedo_dir(mu, rho, roughness):
     array([[0.5     , 1.      ],
            [0.439034, 1.      ]])
     """
-    return _eon_albedo(loss(_float("mu", mu)[..., np.newaxis]), rho, roughness)
+    rho, r, mu = _colored(rho, roughness=roughness, mu=mu)
+    return _eon_albedo(loss(mu), rho, r)
 
 
 def eon_albedo_dir_approx(mu, rho, roughness):
@@ -312,7 +314,8 @@ def eon_albedo_dir_approx(mu, rho, roughness):
     array([[0.500097, 1.      ],
            [0.439034, 1.      ]])
     """
-    return _eon_albedo(loss_approx(_float("mu", mu)[..., np.newaxis]), rho, roughness)
+    rho, r, mu = _colored(rho, roughness=roughness, mu=mu)
+    return _eon_albedo(loss_approx(mu), rho, r)
 
 
 def eon_albedo_avg(rho, roughness):
@@ -347,15 +350,24 @@ def eon_albedo_avg(rho, roughness):
     >>> eon_albedo_avg([0.5, 1.0], 1.0).round(6)
     array([0.45439, 1.     ])
     """
-    return _eon_albedo(C1 - C2, rho, roughness)
+    return _eon_albedo(C1 - C2, *_colored(rho, roughness=roughness))
 
 
-def _eon_albedo(lost, rho, roughness):
-    """Albedo of EON where FON loses roughness A lost."""
-    rho, r = np.atleast_1d(_float("rho", rho)), _float("roughness", roughness)[..., np.newaxis]
+def _eon_albedo(lost, rho, r):
+    """Albedo of EON where FON loses r A lost."""
     return rho * (1.0 - (1.0 - rho) * r * lost / recaptured(rho, r))
 
 
-def _float(name, value):
-    """A checked argument in float64."""
-    return np.asarray(checked(name, value), np.float64)
+def _floats(**arguments):
+    """Checked arguments in float64, whose shapes broadcast."""
+    arrays = {name: checked(name, value) for name, value in arguments.items()}
+    lead_shape({}, arrays)
+    return [np.asarray(array, np.float64) for array in arrays.values()]
+
+
+def _colored(rho, **arguments):
+    """Checked `rho` (..., C), and the others with an axis for its channels."""
+    rho = np.atleast_1d(np.asarray(checked("rho", rho), np.float64))
+    numbers = {name: checked(name, value) for name, value in arguments.items()}
+    lead_shape({"rho": rho}, numbers)
+    return rho, *(np.asarray(array, np.float64)[..., np.newaxis] for array in numbers.values())

@@ -7,8 +7,7 @@ rest has the shape of a lune. See `mxeon.ltc` for the matrix and its density.
 
 import numpy as np
 
-from mxeon.geometry import checked_directions
-from mxeon.hemisphere import checked_view, numbers, uniform_sample, vector
+from mxeon.hemisphere import checked_draw, checked_pdf, numbers, uniform_sample, vector
 from mxeon.ltc import coefficients, density, transformed
 
 
@@ -55,7 +54,7 @@ def cltc_sample(wo, u, roughness):
     >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
     True
     """
-    wo, roughness = checked_view(wo, roughness)
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     matrix = coefficients(wo[..., 2], roughness)
     kept = kept_part(matrix[3])
     wi, pdf = transformed(wo, clipped_cosine(numbers(u), matrix[3], kept), matrix)
@@ -93,9 +92,9 @@ def cltc_pdf(wo, wi, roughness):
     >>> round(float(cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
     0.31831
     """
-    wo, roughness = checked_view(wo, roughness)
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     matrix = coefficients(wo[..., 2], roughness)
-    pdf = density(wo, checked_directions("wi", wi), matrix)
+    pdf = density(wo, wi, matrix)
     return pdf / kept_part(matrix[3])
 
 
@@ -138,7 +137,7 @@ def eon_cltc_sample(wo, u, roughness):
     >>> wi, round(float(pdf), 6)
     (array([0., 0., 1.]), 0.31831)
     """
-    wo, roughness = checked_view(wo, roughness)
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     u1, u2 = numbers(u)
     share = _uniform_share(wo[..., 2], roughness)
     uniform = u1 < share
@@ -179,7 +178,7 @@ def eon_cltc_pdf(wo, wi, roughness):
     >>> round(float(eon_cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
     0.31831
     """
-    wo, roughness = checked_view(wo, roughness)
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     share = _uniform_share(wo[..., 2], roughness)
     return share * (0.5 / np.pi) + (1.0 - share) * cltc_pdf(wo, wi, roughness)
 

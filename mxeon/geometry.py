@@ -48,6 +48,7 @@ def checked(name, value):
     ------
     ValueError
         If an element is no real number or leaves the range; names it, and NaN leaves every range.
+        A masked array is refused, for the result could not keep its mask.
 
     Examples
     --------
@@ -161,6 +162,44 @@ def blocks(shape):
             yield (*(slice(i, i + 1) for i in outer), slice(start, start + step), *whole)
 
 
+def lead_shape(vectors, numbers):
+    """Shape to which arguments broadcast, without the last axis of those that have one of their own.
+
+    Parameters
+    ----------
+    vectors : dict of str to ndarray
+        Directions, random numbers or colors by name: shapes (..., C).
+    numbers : dict of str to ndarray
+        The others: shapes (...).
+
+    Returns
+    -------
+    tuple of int
+
+    Raises
+    ------
+    ValueError
+        If they do not broadcast; names them and their shapes.
+
+    Examples
+    --------
+    >>> lead_shape({"wo": np.zeros((4, 3))}, {"roughness": np.zeros(5)})
+    Traceback (most recent call last):
+    ...
+    ValueError: wo, roughness must broadcast (last axis of wo apart); got shapes (4, 3), (5,)
+    """
+    arrays = [*vectors.values(), *numbers.values()]
+    shapes = [array.shape[:-1] for array in vectors.values()]
+    shapes += [array.shape for array in numbers.values()]
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError:
+        names = ", ".join([*vectors, *numbers])
+        apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
+        shown = ", ".join(str(array.shape) for array in arrays)
+        raise ValueError(f"{names} must broadcast{apart}; got shapes {shown}") from None
+
+
 def evaluate(formula, wo, wi, rho, **parameter):
     """Values of a reflection formula over broadcast arguments, block by block.
 
@@ -194,9 +233,9 @@ def evaluate(formula, wo, wi, rho, **parameter):
     """
     arguments = {"wo": _directions("wo", wo), "wi": _directions("wi", wi)}
     arguments["rho"] = np.atleast_1d(checked("rho", rho))
-    for name, value in parameter.items():
-        arguments[name] = checked(name, value)[..., np.newaxis]
-    shape = _lead_shape(arguments)
+    numbers = {name: checked(name, value) for name, value in parameter.items()}
+    shape = lead_shape(arguments, numbers)
+    arguments |= {name: array[..., np.newaxis] for name, array in numbers.items()}
     arrays = {name: _with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty(shape + arrays["rho"].shape[-1:])
 
@@ -215,7 +254,9 @@ def evaluate(formula, wo, wi, rho, **parameter):
 
 
 def _real(name, value):
-    """`value` as an array; complex numbers, text and ragged lists are refused."""
+    """`value` as an array; complex numbers, text, ragged lists and masks are refused."""
+    if np.ma.isMaskedArray(value):
+        raise ValueError(f"{name} must not be a masked array, whose mask would be lost; fill it")
     try:
         array = np.asarray(value)
     except ValueError:
@@ -268,18 +309,6 @@ def _for_each(work, items):
         return
     with ThreadPoolExecutor(WORKERS) as pool:
         list(pool.map(work, items))
-
-
-def _lead_shape(arguments):
-    """Broadcast shape of all but the last axes."""
-    shapes = [array.shape[:-1] for array in arguments.values()]
-    try:
-        return np.broadcast_shapes(*shapes)
-    except ValueError:
-        names, shown = ", ".join(arguments), ", ".join(map(str, shapes))
-        raise ValueError(
-            f"{names} must broadcast (last axis of directions and rho apart); got shapes {shown}"
-        ) from None
 
 
 def _with_axes(array, ndim):

@@ -6,7 +6,7 @@ Directions leave the surface, local frame with the normal +z. Random numbers `u`
 
 import numpy as np
 
-from mxeon.geometry import checked, checked_directions
+from mxeon.geometry import checked, checked_directions, lead_shape
 
 
 def uniform_sample(u):
@@ -131,16 +131,35 @@ def cosine_pdf(wi):
     return np.float64(checked_directions("wi", wi)[..., 2]) / np.pi
 
 
-def checked_view(wo, roughness):
-    """Checked `wo` and `roughness`, as float64 arrays."""
-    return np.float64(checked_directions("wo", wo)), np.float64(checked("roughness", roughness))
+def checked_draw(wo, u, **numbers):
+    """Checked arguments of a sampler, in this order, as float64 arrays whose shapes broadcast."""
+    return _broadcastable({"wo": checked_directions("wo", wo), "u": checked_pairs(u)}, numbers)
+
+
+def checked_pdf(wo, wi, **numbers):
+    """Checked arguments of a density, in this order, as float64 arrays whose shapes broadcast."""
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
+    return _broadcastable(vectors, numbers)
+
+
+def _broadcastable(vectors, numbers):
+    numbers = {name: checked(name, value) for name, value in numbers.items()}
+    lead_shape(vectors, numbers)
+    arrays = (*vectors.values(), *numbers.values())
+    return [np.asarray(array, np.float64) for array in arrays]
+
+
+def checked_pairs(u):
+    """Checked random numbers of shape (..., 2), as a float64 array."""
+    u = np.asarray(checked("u", u), np.float64)
+    if u.shape[-1:] != (2,):
+        raise ValueError(f"u must have shape (..., 2); got shape {u.shape}")
+    return u
 
 
 def numbers(u):
     """The two random numbers of each pair, checked, as float64 arrays of shape (...)."""
-    u = np.float64(checked("u", u))
-    if u.shape[-1:] != (2,):
-        raise ValueError(f"u must have shape (..., 2); got shape {u.shape}")
+    u = checked_pairs(u)
     return u[..., 0], u[..., 1]
 
 

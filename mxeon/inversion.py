@@ -7,7 +7,7 @@ Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no o
 import numpy as np
 
 from mxeon.formulas import C1, C2
-from mxeon.geometry import checked
+from mxeon.geometry import checked, lead_shape
 
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
 # where the paper states less than 0.3 %, and 2.84e-3.
@@ -15,8 +15,8 @@ NORMAL = (0.258831, 0.98995)
 AVERAGE = 0.189468
 
 # Our fits to the same forms, fits/eon_inversion.py; largest error of rho 2.96e-3 and 1.86e-3.
-NORMAL_REFIT = (0.2531109, 0.9883164)
-AVERAGE_REFIT = 0.1843290
+NORMAL_REFIT = (0.2531091, 0.9883170)
+AVERAGE_REFIT = 0.1843278
 
 
 def eon_rho_from_albedo_normal(color, roughness):
@@ -244,15 +244,17 @@ def eon_rho_from_albedo_avg_refit_approx(color, roughness):
     Examples
     --------
     >>> eon_rho_from_albedo_avg_refit_approx([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
-    array([0.      , 0.207207, 0.829493, 1.      ])
+    array([0.      , 0.207207, 0.829492, 1.      ])
     """
     return _polynomial(color, roughness, AVERAGE_REFIT, 1.0)
 
 
 def _checked(color, roughness):
     """Checked arguments as float64 arrays: colors (..., C), roughness (..., 1)."""
-    color = np.atleast_1d(np.float64(checked("color", color)))
-    return color, np.float64(checked("roughness", roughness))[..., np.newaxis]
+    color = np.atleast_1d(np.asarray(checked("color", color), np.float64))
+    roughness = np.asarray(checked("roughness", roughness), np.float64)
+    lead_shape({"color": color}, {"roughness": roughness})
+    return color, roughness[..., np.newaxis]
 
 
 def _polynomial(color, roughness, slope, zero):

@@ -9,8 +9,7 @@ under a clamped cosine by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
 
 import numpy as np
 
-from mxeon.geometry import checked_directions
-from mxeon.hemisphere import azimuth, checked_view, cosine_sample, turned, vector
+from mxeon.hemisphere import azimuth, checked_draw, checked_pdf, cosine_sample, turned, vector
 
 
 def ltc0_sample(wo, u, roughness):
@@ -52,7 +51,7 @@ def ltc0_sample(wo, u, roughness):
     >>> wi.round(6), round(float(pdf), 6)
     (array([-0.310077,  0.      ,  0.950711]), 0.227343)
     """
-    wo, roughness = checked_view(wo, roughness)
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     a, b, c, _ = coefficients(wo[..., 2], roughness)
     return transformed(wo, cosine_sample(u)[0], (a, b, c, 0.0))
 
@@ -86,9 +85,9 @@ def ltc0_pdf(wo, wi, roughness):
     >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
     0.31831
     """
-    wo, roughness = checked_view(wo, roughness)
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
     a, b, c, _ = coefficients(wo[..., 2], roughness)
-    return density(wo, checked_directions("wi", wi), (a, b, c, 0.0))
+    return density(wo, wi, (a, b, c, 0.0))
 
 
 def ltc_sample(wo, u, roughness):
@@ -130,7 +129,7 @@ def ltc_sample(wo, u, roughness):
     >>> float(wi[2]) < 0.0
     True
     """
-    wo, roughness = checked_view(wo, roughness)
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     return transformed(wo, cosine_sample(u)[0], coefficients(wo[..., 2], roughness))
 
 
@@ -163,8 +162,8 @@ def ltc_pdf(wo, wi, roughness):
     >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
     0.31831
     """
-    wo, roughness = checked_view(wo, roughness)
-    return density(wo, checked_directions("wi", wi), coefficients(wo[..., 2], roughness))
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    return density(wo, wi, coefficients(wo[..., 2], roughness))
 
 
 # [Portsmouth2025], Listing 2: mu and roughness in [0, 1]; the paper states no error.

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.geometry import checked
+from mxeon.geometry import checked, lead_shape
 
 
 def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
@@ -49,7 +49,8 @@ def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
     """
     mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
     parameter = [np.asarray(value) for value in parameter]
-    lead = np.broadcast_shapes(mu.shape, rho.shape[:-1], *(value.shape for value in parameter))
+    numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameter)}
+    lead = lead_shape({"rho": rho}, numbers)
     mu, rho = np.broadcast_to(mu, lead), np.broadcast_to(rho, lead + rho.shape[-1:])
     parameter = [np.broadcast_to(value, lead) for value in parameter]
     albedo = np.empty(rho.shape)

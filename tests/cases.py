@@ -27,3 +27,10 @@ def parameter(row, fraction):
         return ()
     low, high = row.interval
     return (low + (high - low) * fraction,)
+
+
+def directions_32(rng, count):
+    """Unit vectors in float32: half uniform, half with log-uniform cosines down to 1e-6."""
+    z = np.where(rng.random(count) < 0.5, rng.random(count), 10.0 ** rng.uniform(-6, 0, count))
+    phi, S = rng.uniform(0, 2 * np.pi, count), np.sqrt(1 - z * z)
+    return np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1).astype("f4")

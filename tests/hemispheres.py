@@ -47,3 +47,20 @@ def hemisphere(mu, count=64):
 def uniforms(count, seed):
     """Random numbers, shape (count, 2)."""
     return np.random.default_rng(seed).random((count, 2))
+
+
+def binned(wi, edges, count):
+    """Number of directions in each bin of polar angle times azimuth, and of those below."""
+    row = np.digitize(np.arccos(np.clip(wi[:, 2], -1.0, 1.0)), edges[1:-1])
+    column = np.floor((np.arctan2(wi[:, 1], wi[:, 0]) / (2.0 * np.pi) % 1.0) * count).astype(int)
+    bins = np.where(wi[:, 2] < 0.0, 0, 1 + row * count + np.minimum(column, count - 1))
+    return np.bincount(bins, minlength=1 + count * (len(edges) - 1))
+
+
+def expected(sampler, mu, roughness, edges, count):
+    """Probability of each bin of `binned`, by quadrature."""
+    theta, dtheta = rule(edges, 16)
+    phi, dphi = rule(2.0 * np.pi * np.arange(count + 1) / count, 16)
+    pdf = sampler.pdf(view(mu), directions(theta, phi), roughness)
+    bins = np.einsum("ikjl,ik,jl->ij", pdf, dtheta * np.sin(theta), dphi)
+    return np.append(max(0.0, 1.0 - bins.sum()), bins)

@@ -1,25 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
 
-import runpy
-from pathlib import Path
 
 import numpy as np
 import pytest
-import tolerances
+from availability import available
 
 from benchmarks import __main__ as command
 from benchmarks import cycles, materials, models, page, record, shaders, tool
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
-from mxeon.hosts import NotRun, open_host
-
-
-@pytest.fixture(scope="module")
-def gl():
-    try:
-        return open_host("gl")
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def assert_right(group):
@@ -132,10 +121,8 @@ def test_names_of_table_1_are_names_of_rivals():
 
 
 def test_pictures_of_cycles_have_the_albedos_that_they_are_compared_with():
-    try:
+    with available("cycles"):
         assert_right(cycles.measure(rounds=1, size=32, samples=(64,)))
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_shape():
@@ -144,11 +131,3 @@ def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_sha
     for pairs, channels in ((0, 3), (1, 3), (5, 2), (5, 3)):
         rho, r = np.full((pairs, channels), 0.5), np.full(pairs, 0.5)
         assert compiled.eon_brdf(up[:pairs], up[:pairs], rho, r).shape == (pairs, channels)
-
-
-def test_script_gives_the_arc_tangent_of_the_compiled_models():
-    compiled = pytest.importorskip("mxeon.compiled")
-    fit = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "arc_tangent.py"))
-    found = fit["coefficients"](**fit["COMPILED"])
-    assert np.ravel(compiled.ATAN).tolist() == found
-    assert fit["largest_error"](found, 1.0, 101) <= tolerances.ROUNDING

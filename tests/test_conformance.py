@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The conformance suite judged: what passes, what it must catch, and what it calls by name."""
 
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -308,15 +307,9 @@ def test_every_page_that_a_check_refers_to_is_there():
 
 
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
-def test_stock_materialx_in_cycles_is_called_by_its_name(subject):
-    try:
-        cycles = open_host("cycles")
-        cycles.identity()
-    except NotRun as reason:
-        pytest.skip(str(reason))
-    with closing(cycles):
-        probe = PictureProbe(cycles, subject, "stock")
-        assert "nearest known model: EON with rho^3 (rms " in nearest_value(probe).text
+def test_stock_materialx_in_cycles_is_called_by_its_name(hosts, subject):
+    probe = PictureProbe(hosts("cycles"), subject, "stock")
+    assert "nearest known model: EON with rho^3 (rms " in nearest_value(probe).text
 
 
 def test_what_stock_materialx_has_right_passes(stock):

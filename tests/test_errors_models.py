@@ -47,9 +47,34 @@ MESSAGES = (
     ),
     (
         lambda: eon_brdf([UP] * 2, [UP] * 3, 1.0, 1.0),
-        "wo, wi, rho, roughness must broadcast (last axis of directions and rho apart); "
-        "got shapes (2,), (3,), (), ()",
+        "wo, wi, rho, roughness must broadcast (last axis of wo, wi, rho apart); "
+        "got shapes (2, 3), (3, 3), (1,), ()",
     ),
+    (
+        lambda: albedo.fon_albedo_dir([0.5] * 4, [0.5] * 5),
+        "mu, roughness must broadcast; got shapes (4,), (5,)",
+    ),
+    (
+        lambda: albedo.eon_albedo_dir(0.5, np.full((4, 3), 0.5), [0.5] * 5),
+        "rho, roughness, mu must broadcast (last axis of rho apart); got shapes (4, 3), (5,), ()",
+    ),
+    (
+        lambda: albedo.eon_albedo_avg(np.full((4, 3), 0.5), [0.5] * 5),
+        "rho, roughness must broadcast (last axis of rho apart); got shapes (4, 3), (5,)",
+    ),
+    (
+        lambda: albedo.albedo_dir_quadrature(eon_brdf, [0.5] * 4, 0.5, [0.5] * 5),
+        "rho, mu, parameter 0 must broadcast (last axis of rho apart); got shapes (1,), (4,), (5,)",
+    ),
+    (
+        lambda: lambert_brdf(UP, UP, np.ma.masked_less([0.1, 0.5], 0.2)),
+        "rho must not be a masked array, whose mask would be lost; fill it",
+    ),
+    (
+        lambda: lambert_brdf(np.ma.array(UP), UP, 1.0),
+        "wo must not be a masked array, whose mask would be lost; fill it",
+    ),
+    (lambda: albedo.fon_loss(np.ma.array([0.5])), "mu must not be a masked array, "),
     (lambda: albedo.fon_loss(-0.1), "mu must lie in [0, 1]; got -0.1"),
     (lambda: albedo.qon_albedo_dir(1.1, 0.5), "mu must lie in [0, 1]; got 1.1"),
     (lambda: albedo.qon_albedo_dir(0.5, -1.0), "sigma must lie in [0, pi/2]; got -1.0"),

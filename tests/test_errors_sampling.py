@@ -98,3 +98,26 @@ def test_colors_that_no_rho_reaches_are_refused(function):
 def test_inversion_at_a_roughness_out_of_range_is_refused(function):
     with refuses("roughness must lie in [0, 1]; got 2.0"):
         function(0.5, 2.0)
+
+
+@seen
+def test_shapes_that_do_not_broadcast_are_refused_by_name(sampler):
+    views, rough = [UP] * 4, [0.5] * 5
+    rule = r"must broadcast \(last axis of wo, {} apart\); got shapes \(4, 3\), \({},\), \(5,\)"
+    with pytest.raises(ValueError, match="^wo, u, roughness.* " + rule.format("u", 2)):
+        sampler.sample(views, HALF, rough)
+    with pytest.raises(ValueError, match="^wo, wi, roughness.* " + rule.format("wi", 3)):
+        sampler.pdf(views, UP, rough)
+
+
+@every_inversion
+def test_colors_and_roughness_that_do_not_broadcast_are_refused_by_name(function):
+    message = "color, roughness must broadcast (last axis of color apart); got shapes (4, 3), (5,)"
+    with refuses(message):
+        function(np.full((4, 3), 0.5), [0.5] * 5)
+
+
+@every_inversion
+def test_masked_colors_are_refused(function):
+    with refuses("color must not be a masked array, whose mask would be lost; fill it"):
+        function(np.ma.masked_less([0.1, 0.5], 0.2), 0.5)

@@ -10,7 +10,6 @@ import pytest
 
 from mxeon import figures
 from mxeon.figures import CLAIMS, FIGURES, claims
-from mxeon.hosts import NotRun, open_host
 
 SMALL = {"size": 16, "samples": 2, "draws": 100}
 RENDERS = ("01", "02", "04a", "04b", "05", "08", "09", "10", "14")
@@ -33,12 +32,8 @@ REFUTED = {
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(tmp_path_factory, gl):
     """A small run: its page, its folder of figures and the steps it reported."""
-    try:
-        open_host("gl").close()
-    except NotRun as reason:
-        pytest.skip(str(reason))
     steps = []
     folder = tmp_path_factory.mktemp("figures")
     page = figures.figures(folder, lambda all_steps: steps.extend(all_steps) or all_steps, **SMALL)

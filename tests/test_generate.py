@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import MaterialX as mx
 import pytest
+from availability import available
 from documents import EON, FLAG, OREN_NAYAR, lobe, material
 
 from mxeon.document import DocumentError, read_document
 from mxeon.generation import TARGETS, ApproximationWarning, Input, generate
-from mxeon.hosts import NotRun
 from mxeon.hosts.cycles_process import interpreter
 from mxeon.library import data_folder, examples_folder, load_library
 
@@ -206,10 +206,8 @@ def test_a_wrong_shader_does_not_compile(target, tmp_path):
 
 
 def test_generated_osl_compiles(tmp_path):
-    try:
+    with available("cycles"):
         python = interpreter()
-    except NotRun as reason:
-        pytest.skip(str(reason))
     headers = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include").asString()
     shutil.copytree(headers, tmp_path, dirs_exist_ok=True)
     sources = [*EXAMPLES, every_lobe()[0], *map(SURFACE.format, SURFACES)]

@@ -2,6 +2,7 @@
 """Blender's own nodes, without OSL, judged as one more renderer."""
 
 import pytest
+from availability import available
 
 from mxeon.conformance import check
 from mxeon.conformance.subjects import NATIVE
@@ -14,10 +15,8 @@ EXAMPLE = examples_folder() / "plaster.mtlx"
 
 @pytest.fixture(scope="module")
 def results():
-    try:
+    with available("cycles-native"):
         open_host("cycles-native").close()
-    except NotRun as reason:
-        pytest.skip(str(reason))
     run = check([EXAMPLE], ["cycles-native"], ["eonlib", "stock"])
     return [each for each in run.results if each.host == "cycles-native"]
 
@@ -40,10 +39,8 @@ def test_blender_has_one_power_of_the_colour_too_many(results, subject):
 
 
 def test_generated_shaders_do_not_run_there():
-    try:
+    with available("cycles-native"):
         host = open_host("cycles-native")
-    except NotRun as reason:
-        pytest.skip(str(reason))
     with pytest.raises(NotRun, match="Blender's own nodes run no generated shader"):
         host.picture(None, None)
     host.close()

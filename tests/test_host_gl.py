@@ -29,18 +29,6 @@ LOBES = {
 }
 
 
-@pytest.fixture(scope="module")
-def gl():
-    host = open_host("gl")
-    yield host
-    host.close()
-
-
-@pytest.fixture(scope="module")
-def reference():
-    return open_host("reference")
-
-
 def shader(nodes):
     return generate(material(nodes), "glsl", lights=True, permissions=Permissions(outside=True))[0]
 

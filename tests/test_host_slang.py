@@ -33,11 +33,6 @@ def test_a_missing_compiler_is_not_run_and_names_the_remedy(tmp_path):
     assert "apt-get install g++" in done.stdout
 
 
-def test_there_are_no_pictures():
-    try:
-        host = slang.Host()
-    except NotRun as reason:
-        pytest.skip(str(reason))
+def test_there_are_no_pictures(hosts):
     with pytest.raises(NotRun, match="slang: there are no pictures here"):
-        host.picture(None, None)
-    host.close()
+        hosts("slang").picture(None, None)

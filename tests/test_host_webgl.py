@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from availability import available
 
 from mxeon.generation import generate
 from mxeon.hosts import NotRun, reference, webgl
@@ -15,10 +16,8 @@ MU = np.array([0.5])
 
 
 def started(**options):
-    try:
+    with available("webgl"):
         return webgl.Host(**options)
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def test_a_missing_playwright_is_not_run_and_names_the_remedy(monkeypatch):

@@ -2,7 +2,6 @@
 """Hosts that evaluate pairs: each is the model, on every host alike, and says who it is."""
 
 from dataclasses import replace
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from mxeon import reference
 from mxeon.conformance.probes import PairProbe
 from mxeon.conformance.subjects import SUBJECTS
 from mxeon.generation import generate
-from mxeon.hosts import NotRun, ShaderError
+from mxeon.hosts import ShaderError
 
 HOSTS = ("gl", "webgl", "vulkan", "slang")
 COUNT = 20_000
@@ -20,13 +19,8 @@ PAIR = np.array([[0.6, 0.0, 0.8]])
 
 
 @pytest.fixture(scope="module", params=HOSTS)
-def host(request):
-    try:
-        host = import_module(f"mxeon.hosts.{request.param}").Host()
-    except NotRun as reason:
-        pytest.skip(str(reason))
-    yield host
-    host.close()
+def host(request, hosts):
+    return hosts(request.param)
 
 
 @pytest.fixture(params=SUBJECTS, ids=lambda subject: subject.title)

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reflectance from albedo: exact inversion, the paper's polynomials, and ours of the same form."""
 
-import runpy
-from pathlib import Path
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -109,12 +106,3 @@ def test_our_coefficients_keep_the_accuracy_stated_for_equation_32():
 def test_our_coefficient_is_better_than_that_of_equation_34():
     error = largest_error(inversion.eon_rho_from_albedo_avg_refit_approx, AVERAGE)
     assert error < tolerances.AVERAGE_REFIT
-
-
-def test_the_script_gives_the_coefficients_of_the_package():
-    fits = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "eon_inversion.py"))
-    a, b, _ = fits["normal"]()
-    np.testing.assert_allclose((a, b), inversion.NORMAL_REFIT, atol=tolerances.REFIT)
-    np.testing.assert_allclose(
-        fits["average"]()[0], inversion.AVERAGE_REFIT, atol=tolerances.REFIT
-    )

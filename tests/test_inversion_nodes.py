@@ -11,7 +11,6 @@ from tolerances import INVERSION_NODE
 
 from mxeon.formulas import C1, C2
 from mxeon.generation import TARGETS, generate
-from mxeon.hosts import NotRun, open_host
 from mxeon.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.library import eonlib_folder, examples_folder
 from mxeon.scene import FURNACE, Scene
@@ -34,14 +33,8 @@ def smooth_surface(node, color, roughness):
 
 
 @pytest.fixture(scope="module", params=["gl", "cycles", "reference"])
-def host(request):
-    try:
-        host = open_host(request.param)
-        host.identity()
-    except NotRun as reason:
-        pytest.skip(str(reason))
-    yield host
-    host.close()
+def host(request, hosts):
+    return hosts(request.param)
 
 
 @pytest.mark.parametrize("roughness", [0.0, 0.3, 1.0])
@@ -75,9 +68,9 @@ def test_the_graphs_hold_standard_nodes_alone():
     assert found <= {"add", "convert", "divide", "invert", "multiply", "sqrt"}
 
 
-def test_the_example_keeps_its_colour_while_roughness_grows():
+def test_the_example_keeps_its_colour_while_roughness_grows(gl):
     shaders = generate(examples_folder() / "constant_colour.mtlx", "glsl", lights=True)
     scene = Scene("furnace", environment=FURNACE.environment, size=9)
-    seen = [open_host("gl").picture(shader, scene)[4, 4] for shader in shaders]
+    seen = [gl.picture(shader, scene)[4, 4] for shader in shaders]
     assert len(seen) == 3
     assert np.abs(np.array(seen) - [0.62, 0.28, 0.16]).max() <= INVERSION_NODE

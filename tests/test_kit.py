@@ -12,12 +12,12 @@ import MaterialX as mx
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from availability import available
 from tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
 
 from mxeon import reference
 from mxeon.cli import main
 from mxeon.generation import ApproximationWarning, generate
-from mxeon.hosts import NotRun
 from mxeon.hosts.cycles_process import interpreter
 from mxeon.kit.check import check_kit
 from mxeon.kit.expected import expected, judged, pixel_means
@@ -454,10 +454,8 @@ def write_osl(kit, library, profile):
 
 def stranger_renders(kit, library, profile=None):
     """Cycles' pictures of a new kit, judged."""
-    try:
+    with available("cycles"):
         python = interpreter()
-    except NotRun as reason:
-        pytest.skip(str(reason))
     export_kit(kit, SIZE)
     sources = write_osl(kit, library, profile)
     command = [python, "-I", "-W", "ignore", STRANGER, kit, sources, "256"]

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import MaterialX as mx
 import pytest
+from availability import available
 from documents import EON, OREN_NAYAR, lobe, material
 from tolerances import MDL_TINT
 
 from mxeon import library
 from mxeon.albedo import fon_albedo_avg
 from mxeon.generation import TARGETS
-from mxeon.hosts import NotRun
 from mxeon.hosts.cycles_process import interpreter
 
 SCRIPTS = Path(mx.__file__).parent / "_scripts"
@@ -220,10 +220,8 @@ def test_mxvalidate_accepts_every_document(path):
 
 
 def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
-    try:
+    with available("cycles"):  # USD with MaterialX comes with Blender
         python = interpreter()
-    except NotRun as reason:
-        pytest.skip(f"USD with MaterialX comes with Blender; {reason}")
     monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
     command = [python, "-c", USD, *library.NODES]
     done = subprocess.run(command, capture_output=True, text=True, check=True)

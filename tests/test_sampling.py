@@ -117,6 +117,14 @@ def test_edges_give_unit_directions_above_the_horizon_and_finite_pdf(sampler):
             assert sampler.name == "ltc" or (wi[..., 2] >= 0.0).all()
 
 
+@pytest.mark.parametrize("roughness", [1e-300, 1e-306, 1e-307, 1e-308, 5e-324])
+@every_sampler
+def test_the_least_roughness_overflows_nothing(sampler, roughness):
+    for mu in (0.0, 1e-20, 0.3, 0.999999, 1.0):
+        wi, pdf = sampler.sample(view(mu), uniforms(1000, 5), roughness)
+        assert np.isfinite(wi).all() and np.isfinite(pdf).all()
+
+
 def test_eon_samples_always_have_a_weight():
     edges = np.array([0.0, 5e-324, 2.0**-53, 0.5, 1.0 - 2.0**-53])
     u = np.stack(np.meshgrid(edges, edges), axis=-1)

@@ -13,10 +13,10 @@ from hemispheres import (
     BY_NAME,
     COSINES,
     SCENES,
-    directions,
+    binned,
     every_scene,
+    expected,
     hemisphere,
-    rule,
     uniforms,
     view,
 )
@@ -43,23 +43,6 @@ every_sampler = pytest.mark.parametrize("sampler", ALL, ids=lambda sampler: samp
 def seed_of(sampler, mu, roughness):
     """A seed for each comparison."""
     return [ALL.index(sampler), SCENES.index((mu, roughness))]
-
-
-def binned(wi, edges, count):
-    """Number of directions in each bin of polar angle times azimuth, and of those below."""
-    row = np.digitize(np.arccos(np.clip(wi[:, 2], -1.0, 1.0)), edges[1:-1])
-    column = np.floor((np.arctan2(wi[:, 1], wi[:, 0]) / (2.0 * np.pi) % 1.0) * count).astype(int)
-    bins = np.where(wi[:, 2] < 0.0, 0, 1 + row * count + np.minimum(column, count - 1))
-    return np.bincount(bins, minlength=1 + count * (len(edges) - 1))
-
-
-def expected(sampler, mu, roughness, edges, count):
-    """Probability of each bin of `binned`, by quadrature."""
-    theta, dtheta = rule(edges, 16)
-    phi, dphi = rule(2.0 * np.pi * np.arange(count + 1) / count, 16)
-    pdf = sampler.pdf(view(mu), directions(theta, phi), roughness)
-    bins = np.einsum("ikjl,ik,jl->ij", pdf, dtheta * np.sin(theta), dphi)
-    return np.append(max(0.0, 1.0 - bins.sum()), bins)
 
 
 def chi_square(sampler, pdf_of, mu, roughness, samples=100_000, count=12):

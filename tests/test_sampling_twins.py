@@ -7,18 +7,13 @@ although all is right: each of them runs at its share of it.
 
 import inspect
 import re
-import runpy
-from pathlib import Path
 
 import numpy as np
 import pytest
-from hemispheres import BY_NAME, every_sampler, view
+from cases import directions_32
+from hemispheres import BY_NAME, binned, every_sampler, expected, view
 from scipy import stats
-from test_sampling_statistics import binned, expected
-from test_twins import directions, text
 from tolerances import (
-    FIT_ROOT,
-    REFIT,
     TWIN_DIRECTION,
     TWIN_DIRECTION_SHARE,
     TWIN_LENGTH,
@@ -27,32 +22,17 @@ from tolerances import (
 )
 
 from mxeon import eon_sampling, sampling, twins
-from mxeon.hosts import NotRun, open_host
 from mxeon.sampling import SAMPLERS
 
 FALSE_ALARM = 1e-4
 DRAWS = [(sampler, mu, r) for sampler in SAMPLERS for mu, r in ((0.1, 1.0), (0.7, 0.3))]
 DRAWS += [(BY_NAME["eon"], mu, r) for mu, r in ((0.0, 1.0), (1e-3, 0.5), (0.97, 1.0), (1.0, 1.0))]
 SHARE = FALSE_ALARM / len(DRAWS)
-FITS = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "eon_sampling.py"))
 
 
 @pytest.fixture(scope="module", params=("gl", "cycles"))
-def host(request):
-    try:
-        opened = open_host(request.param)
-    except NotRun as reason:
-        pytest.skip(str(reason))
-    yield opened
-    opened.close()
-
-
-@pytest.fixture(scope="module")
-def gl():
-    try:
-        return open_host("gl")
-    except NotRun as reason:
-        pytest.skip(str(reason))
+def host(request, hosts):
+    return hosts(request.param)
 
 
 def call(host, function, **drawn):
@@ -71,7 +51,7 @@ def drawn(count, seed):
     """Views, random numbers and roughnesses in float32; the first two roughnesses are 0 and 1."""
     rng = np.random.default_rng(seed)
     roughness = np.append([0.0, 1.0], rng.random(count - 2)).astype("f4")
-    return {"wo": directions(rng, count), "u": uniforms_32(count, seed), "roughness": roughness}
+    return {"wo": directions_32(rng, count), "u": uniforms_32(count, seed), "roughness": roughness}
 
 
 def unit(w):
@@ -91,15 +71,8 @@ def test_sampling_twins_take_the_arguments_of_the_python_package(sampler, suffix
 
 @pytest.mark.parametrize("name", ["MULTIPLE", "UPPER"])
 def test_sampling_twins_have_the_coefficients_of_the_python_package(name):
-    found = re.findall(rf"#define EON_{name}\d (\S+)", text("glsl", "eon_sampling"))
+    found = re.findall(rf"#define EON_{name}\d (\S+)", twins.source("glsl"))
     assert tuple(map(float, found)) == getattr(eon_sampling, name)
-
-
-def test_script_gives_the_root_of_the_sampling_twins():
-    found = re.findall(r"#define EON_ROOT\d (\S+)", text("glsl", "eon_sampling"))
-    kept, error = FITS["root_fit"]()
-    np.testing.assert_allclose([float(each) for each in found], kept, rtol=0.0, atol=REFIT)
-    assert error <= FIT_ROOT
 
 
 @every_sampler
@@ -113,7 +86,7 @@ def test_twin_samples_agree_with_float64(host, sampler):
 @every_sampler
 def test_twin_densities_agree_with_float64(host, sampler):
     given = drawn(20_000, 2)
-    wi = directions(np.random.default_rng(3), 20_000)
+    wi = directions_32(np.random.default_rng(3), 20_000)
     pdf = call(host, f"{sampler.name}_pdf", wi=wi, **given)[:, 0]
     exact = sampler.pdf(unit(given["wo"]), unit(wi), given["roughness"])
     assert np.max(np.abs(np.pi * (pdf - exact))) <= TWIN_PDF

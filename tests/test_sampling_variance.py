@@ -6,9 +6,6 @@ everywhere by the density it returns; here it is taken over the density that its
 have, which differs by what the two fits leave.
 """
 
-import runpy
-from pathlib import Path
-
 import numpy as np
 import pytest
 import tolerances
@@ -143,12 +140,3 @@ def test_clipped_sampling_alone_loses_up_to_nine_thousandths():
         for r in (0.6, 0.7, 0.8)
     ]
     assert abs(max(lost) - 0.009) < tolerances.FIGURE * 0.009
-
-
-@pytest.mark.parametrize("row", [0, 1])
-def test_the_script_gives_the_coefficients_of_the_package(row):
-    fits = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "eon_sampling.py"))
-    name, points, basis, density, root = fits["ROWS"][row]
-    found = fits["fitted"](points(400), basis, density, root)
-    kept = getattr(eon_sampling, name)
-    np.testing.assert_allclose(found, kept, rtol=0.0, atol=tolerances.REFIT)

@@ -8,7 +8,6 @@ import pytest
 from tolerances import FURNACE_OPENED, TRACER_GRID, TWIN_VALUE, TWIN_WEIGHT
 
 from mxeon import reference
-from mxeon.hosts import NotRun, open_host
 from mxeon.scene import SIDE, sphere
 from mxeon.tracer import MODELS, SAMPLERS, Trace, program, trace
 
@@ -17,14 +16,6 @@ from mxeon.tracer import MODELS, SAMPLERS, Trace, program, trace
 STANDARD_ERRORS = 4.4
 FURNACE = Trace("eon", environment=1.0, size=64, opened=False)
 UNBIASED = ("uniform", "cosine", "ltc0", "eon_cltc", "eon")
-
-
-@pytest.fixture(scope="module")
-def gl():
-    try:
-        return open_host("gl")
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def mean(image):

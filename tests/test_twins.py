@@ -3,21 +3,13 @@
 
 import inspect
 import re
-import runpy
-from pathlib import Path
 
 import numpy as np
 import pytest
-from tolerances import (
-    FIT_LOSS,
-    FIT_LOSS_32,
-    TWIN_ALBEDO,
-    TWIN_LOSS,
-    TWIN_VALUE,
-)
+from cases import directions_32
+from tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
 
 from mxeon import albedo, formulas, models, twins
-from mxeon.hosts import NotRun, open_host
 from mxeon.library import data_folder
 
 STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling")
@@ -44,18 +36,9 @@ ALBEDOS = (
     albedo.eon_albedo_dir_approx,
     albedo.eon_albedo_avg,
 )
-FIT = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "fon_loss.py"))
 
 by_stem = pytest.mark.parametrize("stem", STEMS)
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
-
-
-@pytest.fixture(scope="module")
-def gl():
-    try:
-        return open_host("gl")
-    except NotRun as reason:
-        pytest.skip(str(reason))
 
 
 def text(language, stem):
@@ -64,13 +47,6 @@ def text(language, stem):
 
 def code(stem):
     return re.sub(r"//.*", "", text("glsl", stem))
-
-
-def directions(rng, count):
-    """Unit vectors in float32: half uniform, half with log-uniform cosines down to 1e-6."""
-    z = np.where(rng.random(count) < 0.5, rng.random(count), 10.0 ** rng.uniform(-6, 0, count))
-    phi, S = rng.uniform(0, 2 * np.pi, count), np.sqrt(1 - z * z)
-    return np.stack([S * np.cos(phi), S * np.sin(phi), z], axis=-1).astype("f4")
 
 
 def materials(rng, count):
@@ -126,24 +102,6 @@ def test_twins_have_the_functions_and_arguments_of_the_python_package(language, 
     assert names == list(inspect.signature(function).parameters)
 
 
-@by_language
-def test_fit_repeats_the_coefficients_of_the_shaders(language):
-    found = re.findall(r"^#define EON_[PQ]\d .*$", text(language, "eon"), re.MULTILINE)
-    assert found == FIT["defines"]()
-
-
-def test_fit_has_the_accuracy_that_the_shaders_state():
-    assert np.less_equal(FIT["largest_errors"](*FIT["fit"]()), (FIT_LOSS, FIT_LOSS_32)).all()
-
-
-@by_language
-def test_fit_repeats_the_series_of_the_angle(language):
-    fit = runpy.run_path(str(Path(__file__).parents[1] / "fits" / "arc_tangent.py"))
-    body = re.search(r"float series = (.*);", twins.source(language))[1]
-    written = [float(each) for each in re.findall(r"-?\d\.\d+", body)]
-    np.testing.assert_allclose(written, fit["coefficients"](**fit["TWINS"]), rtol=0.0, atol=5e-9)
-
-
 def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():
     found = re.findall(r"#define EON_G\d (\S+)", text("glsl", twins.FAMILY))
     assert tuple(map(float, found)) == formulas.FON_G
@@ -152,7 +110,7 @@ def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():
 @pytest.mark.parametrize("function", VALUES, ids=name_of)
 def test_twin_values_agree_with_float64_down_to_grazing(gl, function):
     rng = np.random.default_rng(1)
-    wo, wi = directions(rng, 100_000), directions(rng, 100_000)
+    wo, wi = directions_32(rng, 100_000), directions_32(rng, 100_000)
     error = twin_error(gl, function, {"wo": wo, "wi": wi} | materials(rng, 100_000))
     assert np.max(np.abs(np.pi * error * wi[:, 2:])) <= TWIN_VALUE
 
@@ -176,5 +134,5 @@ def test_twin_albedos_agree_with_float64_on_the_closed_domain(gl, function):
 
 def test_twin_loss_keeps_its_relative_accuracy_down_to_grazing(gl):
     mu = np.logspace(-8, 0, 100_000).astype("f4")
-    error = gl.call("fon_loss", mu)[:, 0] / FIT["closed_form"](mu) - 1.0
+    error = gl.call("fon_loss", mu)[:, 0] / formulas.loss(np.float64(mu)) - 1.0
     assert np.max(np.abs(error)) <= TWIN_LOSS

@@ -44,11 +44,32 @@ QUARTIC_EON_ALBEDO = 1.3e-4
 # c1 / (c1 - c2) = 1.34, and 1 - <E> > 1.6e-6: 1.34e-7 once, 1e-14 / 1.6e-6 where both factors move.
 LISTING_EPSILON = 1.4e-7
 
-# --- shader twins, float32 against float64 ---------------------------------------------------
+# --- fits --------------------------------------------------------------------------------------
 
-# The two figures that stand beside the coefficients of fon_loss, last digit rounded up.
+# The figures that stand beside the coefficients, each the largest error of what is printed, last
+# digit rounded up. They hold everywhere: exact values come from closed forms, which a rounding of
+# theirs moves by 1e-15. fon_loss, relative, in float64 and in float32; ROOT, relative; density of
+# exact samples, relative, for the worse of the two fits.
 FIT_LOSS = 2.7e-7
 FIT_LOSS_32 = 4.9e-7
+FIT_ROOT = 1.8e-7
+EON_DENSITY = 1.3e-5
+
+# Weight and relative variance of exact samples, which the project promises.
+EON_WEIGHT = 5e-5
+EON_VARIANCE = 1e-9
+
+# Polynomials for rho, absolute: the two of the paper and our two.
+EQUATION_32 = 4.41e-3
+EQUATION_34 = 2.84e-3
+NORMAL_REFIT = 2.96e-3
+AVERAGE_REFIT = 1.86e-3
+
+# Arc tangent below tan(pi / 8), relative: the polynomial's 1.9e-8, and half a unit of the eighth
+# decimal in each of five coefficients, which count as the powers of 0.172: 0.6e-8.
+FIT_ANGLE = 2.5e-8
+
+# --- shader twins, float32 against float64 ---------------------------------------------------
 
 # Relative error of H: the fit's 2.7e-7, and at most 12 roundings on the way, 7.2e-7.
 TWIN_LOSS = 1e-6
@@ -118,30 +139,14 @@ LUNE = 2.2e-8
 # radian: h^2 / 12 x pi = 1.6e-4.
 KINK_QUADRATURE = 1.6e-4
 
-# Relative error of the density of exact samples: the figure that fits/eon_sampling.py prints for
-# the worse fit, 1.27e-5, last digit rounded up. The next two are what the project promises.
-EON_DENSITY = 1.3e-5
-EON_WEIGHT = 5e-5
-EON_VARIANCE = 1e-9
-
 # Largest variances and weights against the figures of two or three digits known for them: half a
 # unit of 0.0087 is 0.6 %, that of 0.009 is 6 %, and between 51 angles at most 1 % is missed.
 FIGURE = 0.02
-
-# Coefficients made again: HiGHS meets its constraints to 1e-7, and they depend on each coefficient
-# with a slope of 0.1 or more.
-REFIT = 1e-6
 
 # Inverse of an albedo, relative: 11 roundings on the longest chain. There and back: 1e-14, with
 # the albedo's own 9 roundings and rho's twice, since an albedo grows at most twice as fast as rho.
 RHO = 11.0 * ROUNDING
 ROUND_TRIP = 1e-14
-
-# Largest errors of the polynomials for rho, absolute; last digit rounded up.
-EQUATION_32 = 4.41e-3
-EQUATION_34 = 2.84e-3
-NORMAL_REFIT = 2.96e-3
-AVERAGE_REFIT = 1.86e-3
 
 # Value times cosine over density: two sums of the same positive parts by different roads, of 14
 # roundings each, 1.7e-6.
@@ -191,7 +196,8 @@ KIT_FALSE_ALARMS = 2
 # length three are.
 KIT_PRINTED = 1.5e-9
 
-# --- root of the sampling twins ------------------------------------------------------------------
+# --- pages of upstream -----------------------------------------------------------------------
 
-# Relative error of ROOT, the figure beside its coefficients, last digit rounded up.
-FIT_ROOT = 1.8e-7
+# A figure with two digits against another such, relative: each is off by half a unit of the second
+# digit, 5 % at most, and drivers part by 1e-5 of 1, one unit in the third digit of the least, 0.01.
+PRINTED = 0.11

@@ -22,6 +22,10 @@ from mxeon.writing import write_text
 FOLDER = Path(__file__).parent
 BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
 HEAD = "| check | subject | measured | allowed | unit |\n|---|---|---|---|---|\n"
+MEASURED = 2  # column of a row's figure
+
+# Pages whose figures are errors of a driver, and belong to the one that they name.
+OF_DRIVERS = ("genglsl_albedo_acos",)
 
 
 @dataclass(frozen=True)
@@ -78,6 +82,12 @@ def stock_path(cause):
 def judged(host):
     """Results of the checks that show defects, of stock MaterialX on a host or on "source".
 
+    Returns
+    -------
+    results : list of Result
+    place : str
+        Device and versions with which they were measured.
+
     Raises
     ------
     NotRun
@@ -91,7 +101,10 @@ def judged(host):
         if each.host == host and (host == SOURCE or (each.check, each.subject) in rows)
     ]
     with closing(Judge(DEFAULT)) as judge:
-        return [result for item in chosen for result in judge.work(item).results]
+        findings = [judge.work(item) for item in chosen]
+    devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
+    place = ", ".join([*devices, f"MaterialX {mx.__version__}"])
+    return [result for each in findings for result in each.results], place
 
 
 def shown(defect, results):
@@ -100,14 +113,30 @@ def shown(defect, results):
     return [found[row] for row in defect.rows]
 
 
-def block(results):
-    """Results as the table of a page, with what the first is named as."""
+def block(results, place):
+    """Results as the table of a page, where they were measured, and what the first is named as."""
     rows = [
         f"| {each.check} | {each.subject} "
         f"| {each.figure:.2g} | {each.tolerance:.2g} | {each.unit} |"
         for each in results
     ]
-    return HEAD + "\n".join(rows) + f"\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
+    said = f"Measured with {place}.\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
+    return HEAD + "\n".join(rows) + f"\n\n{said}"
+
+
+def figures(text):
+    """Figures of the rows of a block."""
+    return [float(row.split(" | ")[MEASURED]) for row in _rows(text)]
+
+
+def without_figures(text):
+    """Rows of a block without their figures, and what the suite says."""
+    rows = [row.split(" | ") for row in _rows(text)]
+    return [row[:MEASURED] + row[MEASURED + 1 :] for row in rows], text.split("\n\n")[2:]
+
+
+def _rows(text):
+    return text.removeprefix(HEAD).split("\n\n")[0].splitlines()
 
 
 def _rounded(text):
@@ -170,8 +199,11 @@ def written(page):
 
 def main():
     """Write the blocks of all pages."""
-    results = {host: judged(host) for host in dict.fromkeys(each.host for each in DEFECTS)}
-    blocks = {each.page: block(shown(each, results[each.host])) for each in DEFECTS}
+    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in DEFECTS)}
+    blocks = {}
+    for each in DEFECTS:
+        results, place = measured[each.host]
+        blocks[each.page] = block(shown(each, results), place)
     blocks |= {page: made() for page, made in OF_QUANTITIES.items()}
     for page, text in blocks.items():
         path = FOLDER / f"{page}.md"

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hosts for the tests, each opened once in a session, when a test first asks for it."""
+
+import pytest
+from availability import available, required
+
+from mxeon.hosts import open_host
+
+
+def pytest_configure():
+    """Refuse an unknown name of a required host before any test runs."""
+    try:
+        required()
+    except ValueError as error:
+        raise pytest.UsageError(str(error)) from None
+
+
+@pytest.fixture(scope="session")
+def hosts():
+    """The host of a name, which stays open until the session ends."""
+    opened = {}
+
+    def host(name):
+        if name not in opened:
+            with available(name):
+                opened[name] = open_host(name)
+                opened[name].identity()
+        return opened[name]
+
+    yield host
+    for each in opened.values():
+        each.close()
+
+
+@pytest.fixture(scope="session")
+def gl(hosts):
+    """The gl host."""
+    return hosts("gl")
+
+
+@pytest.fixture(scope="session")
+def reference(hosts):
+    """The reference host."""
+    return hosts("reference")
