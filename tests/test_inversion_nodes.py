@@ -76,7 +76,7 @@ def test_the_graphs_hold_standard_nodes_alone():
 
 
 def test_the_example_keeps_its_colour_while_roughness_grows():
-    shaders = generate(examples_folder() / "constant_colour.mtlx", "glsl", lights=True)
+    shaders = generate(examples_folder() / "constant_color.mtlx", "glsl", lights=True)
     scene = Scene("furnace", environment=FURNACE.environment, size=9)
     seen = [open_host("gl").picture(shader, scene)[4, 4] for shader in shaders]
     assert len(seen) == 3
