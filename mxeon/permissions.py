@@ -17,7 +17,7 @@ LIMITS = {
 
 @dataclass(frozen=True)
 class Permissions:
-    """What `mxeon.document.read_document` lets a document do. Plain data, so it travels.
+    """What a document may do, and how large it may be; plain data, so it can be pickled.
 
     Attributes
     ----------
