@@ -9,9 +9,9 @@ NOTES = Path(__file__).with_name("notes.md")
 HEAD = """<!-- Made by `python -m benchmarks --page` from performance.json. -->
 # Performance
 
-Medians of interleaved rounds with their quartiles; each ratio is the median of the ratios of the
-rounds of one run. What was timed was compared with the float64 reference, or with its rival, in
-the same run.
+The tables have medians of interleaved rounds, with quartiles. Each ratio is the median of the ratios
+of all rounds of one run. The values that were timed were compared in the same run with the float64
+reference, or with the rival's values.
 """
 
 # [Portsmouth2025], Table 1, ns: row, value, with cosine sampling, with CLTC sampling; and the names
@@ -53,7 +53,7 @@ def table(group):
         )
     if group.checks:
         right = sum(each.passed for each in group.checks)
-        lines += ["", f"Values: {right} of {len(group.checks)} right."]
+        lines += ["", f"Values: {right} of {len(group.checks)} within tolerance."]
         lines += ["", "| values of | largest error | tolerance |", "|---|---|---|"]
         lines += [f"| {c.name} | {c.error:.2g} | {c.tolerance:.2g} |" for c in group.checks]
     return "\n".join(lines) + "\n"

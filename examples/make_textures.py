@@ -54,7 +54,7 @@ def bricks():
 
 
 def images():
-    """The colour image, sRGB code values in [0, 1], and the roughness image, in [0, 1]."""
+    """The color image, sRGB code values in [0, 1], and the roughness image, in [0, 1]."""
     rng = np.random.default_rng(SEED)
     index, distance = bricks()
     shape = index.shape
@@ -81,7 +81,7 @@ def quantized(image):
 
 
 def save(path, pixels, space):
-    """Writes `pixels` as PNG that says which colour space it is in."""
+    """Writes `pixels` as PNG that says which color space it is in."""
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.UINT8)
     spec.attribute("oiio:ColorSpace", space)

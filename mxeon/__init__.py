@@ -1,10 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rough diffuse reflection made right in every MaterialX target, and proved by running it.
+"""Correct Oren-Nayar and EON diffuse shading for every MaterialX target.
 
 Importing this loads nothing but the standard library; the names below load what they need.
 """
 
 from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
+    from mxeon.conformance import check
+    from mxeon.conformance.callables import brdf_test, check_brdf
+    from mxeon.generation import Shader, generate
+    from mxeon.library import load_library
 
 __version__ = "0.1.0"
 

@@ -13,7 +13,7 @@ from mxeon.quadrature import albedo_dir_quadrature  # noqa: F401, public here
 
 
 def fon_loss(mu):
-    """What FON loses at unit reflectance, over its roughness and its factor A.
+    """Energy that FON loses at unit reflectance, divided by roughness and by the factor A.
 
         H(mu) = c1 - G_F(mu) / pi,  1 - E_FON = roughness A H
 

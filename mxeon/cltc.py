@@ -12,7 +12,7 @@ from mxeon.ltc import coefficients, density, transformed
 
 
 def cltc_sample(wo, u, roughness):
-    """Direction drawn under the clipped transformed cosine, and its density.
+    """Direction sampled by the clipped transformed cosine, and its density.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def cltc_sample(wo, u, roughness):
 
 
 def cltc_pdf(wo, wi, roughness):
-    """Density with which `cltc_sample` draws `wi`.
+    """Density of `cltc_sample` at `wi`, in solid angle.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def cltc_pdf(wo, wi, roughness):
 
 
 def eon_cltc_sample(wo, u, roughness):
-    """Direction drawn from the paper's mixture of `cltc` and `uniform`, and its density.
+    """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def eon_cltc_sample(wo, u, roughness):
 
 
 def eon_cltc_pdf(wo, wi, roughness):
-    """Density with which `eon_cltc_sample` draws `wi`.
+    """Density of `eon_cltc_sample` at `wi`, in solid angle.
 
     Parameters
     ----------

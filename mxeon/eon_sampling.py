@@ -48,7 +48,7 @@ UPPER = (
 
 
 def eon_sample(wo, u, roughness, *, rho=1.0):
-    """Direction drawn in proportion to EON times its cosine, and its density.
+    """Direction sampled proportionally to EON times its cosine, and its density.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def eon_sample(wo, u, roughness, *, rho=1.0):
 
 
 def eon_pdf(wo, wi, roughness, *, rho=1.0):
-    """EON times the cosine of `wi`, over its integral: the density of `eon_sample`.
+    """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from mxeon.geometry import checked, checked_directions, lead_shape
 
 
 def uniform_sample(u):
-    """Direction drawn uniformly from the hemisphere, and its density.
+    """Direction sampled uniformly on the hemisphere, and its density.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def uniform_sample(u):
 
 
 def uniform_pdf(wi):
-    """Density with which `uniform_sample` draws `wi`.
+    """Density of `uniform_sample` at `wi`, in solid angle.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def uniform_pdf(wi):
 
 
 def cosine_sample(u):
-    """Direction drawn in proportion to its cosine with the normal, and its density.
+    """Direction sampled proportionally to its cosine with the normal, and its density.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def cosine_sample(u):
 
 
 def cosine_pdf(wi):
-    """Density with which `cosine_sample` draws `wi`.
+    """Density of `cosine_sample` at `wi`, in solid angle.
 
     Parameters
     ----------

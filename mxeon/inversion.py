@@ -20,7 +20,7 @@ AVERAGE_REFIT = 0.1843278
 
 
 def eon_rho_from_albedo_normal(color, roughness):
-    """Reflectance with which EON, seen along the normal under uniform light, has this color.
+    """Reflectance rho that gives EON this directional albedo at normal incidence.
 
         rho = 2 C d / (b + sqrt(b^2 + 4 c2 r d C)),  b = 1 + (c1 - c2) r C,  d = 1 + c1 r
 
@@ -64,7 +64,7 @@ def eon_rho_from_albedo_normal(color, roughness):
 
 
 def eon_rho_from_albedo_avg(color, roughness):
-    """Reflectance with which EON has this average albedo.
+    """Reflectance rho that gives EON this average albedo.
 
         rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
 
@@ -141,7 +141,7 @@ def eon_rho_from_albedo_normal_approx(color, roughness):
 
 
 def eon_rho_from_albedo_normal_refit_approx(color, roughness):
-    """`eon_rho_from_albedo_normal` by a polynomial of the paper's form, with coefficients of ours.
+    """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def eon_rho_from_albedo_avg_approx(color, roughness):
 
 
 def eon_rho_from_albedo_avg_refit_approx(color, roughness):
-    """`eon_rho_from_albedo_avg` by a polynomial of the paper's form, with a coefficient of ours.
+    """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from mxeon.hemisphere import azimuth, checked_draw, checked_pdf, cosine_sample, 
 
 
 def ltc0_sample(wo, u, roughness):
-    """Direction drawn under the transformed cosine without the coefficient d, and its density.
+    """Direction sampled by the transformed cosine without the coefficient d, and its density.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def ltc0_sample(wo, u, roughness):
 
 
 def ltc0_pdf(wo, wi, roughness):
-    """Density with which `ltc0_sample` draws `wi`.
+    """Density of `ltc0_sample` at `wi`, in solid angle.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def ltc0_pdf(wo, wi, roughness):
 
 
 def ltc_sample(wo, u, roughness):
-    """Direction drawn under the transformed cosine, perhaps below the horizon, and its density.
+    """Direction sampled by the transformed cosine, may be below the horizon; and its density.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def ltc_sample(wo, u, roughness):
 
 
 def ltc_pdf(wo, wi, roughness):
-    """Density with which `ltc_sample` draws `wi`, above the horizon.
+    """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reflection of Lambert and of the Oren-Nayar family, in 1/sr and without the cosine.
+"""BRDF of Lambert and of the Oren-Nayar family, in 1/sr and without the cosine.
 
 All functions broadcast, are reciprocal, work on the closed domain, and evaluate in blocks, so that
 memory beyond arguments and result does not grow. Where both directions graze the surface and s > 0,
@@ -11,7 +11,7 @@ from mxeon.geometry import evaluate
 
 
 def lambert_brdf(wo, wi, rho):
-    """Reflection of a smooth diffuse surface.
+    """BRDF of a smooth diffuse surface, Lambert's.
 
         f = rho / pi
 
@@ -45,7 +45,7 @@ def lambert_brdf(wo, wi, rho):
 
 
 def oren_nayar_brdf(wo, wi, rho, sigma):
-    """Reflection of the full Oren-Nayar model, interreflection included.
+    """BRDF of the full Oren-Nayar model, interreflection included.
 
         f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)
                       + 0.17 rho sigma^2 / (sigma^2 + 0.13) (1 - cos(phi) (2 beta / pi)^2)],
@@ -95,7 +95,7 @@ def oren_nayar_brdf(wo, wi, rho, sigma):
 
 
 def qon_brdf(wo, wi, rho, sigma):
-    """Reflection of the qualitative Oren-Nayar model.
+    """BRDF of the qualitative Oren-Nayar model.
 
         f = rho / pi (A + B s / t),  1/t = 0 where s <= 0, else 1 / max(mu_o, mu_i)
 
@@ -136,7 +136,7 @@ def qon_brdf(wo, wi, rho, sigma):
 
 
 def qon_footnote_brdf(wo, wi, rho, sigma):
-    """Reflection of QON with 0.57 for 0.33 in A, which makes up for some interreflection.
+    """BRDF of QON with 0.57 in place of 0.33 in A, which approximates interreflection.
 
         f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
 
@@ -177,7 +177,7 @@ def qon_footnote_brdf(wo, wi, rho, sigma):
 
 
 def qon_fujii_brdf(wo, wi, rho, sigma):
-    """Reflection of QON with coefficients that match the full model, and with a tinted A.
+    """BRDF of QON with coefficients that match the full model, and with a tinted A.
 
         f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
         1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
@@ -219,7 +219,7 @@ def qon_fujii_brdf(wo, wi, rho, sigma):
 
 
 def fon_brdf(wo, wi, rho, roughness):
-    """Reflection of the Fujii Oren-Nayar model.
+    """BRDF of the Fujii Oren-Nayar model.
 
         f = rho / pi A (1 + roughness s / t),  1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
@@ -260,7 +260,7 @@ def fon_brdf(wo, wi, rho, roughness):
 
 
 def eon_brdf(wo, wi, rho, roughness):
-    """Reflection of the energy-preserving Oren-Nayar model.
+    """BRDF of the energy-preserving Oren-Nayar model.
 
         f = rho / pi A (1 + r s / t + rho r (1 + c2 r) / ((c1 - c2) D) H(mu_o) H(mu_i)),
         D = 1 + c1 r - rho r (c1 - c2),  H = c1 - G_F / pi
@@ -304,7 +304,7 @@ def eon_brdf(wo, wi, rho, roughness):
 
 
 def eon_brdf_approx(wo, wi, rho, roughness):
-    """Reflection of EON with the quartic for the albedo of FON.
+    """BRDF of EON with the quartic for the albedo of FON.
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 

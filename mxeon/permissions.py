@@ -26,7 +26,7 @@ def environment_path():
 
 @dataclass(frozen=True)
 class Permissions:
-    """What `mxeon.document.read_document` lets a document do. Plain data, so it travels.
+    """What a document may do, and how large it may be; plain data, so it can be pickled.
 
     Attributes
     ----------

@@ -98,7 +98,7 @@ def _plain(value):
 
 
 def write(run, folder):
-    """Writes report.html, results.json, junit.xml and pictures/ into `folder`.
+    """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
     The pictures are those of the run and their references, each as EXR and PNG.
     Each file appears whole or not at all and replaces one of the same name. The page comes

@@ -215,7 +215,7 @@ class Findings:
 
 @dataclass(frozen=True)
 class Run:
-    """Everything one `mxeon check` found.
+    """Everything that one `mxeon check` measured.
 
     Attributes
     ----------

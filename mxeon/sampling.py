@@ -35,7 +35,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Sampler:
-    """A pair of functions under one signature.
+    """A sampler and its density, under one signature.
 
     Attributes
     ----------

@@ -91,7 +91,7 @@ def test_page_shows_a_missed_goal_and_a_wrong_value():
     group = Group("tool", "T", (Figure("f", "x", 2.0, 2.0, 2.0, 1.0),), (Check("c", 2.0, 1.0),))
     text = page.table(group)
     assert "**missed**" in text
-    assert "0 of 1 right" in text
+    assert "0 of 1 within tolerance" in text
 
 
 def test_command_fails_where_a_value_is_wrong(tmp_path):

@@ -68,8 +68,8 @@ def test_the_graphs_hold_standard_nodes_alone():
     assert found <= {"add", "convert", "divide", "invert", "multiply", "sqrt"}
 
 
-def test_the_example_keeps_its_colour_while_roughness_grows(gl):
-    shaders = generate(examples_folder() / "constant_colour.mtlx", "glsl", lights=True)
+def test_the_example_keeps_its_color_while_roughness_grows(gl):
+    shaders = generate(examples_folder() / "constant_color.mtlx", "glsl", lights=True)
     scene = Scene("furnace", environment=FURNACE.environment, size=9)
     seen = [gl.picture(shader, scene)[4, 4] for shader in shaders]
     assert len(seen) == 3

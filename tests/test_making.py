@@ -47,7 +47,7 @@ def test_values_warnings_and_errors_come_in_order(workers):
 def test_texts_are_those_of_generate(workers):
     found = [each.value for each in make(clay, ["glsl", "osl"], workers, 60.0)]
     assert found == [clay("glsl"), clay("osl")]
-    assert set(found[1]) == {"clay.terracotta.osl", "clay.modelling_clay.osl"}
+    assert set(found[1]) == {"clay.terracotta.osl", "clay.modeling_clay.osl"}
 
 
 def test_no_workers_means_this_process():

@@ -36,7 +36,7 @@ def check(
     permissions=DEFAULT,
     progress=lambda items, total: items,
 ):
-    """Every check on every host, and every document's pictures against the reference's.
+    """Run every check on every host, and compare pictures of documents with the reference's.
 
     Parameters
     ----------

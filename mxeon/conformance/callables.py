@@ -80,7 +80,7 @@ class CallableProbe(PairProbe):
 
 
 def check_brdf(brdf, model="eon", name=None):
-    """Every check that a function of directions and inputs can be asked, on it.
+    """Run every check that applies to a function of directions and inputs.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def check_brdf(brdf, model="eon", name=None):
 
 
 def brdf_test(brdf, model="eon", name=None):
-    """The checks of `check_brdf` as a test for pytest, parametrised over them.
+    """Test function for pytest, with one case per check of `check_brdf`.
 
     Assign it to a name that begins with `test_`:
 
@@ -137,7 +137,7 @@ def brdf_test(brdf, model="eon", name=None):
     Returns
     -------
     callable
-        A test function; on failure it says the figure, the tolerance and the nearest known model.
+        A test function; on failure it shows the error, the tolerance and the nearest known model.
 
     Raises
     ------

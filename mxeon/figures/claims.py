@@ -8,9 +8,9 @@ HOLDS, IN_PART, FAILS = "holds", "holds in part", "**fails**"
 
 HEAD = """# The paper, checked
 
-Made by `mxeon figures`: every number below was measured in that run, with float64 unless it says
-otherwise. Equations, figures and listings are those of [Portsmouth2025], the JCGT 2025 edition;
-the bibliography is in the README. The figures follow; their data lie in the folder `figures`.
+`mxeon figures` writes this page. It measures the numbers below, in float64 unless stated otherwise.
+Equations, figures and listings are those of [Portsmouth2025], the JCGT 2025 edition; the bibliography
+is in the README. The figures are below the claims; their data are in the folder `figures`.
 
 {count} claims: {holds} hold, {part} hold in part, {fails} fail.
 """

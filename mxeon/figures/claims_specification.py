@@ -87,6 +87,6 @@ CLAIMS = (
     Claim("oren_nayar_diffuse_bsdf", "`roughness` is sigma", roughness),
     Claim("dielectric_bsdf, R", "Fresnel's equations", dielectric),
     Claim("generalized_schlick_bsdf, F", "r0 at normal incidence", schlick),
-    Claim("sheen_bsdf, D", "a normalised distribution", sheen_distribution),
+    Claim("sheen_bsdf, D", "a normalized distribution", sheen_distribution),
     Claim("sheen_bsdf, L_r", "reflects no more than it receives", sheen_value),
 )

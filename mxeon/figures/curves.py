@@ -47,7 +47,7 @@ def directions(theta, phi):
 
 
 def comparison(sheet):
-    """Figure 3: every model at half its roughness and rho = 0.8, times the cosine."""
+    """Figure 3: every model at half its largest roughness, rho = 0.8: the BRDF times the cosine."""
     figure, axes = sheet.axes(3, 3, 7.6, 6.4, sharex=True, sharey="row")
     columns = {"theta_o": DEGREES}
     for row, phi in enumerate((0.0, 90.0, 180.0)):
@@ -70,7 +70,7 @@ def comparison(sheet):
 
 
 def qon_albedos(sheet):
-    """Figure 6: directional and average albedo of QON, lines in closed form, dots by quadrature."""
+    """Figure 6: directional and average albedo of QON; lines are closed forms, dots quadrature."""
     figure, (axes,) = sheet.axes(1, 2, 7.2, 3.2)
     names = [f"$\\sigma = {sigma:g}$" for sigma in SIGMA[:-1]] + ["$\\sigma = \\pi/2$"]
     columns = _directional(axes[0], qon_albedo_dir, qon_brdf, SIGMA, names)
@@ -82,7 +82,7 @@ def qon_albedos(sheet):
 
 
 def fon_albedos(sheet):
-    """Figure 7: the same of FON, and how far the paper's quartic is off."""
+    """Figure 7: the same for FON, and the error of the paper's quartic."""
     figure, (axes,) = sheet.axes(1, 3, 9.6, 3.2)
     names = [f"$r = {r:g}$" for r in ROUGHNESS]
     columns = _directional(axes[0], fon_albedo_dir, fon_brdf, ROUGHNESS, names)
@@ -130,7 +130,7 @@ def _average(cell, closed, brdf, largest):
 
 
 def inverted(sheet):
-    """Figure 15: the rho that a color needs, over roughness, and the error of the polynomials."""
+    """Figure 15: the rho that gives a color, over roughness, and the error of the fits."""
     figure, axes = sheet.axes(2, 2, 7.4, 5.6, sharex=True, sharey="row")
     columns, r = {"roughness": SHADES}, SHADES
     sides = ("normal", "color at normal incidence, Eq. (32)"), ("avg", "average albedo, Eq. (34)")

@@ -37,19 +37,19 @@ def look(name, part=1.0):
 
 
 def title(sheet):
-    """Figure 1: Lambert, QON and EON, roughest, lit from the front and from the side."""
+    """Figure 1: Lambert, and QON and EON at the highest roughness, lit from front and side."""
     names = ("lambert", "qon", "eon")
     _lit(sheet, "figure_01", names, 1.0, {"front-lit": FRONT, "side-lit": SIDE})
 
 
 def backscattering(sheet):
-    """Figure 2: a smooth and three roughest models, lit from where they are seen."""
+    """Figure 2: Lambert, and QON, FON, EON at the highest roughness, lit from the viewer."""
     names = ("lambert", "qon", "fon", "eon")
     _lit(sheet, "figure_02", names, 1.0, {"lit from the eye": EYE})
 
 
 def gallery(sheet):
-    """Figure 4: every model at half its roughness, as in Figure 3."""
+    """Figure 4: every model at half its largest roughness, as in Figure 3."""
     names = [row.name for row in MODELS]
     for part, chosen in (("a", names[:4]), ("b", names[4:])):
         _lit(sheet, f"figure_04{part}", chosen, 0.5, {"front-lit": FRONT, "side-lit": SIDE})
@@ -65,7 +65,7 @@ def _lit(sheet, name, models, part, lights):
 
 
 def furnaces(sheet):
-    """Figures 5, 8, 9: one bounce, a ball with more contrast, and a white furnace."""
+    """Figures 5, 8, 9: QON, FON, EON: one bounce, with more contrast, in a white furnace."""
     for figure, name in (("figure_05", "qon"), ("figure_08", "fon"), ("figure_09", "eon")):
         bounce = sheet.trace(VIEW | look(name), rho=CLAY, light=FRONT)
         ring = sheet.trace(RING | look(name))
@@ -84,7 +84,7 @@ def _contrast(image):
 
 
 def lobes(sheet):
-    """Figure 10: QON beside the single and the multiple scattering of EON, for three colors."""
+    """Figure 10: QON, and the single and the multiple scattering of EON, for three colors."""
     columns = {
         "QON": look("qon"),
         "EON, single": look("fon") | {"model": "eon_single"},

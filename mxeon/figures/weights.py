@@ -44,7 +44,7 @@ def statistics(sampler, angles, roughness, draws):
 
 
 def over_angle(sheet):
-    """Figure 11: every sampler at roughness 1."""
+    """Figure 11: variance, largest value and mean of the weight of every sampler at roughness 1."""
     figure, (axes,) = sheet.axes(1, 3, 9.6, 3.5)
     columns = {"theta_o": ANGLES}
     for sampler in SAMPLERS:

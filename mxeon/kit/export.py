@@ -158,6 +158,6 @@ def _page(pictures, size, mesh):
 
 def _in_words(scene):
     if scene.light is None:
-        return f"uniform surrounding of radiance {scene.environment:g} on all sides"
+        return f"uniform environment of radiance {scene.environment:g} on all sides"
     direction = ", ".join(f"{each:.6f}" for each in scene.light)
     return f"distant light, no angular size, irradiance pi, towards it: ({direction})"
