@@ -8,6 +8,7 @@ from functools import cache
 
 import matplotlib
 import numpy as np
+from matplotlib import style
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
 
@@ -108,7 +109,8 @@ def albedo_plot(curves, markers, prefix):
     """
     grey = len(set(curves[0].rho)) == 1
     buffer = io.StringIO()
-    with matplotlib.rc_context(STYLE):
+    # Not what a file matplotlibrc in the working folder says: it could start LaTeX.
+    with style.context(["default", STYLE]):
         figure = Figure(figsize=(3.6, 2.4), layout="constrained")
         axes = figure.subplots()
         for channel, color in enumerate((TEXT_COLOR,) if grey else CHANNEL_COLORS):

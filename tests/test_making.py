@@ -76,3 +76,11 @@ def test_a_picture_says_what_made_it(tmp_path):
     )
     assert image.shape == (4, 4, 3)
     assert (said["element"], said["scene"], said["library"]) == ("look", "side", "eonlib")
+
+
+def test_the_host_of_a_picture_closes_whatever_happens(tmp_path, monkeypatch):
+    closed = []
+    monkeypatch.setattr("mxeon.hosts.reference.Host.close", lambda host: closed.append(host))
+    with pytest.raises(ValueError, match="--element must name one of"):
+        picture(CLAY, "reference", "side", None, 4, None, "eonlib", DEFAULT)
+    assert len(closed) == 1

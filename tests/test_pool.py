@@ -3,14 +3,17 @@
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 from tempfile import gettempdir
 
 import pytest
 from faults import Tar, misbehave, once, square
+from pebble import CONSTS
 
 from mxeon import pool
-from mxeon.pool import ATTEMPTS, Outcome, in_order, run
+from mxeon.pool import ATTEMPTS, LOCK, Outcome, in_order, run
 
 NUMBERS = [1, 2, 3, 4]
 
@@ -51,6 +54,14 @@ def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
 def test_workers_never_hear_of_ctrl_c():
     (outcome,) = dict(run(_deaf, [0], 1, 60.0)).values()
     assert outcome.value and not _deaf(0)
+
+
+def test_the_pool_leaves_the_constants_of_pebble_as_they_are():
+    code = "from pebble import CONSTS as c; a = vars(c).copy(); import mxeon.pool; assert vars(c) == a"
+    subprocess.run([sys.executable, "-c", code], check=True)
+    list(run(square, [0], 1, 60.0))
+    (outcome,) = dict(run(_lock_timeout, [0], 1, 60.0)).values()
+    assert outcome.value == LOCK != CONSTS.channel_lock_timeout
 
 
 def test_outcomes_are_put_in_order():
@@ -111,3 +122,7 @@ def _late(_):
 def _deaf(_):
     """Whether this process has had SIGINT blocked since it was started."""
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def _lock_timeout(_):
+    return CONSTS.channel_lock_timeout

@@ -12,6 +12,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
 
+import matplotlib
 import numpy as np
 import OpenImageIO as oiio
 import pytest
@@ -347,6 +348,12 @@ def test_a_folder_that_cannot_be_written_is_an_error(run, tmp_path):
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(OSError, match="file"):
         write(run, tmp_path / "file" / "report")
+
+
+def test_a_matplotlibrc_in_the_working_folder_changes_no_page(run):
+    before = page_of(run)
+    with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 40.0, "text.usetex": True}):
+        assert page_of(run) == before
 
 
 @pytest.mark.parametrize("name", ["results.json", "pictures", "report.html"])

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from matplotlib import style
 from matplotlib.figure import Figure
 
 from mxeon.hosts.gl import Host
@@ -37,7 +38,8 @@ METADATA = {"svg": dict.fromkeys(("Creator", "Date", "Format", "Type")), "png": 
 
 def styled():
     """A context in which plots get their style; what draws has to run in it."""
-    return matplotlib.rc_context(STYLE)
+    # Not what a file matplotlibrc in the working folder says: it could start LaTeX.
+    return style.context(["default", STYLE])
 
 
 @dataclass(frozen=True)
