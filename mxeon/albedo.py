@@ -34,7 +34,7 @@ def fon_loss(mu):
 
     Notes
     -----
-    Accuracy: relative error below 1e-15 on all of [0, 1].
+    Accuracy: relative error below 2e-15 on all of [0, 1].
 
     References
     ----------

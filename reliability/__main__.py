@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 from mxeon.writing import write_text
 
-GROUPS = ("kills", "hangs", "disk", "memory", "farm", "versions")
+GROUPS = ("kills", "hangs", "disk", "memory", "farm", "versions", "processors")
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
 

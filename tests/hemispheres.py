@@ -21,6 +21,11 @@ def view(mu, azimuth=0.0):
     return np.array([S * np.cos(azimuth), S * np.sin(azimuth), mu])
 
 
+def polar_angle(mu):
+    """Angle whose cosine is `mu`, no rounding above a right angle."""
+    return np.minimum(np.arccos(mu), 0.5 * np.pi)
+
+
 def rule(edges, count):
     """Nodes and weights of Gauss-Legendre between each two edges, shape (panels, count)."""
     x, w = np.polynomial.legendre.leggauss(count)
@@ -38,7 +43,7 @@ def directions(theta, phi):
 
 def hemisphere(mu, count=64):
     """Directions and weights in solid angle, exact across the kinks of EON for this `mu`."""
-    theta, dtheta = rule(np.unique([0.0, np.arccos(mu), 0.5 * np.pi]), count)
+    theta, dtheta = rule(np.unique([0.0, polar_angle(mu), 0.5 * np.pi]), count)
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
     return directions(theta, phi).reshape(-1, 3), weights.ravel()

@@ -34,6 +34,12 @@ def largest_quotient(wo, wi):
     return np.maximum(1.0, 1.0 / np.maximum(mu_o, mu_i))
 
 
+def assert_same(value, again, wo, wi):
+    """Require values of the same pairs, whose functions NumPy may compute in another order."""
+    scale = largest_quotient(np.atleast_2d(wo), np.atleast_2d(wi))
+    assert (np.pi * np.abs(value - again) <= 2.0 * tolerances.BRDF * scale[..., np.newaxis]).all()
+
+
 # --- limits ----------------------------------------------------------------------------------
 
 
@@ -201,17 +207,17 @@ def test_arguments_broadcast_as_if_each_pair_stood_alone(row, shapes):
     rho, fraction = np.broadcast_to(rho, value.shape), np.broadcast_to(fraction, lead)
     for index in np.ndindex(lead):
         alone = row.brdf(wo[index], wi[index], rho[index], *parameter(row, fraction[index]))
-        assert np.array_equal(value[index], alone)
+        assert_same(value[index], alone, wo[index], wi[index])
 
 
 @named(ALL)
-def test_blocks_of_any_size_give_the_same_bits(row, monkeypatch):
+def test_blocks_of_any_size_give_the_same_values(row, monkeypatch):
     wo, wi, rho, fraction = pairs(60, seed=11)
     arguments = wo[:, np.newaxis], wi[:7], rho[:, np.newaxis], *parameter(row, fraction[:7])
     whole = row.brdf(*arguments)
     for size in (1, 5, 50):
         monkeypatch.setattr(geometry, "BLOCK", size)
-        assert np.array_equal(row.brdf(*arguments), whole)
+        assert_same(row.brdf(*arguments), whole, *np.broadcast_arrays(*arguments[:2]))
 
 
 @named([row for row in MODELS if row.name in ("oren_nayar", "eon")])

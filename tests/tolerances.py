@@ -4,16 +4,19 @@
 # Unit roundoff of float64.
 ROUNDING = 2.0**-53
 
+# Roundings of one function of NumPy: sine, arc tangent, power and so on. Its vector versions, which
+# differ among processors, are of 4 ulp or less, those of the C library of 1.
+FUNCTION = 8
+
 # --- models and albedos, float64 -------------------------------------------------------------
 
 # Value of a BRDF, in units of the largest of its terms: 1 / pi, or 1 / pi times the largest |s / t|
-# at the same cosines. The longest formula (full Oren-Nayar) has 60 roundings and four functions of
-# the C library of 1 ulp (2 roundings) or less: 68 in all, 7.6e-15; the next power of ten.
-BRDF = 1e-14
+# at the same cosines. The longest formula (full Oren-Nayar) has 60 roundings and four functions.
+BRDF = (60 + 4 * FUNCTION) * ROUNDING
 
-# FON's loss H(mu) and albedos, relative: sums of two positive terms that each see at most 8
-# roundings; the root and the arc tangent are of 1 ulp or less. 9 roundings.
-LOSS = 1e-15
+# FON's loss H(mu) and albedos, relative: sums of two positive terms that each see at most 7
+# roundings and one function.
+LOSS = (7 + FUNCTION) * ROUNDING
 
 # Closed-form albedo against quadrature, absolute, albedos <= 1.05. The integrand is analytic
 # between the kinks, so that 64 nodes leave rounding alone: 128 x 128 terms whose weights add up to
@@ -103,9 +106,11 @@ CYCLES_FURNACE_MEAN = 3e-4
 
 # A component of a direction has 16 roundings or fewer on its way, 1e-6. Stretching a random number
 # over a part of length l divides its rounding by l, and a root near the pole takes it to its half
-# power: where that exceeds a factor of 10 lies less than a thousandth of the samples.
+# power: where that exceeds a factor of 10 lies a thousandth of the samples (measured, 6e-4 to
+# 1.05e-3 with the approximate powers of OSL). Of 20,000 samples 20 are expected there; more than 50
+# are so with a probability of 1e-8.
 TWIN_DIRECTION = 1e-5
-TWIN_DIRECTION_SHARE = 1e-3
+TWIN_DIRECTION_SHARE = 50 / 20_000
 
 # Squared length of a sample: cosine and sine of drivers are off by 4e-7 (measured) each, and what
 # is turned is multiplied by another such pair.
@@ -121,14 +126,25 @@ TWIN_PDF = 2e-5
 PDF = 20.0 * ROUNDING
 
 # Components and squared lengths of sampled directions, absolute: each of three components <= 1 has
-# at most 12 roundings on its way, and its square twice as many: 36 for one, 72 for the square.
+# at most 12 roundings and two functions on its way: 28. The squares add up to 1, and so do their
+# weights: 56; a length moves by half of that and is taken twice.
 DIRECTION = 72.0 * ROUNDING
+
+# The same directions with the view turned, whose sine is rounded anew: as in float32 stretching
+# takes that beyond a factor of 10 for a thousandth of the samples, one of 1000. More than 10 are so
+# with a probability of 1e-8.
+TURNED_DIRECTION = 10.0 * DIRECTION
+TURNED_SHARE = 10 / 1000
 
 # A density at the sample against that where the direction is given, relative. Both have a length
 # or its square to the third or fourth power, 6 roundings each, over det M, a difference of terms
 # <= 1.6 that is 0.91 or more: 4 x (6 + 6) + 6 x 1.8 + 20 others, twice. Near the line where CLTC
 # ends its density is a difference, exact to DIRECTION absolutely.
 SAMPLE_PDF = 160.0 * ROUNDING
+
+# Density where a sample is off by TURNED_DIRECTION, absolute: at mu_o 0.3 the largest |s / t| is
+# 3.2, and a density changes by at most (1 + 2 x 3.2) / pi = 2.4 per radian.
+TURNED_PDF = 2.4 * TURNED_DIRECTION
 
 # Side of the lune, absolute: z is the root of a difference of squares, so that it is off by at most
 # the root of 4 roundings, and by less where z is larger.
