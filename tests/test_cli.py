@@ -225,6 +225,7 @@ def test_too_few_open_files_are_one_line(tmp_path, count):
     ended = subprocess.run(
         [*command, "--outputPath", str(tmp_path), "--workers", "1"],
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (count, count)),
+        env=os.environ | {"TMPDIR": str(tmp_path)},  # a folder cannot be removed without a file
         capture_output=True,
         text=True,
         check=False,
