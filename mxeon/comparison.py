@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mxeon.hosts import Identity
-from mxeon.reading import regular
+from mxeon.writing import regular
 from mxeon.records import ERRORS, read_record, spelled
 from mxeon.report import JSON_FORMAT
 from mxeon.results import FAILED, NOT_RUN, PASSED, VERDICTS, Result

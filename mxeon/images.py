@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mxeon.reading import assert_regular
+from mxeon.writing import assert_regular
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn, override
 
-from mxeon.reading import regular
+from mxeon.writing import regular
 from mxeon.records import ERRORS, make_converter
 from mxeon.results import Findings, Picture, Plan
 

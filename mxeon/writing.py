@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that appear whole or not at all, and are on disk when they do."""
+"""Files: regular ones alone are read; what is written appears whole or not at all."""
 
 import errno
 import os
+import stat
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -102,3 +103,35 @@ def _holds(path, pixels):
     stored = file.read_image(oiio.UNKNOWN) if file else None
     oiio.geterror()  # else it is printed when Python ends
     return stored is not None and stored.tobytes() == pixels.tobytes()
+
+
+def regular(path, flags):
+    """Descriptor of a regular file: `open(path, opener=regular)`.
+
+    A pipe or a device may have no end, and a pipe that nobody writes to blocks who opens it.
+
+    Parameters
+    ----------
+    path : path-like
+    flags : int
+        As of `os.open`.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    OSError
+        If the file is of another kind, or cannot be opened.
+    """
+    file = os.open(path, flags | os.O_NONBLOCK)
+    if not stat.S_ISREG(os.fstat(file).st_mode):
+        os.close(file)
+        raise OSError(errno.EINVAL, "not a regular file", os.fspath(path))
+    return file
+
+
+def assert_regular(path):
+    """Raise OSError unless a path names a regular file that can be read; for what opens by name."""
+    os.close(regular(path, os.O_RDONLY))

@@ -16,7 +16,7 @@ from xml.parsers import expat
 import mxeon
 from mxeon.encoding import decode, strict
 from mxeon.library import data_folder, eonlib_folder, standard_folders
-from mxeon.reading import regular
+from mxeon.writing import regular
 from mxeon.screening import DocumentError
 from mxeon.trust import inside
 

@@ -17,7 +17,7 @@ from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.questions import QUESTIONS, answer
 from mxeon.kit.renders import Missing, Unusable, read_render
 from mxeon.kit.shots import MATERIALS, shots
-from mxeon.reading import regular
+from mxeon.writing import regular
 from mxeon.results import FAILED, NOT_RUN, Picture, Result, Run
 from mxeon.scene import sphere
 

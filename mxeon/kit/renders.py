@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 
-from mxeon.reading import assert_regular, regular
+from mxeon.writing import assert_regular, regular
 from mxeon.scene import sphere
 
 COLUMNS = ["row", "column", "red", "green", "blue"]
