@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 
 from benchmarks import page, record
-from mxeon.hosts import NotRun
+from mxeon.errors import NotRun
 
 GROUPS = ("shaders", "materials", "cycles", "models", "tool")
 QUICK = {

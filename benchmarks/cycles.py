@@ -14,11 +14,11 @@ from functools import partial
 import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
-from mxeon.albedo import eon_albedo_dir
-from mxeon.defects import eon_rho_cubed_albedo_dir
-from mxeon.generation import generate
-from mxeon.hosts import cycles
-from mxeon.scene import FURNACE, sphere
+from mxeon.models.albedo import eon_albedo_dir
+from mxeon.models.known_defects import eon_rho_cubed_albedo_dir
+from mxeon.shaders.generation import generate
+from mxeon.shaders.hosts import cycles
+from mxeon.shaders.scene import FURNACE, sphere
 
 SIZE = 128
 SAMPLES = (64, 512)
@@ -95,7 +95,9 @@ def measure(rounds=5, size=SIZE, samples=SAMPLES):
             time = {name: less(seconds[name, count], seconds[name, 1]) for name in made}
             figures += compared(count, off, time)
             mean = {name: np.abs(each.mean(axis=0)).max() for name, each in off.items()}
-            checks += [Check(f"{n}, {count} samples, mean", float(e), MEAN) for n, e in mean.items()]
+            checks += [
+                Check(f"{n}, {count} samples, mean", float(e), MEAN) for n, e in mean.items()
+            ]
     return Group("cycles", title, tuple(figures), tuple(checks))
 
 

@@ -8,10 +8,10 @@ from itertools import count
 import numpy as np
 
 from benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio, scaled
-from mxeon.generation import generate
-from mxeon.hosts import gl, raster
-from mxeon.library import LIBRARIES
-from mxeon.scene import SIDE, sphere
+from mxeon.shaders.generation import generate
+from mxeon.shaders.hosts import gl, raster
+from mxeon.shaders.library import LIBRARIES
+from mxeon.shaders.scene import SIDE, sphere
 
 SIZE = 1024
 FRAMES = 2
@@ -51,7 +51,7 @@ def shader(node, library):
 class Frame:
     """A material on the sphere, drawn again and again with its uniforms and buffers in place.
 
-    What `mxeon.hosts.gl` does for one picture, by its own functions, with the set-up kept apart.
+    What `mxeon.shaders.hosts.gl` does for one picture, by its own functions, with the set-up kept apart.
     """
 
     def __init__(self, host, generated, size):
@@ -108,9 +108,7 @@ def _timed(host, rounds, size, clock):
     figures, checks, numbers = [], [], count()
     for node in NODES:
         shaders = {library: shader(node, library) for library in LIBRARIES}
-        made = {
-            name: partial(first_frame, host, each, numbers) for name, each in shaders.items()
-        }
+        made = {name: partial(first_frame, host, each, numbers) for name, each in shaders.items()}
         compiling = interleave(made, rounds, clock)
         frames = {name: Frame(host, each, size) for name, each in shaders.items()}
         drawing = interleave({name: each.draw for name, each in frames.items()}, rounds, clock)

@@ -11,8 +11,8 @@ from functools import partial
 import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, interleave, ratio, scaled
-from mxeon import geometry
-from mxeon.models import eon_brdf
+from mxeon.models import geometry
+from mxeon.models.brdf import eon_brdf
 
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
 C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
@@ -85,7 +85,7 @@ def compiled(given):
     try:
         import numba
 
-        from mxeon import compiled as module
+        from benchmarks import numba_eon as module
     except ImportError:
         return {}
 
@@ -94,9 +94,7 @@ def compiled(given):
         return module.eon_brdf(*given)
 
     most = min(2, numba.config.NUMBA_NUM_THREADS)
-    return {
-        f"Numba, {n} thread{'s'[: n - 1]}": partial(run, n) for n in range(1, most + 1)
-    }
+    return {f"Numba, {n} thread{'s'[: n - 1]}": partial(run, n) for n in range(1, most + 1)}
 
 
 def compare(count, material, rounds):

@@ -9,7 +9,8 @@ from functools import partial
 
 import numpy as np
 
-from mxeon import albedo, models, sampling
+from mxeon.models import albedo, sampling
+from mxeon.models import brdf as models
 
 # What drivers' float32 leaves of pi f cos <= 2: 14 roundings and two fits; as the shader twins'.
 VALUE = 2e-6
@@ -152,13 +153,27 @@ VALUES = (
     _value("EON, eonlib", OURS, models.eon_brdf),
     _value("EON, quartic (hoisted)", PAPER_OF, models.eon_brdf, QUARTIC, "hoisted", MATERIAL_PAPER),
     _value("EON, eonlib (hoisted)", OURS_OF, models.eon_brdf, VALUE, "hoisted", MATERIAL_OURS),
-    Rival("environment, quartic", "sum += printed_environment(mu_o, rho, roughness);", "albedo",
-          albedo_of, QUARTIC),
-    Rival("environment, stock",
-          "sum += mx_oren_nayar_compensated_diffuse_dir_albedo(mu_o, roughness, rho);", "albedo",
-          albedo_of, EXACT),
-    Rival("environment, eonlib", "sum += eon_albedo_dir(mu_o, rho, roughness);", "albedo",
-          albedo_of, VALUE),
+    Rival(
+        "environment, quartic",
+        "sum += printed_environment(mu_o, rho, roughness);",
+        "albedo",
+        albedo_of,
+        QUARTIC,
+    ),
+    Rival(
+        "environment, stock",
+        "sum += mx_oren_nayar_compensated_diffuse_dir_albedo(mu_o, roughness, rho);",
+        "albedo",
+        albedo_of,
+        EXACT,
+    ),
+    Rival(
+        "environment, eonlib",
+        "sum += eon_albedo_dir(mu_o, rho, roughness);",
+        "albedo",
+        albedo_of,
+        VALUE,
+    ),
 )
 
 DRAWN = "printed_{}(min(wo.z, 1.0), min(wi.z, 1.0), dot(wo, wi) - wo.z * wi.z, rho, roughness)"
@@ -185,20 +200,37 @@ SAMPLING = (
     _draw("cosine + quartic", *COSINE, DRAWN.format("quartic"), "cosine", LARGEST * QUARTIC),
     _draw("cosine + printed", *COSINE, DRAWN.format("exact"), "cosine", LARGEST * EXACT),
     _cosine("eonlib", models.eon_brdf),
-    _draw("LTC, d = 0 + quartic", *_lobe("ltc0"), DRAWN.format("quartic"), "ltc0",
-          LARGEST * QUARTIC),
+    _draw(
+        "LTC, d = 0 + quartic", *_lobe("ltc0"), DRAWN.format("quartic"), "ltc0", LARGEST * QUARTIC
+    ),
     _draw("LTC + quartic", *_lobe("ltc"), DRAWN.format("quartic"), "ltc", LARGEST_LTC * QUARTIC),
-    _draw("CLTC alone + quartic", *_lobe("cltc"), DRAWN.format("quartic"), "cltc",
-          LARGEST_LTC * QUARTIC),
+    _draw(
+        "CLTC alone + quartic",
+        *_lobe("cltc"),
+        DRAWN.format("quartic"),
+        "cltc",
+        LARGEST_LTC * QUARTIC,
+    ),
     _draw("CLTC + quartic", *MIXTURE, DRAWN.format("quartic"), "eon_cltc", LARGEST_LTC * QUARTIC),
     _draw("CLTC + printed", *MIXTURE, DRAWN.format("exact"), "eon_cltc", LARGEST_LTC * EXACT),
-    _draw("CLTC + eonlib", *MIXTURE, TWIN.format("eon_brdf"), "eon_cltc",
-          LARGEST_LTC * VALUE + WEIGHT),
+    _draw(
+        "CLTC + eonlib", *MIXTURE, TWIN.format("eon_brdf"), "eon_cltc", LARGEST_LTC * VALUE + WEIGHT
+    ),
     _draw("exact + eonlib", *EON, TWIN.format("eon_brdf"), "eon"),
-    Rival("pdf, CLTC", "sum += vec3(EON_PI * eon_cltc_pdf(wo, wi, roughness));", "pdf",
-          partial(pdf_of, "eon_cltc"), 2e-5),
-    Rival("pdf, exact", "sum += vec3(EON_PI * eon_pdf(wo, wi, 1.0, roughness));", "pdf",
-          partial(pdf_of, "eon"), 2e-5),
+    Rival(
+        "pdf, CLTC",
+        "sum += vec3(EON_PI * eon_cltc_pdf(wo, wi, roughness));",
+        "pdf",
+        partial(pdf_of, "eon_cltc"),
+        2e-5,
+    ),
+    Rival(
+        "pdf, exact",
+        "sum += vec3(EON_PI * eon_pdf(wo, wi, 1.0, roughness));",
+        "pdf",
+        partial(pdf_of, "eon"),
+        2e-5,
+    ),
 )
 RIVALS = VALUES + SAMPLING
 

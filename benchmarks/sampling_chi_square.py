@@ -13,7 +13,7 @@ import sys
 import numpy as np
 from scipy import stats
 
-from mxeon.sampling import eon_pdf, eon_sample
+from mxeon.models.sampling import eon_pdf, eon_sample
 
 ROWS, COLUMNS, CHUNK = 48, 32, 1_000_000
 MU_O, ROUGHNESS = 0.25, 1.0

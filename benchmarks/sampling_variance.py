@@ -10,8 +10,8 @@ CLTC alone does not exist: their density falls to 0 along a line on which EON do
 
 import numpy as np
 
-from mxeon.models import eon_brdf
-from mxeon.sampling import SAMPLERS, eon_pdf
+from mxeon.models.brdf import eon_brdf
+from mxeon.models.sampling import SAMPLERS, eon_pdf
 
 # From 0.01 on: towards 0 the variance of cosine sampling grows without bound, as its logarithm.
 COSINES = np.linspace(0.01, 1.0, 100)
@@ -100,7 +100,7 @@ def print_throughput():
 
 def worst_of(sampler, roughness):
     """Largest variance, largest weight and largest distance of the mean from 1."""
-    mean, variance, weight = zip(*(moments(sampler, mu, roughness) for mu in COSINES))
+    mean, variance, weight = zip(*(moments(sampler, mu, roughness) for mu in COSINES), strict=False)
     return max(variance), max(weight), max(abs(1.0 - value) for value in mean)
 
 

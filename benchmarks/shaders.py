@@ -11,13 +11,13 @@ import re
 from functools import partial
 from pathlib import Path
 
-import moderngl
 import MaterialX as mx
+import moderngl
 import numpy as np
 
 from benchmarks.rivals import BASES, BRDFS, GOALS, RIVALS
 from benchmarks.rounds import Check, Group, clock_of, interleave, less, ratio, scaled
-from mxeon import twins
+from mxeon.shaders import functions as twins
 
 PRINTED = Path(__file__).with_name("printed.glsl")
 CALLS, INVOCATIONS = 256, 2**14

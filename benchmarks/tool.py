@@ -14,10 +14,11 @@ import numpy as np
 
 from benchmarks.models import peak_memory, reset_memory
 from benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
-from mxeon.conformance import check
-from mxeon.generation import GENERATORS, TARGETS, generate
-from mxeon.hosts import NotRun, open_host
-from mxeon.library import examples_folder, load_library
+from mxeon.conformance.run import check
+from mxeon.errors import NotRun
+from mxeon.shaders.generation import GENERATORS, TARGETS, generate
+from mxeon.shaders.hosts import open_host
+from mxeon.shaders.library import examples_folder, load_library
 
 DOCUMENTS = (1, 10, 100, 1000)
 WHOLE = ("gl", "webgl", "vulkan", "slang", "cycles")
@@ -41,7 +42,7 @@ def _process(*arguments):
 
 def starting(rounds):
     """Figures of imports and of the command's help, each in a process of its own."""
-    codes = {"numpy": "import numpy", "mxeon": "import numpy, mxeon, mxeon.reference"}
+    codes = {"numpy": "import numpy", "mxeon": "import numpy, mxeon, mxeon.models.table"}
     rivals = {name: partial(_process, "-c", code) for name, code in codes.items()}
     rivals["help"] = partial(_process, "-c", "from mxeon.cli import main; main(['--help'])")
     seconds = interleave(rivals, rounds)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Render the materials of `examples/` and write the gallery page.
 
-    python docs/gallery.py           the pictures and gallery.md
-    python docs/gallery.py --page    gallery.md alone
+python docs/gallery.py           the pictures and gallery.md
+python docs/gallery.py --page    gallery.md alone
 """
 
 import subprocess

@@ -12,9 +12,8 @@ BIBLIOGRAPHY = "## Bibliography\n"
 
 
 def on_files(files, config):
-    """Add the changelog, contributing, `upstream/`, and the bibliography of the README."""
+    """Add the changelog, contributing and the bibliography of the README."""
     pages = {page: ROOT / name for page, name in OUTSIDE.items()}
-    pages |= {f"upstream/{path.name}": path for path in (ROOT / "upstream").glob("*.md")}
     for page, path in pages.items():
         files.append(File.generated(config, page, abs_src_path=str(path)))
     bibliography = (ROOT / "README.md").read_text(encoding="utf-8").partition(BIBLIOGRAPHY)[2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of `mxeon.eon_sampling` and of the shaders; prints coefficients and errors.
+"""Fits of `mxeon.models.sampling.eon` and of the shaders; prints coefficients and errors.
 
     python -m fits.eon_sampling
 
@@ -42,7 +42,9 @@ def upper_density(m):
 def multiple_basis(t):
     """t w^k with w^2 = 1 - t, and the derivatives by t."""
     w = mp.sqrt(1 - t)
-    return [t * w**k for k in MULTIPLE_POWERS], [w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS]
+    return [t * w**k for k in MULTIPLE_POWERS], [
+        w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS
+    ]
 
 
 def upper_basis(y):
@@ -66,7 +68,9 @@ def density_error(p, basis, density, root, coefficients):
     exact = density(x)
     growth = (exact - density(x - step)) / step
     scale = root * p ** (root - 1)
-    gradient = [(b * exact + slope * growth * a) / scale for a, b in zip(values, slopes)]
+    gradient = [
+        (b * exact + slope * growth * a) / scale for a, b in zip(values, slopes, strict=True)
+    ]
     return slope * exact / scale - 1, gradient
 
 
@@ -76,7 +80,7 @@ def fitted(points, basis, density, root):
     for _ in range(STEPS):
         errors = [density_error(p, basis, density, root, coefficients) for p in points]
         change, _ = least_largest([row for _, row in errors], [-error for error, _ in errors])
-        coefficients = [a + b for a, b in zip(coefficients, change)]
+        coefficients = [a + b for a, b in zip(coefficients, change, strict=True)]
     return coefficients
 
 

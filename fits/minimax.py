@@ -38,10 +38,10 @@ def least_largest(rows, right):
     indices = [(len(rows) - 1) * k // count for k in range(count + 1)]
     signs = _signs([rows[i] for i in indices])
     for _ in range(STEPS):
-        matrix = mp.matrix([_signed(rows[i], sign) for i, sign in zip(indices, signs)])
-        sides = mp.matrix([sign * right[i] for i, sign in zip(indices, signs)])
+        matrix = mp.matrix([_signed(rows[i], sign) for i, sign in zip(indices, signs, strict=True)])
+        sides = mp.matrix([sign * right[i] for i, sign in zip(indices, signs, strict=True)])
         *x, level = mp.lu_solve(matrix, sides)
-        residuals = [mp.fdot(row, x) - side for row, side in zip(rows, right)]
+        residuals = [mp.fdot(row, x) - side for row, side in zip(rows, right, strict=True)]
         worst = max(range(len(rows)), key=lambda i: abs(residuals[i]))
         if abs(residuals[worst]) <= level * (1 + mp.sqrt(mp.eps)):
             return x, level
@@ -64,13 +64,13 @@ def _weights(matrix, total):
 def _signs(rows):
     """Signs with which the rows of a reference add up to zero under positive weights."""
     alternate = [(-1) ** k for k in range(len(rows))]
-    matrix = mp.matrix([_signed(row, sign) for row, sign in zip(rows, alternate)])
+    matrix = mp.matrix([_signed(row, sign) for row, sign in zip(rows, alternate, strict=True)])
     weights = _weights(matrix, [0] * len(rows[0]) + [-1])
-    return [sign * int(mp.sign(weight)) for sign, weight in zip(alternate, weights)]
+    return [sign * int(mp.sign(weight)) for sign, weight in zip(alternate, weights, strict=True)]
 
 
 def _leaving(matrix, entering):
     """Row of a reference that another replaces with all weights staying positive."""
     weights = _weights(matrix, [0] * (len(entering) - 1) + [-1])
     change = _weights(matrix, entering)
-    return min((w / d, k) for k, (w, d) in enumerate(zip(weights, change)) if d > 0)[1]
+    return min((w / d, k) for k, (w, d) in enumerate(zip(weights, change, strict=True)) if d > 0)[1]

@@ -2,9 +2,9 @@
 """Hosts for the tests, each opened once in a session, when a test first asks for it."""
 
 import pytest
-from availability import available, required
 
-from mxeon.hosts import open_host
+from mxeon.shaders.hosts import open_host
+from tests.support.availability import available, required
 
 
 def pytest_configure():

@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from availability import VARIABLE, available, required
 
-from mxeon.hosts import HOSTS, NotRun
+from mxeon.errors import NotRun
+from mxeon.shaders.hosts import HOSTS
+from tests.support.availability import VARIABLE, available, required
 
 ROOT = Path(__file__).parents[1]
 
@@ -52,5 +53,7 @@ def test_the_test_run_requires_every_host_that_it_installs():
 
 def test_no_test_skips_a_host_on_its_own():
     pattern = re.compile(r"except NotRun as \w+:\s+pytest\.skip")
-    files = [path for path in (ROOT / "tests").glob("test_*.py") if pattern.search(path.read_text())]
+    files = [
+        path for path in (ROOT / "tests").glob("test_*.py") if pattern.search(path.read_text())
+    ]
     assert files == []

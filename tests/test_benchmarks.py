@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
 
-
 import numpy as np
 import pytest
-from availability import available
 
 from benchmarks import __main__ as command
 from benchmarks import cycles, materials, models, page, record, shaders, tool
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
+from tests.support.availability import available
 
 
 def assert_right(group):

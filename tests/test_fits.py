@@ -8,12 +8,13 @@ import re
 
 import numpy as np
 import pytest
-import tolerances
 
 from fits import arc_tangent, eon_inversion, eon_sampling, fon_loss
 from fits.minimax import least_largest, mp
-from mxeon import eon_sampling as shipped
-from mxeon import inversion, twins
+from mxeon.models import inversion
+from mxeon.models.sampling import eon as shipped
+from mxeon.shaders import functions as twins
+from tests.support import tolerances
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 

@@ -7,13 +7,14 @@ import sys
 from pathlib import Path
 
 import pytest
-from fuzz.attack import FAMILIES, cases
-from fuzz.cases import OUT, Case, case
-from fuzz.found import FOUND
-from fuzz.trial import guarded, numbered, trial
-from fuzz.words import CANARY, POISON
 
-from mxeon import cli, pool
+from mxeon import cli
+from mxeon.jobs import pool
+from tests.fuzz.attack import FAMILIES, cases
+from tests.fuzz.cases import OUT, Case, case
+from tests.fuzz.found import FOUND
+from tests.fuzz.trial import guarded, numbered, trial
+from tests.fuzz.words import CANARY, POISON
 
 LIMIT = 60.0  # seconds for one case
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The choice of processors under which the tests of numbers run."""
 
+import itertools
 import re
 from pathlib import Path
 
-from reliability import processors
+from tests.reliability import processors
 
 REPORT = """<testsuites><testsuite>
   <testcase name="a"/><testcase name="b"><failure/></testcase>
@@ -15,12 +16,12 @@ REPORT = """<testsuites><testsuite>
 def test_every_choice_leaves_out_one_level_more_than_the_last():
     simd = [set(value.split()) for name, value in processors.choices() if name == processors.SIMD]
     assert simd[0] == set()
-    assert all(len(more - less) == 1 and less < more for less, more in zip(simd, simd[1:]))
+    assert all(len(more - less) == 1 and less < more for less, more in itertools.pairwise(simd))
 
 
 def test_every_file_of_tests_with_a_tolerance_is_run():
-    files = [path for path in Path(__file__).parent.glob("test_*.py") if path != Path(__file__)]
-    pattern = re.compile("^(import|from) tolerances", re.MULTILINE)
+    files = [path for path in Path(__file__).parent.rglob("test_*.py") if path != Path(__file__)]
+    pattern = re.compile("^from tests.support(.tolerances)? import", re.MULTILINE)
     rest = {path.stem for path in files if pattern.search(path.read_text())}
     hosts_alone = {"test_host_cycles", "test_library"}
     assert rest - hosts_alone <= {f"test_{name}" for name in processors.FILES}

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The ledger says what is so: each defect is still there, where its page has it, and as large."""
 
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 import pytest
-from availability import available
-from tolerances import PRINTED
 
-from upstream import ledger
+from docs.upstream import update as ledger
+from tests.support.availability import available
+from tests.support.tolerances import PRINTED
 
 PAGES = [defect.page for defect in ledger.DEFECTS] + list(ledger.OF_QUANTITIES)
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
@@ -16,7 +16,7 @@ HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
 of_each_defect = pytest.mark.parametrize("defect", ledger.DEFECTS, ids=lambda each: each.page)
 
 
-@lru_cache(maxsize=None)
+@cache
 def judged(host):
     with available(host):
         return ledger.judged(host)

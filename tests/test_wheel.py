@@ -10,9 +10,9 @@ from pathlib import Path
 
 import MaterialX as mx
 import pytest
-from documents import EON, lobe, material
 
 import mxeon
+from tests.support.documents import EON, lobe, material
 
 CHECKOUT = Path(__file__).parents[1]
 DATA = ("eonlib", "genglsl", "genosl", "profiles", "examples")
@@ -21,8 +21,8 @@ SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
 LOAD = """
 import mxeon
-from mxeon.document import read_document
-from mxeon.library import assert_ours, data_folder, examples_folder, load_library
+from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.library import assert_ours, data_folder, examples_folder, load_library
 print(data_folder())
 assert_ours(load_library())
 assert_ours(load_library(profile="cycles"))
@@ -93,7 +93,9 @@ def test_the_wheel_holds_the_package_alone(wheel):
     roots = {name.split("/")[0] for name in contents(wheel)}
     assert roots == {"mxeon", f"mxeon-{mxeon.__version__}.dist-info"}
     parts = {part for name in contents(wheel) for part in name.split("/")}
-    assert [part for part in parts if part in ("tests", "__pycache__") or part.startswith("test_")] == []
+    assert [
+        part for part in parts if part in ("tests", "__pycache__") or part.startswith("test_")
+    ] == []
 
 
 def test_the_sdist_holds_what_the_tests_need_and_nothing_made(built):

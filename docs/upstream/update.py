@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The figures of the pages, made by the suite: `python -m docs.upstream.update` writes them anew.
+
+Each page has a block between two markers, which nothing but this program writes.
+"""
+
+import re
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import MaterialX as mx
+import numpy as np
+
+from mxeon.conformance.known_issues import DEFECTS, STOCK
+from mxeon.conformance.run.plan import SOURCE, Judge, plan
+from mxeon.io.files import write_text
+from mxeon.models import albedo, formulas
+from mxeon.models import brdf as models
+from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.generation import generate
+
+FOLDER = Path(__file__).parent
+BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
+HEAD = "| check | subject | measured | allowed | unit |\n|---|---|---|---|---|\n"
+MEASURED = 2  # column of a row's figure
+
+# Pages whose figures are errors of a driver, and belong to the one that they name.
+OF_DRIVERS = ("genglsl_albedo_acos",)
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Where a defect lies in MaterialX's data.
+
+    Attributes
+    ----------
+    file : str
+        Below the folder `libraries`.
+    line : int
+        Of the file, from 1.
+    word : str
+        Occurs there.
+    """
+
+    file: str
+    line: int
+    word: str
+
+
+OPENPBR = "bxdf/open_pbr_surface.mtlx"
+MICROFACET = "pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+# Page -> cause, where the source is part of MaterialX's data.
+CAUSES = {
+    "genglsl_clamped_dot": Cause("pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl", 22, "LdotV"),
+    "genglsl_qon_albedo_fit": Cause(MICROFACET, 21, "dir_albedo_analytic"),
+    "genglsl_albedo_acos": Cause(MICROFACET, 92, "mx_acos"),
+    "genosl_dropped_flag": Cause(
+        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 5, "oren_nayar_diffuse_bsdf({{normal}}"
+    ),
+    "openpbr_thin_walled": Cause(OPENPBR, 140, "subsurface_thin_walled_reflection_bsdf"),
+    "openpbr_thin_walled_tint": Cause(OPENPBR, 149, "subsurface_thin_walled_brdf_factor"),
+}
+
+GIVEN_NORMAL = """<materialx version="1.39">
+  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
+    <input name="normal" type="vector3" value="0.25, 0.5, 0.75" />
+  </oren_nayar_diffuse_bsdf>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe" />
+  </surface>
+  <surfacematerial name="material" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>"""
+
+
+def stock_path(cause):
+    """The file of a cause in the MaterialX that is installed."""
+    return Path(mx.getDefaultDataSearchPath().find(f"libraries/{cause.file}").asString())
+
+
+def judged(host):
+    """Results of the checks that show defects, of stock MaterialX on a host or on "source".
+
+    Returns
+    -------
+    results : list of Result
+    place : str
+        Device and versions with which they were measured.
+
+    Raises
+    ------
+    NotRun
+        If the host cannot run here.
+    """
+    rows = {row for defect in DEFECTS for row in defect.rows}
+    items = plan((), () if host == SOURCE else (host,), (STOCK,)).items
+    chosen = [
+        each
+        for each in items
+        if each.host == host and (host == SOURCE or (each.check, each.subject) in rows)
+    ]
+    with closing(Judge(DEFAULT)) as judge:
+        findings = [judge.work(item) for item in chosen]
+    devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
+    place = ", ".join([*devices, f"MaterialX {mx.__version__}"])
+    return [result for each in findings for result in each.results], place
+
+
+def shown(defect, results):
+    """The results that show a defect, in the order of its rows."""
+    found = {(each.check, each.subject): each for each in results}
+    return [found[row] for row in defect.rows]
+
+
+def block(results, place):
+    """Results as the table of a page, where they were measured, and what the first is named as."""
+    rows = [
+        f"| {each.check} | {each.subject} "
+        f"| {each.figure:.2g} | {each.tolerance:.2g} | {each.unit} |"
+        for each in results
+    ]
+    said = f"Measured with {place}.\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
+    return HEAD + "\n".join(rows) + f"\n\n{said}"
+
+
+def figures(text):
+    """Figures of the rows of a block."""
+    return [float(row.split(" | ")[MEASURED]) for row in _rows(text)]
+
+
+def without_figures(text):
+    """Rows of a block without their figures, and what the suite says."""
+    rows = [row.split(" | ") for row in _rows(text)]
+    return [row[:MEASURED] + row[MEASURED + 1 :] for row in rows], text.split("\n\n")[2:]
+
+
+def _rows(text):
+    return text.removeprefix(HEAD).split("\n\n")[0].splitlines()
+
+
+def _rounded(text):
+    """A diagnosis without pages and without distances, which drivers change."""
+    return re.sub(r" \([^()]*\d[^()]*\)", "", text.split("; see ")[0])
+
+
+def printed_b_block():
+    """A + B s/t for a surface of slope deviation 0, lit and seen at 60 degrees from one side."""
+    sine, tangent = np.sin(np.pi / 3.0), np.tan(np.pi / 3.0)
+    printed = 1.0 + (1.0 - 0.45 * 0.0) * sine * tangent
+    return _quantities("pi f / rho at sigma 0, both directions at 60 degrees", [printed], [1.0])
+
+
+def printed_angles_block():
+    """QON lit and seen at 60 degrees from either side, with polar angles where azimuths belong."""
+    sigma, angle = 1.0, np.pi / 3.0
+    wo, wi = ([side * np.sin(angle), 0.0, np.cos(angle)] for side in (1.0, -1.0))
+    a, b = formulas.qon_a(sigma), formulas.qon_b(sigma)
+    printed = a + b * np.cos(angle - angle) * np.sin(angle) * np.tan(angle)
+    right = np.pi * models.qon_brdf(wo, wi, [1.0], sigma)
+    name = "pi f / rho at sigma 1, directions at 60 degrees on either side"
+    return _quantities(name, [printed], right)
+
+
+def printed_pi_block():
+    """Albedo head-on of a white surface whose multiple scattering has been divided by pi."""
+    single = albedo.fon_albedo_dir(1.0, 1.0)
+    printed = single + (1.0 - single) / np.pi
+    return _quantities("albedo head-on, reflectance 1, roughness 1", [printed], [1.0])
+
+
+def dropped_normal_block():
+    """Whether generated GLSL holds a normal that the document gives as a literal value."""
+    [shader] = generate(GIVEN_NORMAL, "glsl", library=STOCK)
+    return _quantities(
+        "shaders, of 1, that hold the value", [float("0.25" in shader.stages["pixel"])], [1.0]
+    )
+
+
+def _quantities(name, measured, expected):
+    text = [" ".join(f"{each:.3f}" for each in values) for values in (measured, expected)]
+    head = "| quantity | measured | expected |\n|---|---|---|\n"
+    return f"{head}| {name} | {text[0]} | {text[1]} |\n"
+
+
+OF_QUANTITIES = {
+    "dropped_normal": dropped_normal_block,
+    "openpbr_printed_pi": printed_pi_block,
+    "pbrlib_printed_angles": printed_angles_block,
+    "pbrlib_printed_b": printed_b_block,
+}
+
+
+def written(page):
+    """The block that a page holds."""
+    text = (FOLDER / f"{page}.md").read_text(encoding="utf-8")
+    return text.split(BEGIN)[1].split(END)[0]
+
+
+def main():
+    """Write the blocks of all pages."""
+    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in DEFECTS)}
+    blocks = {}
+    for each in DEFECTS:
+        results, place = measured[each.host]
+        blocks[each.page] = block(shown(each, results), place)
+    blocks |= {page: made() for page, made in OF_QUANTITIES.items()}
+    for page, text in blocks.items():
+        path = FOLDER / f"{page}.md"
+        head, rest = path.read_text(encoding="utf-8").split(BEGIN)
+        write_text(path, head + BEGIN + text + END + rest.split(END)[1])
+
+
+if __name__ == "__main__":
+    main()

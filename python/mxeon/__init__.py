@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Correct Oren-Nayar and EON diffuse shading for every MaterialX target.
+
+Importing this loads nothing but the standard library; the names below load what they need.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
+    from mxeon.conformance.callables import brdf_test, check_brdf
+    from mxeon.conformance.run import check
+    from mxeon.shaders.generation import Shader, generate
+    from mxeon.shaders.library import load_library
+
+__version__ = "0.1.0"
+
+# Public name -> the module that defines it.
+_HOMES = {
+    "Shader": "mxeon.shaders.generation",
+    "brdf_test": "mxeon.conformance.callables",
+    "check": "mxeon.conformance.run",
+    "check_brdf": "mxeon.conformance.callables",
+    "generate": "mxeon.shaders.generation",
+    "load_library": "mxeon.shaders.library",
+}
+__all__ = [
+    "Shader",
+    "__version__",
+    "brdf_test",
+    "check",
+    "check_brdf",
+    "generate",
+    "load_library",
+]
+
+
+def __getattr__(name):
+    if name not in _HOMES:
+        raise AttributeError(f"module 'mxeon' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is judged: the rough diffuse nodes, each with the model it has to be."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mxeon.shaders.library import LIBRARIES
+
+NODE_DOCUMENT = """<?xml version="1.0"?>
+<materialx version="1.39">
+  <constant name="shading_normal" type="vector3">
+    <input name="value" type="vector3" value="{normal}" />
+  </constant>
+  <{node} name="lobe" type="BSDF">
+{inputs}
+  </{node}>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe" />
+  </surface>
+  <surfacematerial name="{node}" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>
+"""
+SURFACE_DOCUMENT = """<?xml version="1.0"?>
+<materialx version="1.39">
+  <{node} name="shading" type="surfaceshader">
+{inputs}
+  </{node}>
+  <surfacematerial name="material" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>
+"""
+FLAG = "energy_compensation"
+TYPES = {
+    "weight": "float",
+    "color": "color3",
+    "roughness": "float",
+    "normal": "vector3",
+    FLAG: "boolean",
+}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A node as it is judged: with the flag it is used with and the model it has to be.
+
+    Attributes
+    ----------
+    node : str
+        Node category.
+    flag : bool or None
+        energy_compensation, or None where the node has no such input.
+    model : str
+        Name of a row of `mxeon.models.table.MODELS`.
+    names : tuple of str
+        Inputs that it may have; the flag counts only where it is not None.
+    """
+
+    node: str
+    flag: bool | None
+    model: str
+    names: tuple[str, ...] = tuple(TYPES)
+
+    @property
+    def stock(self):
+        """Whether MaterialX has this node as it comes."""
+        return self.node != "eon_diffuse_bsdf"
+
+    @property
+    def title(self):
+        """How reports call it."""
+        flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
+        return self.node + flag
+
+    @property
+    def inputs(self):
+        """Names of the node's inputs."""
+        return tuple(name for name in self.names if self.flag is not None or name != FLAG)
+
+    def with_flag(self, inputs):
+        """Inputs with the subject's flag, unless they set it."""
+        return inputs if self.flag is None else {FLAG: self.flag, **inputs}
+
+    def document(self, inputs=None):
+        """MaterialX text of a material that is this node alone, with the inputs given."""
+        given = self.with_flag(inputs or {})
+        lines = "\n".join(
+            f'    <input name="{name}" type="{TYPES[name]}" {_source(name, value)} />'
+            for name, value in given.items()
+        )
+        normal = _text(given.get("normal", (0.0, 0.0, 1.0)))
+        return NODE_DOCUMENT.format(node=self.node, inputs=lines, normal=normal)
+
+
+SUBJECTS = (
+    Subject("oren_nayar_diffuse_bsdf", True, "eon"),
+    Subject("oren_nayar_diffuse_bsdf", False, "qon"),
+    Subject("eon_diffuse_bsdf", None, "eon"),
+)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
+
+    What lies over the lobe depends on the directions alone, so that pictures of other colours
+    tell the lobe apart; see `mxeon.conformance.checks.probes.SurfaceProbe`.
+
+    Attributes
+    ----------
+    title, node, model : str
+        As reports call it, its category, and what its specification says it has to be.
+    color, roughness : str
+        Names of the inputs of the lobe; "" for no roughness.
+    fixed : tuple of (str, str, str)
+        Name, type and value of further inputs.
+    libraries : tuple of str
+        In which it is judged.
+    """
+
+    title: str
+    node: str
+    model: str
+    color: str
+    roughness: str
+    fixed: tuple[tuple[str, str, str], ...] = ()
+    libraries: tuple[str, ...] = LIBRARIES
+
+    inputs = ()
+
+    def document(self, inputs):
+        """MaterialX text of a material that is this shader alone."""
+        given = [(self.color, "color3", _text(inputs["color"])), *self.fixed]
+        if self.roughness:
+            given.append((self.roughness, "float", _text(inputs["roughness"])))
+        lines = "\n".join(
+            f'    <input name="{name}" type="{kind}" value="{value}" />'
+            for name, kind, value in given
+        )
+        return SURFACE_DOCUMENT.format(node=self.node, inputs=lines)
+
+
+# OpenPBR asks for EON, Standard Surface for Oren-Nayar, USD Preview Surface and glTF for Lambert.
+# The thin-walled lobe is MaterialX's own whatever the library, so it is judged once.
+THIN_WALLED = (
+    ("geometry_thin_walled", "boolean", "true"),
+    ("subsurface_weight", "float", "1.0"),
+)
+SURFACES = (
+    Surface("open_pbr_surface", "open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"),
+    Surface(
+        "open_pbr_surface, thin-walled",
+        "open_pbr_surface",
+        "eon",
+        "subsurface_color",
+        "base_diffuse_roughness",
+        THIN_WALLED,
+        ("stock",),
+    ),
+    Surface(
+        "standard_surface",
+        "standard_surface",
+        "qon",
+        "base_color",
+        "diffuse_roughness",
+        (("base", "float", "1.0"),),
+    ),
+    Surface("UsdPreviewSurface", "UsdPreviewSurface", "lambert", "diffuseColor", ""),
+    Surface("gltf_pbr", "gltf_pbr", "lambert", "base_color", "", (("metallic", "float", "0.0"),)),
+)
+
+# Nodes that a renderer has of its own; Blender's are meant to be EON.
+NATIVE = tuple(
+    Subject(node, None, "eon", ("color", "roughness"))
+    for node in ("Diffuse BSDF", "Principled BSDF")
+)
+
+
+def _source(name, value):
+    """Where an input comes from. MaterialX drops the value of a normal that is not connected."""
+    return 'nodename="shading_normal"' if name == "normal" else f'value="{_text(value)}"'
+
+
+def _text(value):
+    if isinstance(value, bool):
+        return str(value).lower()
+    return ", ".join(repr(float(each)) for each in np.ravel(value))

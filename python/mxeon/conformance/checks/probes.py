@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a check asks of a host: values and albedos of one node over batches of pairs.
+
+A host that evaluates gets free pairs, a host that only makes pictures gets the points of a sphere;
+both answer in the same form, so a check is written once.
+"""
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.reference import local_directions
+from mxeon.models import table as reference
+from mxeon.shaders.generation import ApproximationWarning, generate
+from mxeon.shaders.hosts.testrender import plane_pairs
+from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
+
+SEED = 1
+PAIRS = 1 << 20
+FEW = 1 << 16  # pairs of the checks that do not ask for a million
+GRAZING = 1e-6  # smallest cosine of the random pairs
+RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
+LOBE_RIM = 0.25  # of a lobe below others
+
+# Colours and roughnesses of the pictures that stand for a node on hosts that only make pictures.
+PICTURE_INPUTS = (
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
+)
+PICTURE_SIZE = 128
+
+# Host and model where no closure gives the model for s < 0: such pairs are not judged.
+FRONT_LIT_ONLY = (("cycles", "qon"),)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Pairs of directions and the node's inputs for them.
+
+    Attributes
+    ----------
+    wo, wi : ndarray, shape (N, 3)
+        Local frame; float32 numbers, so that a float32 host sees the same pairs.
+    inputs : mapping of str to array
+        Node inputs, (N, ...) or constant.
+    scene : Scene or None
+        The picture whose points these are.
+    """
+
+    wo: np.ndarray
+    wi: np.ndarray
+    inputs: Mapping
+    scene: Scene | None = None
+
+    def altered(self, **inputs):
+        """The same pairs with other inputs."""
+        return replace(self, inputs={**self.inputs, **inputs})
+
+    def first(self, count):
+        """The first pairs of the batch."""
+        inputs = {name: values[:count] for name, values in self.inputs.items()}
+        return replace(self, wo=self.wo[:count], wi=self.wi[:count], inputs=inputs)
+
+    def expected(self, model):
+        """pi f cos(theta_i) of a model or a known defect, (N, 3)."""
+        row = reference.model(model)
+        parameter = [self.inputs["roughness"]] if row.parameter else []
+        value = row.brdf(self.wo, self.wi, self.inputs["color"], *parameter)
+        return np.pi * value * self.wi[..., 2:]
+
+
+@dataclass(frozen=True)
+class PairProbe:
+    """A node on a host that evaluates any pairs."""
+
+    kind = "pairs"
+
+    host: object
+    subject: Subject
+    library: str
+
+    @cached_property
+    def _shader(self):
+        profile = self.host.profile
+        document = self.subject.document()
+        return generate(document, self.host.target, library=self.library, profile=profile)[0]
+
+    @cached_property
+    def batches(self):
+        """One batch of PAIRS random pairs; a quarter of each direction grazes the surface."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
+        return (Batch(wo, wi, random_inputs(rng, PAIRS, reference.model(self.subject.model))),)
+
+    @cached_property
+    def few(self):
+        """FEW of them."""
+        return tuple(batch.first(FEW) for batch in self.batches)
+
+    @property
+    def cosines(self):
+        """Directions for the environment branch, which takes no heed of `wi`."""
+        return self.few
+
+    def direct(self, batch):
+        """pi f cos(theta_i), (N, 3)."""
+        return np.pi * self._evaluate(batch, "direct")
+
+    def albedo(self, batch):
+        """What the environment branch makes of a uniform surrounding of radiance 1, (N, 3)."""
+        return self._evaluate(batch, "environment")
+
+    def call(self, function, *arguments):
+        """A function of the shader twins."""
+        return self.host.call(function, *arguments)
+
+    def _evaluate(self, batch, branch):
+        inputs = self.subject.with_flag(batch.inputs)
+        values = self.host.evaluate(self._shader, batch.wo, batch.wi, inputs, branch)
+        return values.astype(np.float64)
+
+
+@dataclass(frozen=True)
+class PictureProbe:
+    """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
+
+    kind = "pictures"
+    lit = (SIDE, FRONT, BACK)
+    size = PICTURE_SIZE
+
+    host: object
+    subject: Subject | Surface
+    library: str
+
+    @cached_property
+    def batches(self):
+        """The lit points away from rim and terminator, for each light and PICTURE_INPUTS."""
+        batches = (
+            self._batch(replace(scene, size=self.size), inputs)
+            for scene in self.lit
+            for inputs in PICTURE_INPUTS
+        )
+        return tuple(batch for batch in batches if len(batch.wo))
+
+    @property
+    def few(self):
+        """The same: they are few."""
+        return self.batches
+
+    @cached_property
+    def cosines(self):
+        """The points in a white surrounding."""
+        scene = replace(FURNACE, size=self.size)
+        return tuple(self._batch(scene, inputs) for inputs in PICTURE_INPUTS)
+
+    def direct(self, batch):
+        """pi f cos(theta_i), (N, 3)."""
+        return self._picture(batch)
+
+    albedo = direct
+
+    def call(self, function, *arguments):
+        """A function of the shader twins."""
+        return self.host.call(function, *arguments)
+
+    def _batch(self, scene, inputs):
+        wo, wi, chosen = self._points(scene)
+        return Batch(wo[chosen], wi[chosen], inputs, scene)
+
+    def _points(self, scene):
+        """Directions at the points of a picture, and which points are judged."""
+        wo, wi, chosen = picture_pairs(scene)
+        return wo, wi, chosen & self._judged(wo, wi)
+
+    def _judged(self, wo, wi):
+        """Pairs to judge: those for which the host has a closure that can be the model."""
+        if (self.host.name, self.subject.model) not in FRONT_LIT_ONLY:
+            return np.ones(len(wo), dtype=bool)
+        return wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0
+
+    def _picture(self, batch):
+        values = self._shown(self._shader(batch.inputs), batch.scene)
+        return values[self._points(batch.scene)[2]].astype(np.float64)
+
+    def _shader(self, inputs):
+        text = self.subject.document(inputs)
+        return _generated(text, self.host.target, self.library, self.host.profile)
+
+    def _shown(self, shader, scene):
+        """What the host shows at all points."""
+        return self.host.picture(shader, scene)[sphere(scene.size).mask]
+
+
+@dataclass(frozen=True)
+class SurfaceProbe(PictureProbe):
+    """The diffuse lobe of a surface shader, told apart from what lies over it.
+
+    A black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
+    model, shows how much of the light reaches the lobe and comes back.
+    """
+
+    kind = "lobes"
+    size = PICTURE_SIZE // 4  # the shaders are long
+
+    def _judged(self, wo, wi):
+        """Pairs to judge: those far from the rim, where an error in place is divided twice."""
+        return np.minimum(wo[:, 2], wi[:, 2]) >= LOBE_RIM
+
+    def _picture(self, batch):
+        picture = super()._picture
+        others = picture(batch.altered(color=(0.0, 0.0, 0.0)))
+        lambert = picture(batch.altered(color=(1.0, 1.0, 1.0), roughness=0.0)) - others
+        return (picture(batch) - others) / lambert * batch.wi[:, 2:]
+
+    def _shader(self, inputs):
+        """One shader for all inputs: long as it is, it is compiled once."""
+        shader = super()._shader(PICTURE_INPUTS[0])
+        given = {self.subject.color: inputs["color"], self.subject.roughness: inputs["roughness"]}
+        values = [given.get(each.path.rsplit("/", 1)[-1], each.value) for each in shader.inputs]
+        changed = map(lambda each, value: replace(each, value=value), shader.inputs, values)
+        return replace(shader, inputs=tuple(changed))
+
+
+@dataclass(frozen=True)
+class PlaneProbe(PictureProbe):
+    """A node on a plane: every pixel is another direction of view."""
+
+    kind = "planes"
+    lit = tuple(
+        Scene(f"plane{degrees}", light=(np.sin(polar), 0.0, np.cos(polar)))
+        for degrees in (20, 75)
+        for polar in [np.radians(degrees)]
+    )
+
+    def _points(self, scene):
+        wo, wi = plane_pairs(scene)
+        return wo, wi, np.ones(len(wo), dtype=bool)
+
+    def _shown(self, shader, scene):
+        return self.host.plane(shader, scene)
+
+
+@dataclass(frozen=True)
+class NativeProbe(PictureProbe):
+    """A node that a renderer has of its own, on a sphere."""
+
+    def _picture(self, batch):
+        color, roughness = (batch.inputs[name] for name in ("color", "roughness"))
+        image = self.host.node(self.subject.node, color, roughness, batch.scene)
+        return image[sphere(batch.scene.size).mask][picture_pairs(batch.scene)[2]].astype(
+            np.float64
+        )
+
+
+PROBES = {
+    "gl": PairProbe,
+    "webgl": PairProbe,
+    "vulkan": PairProbe,
+    "slang": PairProbe,
+    "cycles": PictureProbe,
+    "cycles-native": NativeProbe,
+    "testrender": PlaneProbe,
+}
+
+
+@lru_cache(maxsize=8)  # a check makes many pictures of a few documents
+def _generated(text, target, library, profile):
+    with warnings.catch_warnings():  # what is approximated is not judged: see _judged
+        warnings.simplefilter("ignore", ApproximationWarning)
+        return generate(text, target, library=library, profile=profile, lights=True)[0]
+
+
+@lru_cache(maxsize=8)
+def picture_pairs(scene):
+    """Directions at the points of the sphere, and which points are judged.
+
+    Returns
+    -------
+    wo, wi : ndarray, shape (N, 3)
+        One row per pixel on the sphere; wi is wo where there is no distant light.
+    chosen : ndarray of bool, shape (N,)
+        Both cosines at least RIM.
+    """
+    points = sphere(scene.size)
+    normal = points.normal[points.mask]
+    wo = local_directions(normal, (0.0, 0.0, 1.0))
+    wi = wo if scene.light is None else local_directions(normal, scene.light)
+    return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
+
+
+def directions(rng, count):
+    """Random directions: cosines uniform, a quarter of them log-uniform down to GRAZING."""
+    mu = rng.random(count)
+    mu[: count // 4] = GRAZING ** rng.random(count // 4)
+    rng.shuffle(mu)
+    mu = mu.astype(np.float32).astype(np.float64)
+    radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
+    return _float32([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+
+
+def random_inputs(rng, count, row):
+    """Random colours and roughnesses; an eighth of each lies on either end of its range."""
+    largest = row.interval[1] if row.parameter else 1.0
+    color, roughness = rng.random((count, 3)), rng.random(count)
+    color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
+    roughness = largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
+    roughness = np.minimum(roughness.astype(np.float32), np.nextafter(np.float32(largest), 0))
+    return {"color": _float32(color.T), "roughness": roughness.astype(np.float64)}
+
+
+def _float32(columns):
+    """Columns as rows of float32 numbers in float64."""
+    return np.stack(columns, axis=-1).astype(np.float32).astype(np.float64)

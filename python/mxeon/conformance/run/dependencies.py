@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The files that the findings of a run depend on, so that a run is resumed with the same ones.
+
+Documents are not parsed as MaterialX does, since that may end the process: each attribute that can
+name a file is taken as if it did, so a file too many may be listed, but none too few.
+"""
+
+import glob
+import hashlib
+import os
+import re
+from contextlib import suppress
+from pathlib import Path
+from xml.parsers import expat
+
+import mxeon
+from mxeon.errors import DocumentError, InputError
+from mxeon.io.files import regular
+from mxeon.shaders.document.encoding import decode, strict
+from mxeon.shaders.document.references import inside
+from mxeon.shaders.library import data_folder, eonlib_folder, standard_folders
+
+INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
+# A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
+OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
+
+
+def digests(documents, permissions):
+    """SHA-256 of every file that findings on documents depend on.
+
+    Parameters
+    ----------
+    documents : sequence of path-like
+    permissions : Permissions
+        Files that a document may not name are not looked at.
+
+    Returns
+    -------
+    dict of str to str
+        By path: the documents, what they include and name; by names that begin with "mxeon",
+        "eonlib" or "MaterialX": the code and the data libraries. "" for a document that is no
+        regular file or cannot be read.
+    """
+    found = {}
+    for document in documents:
+        for path in (str(document), *_named(Path(document), permissions)):
+            if path not in found:
+                found[path] = _digest(path)
+    return found | _installed()
+
+
+def _named(document, permissions):
+    """The files that a document includes and names, and those that the included ones do."""
+    home, waiting, seen = Path(os.path.realpath(document)).parent, [document], set()
+    while waiting:
+        text_file = waiting.pop()
+        for key, name in _names(_text(text_file, permissions), permissions.elements):
+            folders = {home, Path(os.path.realpath(text_file)).parent, Path.cwd()}
+            for path in _paths(name, folders | set(map(Path, permissions.path))):
+                allowed = permissions.outside or inside(path, home, permissions.path)
+                if path in seen or not allowed:
+                    continue
+                seen.add(path)
+                if key == INCLUDE:
+                    waiting.append(path)
+    return sorted(seen)
+
+
+def _text(path, permissions):
+    """Text of a document, or "" of one that is too large or cannot be read."""
+    with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
+        data = file.read(permissions.size + 1)
+        return strict(decode(data, str(path))) if len(data) <= permissions.size else ""
+    return ""
+
+
+def _names(text, elements):
+    """Attributes of a document that may name files, with their prefix: as far as it may be read."""
+    names, prefixes = [], [""]
+
+    def start(_, attributes):
+        if len(names) > 2 * len(NAMING) * elements:
+            refuse()
+        prefixes.append(attributes.get("fileprefix", prefixes[-1]))
+        for key in NAMING:
+            if value := attributes.get(key):
+                names.extend((key, name) for name in {value, prefixes[-1] + value})
+
+    def refuse(*_):
+        raise InputError("no document that is refused has findings of its files")
+
+    parser = expat.ParserCreate()
+    parser.StartElementHandler, parser.EndElementHandler = start, lambda _: prefixes.pop()
+    parser.StartDoctypeDeclHandler = refuse
+    with suppress(expat.ExpatError, LookupError, ValueError):
+        parser.Parse(text, True)
+    return names
+
+
+def _paths(name, folders):
+    """The regular files that a name may mean, by their real paths."""
+    for folder in folders:
+        paths = [str(folder / name)]
+        if OPEN_PART.search(name):
+            paths = glob.glob("*".join(map(glob.escape, OPEN_PART.split(paths[0]))))
+        yield from map(os.path.realpath, filter(os.path.isfile, paths))
+
+
+def _installed():
+    """Digests of mxeon's code and of the data libraries, by names that hold on any machine."""
+    folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", eonlib_folder())]
+    folders += [
+        (f"eonlib/{each}", data_folder() / each) for each in ("genglsl", "genosl", "profiles")
+    ]
+    folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
+    return {
+        f"{name}/{path.relative_to(folder)}": _digest(path)
+        for name, folder in folders
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.parent.name != "__pycache__"
+    }
+
+
+def _digest(path):
+    with suppress(OSError), open(path, "rb", opener=regular) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+    return ""

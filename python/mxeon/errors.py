@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors that have words for the user: the command shows one line and ends with their status.
+
+Every other exception is a bug of mxeon and shows its traceback.
+"""
+
+import re
+
+PASSED, FAILED, MISUSE, NOT_RUN = 0, 1, 2, 3  # exit statuses of the command
+
+LONGEST = 1000  # characters of a message, which may quote a document
+CUT = " [...]"  # ends one that is cut there
+# Controls, changes of the direction of writing, and halves of characters.
+STEERING = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+
+
+class MxeonError(Exception):
+    """An error whose message is one line for the user.
+
+    Attributes
+    ----------
+    status : int
+        Exit status of the command that ends with it.
+    """
+
+    status = MISUSE
+
+
+class InputError(MxeonError, ValueError):
+    """An argument, a name or a file that cannot be used; names the place, the rule and the value."""
+
+
+class DocumentError(InputError):
+    """A document that no shader can be generated from."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(one_line(message))
+
+
+class ImageError(InputError):
+    """An image that cannot be used."""
+
+
+class PackageError(MxeonError, ImportError):
+    """A Python package that is missing, or too old for mxeon."""
+
+
+class LibraryError(MxeonError, RuntimeError):
+    """Another data library than the one that was asked for."""
+
+    status = FAILED
+
+
+class ShaderError(MxeonError, RuntimeError):
+    """A shader that the host's compiler refuses; holds the compiler's own words."""
+
+    status = FAILED
+
+
+class NotRun(MxeonError, RuntimeError):
+    """Something that cannot be executed here; says what and why."""
+
+    status = NOT_RUN
+
+
+class Unsupported(NotRun):
+    """A verb that a host does not have."""
+
+
+class OutsideModel(NotRun):
+    """A value outside the range that a model is defined on."""
+
+
+class InterfaceError(NotRun):
+    """A MaterialX that calls closures in another way than eonlib's sources define them."""
+
+
+def printable(text: str) -> str:
+    """Text with U+FFFD for characters that steer a terminal or fit in no encoding."""
+    return STEERING.sub("\ufffd", text)
+
+
+def one_line(text: object) -> str:
+    """A message as one line that steers no terminal and is short enough to read."""
+    line = " ".join(printable(str(text)).split())
+    return line if len(line) <= LONGEST else f"{line[: LONGEST - len(CUT)]}{CUT}"

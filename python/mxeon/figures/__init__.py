@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The figures of [Portsmouth2025] as data and as plots, and the page "The paper, checked"."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+from mxeon.figures import claims, curves, renders, weights
+from mxeon.figures.claims import inversion as claims_inversion
+from mxeon.figures.claims import models as claims_models
+from mxeon.figures.claims import sampling as claims_sampling
+from mxeon.figures.claims import specification as claims_specification
+from mxeon.figures.sheet import Sheet, styled
+from mxeon.io.files import write_text
+from mxeon.shaders.hosts import open_host
+
+# In the order of the paper.
+FIGURES = (
+    renders.title,
+    renders.backscattering,
+    curves.comparison,
+    renders.gallery,
+    curves.qon_albedos,
+    curves.fon_albedos,
+    renders.furnaces,
+    renders.lobes,
+    weights.over_angle,
+    weights.over_roughness,
+    renders.noise,
+    curves.inverted,
+)
+CLAIMS = {
+    "Sections 2 and 3: the models": claims_models.CLAIMS,
+    "Section 4: importance sampling": claims_sampling.CLAIMS,
+    "Appendix A: inversion of the albedo": claims_inversion.CLAIMS,
+    "The specification of MaterialX's pbrlib": claims_specification.CLAIMS,
+}
+
+
+def figures(folder, progress=iter, **work):
+    """Writes every figure to `folder`/figures, and `folder`/paper_checked.md.
+
+    Parameters
+    ----------
+    folder : path-like
+        Made if need be; files of the same names are replaced.
+    progress : callable
+        Wraps the sequence of steps, such as `tqdm.tqdm`.
+    **work : int
+        `size`, `samples` and `draws` of `mxeon.figures.sheet.Sheet`, where they should not be the
+        usual ones.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    NotRun
+        If there is no OpenGL: the pictures are traced on it.
+    """
+    folder = Path(folder)
+    sheet = replace(Sheet(folder / "figures", open_host("gl")), **work)
+    page = folder / "paper_checked.md"
+    with styled():
+        for step in progress((*FIGURES, claims.page)):
+            if step is claims.page:
+                write_text(page, claims.page(CLAIMS) + _gallery(sheet.folder))
+            else:
+                step(sheet)
+    return page
+
+
+def _gallery(folder):
+    """Every plot under the sentence that says what it shows, as Markdown."""
+    lines = ["", "## The figures", ""]
+    for step in FIGURES:
+        lines += [step.__doc__, ""]
+        for number in re.findall(r"\d+", step.__doc__.partition(":")[0]):
+            plots = sorted(folder.glob(f"figure_{number:0>2}*.[ps][nv]g"))
+            lines += [f"![Figure {number}]({folder.name}/{plot.name})" for plot in plots] + [""]
+    return "\n".join(lines)

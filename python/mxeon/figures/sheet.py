@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the figures go: data as CSV or EXR, and plots in the style of `styled`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib import style
+from matplotlib.figure import Figure
+
+from mxeon.figures.tracer import Trace, trace
+from mxeon.io.files import replacing, write_text
+from mxeon.io.images import srgb_encoded, write_exr
+from mxeon.shaders.hosts.gl import Host
+
+# Told apart by those who see no red or green: after Okabe and Ito.
+COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#4d4d4d", "#8c6bb1")
+STYLE = {
+    "svg.fonttype": "path",
+    "svg.hashsalt": "mxeon",
+    "font.size": 9,
+    "axes.prop_cycle": matplotlib.cycler(color=COLORS),
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.6,
+    "axes.grid": True,
+    "axes.titlesize": 9,
+    "grid.alpha": 0.2,
+    "grid.linewidth": 0.5,
+    "lines.linewidth": 1.4,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+}
+# Matplotlib would add a date and a description of itself.
+METADATA = {"svg": dict.fromkeys(("Creator", "Date", "Format", "Type")), "png": {"Software": None}}
+
+
+def styled():
+    """A context in which plots get their style; what draws has to run in it."""
+    # Not what a file matplotlibrc in the working folder says: it could start LaTeX.
+    return style.context(["default", STYLE])
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A folder for figures, and how much work goes into them.
+
+    Attributes
+    ----------
+    folder : Path
+        Where the files go.
+    host : mxeon.shaders.hosts.gl.Host
+        What traces the pictures.
+    size, samples : int
+        Pixels on a side and paths per pixel of a traced picture.
+    draws : int
+        Random directions for each point of a statistic.
+    """
+
+    folder: Path
+    host: Host
+    size: int = 256
+    samples: int = 128
+    draws: int = 1_000_000
+
+    def axes(self, rows, columns, width, height, **options):
+        """A figure, and its axes as an array of `rows` times `columns`."""
+        figure = Figure(figsize=(width, height), layout="constrained")
+        return figure, figure.subplots(rows, columns, squeeze=False, **options)
+
+    def table(self, name, columns):
+        """Writes columns of equal length, by their names, as CSV."""
+        rows = np.stack([np.ravel(column) for column in columns.values()], axis=-1)
+        lines = [",".join(columns), *(",".join(f"{x:.9g}" for x in row) for row in rows)]
+        write_text(self.folder / f"{name}.csv", "\n".join(lines) + "\n")
+
+    def plot(self, name, figure, suffix="svg"):
+        """Writes a figure of `axes`."""
+        with replacing(self.folder / f"{name}.{suffix}") as path:
+            figure.savefig(path, dpi=150, metadata=METADATA[suffix])
+
+    def trace(self, picture, **changes):
+        """A traced picture, linear, at this sheet's size and samples where `changes` names none."""
+        settings = {"size": self.size, "samples": self.samples} | changes
+        return trace(self.host, Trace(**(picture | settings)))
+
+    def pictures(self, name, rows, titles, labels=None):
+        """Writes rows of linear pictures: as one EXR, and as a plot with titles above them."""
+        whole = np.concatenate([np.concatenate(row, axis=1) for row in rows], axis=0)
+        write_exr(self.folder / f"{name}.exr", whole, {"titles": ", ".join(titles)})
+        count = len(rows[0])
+        figure, axes = self.axes(len(rows), count, 1.9 * count + 0.2, 1.9 * len(rows) + 0.3)
+        for row, cells in zip(rows, axes, strict=True):
+            for image, cell in zip(row, cells, strict=True):
+                cell.imshow(srgb_encoded(image), interpolation="bicubic")
+                cell.set(xticks=[], yticks=[])
+                cell.spines[:].set_visible(False)
+        for cell, title in zip(axes[0], titles, strict=True):
+            cell.set_title(title)
+        for cell, label in zip(axes[:, 0], labels or [""] * len(rows), strict=True):
+            cell.set_ylabel(label)
+        self.plot(name, figure, "png")

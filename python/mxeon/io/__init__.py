@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""NumPy arrays and text as files. Knows nothing of shading."""

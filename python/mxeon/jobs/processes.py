@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Python processes that import nothing from the working folder.
+
+Python puts the working folder first on the path of `python -c` and `python -m`, and
+`multiprocessing` starts its workers by the former: a file `pickle.py` that lies there would run.
+"""
+
+import os
+import sys
+import threading
+from contextlib import contextmanager, suppress
+from multiprocessing import spawn, util
+from multiprocessing.context import SpawnContext, SpawnProcess
+from pathlib import Path
+
+HOME = str(Path(__file__).resolve().parents[2])  # the folder that mxeon is imported from
+PYTHON = (sys.executable, "-P")  # opens a command line; -P keeps the working folder off the path
+
+_patching = threading.Lock()
+
+
+class _Process(SpawnProcess):
+    def start(self):
+        with safe_path():
+            super().start()
+
+
+class Context(SpawnContext):
+    """The start method "spawn" of `multiprocessing`, whose workers have a safe path."""
+
+    Process = _Process
+
+
+@contextmanager
+def safe_path():
+    """Give the processes that `multiprocessing` starts meanwhile, in any thread, a safe path.
+
+    The flag is passed on the command line since PYTHONSAFEPATH has no effect beside -E. The
+    parent's own path goes to its workers, but for "", its working folder if it is `python -c` or
+    interactive.
+    """
+    with _patching:
+        flags, data = util._args_from_interpreter_flags, spawn.get_preparation_data
+        util._args_from_interpreter_flags = lambda: [*flags(), "-P"]
+        spawn.get_preparation_data = lambda name: data(name) | {"sys_path": _path()}
+        try:
+            yield
+        finally:
+            util._args_from_interpreter_flags, spawn.get_preparation_data = flags, data
+
+
+def forget_working_folder():
+    """Take the working folder, which `python -m` puts first, off the path; mxeon may lie there."""
+    with suppress(FileNotFoundError):  # it may have been deleted
+        if not sys.flags.safe_path and sys.path[0] == os.getcwd() != HOME:
+            del sys.path[0]
+
+
+def _path():
+    path = [folder for folder in sys.path if folder]
+    return path if HOME in path else [*path, HOME]

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The kit as files: what a renderer needs to make its pictures, and a page that explains them."""
+
+import json
+import math
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+
+import mxeon
+from mxeon.io.files import write_text
+from mxeon.kit.mesh import to_obj, unit_sphere
+from mxeon.kit.shots import MATERIALS, NODE, USUAL, shots
+from mxeon.kit.usd import mesh_layer, scene_layer
+
+KIT_FORMAT = 1
+DESCRIPTION = "kit.json"
+RENDERS = "renders"
+
+MATERIAL = """<?xml version="1.0"?>
+<materialx version="1.39">
+  <{node} name="lobe" type="BSDF">
+    <input name="color" type="color3" value="{color}" />
+    <input name="roughness" type="float" value="{roughness!r}" />
+    <input name="energy_compensation" type="boolean" value="{flag}" />
+  </{node}>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe" />
+  </surface>
+  <surfacematerial name="{name}" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>
+"""
+
+
+def export_kit(folder, size=USUAL):
+    """Writes the kit into `folder`, replacing what has the same name; pictures stay.
+
+    Parameters
+    ----------
+    folder : path-like
+        Made if need be.
+    size : int
+        Width and height of the pictures in pixels.
+
+    Returns
+    -------
+    Path
+        Of README.md, where to begin.
+
+    Raises
+    ------
+    ValueError
+        If the size is out of range.
+    OSError
+        If something cannot be written.
+    """
+    folder, pictures, mesh = Path(folder), shots(size), unit_sphere()
+    for material in MATERIALS:
+        write_text(folder / "materials" / f"{material.name}.mtlx", material_document(material))
+    for shot in pictures:
+        write_text(folder / "scenes" / f"{shot.name}.usda", scene_layer(shot))
+    write_text(folder / "sphere.obj", to_obj(mesh))
+    write_text(folder / "sphere.usda", mesh_layer(mesh))
+    write_text(folder / DESCRIPTION, json.dumps(description(pictures, size), indent=1) + "\n")
+    (folder / RENDERS).mkdir(exist_ok=True)
+    write_text(folder / "README.md", _page(pictures, size, mesh))
+    return folder / "README.md"
+
+
+def material_document(material):
+    """A material of the kit as MaterialX text."""
+    return MATERIAL.format(
+        node=NODE,
+        name=material.name,
+        color=", ".join(map(str, material.color)),
+        roughness=material.roughness,
+        flag=str(material.energy_compensation).lower(),
+    )
+
+
+def description(pictures, size):
+    """The numbers of the kit, as kit.json holds them.
+
+    Returns
+    -------
+    dict
+        - format: this layout's number, raised when a key changes or goes; mxeon: the version.
+        - size: width and height of every picture; camera, sphere: as in `mxeon.shaders.scene`.
+        - materials: node and inputs by name; scenes: the light by name; a distant light has
+          `direction`, the unit vector towards it, and `irradiance`, an environment its `radiance`.
+        - pictures: the material, the scene and the file of each.
+    """
+    scenes = {shot.scene.name: shot.scene for shot in pictures}
+    return {
+        "format": KIT_FORMAT,
+        "mxeon": mxeon.__version__,
+        "size": size,
+        "camera": {
+            "projection": "orthographic",
+            "looks_along": [0, 0, -1],
+            "up": [0, 1, 0],
+            "frame": [[-1, -1], [1, 1]],
+        },
+        "sphere": {"center": [0, 0, 0], "radius": 1, "mesh": "sphere.obj"},
+        "materials": {each.name: _material(each) for each in MATERIALS},
+        "scenes": {name: _light(scene) for name, scene in scenes.items()},
+        "pictures": [
+            {
+                "material": shot.material.name,
+                "scene": shot.scene.name,
+                "file": f"{RENDERS}/{shot.name}.exr",
+            }
+            for shot in pictures
+        ],
+    }
+
+
+def _material(material):
+    return {
+        "file": f"materials/{material.name}.mtlx",
+        "node": NODE,
+        "color": material.color,
+        "roughness": material.roughness,
+        "energy_compensation": material.energy_compensation,
+    }
+
+
+def _light(scene):
+    if scene.light is None:
+        return {"environment": {"radiance": scene.environment}}
+    return {"distant": {"direction": scene.light, "irradiance": math.pi}}
+
+
+def _page(pictures, size, mesh):
+    """README.md of the kit."""
+    text = files("mxeon.kit").joinpath("templates", "kit.md").read_text(encoding="utf-8")
+    rows = [
+        f"| `{RENDERS}/{shot.name}.exr` | {shot.material.name} | {shot.scene.name} |"
+        for shot in pictures
+    ]
+    materials = [
+        f"| {each.name} | {', '.join(map(str, each.color))} | {each.roughness} "
+        f"| {str(each.energy_compensation).lower()} |"
+        for each in MATERIALS
+    ]
+    scenes = {shot.scene.name: shot.scene for shot in pictures}
+    return Template(text).substitute(
+        version=mxeon.__version__,
+        size=size,
+        count=len(pictures),
+        pictures="\n".join(rows),
+        materials="\n".join(materials),
+        lights="\n".join(f"| {name} | {_in_words(scene)} |" for name, scene in scenes.items()),
+        triangles=len(mesh.triangles),
+        depth=f"{mesh.depth:.1e}",
+    )
+
+
+def _in_words(scene):
+    if scene.light is None:
+        return f"uniform environment of radiance {scene.environment:g} on all sides"
+    direction = ", ".join(f"{each:.6f}" for each in scene.light)
+    return f"distant light, no angular size, irradiance pi, towards it: ({direction})"

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Noise told from bias: the mean error of each tile of a picture, and how far chance may take it.
+
+A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has
+the variance of a pixel's noise and sees nothing of a smooth error; the tile's mean error sees all
+of it. Under normal noise the two are independent, so their quotient follows Student's t.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mxeon.errors import PackageError
+
+TILE = 8
+FEWEST = 8  # squares without which a tile is not judged
+CONFIDENCE = 0.999  # that no right picture of a whole kit is called biased
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """The judged tiles of a picture.
+
+    Attributes
+    ----------
+    mean : ndarray, shape (T, 3)
+        Mean error of a tile.
+    deviation : ndarray, shape (T, 3)
+        Estimated standard deviation of that mean.
+    slack : ndarray, shape (T, 3)
+        Mean of the pixels' slack.
+    squares : ndarray of int, shape (T,)
+        The degrees of freedom.
+    """
+
+    mean: np.ndarray
+    deviation: np.ndarray
+    slack: np.ndarray
+    squares: np.ndarray
+
+    @property
+    def pixel_noise(self):
+        """Standard deviation of a pixel, root mean square over the picture."""
+        return float(np.sqrt(np.mean(self.deviation**2 * 4.0 * self.squares[:, None])))
+
+
+def tiles(error, slack, mask):
+    """Tiles of a picture.
+
+    Parameters
+    ----------
+    error, slack : ndarray, shape (N, 3)
+        Of the pixels of the mask.
+    mask : ndarray of bool, shape (size, size)
+
+    Returns
+    -------
+    Tiles
+    """
+    whole = _squares(mask[..., None]).all(axis=(-1, -2))
+    square = _squares(_spread(error, mask))
+    contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
+    count = _sum(whole[..., None])[:, 0]
+    kept = count >= FEWEST
+    count = count[kept]
+    weight = whole[..., None]
+    mean = _sum(weight * square.mean(axis=-1))[kept] / count[:, None]
+    variance = _sum(weight * contrast**2)[kept] / count[:, None]
+    allowed = _sum(weight * _squares(_spread(slack, mask)).mean(axis=-1))[kept] / count[:, None]
+    return Tiles(mean, np.sqrt(variance / (4.0 * count[:, None])), allowed, count)
+
+
+def ratio(pictures, share=1.0):
+    """The largest mean error of a tile, over what slack and chance allow it.
+
+    Parameters
+    ----------
+    pictures : sequence of Tiles
+        Judged together.
+    share : float
+        Of the kit's false rate, 1 - CONFIDENCE, that these pictures may use.
+
+    Returns
+    -------
+    float
+        Above 1 with a probability of at most share (1 - CONFIDENCE) if all pictures are right:
+        each of n mean errors may leave its interval with 1 / n of that (Bonferroni).
+
+    Raises
+    ------
+    ImportError
+        If scipy, of the `kit` extra, is not installed.
+    """
+    try:
+        from scipy.stats import t
+    except ModuleNotFoundError as error:
+        raise PackageError("kit check needs scipy: pip install 'mxeon[kit]'") from error
+
+    total = sum(each.mean.size for each in pictures)
+    false_rate = share * (1.0 - CONFIDENCE) / total
+    largest = 0.0
+    for each in pictures:
+        reach = t.isf(false_rate / 2.0, each.squares)[:, None] * each.deviation
+        largest = max(largest, float(np.max(np.abs(each.mean) / (each.slack + reach))))
+    return largest
+
+
+def _spread(values, mask):
+    """Values of a mask's pixels in the picture, 0 elsewhere."""
+    image = np.zeros((*mask.shape, values.shape[-1]))
+    image[mask] = values
+    return image
+
+
+def _squares(image):
+    """Squares of 2 x 2 pixels of whole tiles, (tiles, tiles, 16, channels, 4)."""
+    size, half = image.shape[0] // TILE, TILE // 2
+    parts = image[: size * TILE, : size * TILE].reshape(size, half, 2, size, half, 2, -1)
+    parts = parts.transpose(0, 3, 1, 4, 6, 2, 5)
+    return parts.reshape(size, size, half * half, image.shape[-1], 4)
+
+
+def _sum(values):
+    """Sum over the squares of each tile, (tiles, channels)."""
+    return values.sum(axis=2).reshape(-1, values.shape[-1])

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pictures that a renderer put into the kit, read back, and what makes a file useless."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+from mxeon.io.files import assert_regular, regular
+from mxeon.shaders.scene import sphere
+
+COLUMNS = ["row", "column", "red", "green", "blue"]
+CHANNELS = "RGB"
+LEVELS = 255  # steps of an eight-bit value
+FLOATS = ("half", "float", "double")
+# A smooth shading has as many values as pixels; eight bits leave far fewer than one in four.
+DISTINCT = 4
+
+
+class Missing(ValueError):
+    """A picture that is not there."""
+
+
+class Unusable(ValueError):
+    """A picture that cannot be judged; names the file, the rule and what was found."""
+
+
+def read_render(folder, shot):
+    """The picture of a shot.
+
+    Parameters
+    ----------
+    folder : path-like
+        Where the renderer's files lie.
+    shot : mxeon.kit.shots.Shot
+
+    Returns
+    -------
+    ndarray, shape (size, size, 3), float64
+        Linear; 0 off the sphere.
+
+    Raises
+    ------
+    Missing
+        If there is no file of that name.
+    Unusable
+        If the file is none of EXR and CSV, is damaged, has another size or place, not one red, green
+        and blue, eight bits (also in a float file), or a pixel on the sphere that is missing or not
+        finite.
+    """
+    found = sorted(Path(folder).glob(f"{shot.name}.*"))
+    if not found:
+        raise Missing(f"{shot.name}.exr: must be in {folder}; got no such file")
+    file, size = found[0], shot.scene.size
+    if len(found) > 1:
+        raise Unusable(f"{shot.name}: must be one file; got {', '.join(f.name for f in found)}")
+    image = _read_csv(file, size) if file.suffix.lower() == ".csv" else _read_image(file, size)
+    mask = sphere(size).mask
+    bad = ~np.isfinite(image).all(axis=-1) & mask
+    if bad.any():
+        row, column = np.argwhere(bad)[0]
+        raise Unusable(
+            f"{file.name}: pixels on the sphere must be finite numbers; got "
+            f"{image[row, column].tolist()} at row {row}, column {column}, {bad.sum()} in all"
+        )
+    _check_depth(file, image[mask])
+    return np.where(mask[..., None], image, 0.0)
+
+
+def _read_image(file, size):
+    try:
+        assert_regular(file)
+    except OSError as error:
+        raise Unusable(f"{file.name}: must be an EXR or CSV file; {error.strerror}") from None
+    image = oiio.ImageInput.open(str(file))
+    if image is None:
+        raise Unusable(f"{file.name}: must be an EXR or CSV file; {oiio.geterror()}")
+    spec = image.spec()
+    if (spec.width, spec.height) != (size, size):
+        raise Unusable(
+            f"{file.name}: must be {size} x {size} pixels; got {spec.width} x {spec.height}"
+        )
+    if (offset := (spec.x - spec.full_x, spec.y - spec.full_y)) != (0, 0):
+        raise Unusable(f"{file.name}: must begin at the display window's corner; got {offset}")
+    if str(spec.format) not in FLOATS:
+        raise Unusable(f"{file.name}: must hold half or float numbers; got {spec.format}")
+    channels = _channels(file, spec.channelnames)
+    pixels = image.read_image(oiio.FLOAT)
+    image.close()
+    if pixels is None:
+        raise Unusable(f"{file.name}: must be a whole image; {image.geterror()}")
+    return pixels[..., channels].astype(np.float64, order="C")
+
+
+def _channels(file, names):
+    """Places of red, green and blue: the plain ones, or those of the only layer that has them."""
+    layers = {}
+    for place, name in enumerate(names):
+        layer, _, channel = name.rpartition(".")
+        layers.setdefault(layer, {})[channel.upper()] = place
+    whole = {layer: found for layer, found in layers.items() if found.keys() >= set(CHANNELS)}
+    chosen = whole.get("") or (len(whole) == 1 and next(iter(whole.values())))
+    if not chosen:
+        raise Unusable(f"{file.name}: must hold one R, G and B; got channels {', '.join(names)}")
+    return [chosen[channel] for channel in CHANNELS]
+
+
+def _read_csv(file, size):
+    try:
+        with open(file, newline="", encoding="utf-8-sig", opener=regular) as stream:
+            return _table(file, csv.reader(stream), size)
+    except (OSError, UnicodeError, csv.Error) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise Unusable(f"{file.name}: must be CSV in UTF-8; {reason}") from None
+
+
+def _table(file, lines, size):
+    header = next(lines, [])
+    if header != COLUMNS:
+        raise Unusable(f"{file.name}: must begin with {','.join(COLUMNS)}; got {','.join(header)}")
+    image, given = np.full((size, size, 3), np.nan), np.zeros((size, size), dtype=bool)
+    for line in filter(None, lines):
+        try:
+            row, column, *values = int(line[0]), int(line[1]), *map(float, line[2:])
+            fits = min(row, column) >= 0 and len(values) == 3 and not given[row, column]
+        except (ValueError, IndexError):
+            fits = False
+        if not fits:
+            raise Unusable(
+                f"{file.name}: line {lines.line_num} must hold row and column of a pixel, of "
+                f"{size} x {size}, that no line before it has, and three numbers; "
+                f"got {','.join(line)}"
+            )
+        image[row, column], given[row, column] = values, True
+    return image
+
+
+def _check_depth(file, values):
+    """Refuse eight-bit values: few distinct ones, and all of them multiples of 1 / 255."""
+    distinct = len(np.unique(values))
+    steps = values * LEVELS
+    whole = np.abs(steps - np.rint(steps)).max() < 0.02 * (1.0 + np.abs(values).max())
+    if 2 < distinct < len(values) / DISTINCT and whole:
+        raise Unusable(
+            f"{file.name}: must hold numbers that were never rounded to eight bits; got multiples "
+            "of 1/255"
+        )

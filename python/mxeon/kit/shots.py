@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a renderer is asked for: the materials of the kit, and under which light each is shown."""
+
+from dataclasses import dataclass, replace
+
+from mxeon.errors import InputError
+from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
+
+NODE = "oren_nayar_diffuse_bsdf"
+COLOR = (0.2, 0.5, 0.8)  # any power of the colour too many or too few shows in each channel
+
+# Below, the points that bound a pixel may miss the sphere; above, nothing is gained.
+SMALLEST, LARGEST = 64, 2048
+USUAL = 128
+
+
+@dataclass(frozen=True)
+class Material:
+    """A rough diffuse material.
+
+    Attributes
+    ----------
+    name : str
+        One lower-case word.
+    color : tuple of 3 floats
+    roughness : float
+    energy_compensation : bool
+    """
+
+    name: str
+    color: tuple[float, float, float]
+    roughness: float
+    energy_compensation: bool
+
+    @property
+    def model(self):
+        """Name of the model that the node stands for with this flag."""
+        return "eon" if self.energy_compensation else "qon"
+
+
+TRUE = Material("true", COLOR, 1.0, True)
+FALSE = Material("false", COLOR, 1.0, False)
+HALF = Material("half", COLOR, 0.5, True)
+BLACK = Material("black", (0.0, 0.0, 0.0), 1.0, True)
+WHITE = Material("white", (1.0, 1.0, 1.0), 1.0, True)
+LAMBERT = Material("lambert", COLOR, 0.0, True)
+MATERIALS = (LAMBERT, TRUE, HALF, FALSE, BLACK, WHITE)
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One picture: a material under a light.
+
+    Attributes
+    ----------
+    material : Material
+    scene : Scene
+    """
+
+    material: Material
+    scene: Scene
+
+    @property
+    def name(self):
+        """As its files are called, without suffix."""
+        return f"{self.material.name}_{self.scene.name}"
+
+
+# Lambert under a distant light: the picture that shows light, place and encoding, not the model.
+LEVEL = Shot(LAMBERT, SIDE)
+PICTURES = (
+    LEVEL,
+    Shot(TRUE, FRONT),
+    Shot(TRUE, SIDE),
+    Shot(TRUE, BACK),
+    Shot(TRUE, FURNACE),
+    Shot(HALF, SIDE),
+    Shot(FALSE, FRONT),
+    Shot(FALSE, SIDE),
+    Shot(FALSE, BACK),
+    Shot(FALSE, FURNACE),
+    Shot(BLACK, SIDE),
+    Shot(WHITE, FURNACE),
+)
+
+
+def shots(size):
+    """The pictures of the kit, `size` pixels wide and high.
+
+    Raises
+    ------
+    ValueError
+        If the size is out of range.
+    """
+    if not SMALLEST <= size <= LARGEST:
+        raise InputError(f"size must lie in [{SMALLEST}, {LARGEST}]; got {size}")
+    return tuple(replace(shot, scene=replace(shot.scene, size=size)) for shot in PICTURES)

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Directional albedo of any model, by Gauss-Legendre rules between the kinks of this family."""
+
+import numpy as np
+
+from mxeon.models.geometry import checked, lead_shape
+
+
+def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
+    """Directional albedo of any model that mirrors in the plane of incidence, by quadrature.
+
+        E(mu) = integral of brdf(wo, wi, rho) cos(theta_i) over the hemisphere of wi
+
+    Parameters
+    ----------
+    brdf : callable
+        `brdf(wo, wi, rho, *parameter)` in 1/sr; any function of `mxeon.models`.
+    mu : array_like, shape (...)
+        Cosine of the polar angle of wo, dimensionless, in [0, 1].
+    rho : array_like, shape (..., C)
+        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
+    *parameter : array_like, shape (...)
+        What `brdf` takes after rho: sigma, roughness or nothing.
+    nodes : int
+        Gauss-Legendre nodes for each of two intervals of both angles; the time grows as its square.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Dimensionless.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Accuracy: absolute error below 1e-12 for the models of this package. Their kinks, at
+    theta_i = theta_o and cos(phi) = 0, bound the intervals, and the nodes crowd below theta_o,
+    where the full Oren-Nayar model has a layer as thin as mu. A kink elsewhere converges slowly:
+    2e-10 for `eon_brdf_approx`, whose quartic is clamped at mu = 0.0014.
+
+    Examples
+    --------
+    >>> from mxeon.models import eon_brdf
+    >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
+    array([0.47804055, 1.        ])
+    """
+    mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
+    parameter = [np.asarray(value) for value in parameter]
+    numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameter)}
+    lead = lead_shape({"rho": rho}, numbers)
+    mu, rho = np.broadcast_to(mu, lead), np.broadcast_to(rho, lead + rho.shape[-1:])
+    parameter = [np.broadcast_to(value, lead) for value in parameter]
+    albedo = np.empty(rho.shape)
+    for index in np.ndindex(lead):
+        wo, wi, weights = hemisphere_nodes(mu[index], nodes)
+        albedo[index] = weights @ brdf(wo, wi, rho[index], *(value[index] for value in parameter))
+    return albedo
+
+
+def hemisphere_nodes(mu, nodes):
+    """wo at azimuth 0, wi in half the hemisphere, and their shares of the projected hemisphere."""
+    x, weight = np.polynomial.legendre.leggauss(nodes)
+    x, weight = 0.5 * (1.0 + x), 0.5 * weight
+    theta_o = np.arccos(mu)
+    rest = np.pi / 2.0 - theta_o
+    theta = np.concatenate([theta_o * (1.0 - x**5), theta_o + rest * x])
+    d_theta = np.concatenate([theta_o * 5.0 * x**4 * weight, rest * weight])
+    phi = np.pi / 2.0 * np.concatenate([x, 1.0 + x])
+    d_phi = np.pi / 2.0 * np.concatenate([weight, weight])
+    theta, phi = (grid.ravel() for grid in np.meshgrid(theta, phi, indexing="ij"))
+    x, y, z = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
+    wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])
+    shares = 2.0 * np.outer(d_theta, d_phi).ravel() * np.sin(theta) * z
+    return wo, np.stack([x, y, z], axis=-1), shares

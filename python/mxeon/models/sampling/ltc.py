@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Linearly transformed cosines fitted to EON, without and with the coefficient d.
+
+They turn the surface about the normal until `wo` has azimuth 0, and map a direction `wh` drawn
+under a clamped cosine by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
+
+    wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M.
+"""
+
+import numpy as np
+
+from mxeon.models.sampling.hemisphere import (
+    azimuth,
+    checked_draw,
+    checked_pdf,
+    cosine_sample,
+    turned,
+    vector,
+)
+
+
+def ltc0_sample(wo, u, roughness):
+    """Direction sampled by the transformed cosine without the coefficient d, and its density.
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Unit vectors on or above the horizon.
+    u : array_like, shape (..., 2)
+        Independent uniform random numbers, in [0, 1).
+    roughness : array_like, shape (...)
+        Dimensionless, in [0, 1].
+
+    Returns
+    -------
+    wi : ndarray, shape (..., 3), float64
+        Unit vectors above the horizon.
+    pdf : ndarray, shape (...), float64
+        1/sr.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The paper fits a, b and c again for d = 0 and prints no result. Here they are those of the
+    general fit.
+
+    References
+    ----------
+    [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
+
+    Examples
+    --------
+    >>> wi, pdf = ltc0_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
+    >>> wi.round(6), round(float(pdf), 6)
+    (array([-0.310077,  0.      ,  0.950711]), 0.227343)
+    """
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    a, b, c, _ = coefficients(wo[..., 2], roughness)
+    return transformed(wo, cosine_sample(u)[0], (a, b, c, 0.0))
+
+
+def ltc0_pdf(wo, wi, roughness):
+    """Density of `ltc0_sample` at `wi`, in solid angle.
+
+    Parameters
+    ----------
+    wo, wi : array_like, shape (..., 3)
+        Unit vectors on or above the horizon.
+    roughness : array_like, shape (...)
+        Dimensionless, in [0, 1].
+
+    Returns
+    -------
+    ndarray, shape (...), float64
+        1/sr.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    References
+    ----------
+    [Portsmouth2025], Eqs. (23) and (24).
+
+    Examples
+    --------
+    >>> round(float(ltc0_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+    0.31831
+    """
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    a, b, c, _ = coefficients(wo[..., 2], roughness)
+    return density(wo, wi, (a, b, c, 0.0))
+
+
+def ltc_sample(wo, u, roughness):
+    """Direction sampled by the transformed cosine, may be below the horizon; and its density.
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Unit vectors on or above the horizon.
+    u : array_like, shape (..., 2)
+        Independent uniform random numbers, in [0, 1).
+    roughness : array_like, shape (...)
+        Dimensionless, in [0, 1].
+
+    Returns
+    -------
+    wi : ndarray, shape (..., 3), float64
+        Unit vectors; those with z < 0 are wasted, their weight is 0.
+    pdf : ndarray, shape (...), float64
+        1/sr.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    A sample is wasted with probability (1 - 1/sqrt(1 + d^2))/2: at roughness 1 that is 0.0534 at
+    grazing, and less everywhere else.
+
+    References
+    ----------
+    [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
+
+    Examples
+    --------
+    >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
+    >>> float(wi[2]) < 0.0
+    True
+    """
+    wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    return transformed(wo, cosine_sample(u)[0], coefficients(wo[..., 2], roughness))
+
+
+def ltc_pdf(wo, wi, roughness):
+    """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
+
+    Parameters
+    ----------
+    wo, wi : array_like, shape (..., 3)
+        Unit vectors on or above the horizon.
+    roughness : array_like, shape (...)
+        Dimensionless, in [0, 1].
+
+    Returns
+    -------
+    ndarray, shape (...), float64
+        1/sr; its integral over the hemisphere is the probability that no sample is wasted.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    References
+    ----------
+    [Portsmouth2025], Eqs. (23) and (24).
+
+    Examples
+    --------
+    >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
+    0.31831
+    """
+    wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
+    return density(wo, wi, coefficients(wo[..., 2], roughness))
+
+
+# [Portsmouth2025], Listing 2: mu and roughness in [0, 1]; the paper states no error.
+def coefficients(mu, r):
+    """Entries a, b, c, d of M for the cosine `mu` of `wo` and the roughness `r`."""
+    a = 1.0 + r * (0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * r)
+    b = r * (-1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * r) / (mu**3 - 1.43545)
+    c = 1.0 + r * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
+    d = r * (0.540852 + (-1.01625 + 0.475392 * mu) * mu) / (-1.0743 + (0.0725628 + mu) * mu)
+    return a, b, c, d
+
+
+def transformed(wo, wh, matrix):
+    """Unit M wh in the local frame of the surface, and its density under the clamped cosine."""
+    a, b, c, d = matrix
+    x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
+    wi = vector(a * x + b * z, c * y, d * x + z)
+    length = np.sqrt(np.sum(wi * wi, axis=-1))
+    cosine, sine, _ = azimuth(wo)
+    pdf = z / np.pi * length**3 / (c * (a - b * d))
+    return turned(wi / length[..., np.newaxis], cosine, sine), pdf
+
+
+def density(wo, wi, matrix):
+    """Density at `wi` of M wh / |M wh| for `wh` under the clamped cosine."""
+    a, b, c, d = matrix
+    cosine, sine, _ = azimuth(wo)
+    wi = turned(np.float64(wi), cosine, -sine)
+    x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
+    det = c * (a - b * d)
+    # The adjugate of M times wi: wh up to its length.
+    wh_z = c * (a * z - d * x)
+    squared = (c * (x - b * z)) ** 2 + ((a - b * d) * y) ** 2 + wh_z**2
+    return (det / squared) ** 2 * np.maximum(wh_z, 0.0) / np.pi

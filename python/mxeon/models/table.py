@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of models, one row each, and the table of known wrong variants."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mxeon.models import albedo
+from mxeon.models import brdf as models
+from mxeon.models import known_defects as defects
+from mxeon.models.geometry import RANGES
+
+
+@dataclass(frozen=True)
+class Model:
+    """A reflection model and what is known of it in closed form.
+
+    Attributes
+    ----------
+    name, title : str
+        As in names of functions, and as in print.
+    brdf : callable
+        `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
+    parameter : str or None
+        "sigma", in radian in [0, pi/2]; "roughness", in [0, 1]; or None.
+    albedo_dir : callable or None
+        `albedo_dir(mu, rho, *parameter)`, shape (..., C), where a closed form is known.
+    albedo_avg : callable or None
+        `albedo_avg(rho, *parameter)`, shape (..., C), where a closed form is known.
+    """
+
+    name: str
+    title: str
+    brdf: Callable
+    parameter: str | None
+    albedo_dir: Callable | None = None
+    albedo_avg: Callable | None = None
+
+    @property
+    def interval(self):
+        """Least and largest value of the parameter; None without one."""
+        return RANGES[self.parameter][:2] if self.parameter else None
+
+
+def model(name):
+    """The row of `MODELS` or `DEFECTS` that is called `name`.
+
+    Raises
+    ------
+    ValueError
+        If there is none; lists the known ones.
+
+    Examples
+    --------
+    >>> model("eon").parameter
+    'roughness'
+    """
+    for row in MODELS + DEFECTS:
+        if row.name == name:
+            return row
+    known = ", ".join(row.name for row in MODELS + DEFECTS)
+    raise ValueError(f"model must be one of {known}; got {name!r}")
+
+
+def _lambert_albedo_dir(mu, rho):
+    rho = np.atleast_1d(rho)
+    return np.broadcast_to(rho, np.broadcast_shapes(np.shape(mu) + (1,), rho.shape)).astype(float)
+
+
+def _tinted(white):
+    """An albedo at unit reflectance, `white(..., parameter)`, as one that takes rho before it."""
+
+    def tinted(*arguments):
+        *mu, rho, parameter = arguments
+        return white(*mu, parameter)[..., np.newaxis] * rho
+
+    return tinted
+
+
+MODELS = (
+    Model("lambert", "Lambert", models.lambert_brdf, None, _lambert_albedo_dir, np.atleast_1d),
+    Model("oren_nayar", "full Oren-Nayar", models.oren_nayar_brdf, "sigma"),
+    Model(
+        "qon",
+        "qualitative Oren-Nayar (QON)",
+        models.qon_brdf,
+        "sigma",
+        _tinted(albedo.qon_albedo_dir),
+        _tinted(albedo.qon_albedo_avg),
+    ),
+    Model("qon_footnote", "QON with the footnote's constant", models.qon_footnote_brdf, "sigma"),
+    Model("qon_fujii", "QON with Fujii's coefficients", models.qon_fujii_brdf, "sigma"),
+    Model(
+        "fon",
+        "Fujii Oren-Nayar (FON)",
+        models.fon_brdf,
+        "roughness",
+        _tinted(albedo.fon_albedo_dir),
+        _tinted(albedo.fon_albedo_avg),
+    ),
+    Model(
+        "eon",
+        "energy-preserving Oren-Nayar (EON)",
+        models.eon_brdf,
+        "roughness",
+        albedo.eon_albedo_dir,
+        albedo.eon_albedo_avg,
+    ),
+    Model("eon_approx", "EON with the paper's quartic", models.eon_brdf_approx, "roughness"),
+)
+
+DEFECTS = (
+    Model("eon_clamped", "EON with clamped dot(wo, wi)", defects.eon_clamped_brdf, "roughness"),
+    Model(
+        "eon_rho_cubed",
+        "EON with rho^3",
+        defects.eon_rho_cubed_brdf,
+        "roughness",
+        defects.eon_rho_cubed_albedo_dir,
+    ),
+    Model(
+        "fon_white_lobe",
+        "FON + white lobe",
+        defects.fon_white_lobe_brdf,
+        "roughness",
+        defects.fon_white_lobe_albedo_dir,
+    ),
+    Model(
+        "qon_fitted",
+        "QON with MaterialX's fit of its albedo",
+        models.qon_brdf,
+        "sigma",
+        defects.qon_fitted_albedo_dir,
+    ),
+    Model(
+        "qon_tinted_twice",
+        "QON tinted twice",
+        defects.qon_tinted_twice_brdf,
+        "sigma",
+        defects.qon_tinted_twice_albedo_dir,
+    ),
+)

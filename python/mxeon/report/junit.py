@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A run as JUnit XML, for build servers."""
+
+import re
+from xml.etree import ElementTree
+
+from mxeon.conformance.results import FAILED, NOT_RUN
+from mxeon.conformance.verdict import excess, place, summarize
+
+# What XML 1.0 cannot hold, escaped or not (section 2.2, production Char).
+NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def to_junit(run):
+    """A run as JUnit XML text: a suite for each host and library, a case for each result.
+
+    A failed check is a failure, one that did not run is skipped, a document that was refused is an
+    error in a suite of its own, each with its message.
+
+    Parameters
+    ----------
+    run : mxeon.conformance.results.Run
+
+    Returns
+    -------
+    str
+    """
+    root = ElementTree.Element("testsuites", name="mxeon")
+    for name in dict.fromkeys(place(result) for result in run.results):
+        results = [result for result in run.results if place(result) == name]
+        suite = ElementTree.SubElement(root, "testsuite", name=_xml(name), **_totals(results))
+        properties = ElementTree.SubElement(suite, "properties")
+        for key, value in _properties(run, results[0].host).items():
+            ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
+        for result in results:
+            _add_case(suite, result)
+    if run.errors:
+        _add_errors(root, run.errors)
+    ElementTree.indent(root)
+    text = ElementTree.tostring(root, encoding="unicode")
+    # Not by the library, which would name the encoding of the system's locale.
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+
+
+def _add_errors(root, errors):
+    totals = {
+        "tests": str(len(errors)),
+        "failures": "0",
+        "errors": str(len(errors)),
+        "skipped": "0",
+    }
+    suite = ElementTree.SubElement(root, "testsuite", name="documents", **totals)
+    for error in errors:
+        case = ElementTree.SubElement(
+            suite, "testcase", classname="mxeon.documents", name="refused"
+        )
+        ElementTree.SubElement(case, "error", message=_xml(error))
+
+
+def _totals(results):
+    counts = summarize(results).counts
+    totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
+    totals["skipped"] = counts[NOT_RUN]
+    return {key: str(value) for key, value in totals.items()}
+
+
+def _properties(run, host):
+    versions = {"mxeon": run.version} | run.software
+    for identity in run.hosts:
+        if identity.name == host:
+            versions |= {"host": identity.name, "host version": identity.version}
+            versions["device"] = identity.device
+    return versions
+
+
+def _add_case(suite, result):
+    name = f"mxeon.{result.host}.{result.library}.{result.check}"
+    case = ElementTree.SubElement(
+        suite, "testcase", classname=_xml(name), name=_xml(result.subject)
+    )
+    if result.verdict == NOT_RUN:
+        ElementTree.SubElement(case, "skipped", message=_xml(result.reason))
+    if result.verdict == FAILED:
+        message = f"{result.claim} {excess(result)}"
+        failure = ElementTree.SubElement(
+            case, "failure", type=_xml(result.check), message=_xml(message)
+        )
+        failure.text = _xml(f"{result.diagnosis}\nworst point: {result.worst}")
+
+
+def _xml(text):
+    return NOT_XML.sub("\N{REPLACEMENT CHARACTER}", str(text))

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Images and plots that travel inside a page. Needs matplotlib, of the `report` extra."""
+
+import base64
+import io
+import re
+from functools import cache
+
+import matplotlib
+import numpy as np
+from matplotlib import style
+from matplotlib.figure import Figure
+from matplotlib.image import imsave
+
+from mxeon.io.images import NOT_FINITE
+from mxeon.shaders.scene import sphere
+
+# Larger pictures are shown by every second, third, ... pixel; the files hold them all.
+SHOWN_SIZE = 256
+DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
+CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
+# Stands for the page's text colour until the plot is part of the page.
+TEXT_COLOR = "#010203"
+# Else matplotlib adds a description of itself, with addresses, to each plot.
+NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+STYLE = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "mxeon",
+    "font.size": 9,
+    "axes.edgecolor": TEXT_COLOR,
+    "axes.labelcolor": TEXT_COLOR,
+    "xtick.color": TEXT_COLOR,
+    "ytick.color": TEXT_COLOR,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.6,
+    "axes.grid": True,
+    "grid.color": TEXT_COLOR,
+    "grid.alpha": 0.12,
+    "grid.linewidth": 0.6,
+}
+
+
+def picture_uri(pixels):
+    """Address of a square picture of the sphere inside the page, transparent around it.
+
+    Parameters
+    ----------
+    pixels : ndarray of uint8, shape (size, size, 3)
+
+    Returns
+    -------
+    str
+        A data URI holding a PNG of at most SHOWN_SIZE pixels on a side.
+    """
+    step = -(-len(pixels) // SHOWN_SIZE)
+    shown = np.dstack([pixels, _opacity(len(pixels))])[::step, ::step]
+    buffer = io.BytesIO()
+    imsave(buffer, shown, format="png", metadata={"Software": None})
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
+
+
+@cache
+def _opacity(size):
+    return np.where(sphere(size).mask, 255, 0).astype(np.uint8)
+
+
+def difference_pixels(difference_map, scale):
+    """A difference in DIFFERENCE_COLORS, which span 0 to `scale`; magenta if not finite.
+
+    Parameters
+    ----------
+    difference_map : ndarray, shape (size, size)
+    scale : float
+        Positive, in the unit of the map.
+
+    Returns
+    -------
+    ndarray of uint8, shape (size, size, 3)
+    """
+    finite = np.isfinite(difference_map)
+    shares = np.where(finite, difference_map, 0.0) / scale
+    colors = DIFFERENCE_COLORS(shares, bytes=True)[..., :3]
+    return np.where(finite[..., None], colors, np.array(NOT_FINITE, dtype=np.uint8))
+
+
+def difference_gradient(stops=9):
+    """DIFFERENCE_COLORS from left to right, as a CSS gradient."""
+    colors = (matplotlib.colors.to_hex(DIFFERENCE_COLORS(at)) for at in np.linspace(0, 1, stops))
+    return f"linear-gradient(to right, {', '.join(colors)})"
+
+
+def albedo_plot(curves, markers, prefix):
+    """Directional albedo over the cosine, as SVG text: lines expected, markers measured.
+
+    Parameters
+    ----------
+    curves : sequence of mxeon.conformance.results.Curve
+        The same quantity on different hosts; the first one's expectation is drawn.
+    markers : sequence of str
+        Matplotlib's name of each curve's marker.
+    prefix : str
+        Opens every identifier in the plot, to keep it apart from others on the page.
+
+    Returns
+    -------
+    str
+        An <svg> element that takes over the text colour around it and holds numbers only.
+    """
+    grey = len(set(curves[0].rho)) == 1
+    buffer = io.StringIO()
+    # Not what a file matplotlibrc in the working folder says: it could start LaTeX.
+    with style.context(["default", STYLE]):
+        figure = Figure(figsize=(3.6, 2.4), layout="constrained")
+        axes = figure.subplots()
+        for channel, color in enumerate((TEXT_COLOR,) if grey else CHANNEL_COLORS):
+            _draw_channel(axes, curves, markers, channel, color)
+        axes.set(xlim=(-0.03, 1.03), xlabel="cosine of the polar angle", ylabel="albedo")
+        axes.margins(y=0.15)
+        figure.savefig(buffer, format="svg", transparent=True, metadata=NO_METADATA)
+    svg = buffer.getvalue()
+    svg = svg[svg.index("<svg") :].replace(TEXT_COLOR, "currentColor")
+    return re.sub(r'((?:\bid="|href="#|url\(#))', rf"\g<1>{prefix}", svg)
+
+
+def _draw_channel(axes, curves, markers, channel, color):
+    axes.plot(curves[0].mu, curves[0].expected[:, channel], color=color, linewidth=1.2)
+    for curve, marker in zip(curves, markers, strict=True):
+        axes.plot(
+            curve.mu,
+            curve.measured[:, channel],
+            linestyle="none",
+            marker=marker,
+            markersize=4.5,
+            markeredgecolor=color,
+            markerfacecolor="none",
+            markevery=-(-len(curve.mu) // 24),
+        )

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How many nodes the shaders of a document have, and how deep they are, before any is generated.
+
+MaterialX writes a nodegraph once, however often it is used; a compiler copies it to each place. So
+nodes are counted as often as they are used, by weights, without visiting them as often. Nothing
+here recurses: depth is what is to be found out.
+"""
+
+from graphlib import CycleError, TopologicalSorter
+
+import MaterialX as mx
+
+from mxeon.errors import DocumentError
+from mxeon.shaders.document.xml import check_limit
+
+
+def check_expansion(document, elements, permissions, called):
+    """Nothing, if the shaders of renderable elements stay within the limits.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+    elements : sequence of MaterialX.TypedElement
+    permissions : Permissions
+    called : str
+        What messages call the document.
+
+    Raises
+    ------
+    DocumentError
+        If nodes or nodegraphs lead back to themselves, or there are too many of them in all, in a
+        row or within each other.
+    """
+    rule, total = f"{called}: must have", 0
+    weights, weigh = {}, _Weights(document, permissions, called)
+    for element in elements:
+        graph = reached([element.getNamePath()], lambda path: _upstream(document, path))
+        order = _ordered(graph, f"{called}: node", "be upstream of itself")
+        longest = max(_heights(graph, order).values())
+        check_limit(permissions, "chain", longest, rule, "nodes in a row")
+        for path in order:
+            definition = _definition(document.getDescendant(path))
+            if definition not in weights:
+                weights[definition] = weigh(definition)
+            total += weights[definition]
+        check_limit(permissions, "nodes", total, rule, "nodes in all its shaders")
+
+
+def check_inheritance(document, permissions, called):
+    """Nothing, if definitions inherit each other in rows short enough, and not themselves.
+
+    Raises
+    ------
+    DocumentError
+        Otherwise.
+    """
+    heirs = [each for each in document.getChildren() if each.hasAttribute("inherit")]
+    graph = reached(
+        [each.getName() for each in heirs],
+        {each.getName(): [each.getAttribute("inherit")] for each in heirs}.get,
+    )
+    order = _ordered(graph, f"{called}: definition", "inherit itself")
+    deepest = max(_heights(graph, order).values(), default=0)
+    rule = f"{called}: must have"
+    check_limit(permissions, "depth", deepest, rule, "definitions that inherit each other")
+
+
+class _Weights:
+    """How many nodes a node stands for, by the name of its nodedef."""
+
+    def __init__(self, document, permissions, called):
+        self._document, self._permissions, self._called = document, permissions, called
+
+    def __call__(self, name):
+        graph = reached([name], self._parts)
+        order = _ordered(graph, f"{self._called}: nodedef", "contain itself")
+        deepest, rule = max(_heights(graph, order).values()), f"{self._called}: must have"
+        check_limit(self._permissions, "depth", deepest, rule, "nodegraphs within each other")
+        weights = {}
+        for each in order:
+            weights[each] = 1 + sum(weights[part] for part in graph[each])
+        return weights[name]
+
+    def _parts(self, name):
+        """The nodedefs of all nodes in the graphs that implement a nodedef."""
+        nodedef = self._document.getNodeDef(name)
+        if not nodedef:
+            return []
+        names = dict.fromkeys((name, nodedef.getQualifiedName(name)))
+        found = [each for key in names for each in self._document.getMatchingImplementations(key)]
+        graphs = (self._graph(each) for each in found)
+        return [_definition(node) for graph in graphs if graph for node in graph.getNodes()]
+
+    def _graph(self, implementation):
+        if implementation.isA(mx.NodeGraph):
+            return implementation
+        return self._document.getNodeGraph(implementation.getAttribute("nodegraph"))
+
+
+def reached(roots, parts):
+    """A graph as a mapping from each key to its parts, made of all that the roots lead to."""
+    graph, waiting = {}, list(roots)
+    while waiting:
+        key = waiting.pop()
+        if key not in graph:
+            graph[key] = parts(key) or ()
+            waiting += graph[key]
+    return graph
+
+
+def _ordered(graph, kind, rule):
+    """Its keys, each after its parts."""
+    try:
+        return tuple(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        raise DocumentError(f'{kind} "{min(error.args[1])}" must not {rule}') from None
+
+
+def _heights(graph, order):
+    """How many keys in a row lead to each."""
+    heights = {}
+    for key in order:
+        heights[key] = 1 + max((heights[part] for part in graph[key]), default=0)
+    return heights
+
+
+def _upstream(document, path):
+    """Name paths of the nodes that an element is connected to."""
+    element = document.getDescendant(path)
+    ports = [element] if element.isA(mx.Output) else element.getInputs()
+    connected = (_connected(port) for port in ports)
+    return [node.getNamePath() for node in connected if node]
+
+
+def _connected(port):
+    if port.isA(mx.Input) and port.hasInterfaceName():
+        port = port.getInterfaceInput()
+    return port.getConnectedNode() if port else None
+
+
+def _definition(element):
+    definition = element.getNodeDef() if element.isA(mx.Node) else None
+    return definition.getName() if definition else ""

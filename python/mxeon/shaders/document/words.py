@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which words of a document may reach generated source.
+
+Generators write the names, the values of text and some of the attributes of a document into
+shaders as they are, so a word that is more than a word is code. `tests.fuzz.reach` asks every target
+which do; whatever else an attribute says (`doc`, `uiname`, an application's own) stays free.
+"""
+
+import re
+from collections import defaultdict
+from functools import cache
+
+import MaterialX as mx
+
+from mxeon.errors import DocumentError
+from mxeon.shaders.document.graph_size import reached
+
+# Attributes that are names, or become part of one: identifiers, with `:` between namespaces.
+NAMES = frozenset(
+    [
+        "defaultgeomprop",
+        "function",
+        "geomprop",
+        "implname",
+        "impltype",
+        "index",
+        "inherit",
+        "interfacename",
+        "namespace",
+        "node",
+        "nodedef",
+        "nodegraph",
+        "nodename",
+        "output",
+        "semantic",
+        "space",
+        "type",
+        "unit",
+        "unittype",
+    ]
+)
+# Attributes of MaterialX that are text, and stand between quotes where they reach source at all.
+TEXTS = frozenset(
+    ["colorspace", "context", "file", "fileprefix", "geomprefix", "target", "value", "version"]
+)
+STRINGS = ("string", "stringarray", "geomname", "geomnamearray")
+NUMBERS = frozenset(
+    [
+        "float",
+        "integer",
+        "boolean",
+        "color3",
+        "color4",
+        "vector2",
+        "vector3",
+        "vector4",
+        "matrix33",
+        "matrix44",
+    ]
+)
+
+NAME = re.compile(r"[\w:]*", re.ASCII)
+WORD = re.compile(r"\w*", re.ASCII)
+# Lists of words and paths, and members of a structure.
+STRING = re.compile(r"[\w .,:/+<>\[\]-]*", re.ASCII)
+MEMBERS = re.compile(r"[\w .,:/+<>\[\]{};-]*", re.ASCII)
+COMMENT = "//"  # of which the others are no part of what these patterns let through
+ENDS_A_STRING = re.compile(r'["\\\x00-\x1f\x7f]')
+
+
+def check_words(document, called):
+    """Raise DocumentError if text of a document could be more than words in generated source.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+        With its data library, which is not judged.
+    called : str
+        What messages call the document.
+    """
+    choices = cache(lambda: _choices(document))  # of a whole library, which few documents need
+    for element in document.traverseTree():
+        for name in ("name", *element.getAttributeNames()):
+            text = element.getName() if name == "name" else element.getAttribute(name)
+            if text and (rule := _broken(element, name, text, choices)):
+                place = f'{called}: {element.getCategory()} "{element.getNamePath()}"'
+                raise DocumentError(f"{place}: {name!r} must be {rule}; got {text!r}")
+
+
+def _broken(element, name, text, choices):
+    """The rule that an attribute breaks, or ""."""
+    if name == "value" and element.hasAttribute("type"):
+        return _broken_value(element, text, choices)
+    if (name in NAMES or name == "name") and not NAME.fullmatch(text):
+        return "a name of letters, digits, _ and :"
+    if name in TEXTS and ENDS_A_STRING.search(text):
+        return "without quotes, backslashes and control characters"
+    return ""
+
+
+def _broken_value(element, text, choices):
+    """The rule that a value breaks, or ""; numbers and names of files have rules of their own."""
+    kind = element.getAttribute("type")
+    if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):
+        return ""
+    if kind == "string" and element.getName() in choices():
+        return "one word of letters, digits and _"
+    if not (STRING if kind in STRINGS else MEMBERS).fullmatch(text) or COMMENT in text:
+        return "words of letters, digits and .,:/+- without //"
+    return ""
+
+
+def _choices(document):
+    """Names of inputs whose text is written without quotes somewhere, and of all that feed them."""
+    inputs = [
+        each
+        for tree in (document, document.getDataLibrary())
+        for each in tree.traverseTree()
+        if each.isA(mx.Input) and each.getType() == "string"
+    ]
+    sources = defaultdict(list)
+    for each in inputs:
+        sources[each.getName()].append(each.getInterfaceName())
+    chosen = [each.getName() for each in inputs if each.hasAttribute("enum")]
+    return reached(["geomprop", *chosen], sources.get)

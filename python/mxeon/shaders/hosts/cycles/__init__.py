@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's Cycles as a host: OSL on the CPU, in a process of its own.
+
+Cycles lives in the Python module `bpy`, which needs an environment of its own. This half writes OSL
+files, has `worker.py` render them there and reads the float32 pictures back.
+"""
+
+import math
+import re
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import MaterialX as mx
+import numpy as np
+
+from mxeon.errors import ImageError, InputError, NotRun, ShaderError
+from mxeon.io.files import write_image
+from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.cycles.process import Worker, interpreter
+from mxeon.shaders.hosts.textures import read_image
+from mxeon.shaders.library import data_folder
+from mxeon.shaders.scene import sphere
+
+# Samples per pixel under an environment, 1 being enough under a distant light.
+ENVIRONMENT_SAMPLES = 256
+
+# Cycles has no surface coordinates on a point cloud: a block that opens like this gives the globals
+# `u` and `v`, which a generated shader reads, the values of `mxeon.shaders.scene.sphere`.
+TEXCOORD = """{
+    float u = 0.5 + atan2(N[0], N[2]) / M_2PI;
+    float v = 0.5 + atan2(N[1], hypot(N[0], N[2])) / M_PI;
+"""
+
+# The values of a function as the light that a sphere emits: pixel by pixel its arguments are read
+# from images, by position and without filtering, so that every bit of a float32 survives.
+CALL = """#include "{source}"
+
+shader call(output closure color out = 0)
+{{
+    float s = 0.5 + 0.5 * P[0];
+    float t = 0.5 - 0.5 * P[1];
+{reads}
+    color value = {function}({names});
+    out = value * emission();
+}}
+"""
+READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
+
+
+class Host:
+    """Blender's Cycles; a context manager, since it holds a process and a temporary folder.
+
+    Parameters
+    ----------
+    sources : Path or None
+        Folder of the OSL files whose functions `call` executes; None for eonlib's.
+    limit : float
+        Seconds that one picture may take.
+
+    Raises
+    ------
+    NotRun
+        If no interpreter with Blender is found.
+    """
+
+    name = "cycles"
+    target = "osl"
+    profile = "cycles"
+
+    def __init__(self, sources=None, limit=300.0):
+        python = interpreter()
+        self._sources = Path(sources or data_folder() / "genosl").resolve()
+        self._temporary = TemporaryDirectory(prefix="mxeon-cycles-")
+        self.worker = Worker(python, Path(self._temporary.name, "log.txt"), limit)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.close()
+
+    def close(self):
+        """End the process and remove the temporary files."""
+        self.worker.close()
+        self._temporary.cleanup()
+
+    def identity(self):
+        """Name and version; the device is always the CPU."""
+        self.worker.start()
+        return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
+
+    def picture(self, shader, scene):
+        """The unit sphere wearing a generated OSL shader.
+
+        Parameters
+        ----------
+        shader : Shader
+            Made for the target "osl".
+        scene : Scene
+            Its environment, if any, uniform.
+
+        Returns
+        -------
+        ndarray, shape (size, size, 3), float32
+            Linear, row 0 at the top, 0 off the sphere.
+
+        Raises
+        ------
+        ShaderError
+            If the shader does not compile.
+        NotRun
+            If the environment is an image, the shader uses a closure that Cycles lacks, or the
+            process fails.
+
+        Notes
+        -----
+        Accuracy: float32 rounding under a distant light. Under an environment a pixel is a mean of
+        ENVIRONMENT_SAMPLES samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
+        the rim, and 2e-5 in the mean over the sphere.
+        """
+        if isinstance(scene.environment, (str, Path)):
+            raise NotRun("cycles: an environment must be uniform here; got an image")
+        with self._folder() as folder:
+            pixels = self._render(Path(folder), _on_sphere(shader.stages["pixel"]), **_frame(scene))
+        return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+
+    def node(self, kind, inputs, scene):
+        """The unit sphere wearing a node of Blender's, rendered without OSL.
+
+        Parameters
+        ----------
+        kind : str
+            Blender's name of the node's type.
+        inputs : dict of str to float or sequence of float
+            Values by the names of the node's sockets.
+        scene : Scene
+            Its environment, if any, uniform.
+
+        Returns
+        -------
+        ndarray, shape (size, size, 3), float32
+            As `picture`.
+
+        Raises
+        ------
+        NotRun
+            If the process fails.
+        """
+        with self._folder() as folder:
+            pixels = self._request(
+                Path(folder), native={"kind": kind, "inputs": inputs}, **_frame(scene)
+            )
+        return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+
+    def evaluate(self, shader, wo, wi, inputs, branch):
+        """Nothing: Cycles evaluates a closure only where a ray meets a surface.
+
+        Raises
+        ------
+        NotRun
+            Always.
+        """
+        raise NotRun("cycles: a closure has no value for free pairs; compare pictures instead")
+
+    def call(self, function, *arguments):
+        """Values of a function of the OSL sources.
+
+        Parameters
+        ----------
+        function : str
+            Its name.
+        *arguments : array_like, shape (N, 3) for a vector or color, (N,) for a float
+            Taken as float32; what is the same for all N may come once.
+
+        Returns
+        -------
+        ndarray, shape (N, 3), float32
+            A float in all three columns.
+
+        Raises
+        ------
+        ValueError
+            If no source defines the function, or the arguments do not fit its parameters.
+        NotRun
+            If the process fails.
+        """
+        source, types = self._signature(function)
+        if len(types) != len(arguments):
+            raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
+        columns = [_columns(*pair) for pair in zip(types, arguments, strict=True)]
+        count = max(map(len, columns))
+        size = max(4, math.isqrt(count - 1) + 1)  # Blender renders no smaller picture.
+        names = [f"argument{index}" for index in range(len(types))]
+        with self._folder() as folder:
+            reads = []
+            for kind, name, column in zip(types, names, columns, strict=True):
+                image = Path(folder, f"{name}.exr")
+                _write(image, np.broadcast_to(column, (count, column.shape[1])), size)
+                reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
+            text = CALL.format(
+                source=source.as_posix(),
+                reads="\n".join(reads),
+                function=function,
+                names=", ".join(names),
+            )
+            frame = dict(size=size, samples=1, radius=2.0, light=None, environment=None)
+            pixels = self._render(Path(folder), text, **frame)
+        return pixels.reshape(-1, 3)[:count]
+
+    def _folder(self):
+        """A folder for the files of one request."""
+        return TemporaryDirectory(dir=self._temporary.name)
+
+    def _signature(self, function):
+        """The file that defines a function, and the types of its parameters."""
+        pattern = rf"^(?:color|vector|float)\s+{function}\s*\(([^)]*)\)\s*{{"
+        for source in sorted(self._sources.glob("*.osl")):
+            found = re.search(pattern, source.read_text(), re.MULTILINE)
+            if found:
+                return source, [part.split()[0] for part in found[1].split(",")]
+        raise InputError(f"function must be defined in {self._sources}; got {function!r}")
+
+    def _render(self, folder, text, **frame):
+        """The picture that the worker makes of the OSL shader `text`."""
+        shader = folder / "shader.osl"
+        shader.write_text(text)
+        return self._request(folder, shader=str(shader), **frame)
+
+    def _request(self, folder, **request):
+        """The picture that the worker makes."""
+        output = folder / "output.exr"
+        reply = self.worker.ask(output=str(output), **request)
+        if "error" in reply:
+            errors = " | ".join(self.worker.printed()[:4])
+            raise ShaderError(f"cycles: the shader does not compile: {errors}")
+        # A closure that Cycles lacks makes the whole shader black, with no other sign than this.
+        for line in self.worker.printed():
+            if line.startswith("ERROR"):
+                raise NotRun(f"cycles: {line.partition(', called from')[0]}")
+        try:
+            return read_image(output)
+        except ImageError as error:
+            raise NotRun(f"cycles: Blender wrote no picture; {error}") from None
+
+
+def _frame(scene):
+    """What the worker has to know of a scene."""
+    return {
+        "size": scene.size,
+        "samples": 1 if scene.environment is None else ENVIRONMENT_SAMPLES,
+        "radius": 1.0,
+        "light": scene.light,
+        "environment": scene.environment,
+    }
+
+
+def _on_sphere(text):
+    """A generated shader whose includes are found and which knows the sphere's coordinates."""
+    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+    text = text.replace('"mx_funcs.h"', f'"{header.asString()}"')
+    head, brace, body = text.rpartition("\n)\n{\n")
+    return head + brace + TEXCOORD + body + "}"
+
+
+def _columns(kind, values):
+    """Values of an OSL type as rows of float32, one row for what is the same everywhere."""
+    return np.asarray(values, np.float32).reshape(-1, 1 if kind == "float" else 3)
+
+
+def _write(path, rows, size):
+    """Write rows as the first pixels of a float32 image of `size` x `size`."""
+    channels = rows.shape[1]
+    pixels = np.zeros((size * size, channels), np.float32)
+    pixels[: len(rows)] = rows
+    write_image(path, pixels.reshape(size, size, channels), {})

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The half of the `cycles` host that runs inside Blender's own Python, started by its path.
+
+It reads one JSON object per line on standard input and answers each with one on standard output:
+first, unasked, `{"version": ...}`, then per request `{}` or `{"error": ...}`. Whatever Blender and
+the OSL compiler print goes to standard error. It ends when standard input does.
+"""
+
+import json
+import math
+import os
+import sys
+from pathlib import Path
+
+# Blender prints on standard output as soon as it is imported: that goes to standard error.
+REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
+os.dup2(2, 1)
+
+import _cycles  # noqa: E402
+import bpy  # noqa: E402
+from mathutils import Vector  # noqa: E402
+
+# Script nodes read their sockets with `oslquery`, which lies in Blender's own Python folder.
+BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
+sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
+
+
+def unit_scene(distance):
+    """A new scene without light, the square [-1, 1]^2 seen orthographically from z = `distance`."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    camera.data.type = "ORTHO"
+    camera.data.ortho_scale = 2.0
+    camera.location.z = distance
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    return scene
+
+
+def set_output(scene, path, size):
+    """Make `scene` render to a linear float32 RGB file, black where nothing is hit."""
+    render = scene.render
+    render.filepath = path
+    render.resolution_x = render.resolution_y = size
+    render.film_transparent = True
+    render.image_settings.file_format = "OPEN_EXR"
+    render.image_settings.color_mode = "RGB"
+    render.image_settings.color_depth = "32"
+    render.image_settings.exr_codec = "NONE"
+
+
+def set_sampling(scene, samples, osl):
+    """Make `scene` render by Cycles, with or without OSL, every sample at its pixel's centre."""
+    scene.render.engine = "CYCLES"
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.shading_system = osl
+    cycles.samples = samples
+    cycles.use_adaptive_sampling = False
+    cycles.use_denoising = False
+    cycles.sample_clamp_indirect = 0.0
+    cycles.max_bounces = 1
+    cycles.pixel_filter_type = "BLACKMAN_HARRIS"
+    cycles.filter_width = 0.01
+
+
+def add_sphere(scene, radius, material):
+    """Add an exact sphere around the origin, a point cloud of one point, wearing `material`."""
+    mesh = bpy.data.meshes.new("sphere")
+    mesh.from_pydata([(0.0, 0.0, 0.0)], [], [])
+    sphere = bpy.data.objects.new("sphere", mesh)
+    scene.collection.objects.link(sphere)
+    sphere.select_set(True)
+    bpy.context.view_layer.objects.active = sphere
+    bpy.ops.object.convert(target="POINTCLOUD")
+    points = bpy.context.view_layer.objects.active.data
+    points.attributes.new("radius", "FLOAT", "POINT").data[0].value = radius
+    points.materials.append(material)
+
+
+def script_material(shader):
+    """A material whose surface is the output of the compiled OSL file `shader`."""
+    material, script = surface_material("ShaderNodeScript")
+    script.mode = "EXTERNAL"
+    script.filepath = shader
+    connect(material, script)
+    return material
+
+
+def native_material(kind, inputs):
+    """A material whose surface is a node of Blender's, with some of its inputs set."""
+    material, node = surface_material(kind)
+    for name, value in inputs.items():
+        node.inputs[name].default_value = value
+    connect(material, node)
+    return material
+
+
+def surface_material(kind):
+    """A new material that holds one node of a kind, and that node."""
+    material = bpy.data.materials.new("material")
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    return material, nodes.new(kind)
+
+
+def connect(material, node):
+    """Make the first output of a node the surface of its material."""
+    surface = material.node_tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
+    material.node_tree.links.new(node.outputs[0], surface)
+
+
+def add_light(scene, direction):
+    """Add a distant light of irradiance pi that shines from `direction`."""
+    sun = bpy.data.lights.new("light", "SUN")
+    sun.angle = 0.0
+    sun.energy = math.pi
+    light = bpy.data.objects.new("light", sun)
+    light.rotation_mode = "QUATERNION"
+    light.rotation_quaternion = Vector(direction).to_track_quat("Z", "Y")
+    scene.collection.objects.link(light)
+
+
+def add_environment(scene, radiance):
+    """Surround the scene by a uniform `radiance`."""
+    world = bpy.data.worlds.new("environment")
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = radiance
+    scene.world = world
+
+
+def render(output, size, samples, radius, light, environment, shader=None, native=None):
+    """Render the OSL file `shader`, or a node of Blender's, on a sphere; the reply."""
+    if shader:
+        compiled = os.path.splitext(shader)[0] + ".oso"
+        if not _cycles.osl_compile(shader, compiled):
+            return {"error": "compile"}
+    scene = unit_scene(2.0 * radius)
+    set_output(scene, output, size)
+    set_sampling(scene, samples, osl=native is None)
+    add_sphere(scene, radius, native_material(**native) if native else script_material(compiled))
+    if light:
+        add_light(scene, light)
+    if environment:
+        add_environment(scene, environment)
+    bpy.ops.render.render(write_still=True)
+    return {}
+
+
+def main():
+    """Serve requests until standard input ends."""
+    print(json.dumps({"version": bpy.app.version_string}), file=REPLIES)
+    for line in sys.stdin:
+        print(json.dumps(render(**json.loads(line))), file=REPLIES)
+
+
+if __name__ == "__main__":
+    main()

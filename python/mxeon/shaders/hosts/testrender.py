@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OSL's own renderer: generated OSL compiled by oslc and rendered by testrender.
+
+Its sphere is a mesh and its camera a perspective one, so the picture is of a plane, on which every
+pixel is a pair of directions that is known exactly.
+"""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import MaterialX as mx
+import numpy as np
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.textures import read_image
+
+PROGRAMS = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER"}  # and what may name them
+LIMIT = 300.0  # seconds for one of them
+LINES = 4  # of what a program printed last, in a message
+
+FOV = 90.0  # degrees, as testrender counts them: the frame is tan(FOV / 2) wide at distance 1
+TILT = np.radians(60.0)  # of the camera, which stands 1 above the plane and looks along y
+PLANE = 100.0  # half the plane's side
+DISTANCE = 1000.0  # of the light, a square of side 1
+SAMPLES = {"light": 8, "environment": 16}  # squared: rays for each pixel
+
+HELPERS = {
+    "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",
+    "mxeon_light": "shader mxeon_light(float radiance = 1.0) { Ci = radiance * emission(); }",
+    "mxeon_sky": "shader mxeon_sky(float radiance = 1.0) { Ci = radiance * background(); }",
+}
+SCENE = """<World>
+  <Option no_jitter="int 1" />
+  <Camera eye="0,0,1" dir="0,{sine:.9g},{cosine:.9g}" up="0,0,1" fov="{fov:.9g}" />
+  <ShaderGroup name="plane">
+    shader {shader} material ;
+    shader mxeon_root root ;
+    connect material.out root.material ;
+  </ShaderGroup>
+  <Quad corner="-{half},-{half},0" edge_x="{side},0,0" edge_y="0,{side},0" />
+{light}
+</World>
+"""
+LIGHT = """  <ShaderGroup name="light" is_light="yes">
+    param float radiance {radiance:.9g} ;
+    shader mxeon_light light ;
+  </ShaderGroup>
+  <Quad corner="{corner}" edge_x="{x}" edge_y="{y}" is_light="yes" />"""
+SKY = """  <ShaderGroup name="sky">
+    param float radiance {radiance:.9g} ;
+    shader mxeon_sky sky ;
+  </ShaderGroup>
+  <Background />"""
+
+
+class Host:
+    """oslc and testrender, found on PATH or where MXEON_OSLC and MXEON_TESTRENDER say.
+
+    Raises
+    ------
+    NotRun
+        If one of them is missing, or oslc does not start.
+    """
+
+    name = "testrender"
+    target = "osl"
+    profile = None
+
+    def __init__(self):
+        self._oslc, self._testrender = map(_program, PROGRAMS)
+        self._version = _run([self._oslc, "--version"]).strip() or "unknown version"
+        self._temporary = TemporaryDirectory(prefix="mxeon-testrender-")
+        self._folder = Path(self._temporary.name)
+        self._compiled = {}
+
+    def identity(self):
+        """oslc's version; the device is the CPU."""
+        return Identity(self.name, f"OSL {self._version}", "CPU")
+
+    def picture(self, shader, scene):
+        """Nothing: there is no exact sphere here; see `plane`.
+
+        Raises
+        ------
+        NotRun
+            Always.
+        """
+        raise NotRun("testrender: there are no pictures of a sphere here, but of a plane")
+
+    def plane(self, shader, scene):
+        """The shader on the plane, as seen at `plane_pairs`.
+
+        Parameters
+        ----------
+        shader : Shader
+        scene : Scene
+            A distant light, in the plane's frame, or a uniform surrounding.
+
+        Returns
+        -------
+        ndarray, shape (size * size, 3), float64
+            pi f cos(theta_i), or radiance. testrender writes half floats.
+        """
+        for name, text in {shader.name: shader.stages["pixel"], **HELPERS}.items():
+            self._compile(name, text)
+        pixels = self._render(_scene(shader, scene), scene)
+        return pixels if scene.light is None else pixels / _falloff(scene)[:, np.newaxis]
+
+    def call(self, function, *arguments):
+        """Nothing: testrender evaluates closures alone.
+
+        Raises
+        ------
+        NotRun
+            Always.
+        """
+        raise NotRun("testrender: it has no way to evaluate a function of the shader twins")
+
+    def close(self):
+        """Remove the host's files; it is of no use afterwards."""
+        self._temporary.cleanup()
+
+    def _compile(self, name, text):
+        """Compile a shader, unless its text is that of the last one of its name."""
+        if self._compiled.get(name) == text:
+            return
+        (self._folder / f"{name}.osl").write_text(text, encoding="utf-8")
+        header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+        include = f"-I{header.getParentPath().asString()}"
+        _run([self._oslc, "-q", include, f"{name}.osl"], self._folder, ShaderError)
+        self._compiled[name] = text
+
+    def _render(self, text, scene):
+        """Pixels of a scene, (size * size, 3)."""
+        size, aa = str(scene.size), SAMPLES["environment" if scene.light is None else "light"]
+        picture = self._folder / "plane.exr"
+        picture.unlink(missing_ok=True)
+        (self._folder / "scene.xml").write_text(text, encoding="utf-8")
+        command = [self._testrender, "-r", size, size, "-aa", str(aa), "scene.xml", picture.name]
+        _run(command, self._folder)
+        try:
+            pixels = read_image(picture)
+        except ValueError as error:
+            raise NotRun(f"testrender: {error}") from None
+        return pixels[..., :3].reshape(-1, 3).astype(np.float64)
+
+
+def plane_pairs(scene):
+    """Directions at the points of the plane under the pixel centres.
+
+    Returns
+    -------
+    wo, wi : ndarray, shape (size * size, 3)
+        Row 0 of the picture first; wi is wo where there is no distant light.
+    """
+    points = _points(scene.size)
+    wo = _unit([0.0, 0.0, 1.0] - points)
+    return wo, wo if scene.light is None else _unit(DISTANCE * np.array(scene.light) - points)
+
+
+def _points(size):
+    """Points of the plane, (size * size, 3)."""
+    axis = (np.arange(size) + 0.5) / size - 0.5
+    x, y = (each.ravel() for each in np.meshgrid(axis, -axis))
+    width = np.tan(np.radians(FOV) / 2.0)
+    ahead, up = np.array([0.0, np.sin(TILT), -np.cos(TILT)]), [0.0, np.cos(TILT), np.sin(TILT)]
+    ray = ahead + width * (x[:, np.newaxis] * [1.0, 0.0, 0.0] + y[:, np.newaxis] * np.array(up))
+    return [0.0, 0.0, 1.0] - ray / ray[:, 2:]
+
+
+def _falloff(scene):
+    """The light's irradiance on a surface that faces it, over pi: 1 below the camera, nearly."""
+    away = DISTANCE * np.array(scene.light) - _points(scene.size)
+    squared = (away**2).sum(axis=1)
+    return DISTANCE**2 * (_unit(away) @ np.array(scene.light)) / squared
+
+
+def _unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def _scene(shader, scene):
+    """The scene in testrender's XML."""
+    if scene.light is None:
+        lit = SKY.format(radiance=scene.environment)
+    else:
+        toward = np.array(scene.light)
+        x = np.cross([0.0, 1.0, 0.0] if abs(toward[1]) < 0.9 else [1.0, 0.0, 0.0], toward)
+        x = x / np.linalg.norm(x)
+        y = np.cross(toward, x)
+        lit = LIGHT.format(
+            radiance=np.pi * DISTANCE**2,
+            corner=_triple(DISTANCE * toward - 0.5 * (x + y)),
+            x=_triple(x),
+            y=_triple(y),
+        )
+    return SCENE.format(
+        sine=np.sin(TILT), cosine=-np.cos(TILT), fov=FOV, half=PLANE, side=2.0 * PLANE,
+        shader=shader.name, light=lit,
+    )  # fmt: skip
+
+
+def _triple(vector):
+    return ",".join(f"{each:.9g}" for each in vector)
+
+
+def _program(name):
+    """Path of a program: what its variable names, else the one on PATH."""
+    variable = PROGRAMS[name]
+    wanted = os.environ.get(variable) or name
+    found = shutil.which(wanted)
+    if found is None:
+        raise NotRun(
+            f"testrender: no program {wanted!r}; build Open Shading Language and name it in {variable}"
+        )
+    return os.path.abspath(found)
+
+
+def _run(command, folder=None, refused=NotRun):
+    """What a program prints; `refused` is raised with its words if it fails."""
+    try:
+        done = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=LIMIT, errors="replace"
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise NotRun(f"testrender: {error}") from None
+    if done.returncode:
+        said = " | ".join((done.stdout + done.stderr).strip().splitlines()[-LINES:])
+        raise refused(
+            f"testrender: {Path(command[0]).name}: exit status {done.returncode}; last output: {said}"
+        )
+    return done.stdout

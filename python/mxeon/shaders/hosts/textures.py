@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Images that go into shaders: textures, surroundings and what a surrounding sends to a surface.
+
+Read with OpenImageIO, as float32 arrays (height, width, channels), linear or as stored: colour
+transforms are the shader's business.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from mxeon.errors import ImageError
+from mxeon.io.files import assert_regular
+
+IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
+LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
+FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
+RADIANCE_SIZE = 64  # rows and columns, or little more, from which it is summed
+
+
+def read_image(path):
+    """Pixels of an image file, row 0 at the top.
+
+    Raises
+    ------
+    ImageError
+        If it is no regular file, or OpenImageIO cannot read it, in OpenImageIO's words; or if it is
+        too large, which a small file can be.
+    """
+    import OpenImageIO as oiio
+
+    try:
+        assert_regular(path)
+    except OSError as error:
+        raise ImageError(f"{path}: must be an image file; {error.strerror}") from None
+    file = oiio.ImageInput.open(str(path))
+    values = file.spec().image_pixels() * file.spec().nchannels if file else 0
+    if values > LARGEST:
+        raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
+    pixels = file.read_image(oiio.FLOAT) if file else None
+    if pixels is None:
+        reason = " ".join((file.geterror() if file else oiio.geterror()).split())
+        raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
+    return pixels
+
+
+def read_texture(path):
+    """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
+
+    Of a set of textures it is the one of [0, 1]^2, in which all coordinates of a sphere lie. One
+    channel is that of all colors, as MaterialX has it.
+
+    Raises
+    ------
+    ImageError
+        As `read_image` does; or if it has more channels than a color.
+    """
+    for token, word in FIRST_TILE.items():
+        path = str(path).replace(token, word)
+    pixels = read_image(path)
+    if pixels.shape[-1] > 4:
+        raise ImageError(f"{path}: must have at most 4 channels; got {pixels.shape[-1]}")
+    return (np.repeat(pixels, 3, axis=-1) if pixels.shape[-1] == 1 else pixels)[::-1]
+
+
+def read_latlong(environment):
+    """Radiance of a surrounding as a latitude-longitude map, row 0 upwards (+y).
+
+    Parameters
+    ----------
+    environment : None, float or Path
+        Nothing, a uniform radiance, or an image file.
+
+    Raises
+    ------
+    ImageError
+        If it is no image that can be read, or not one of colours.
+    """
+    if isinstance(environment, (str, Path)):
+        pixels = read_image(environment)
+        if pixels.shape[-1] < 3:
+            channels = pixels.shape[-1]
+            raise ImageError(
+                f"{environment}: must have red, green and blue; got {channels} channels"
+            )
+        return pixels[..., :3]
+    return np.full((1, 1, 3), environment or 0.0, dtype=np.float32)
+
+
+def irradiance(radiance):
+    """Irradiance over pi for every surface normal, as a latitude-longitude map.
+
+        (1 / pi) integral of L(omega) max(0, n . omega) d omega
+
+    A uniform surrounding gives its own radiance, exactly.
+    """
+    if radiance.shape[:2] == (1, 1):
+        return radiance
+    high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
+    rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
+    blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
+    coarse = blocks.mean(axis=(1, 3)).reshape(rows * columns, -1)
+    incoming, solid_angle = _directions(rows, columns)
+    normals, _ = _directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
+    weights = np.maximum(0.0, normals @ incoming.T) * solid_angle
+    weights /= weights.sum(axis=1, keepdims=True)
+    return (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1).astype(np.float32)
+
+
+def _directions(rows, columns):
+    """Directions and solid angles of a latitude-longitude map's pixels, as MaterialX maps them."""
+    polar = np.pi * (np.arange(rows) + 0.5) / rows
+    azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5)
+    polar, azimuth = np.meshgrid(polar, azimuth, indexing="ij")
+    x, z = np.sin(polar) * np.sin(azimuth), -np.sin(polar) * np.cos(azimuth)
+    directions = np.stack([x, np.cos(polar), z], axis=-1).reshape(-1, 3)
+    return directions, np.sin(polar).reshape(-1)

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
+
+glslang makes the SPIR-V, wgpu hands it to the driver. Since wgpu takes no interface block, the one
+that an evaluation leaves unused is removed from the SPIR-V, not from the text.
+"""
+
+import re
+import shutil
+import struct
+import subprocess
+from functools import lru_cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders import functions as twins
+from mxeon.shaders.hosts import Identity, fragment
+
+try:
+    import wgpu
+except ImportError:
+    wgpu = None
+
+COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin")
+REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
+LIMIT = 60.0  # seconds for one of them
+
+# Kinds of bindings, in wgpu's words.
+FILTERED = {"texture": {"sample_type": "float"}}
+UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
+SAMPLER = {"sampler": {"type": "filtering"}}
+BLOCK = {"buffer": {"type": "uniform"}}
+
+# What a generated text binds.
+DECLARATION = re.compile(
+    r"^layout \((?:std140, )?binding=(?P<number>\d+)\) uniform "
+    r"(?:sampler2D (?P<texture>\w+);|\w+\s*\{(?P<block>[^}]*)\})",
+    re.MULTILINE,
+)
+
+# Values of block members that must not be 0.
+UNIFORMS = {"u_envMatrix": tuple(np.eye(4).ravel()), "u_envLightIntensity": (1.0,)}
+STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
+STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
+BLOCK_SIZE = 1 << 14
+
+CORNERS = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
+FLOATS = {1: "r32float", 4: "rgba32float"}  # components -> format
+WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
+
+
+class Host:
+    """The first Vulkan adapter that wgpu finds.
+
+    Raises
+    ------
+    NotRun
+        If there is no wgpu, no glslang or no Vulkan device.
+    """
+
+    name = "vulkan"
+    target = "vulkan"
+    profile = None
+
+    def __init__(self):
+        if wgpu is None:
+            raise NotRun("vulkan: wgpu is not installed; pip install 'mxeon[vulkan]'")
+        for program in (COMPILER[0], REMOVER[0]):
+            if shutil.which(program) is None:
+                raise NotRun(
+                    f"vulkan: no program {program!r}; on Debian: apt-get install glslang-tools"
+                )
+        self._adapter = _adapter()
+        self._device = self._adapter.request_device_sync()
+
+    def identity(self):
+        """Version and device as the driver names them."""
+        info = self._adapter.info
+        version = f"Vulkan, {info['description']}; wgpu {wgpu.__version__}"
+        return Identity(self.name, version, info["device"])
+
+    def picture(self, shader, scene):
+        """Nothing: free pairs tell more.
+
+        Raises
+        ------
+        NotRun
+            Always.
+        """
+        raise NotRun("vulkan: there are no pictures here; compare values instead")
+
+    def evaluate(self, shader, wo, wi, inputs, branch):
+        """The shader's own BSDF function for pairs of directions; see `mxeon.shaders.hosts`."""
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
+        return self._evaluate(pixel, arguments)
+
+    def call(self, function, *arguments):
+        """A function of the GLSL twins; see `mxeon.shaders.hosts`."""
+        parameters = twins.signature("glsl", function)
+        source = twins.source("glsl")
+        pixel, named = fragment.function_evaluation(
+            source, function, parameters, arguments, self.target
+        )
+        return self._evaluate(pixel, named)
+
+    def close(self):
+        """Give the device back; the host is of no use afterwards."""
+        self._device.destroy()
+
+    def _evaluate(self, pixel, arguments):
+        """One pixel per element, as many as the longest argument has."""
+        count, size = fragment.frame(arguments)
+        texels = [fragment.texels(rows, size) for rows in arguments.values()]
+        sets = (
+            self._generated(pixel),
+            {0: (SAMPLER, self._device.create_sampler())},
+            {number: (UNFILTERED, self._texture(each)) for number, each in enumerate(texels)},
+        )
+        layouts, groups = zip(*(self._group(each) for each in sets), strict=True)
+        pipeline = self._pipeline(pixel, layouts)
+        return self._draw(pipeline, groups, size)[:count]
+
+    def _draw(self, pipeline, groups, size):
+        """One frame as float32 rows, pixel after pixel."""
+        usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+        target = self._device.create_texture(size=size, format=FLOATS[4], usage=usage)
+        attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
+        commands = self._device.create_command_encoder()
+        render = commands.begin_render_pass(color_attachments=[attachment])
+        render.set_pipeline(pipeline)
+        for index, group in enumerate(groups):
+            render.set_bind_group(index, group)
+        corners = self._device.create_buffer_with_data(data=CORNERS, usage="VERTEX")
+        render.set_vertex_buffer(0, corners)
+        render.draw(3)
+        render.end()
+        queue = self._device.queue
+        queue.submit([commands.finish()])
+        layout = {"bytes_per_row": 16 * size[0]}
+        frame = queue.read_texture({"texture": target}, layout, (*size, 1))
+        return np.frombuffer(frame, dtype=np.float32).reshape(-1, 4)[:, :3]
+
+    def _pipeline(self, pixel, layouts):
+        vertex = fragment.DIALECTS[self.target].vertex
+        position = {"format": "float32x3", "offset": 0, "shader_location": 0}
+        return self._device.create_render_pipeline(
+            layout=self._device.create_pipeline_layout(bind_group_layouts=layouts),
+            vertex={
+                **self._stage("vert", vertex),
+                "buffers": [{"array_stride": 12, "attributes": [position]}],
+            },
+            fragment={**self._stage("frag", pixel), "targets": [{"format": FLOATS[4]}]},
+            primitive={"topology": "triangle-list"},
+        )
+
+    def _stage(self, stage, text):
+        """A stage, "vert" or "frag", of a pipeline."""
+        code = _spirv(stage, text)
+        try:
+            module = self._device.create_shader_module(code=code)
+        except wgpu.GPUValidationError as error:
+            raise ShaderError(f"vulkan: {str(error).strip()}") from None
+        return {"module": module, "entry_point": "main"}
+
+    def _generated(self, text):
+        """The bindings that generated text declares: white textures, and blocks of UNIFORMS."""
+        return {
+            int(found["number"]): (FILTERED, self._texture(WHITE))
+            if found["texture"]
+            else (BLOCK, self._block(found["block"]))
+            for found in DECLARATION.finditer(text)
+        }
+
+    def _group(self, bindings):
+        """Layout and group of one set of bindings: number -> kind, resource."""
+        kinds = [
+            {"binding": number, "visibility": "FRAGMENT", **kind}
+            for number, (kind, _) in bindings.items()
+        ]
+        entries = [
+            {"binding": number, "resource": resource} for number, (_, resource) in bindings.items()
+        ]
+        layout = self._device.create_bind_group_layout(entries=kinds)
+        return layout, self._device.create_bind_group(layout=layout, entries=entries)
+
+    def _texture(self, texels):
+        """A texture of 8-bit or float32 texels, the latter of one component or of three."""
+        height, width, components = texels.shape
+        if components == 3:  # there are no textures of three
+            texels = np.pad(texels, ((0, 0), (0, 0), (0, 1)))
+        form = "rgba8unorm" if texels.dtype == np.uint8 else FLOATS[texels.shape[2]]
+        size = (width, height, 1)
+        usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
+        texture = self._device.create_texture(size=size, format=form, usage=usage)
+        layout = {"bytes_per_row": texels[0].nbytes, "rows_per_image": height}
+        self._device.queue.write_texture({"texture": texture}, texels, layout, size)
+        return texture.create_view()
+
+    def _block(self, members):
+        """A uniform block with the values of UNIFORMS in it, and 0 elsewhere."""
+        data = _std140(members)
+        return self._device.create_buffer_with_data(data=data, usage="UNIFORM")
+
+
+def _adapter():
+    for adapter in wgpu.gpu.enumerate_adapters_sync():
+        if adapter.info["backend_type"] == "Vulkan":
+            return adapter
+    raise NotRun("vulkan: no Vulkan device; on Debian: apt-get install mesa-vulkan-drivers")
+
+
+@lru_cache(maxsize=8)  # a check evaluates one shader many times
+def _spirv(stage, text):
+    """SPIR-V of a stage, as bytes."""
+    with TemporaryDirectory(prefix="mxeon-vulkan-") as folder:
+        whole, used = str(Path(folder, "whole")), Path(folder, "used")
+        _run([*COMPILER, "-S", stage, "-o", whole], text)
+        _run([*REMOVER, whole, "-o", str(used)])
+        return used.read_bytes()
+
+
+def _run(command, text=""):
+    try:
+        done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        raise NotRun(f"vulkan: {command[0]} takes longer than {LIMIT:.0f} s") from None
+    if done.returncode:
+        raise ShaderError(f"vulkan: {(done.stdout + done.stderr).strip()}")
+
+
+def _std140(members):
+    """Bytes of a block: up to the first structure, after which none of UNIFORMS comes."""
+    data, offset = bytearray(BLOCK_SIZE), 0
+    for kind, name in re.findall(r"(\w+) (\w+);", members):
+        if kind not in STD140:
+            break
+        alignment, size = STD140[kind]
+        offset = -(-offset // alignment) * alignment
+        values = UNIFORMS.get(name, ())
+        struct.pack_into(f"<{len(values)}f", data, offset, *values)
+        offset += size
+    return bytes(data)

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The data libraries: where they lie and in which order MaterialX has to load them.
+
+MaterialX keeps the first definition of a name and says nothing of the others, so our folder is
+loaded before the standard one. What was found is then checked: see `implementations`.
+
+No version of MaterialX is refused by its number: what mxeon needs of it is looked up in it, and what
+its generators write is checked against the closure interface of eonlib's sources.
+"""
+
+import re
+import warnings
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
+
+import mxeon
+from mxeon.errors import InputError, InterfaceError, LibraryError, PackageError
+
+TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
+REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
+
+LIBRARIES = ("eonlib", "stock")
+PROFILES = ("cycles",)
+
+# Nodes that eonlib implements, and the targets a generator asks for; 1.39.5 alone has all.
+NODES = ("ND_oren_nayar_diffuse_bsdf", "ND_eon_diffuse_bsdf")
+TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
+
+# Functions of eonlib's GLSL sources that generated code calls.
+ENTRY_POINTS = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
+
+
+class UntestedVersionWarning(UserWarning):
+    """A version of MaterialX that mxeon has not been tested with."""
+
+
+@dataclass(frozen=True)
+class Implementation:
+    """What MaterialX found for a node on a target.
+
+    Attributes
+    ----------
+    node, target : str
+        Name of the nodedef and of the target.
+    name : str
+        Name of the implementation element, or "" if there is none.
+    document : str
+        The file that holds it.
+    """
+
+    node: str
+    target: str
+    name: str
+    document: str
+
+    @property
+    def ours(self):
+        """Whether it lies in one of eonlib's folders."""
+        folders = {eonlib_folder(), data_folder() / "profiles"}
+        return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
+
+
+def data_folder():
+    """Folder that holds eonlib and its sources: inside an installed package, else the checkout."""
+    installed = Path(__file__).resolve().parents[1] / "data"
+    return installed if installed.is_dir() else Path(__file__).resolve().parents[3]
+
+
+def eonlib_folder():
+    """Folder of eonlib's MaterialX documents: what a C++ host, USD or generateshader loads first.
+
+    It is called `eonlib` in an installed package and `libraries` in a checkout.
+    """
+    installed = data_folder() / "eonlib"
+    return installed if installed.is_dir() else data_folder() / "libraries"
+
+
+def profile_folder(profile):
+    """Folder of a profile's MaterialX documents, to be loaded before eonlib's."""
+    return data_folder() / "profiles" / profile
+
+
+def examples_folder():
+    """Folder of the bundled example documents."""
+    return data_folder() / "examples"
+
+
+def standard_folders():
+    """Folders of MaterialX's own data libraries."""
+    paths = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
+    return [Path(path, name) for path in paths for name in mx.getDefaultDataLibraryFolders()]
+
+
+def _folders(library, profile):
+    """Library folders in load order: the most particular first, MaterialX's own last."""
+    if library not in LIBRARIES:
+        raise InputError(f"library must be one of {', '.join(LIBRARIES)}; got {library!r}")
+    if profile is not None and profile not in PROFILES:
+        raise InputError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
+    ours = [] if library == "stock" else [eonlib_folder()]
+    if profile is not None and library != "stock":
+        ours.insert(0, profile_folder(profile))
+    return [str(folder) for folder in ours] + list(mx.getDefaultDataLibraryFolders())
+
+
+@cache
+def load_library(library="eonlib", profile=None):
+    """A MaterialX document holding the standard libraries, with eonlib in front.
+
+    Loaded once per argument pair and shared: attach it with `Document.setDataLibrary`.
+
+    Parameters
+    ----------
+    library : str
+        "eonlib", or "stock" for MaterialX as it comes.
+    profile : str or None
+        "cycles" for the OSL implementations made for Blender's Cycles.
+
+    Returns
+    -------
+    MaterialX.Document
+
+    Raises
+    ------
+    ValueError
+        If the library or the profile is unknown; lists the known ones.
+    ImportError
+        If this MaterialX is too old; see `check_version`.
+    LibraryError
+        If it finds another implementation than eonlib's.
+
+    Warns
+    -----
+    UntestedVersionWarning
+        If this MaterialX is none of TESTED.
+    """
+    check_version()
+    if note := untested(mx.getVersionString()):
+        warnings.warn(UntestedVersionWarning(note), stacklevel=2)
+    document = mx.createDocument()
+    mx.loadLibraries(_folders(library, profile), mx.getDefaultDataSearchPath(), document)
+    if library == "eonlib":
+        assert_ours(document)
+    return document
+
+
+def check_version() -> None:
+    """Raise ImportError unless this MaterialX has every method of REQUIRED."""
+    for owner, method in REQUIRED:
+        if not hasattr(owner, method):
+            raise PackageError(
+                f"MaterialX {mx.getVersionString()} lacks {owner.__name__}.{method}; "
+                f"install {TESTED[0]} or later: pip install materialx=={TESTED[-1]}"
+            )
+
+
+def untested(version: str) -> str:
+    """Note that mxeon has not been tested with a version of MaterialX; "" if it has."""
+    if version in TESTED:
+        return ""
+    return f"MaterialX {version} has not been tested with mxeon {mxeon.__version__}"
+
+
+def check_closure_calls(text: str, target: str) -> None:
+    """Raise InterfaceError unless generated text calls eonlib's functions as they are defined.
+
+    Parameters
+    ----------
+    text : str
+        Pixel stage of a generated shader.
+    target : str
+        The target it was generated for, for the message.
+    """
+    for name in ENTRY_POINTS:
+        definition = re.search(rf"\bvoid {name}\(", text)
+        if not definition:  # the node is not used, or not eonlib's
+            continue
+        parameters = _arguments(text, definition.end())
+        for call in re.finditer(rf"(?<!void )\b{name}\w*\(", text):
+            if call[0] != f"{name}(" or len(_arguments(text, call.end())) != len(parameters):
+                raise InterfaceError(
+                    f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
+                    f"{name}({', '.join(parameters)}); use --library stock"
+                )
+
+
+def _arguments(text, start):
+    """Arguments of a call, or parameters of a definition, whose parenthesis opens before `start`."""
+    depth, commas, end = 1, [start - 1], start
+    while depth:
+        depth += {"(": 1, ")": -1}.get(text[end], 0)
+        if text[end] == "," and depth == 1:
+            commas.append(end)
+        end += 1
+    ends = [*commas[1:], end - 1]
+    return [" ".join(text[a + 1 : b].split()) for a, b in zip(commas, ends, strict=True)]
+
+
+def implementations(document):
+    """What a document, with its data library, finds for every node of eonlib on every target.
+
+    Returns
+    -------
+    tuple of Implementation
+        One for each pair of NODES and those TARGETS that this MaterialX has.
+    """
+    data = document.getDataLibrary() or document
+    known = {each.getName() for each in data.getTargetDefs()} or TARGETS
+    targets = [target for target in TARGETS if target in known]
+    return tuple(_found(document, node, target) for node in NODES for target in targets)
+
+
+def _found(document, node, target):
+    definition = document.getNodeDef(node)
+    found = definition and definition.getImplementation(target)
+    if not found:
+        return Implementation(node, target, "", "")
+    return Implementation(node, target, found.getName(), found.getActiveSourceUri())
+
+
+def assert_ours(document):
+    """Nothing, if every implementation that `document` finds for eonlib's nodes is eonlib's.
+
+    Raises
+    ------
+    LibraryError
+        Otherwise; names the node, the target and the file that was found instead.
+    """
+    for found in implementations(document):
+        if not found.ours:
+            where = found.document or "nothing"
+            raise LibraryError(
+                f"implementation of {found.node} for {found.target} must be eonlib's; got {where}: "
+                f"load {eonlib_folder()} before the standard libraries"
+            )

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a picture shows: one unit sphere, seen orthographically along -z, and the light on it.
+
+World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
+[-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this page and nothing else.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from mxeon.errors import InputError
+
+LARGEST = 8192  # the width that every OpenGL 4 device draws; a picture of it takes some gigabytes
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A light on the sphere.
+
+    Attributes
+    ----------
+    name : str
+        One lower-case word, used in file names.
+    light : tuple of 3 floats or None
+        Unit vector towards a distant light whose irradiance is pi, so that a pixel holds
+        pi f cos(theta_i), and a white Lambertian facing the light holds 1.
+    environment : float, Path or None
+        Radiance of a uniform surrounding, or a latitude-longitude image.
+    size : int
+        Width and height in pixels, in [1, LARGEST].
+
+    Raises
+    ------
+    ValueError
+        If the size leaves its range.
+    """
+
+    name: str
+    light: tuple[float, float, float] | None = None
+    environment: float | Path | None = None
+    size: int = 256
+
+    def __post_init__(self):
+        if not 1 <= self.size <= LARGEST:
+            raise InputError(f"size must lie in [1, {LARGEST}]; got {self.size}")
+
+
+def _towards(azimuth, polar):
+    """Unit vector at `polar` degrees from the viewer, `azimuth` degrees from x, as a tuple."""
+    polar, azimuth = np.radians(polar), np.radians(azimuth)
+    return (
+        float(np.sin(polar) * np.cos(azimuth)),
+        float(np.sin(polar) * np.sin(azimuth)),
+        float(np.cos(polar)),
+    )
+
+
+FRONT = Scene("front", light=(0.0, 0.0, 1.0))
+SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
+BACK = Scene("back", light=_towards(azimuth=160, polar=130))
+FURNACE = Scene("furnace", environment=1.0)
+SCENES = (FRONT, SIDE, BACK, FURNACE)
+
+
+def scene(name):
+    """The scene of SCENES that is called `name`.
+
+    Raises
+    ------
+    ValueError
+        If there is none; lists the known ones.
+
+    Examples
+    --------
+    >>> scene("furnace").environment
+    1.0
+    """
+    known = {each.name: each for each in SCENES}
+    if name not in known:
+        raise InputError(f"scene must be one of {', '.join(known)}; got {name!r}")
+    return known[name]
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """The visible points of the sphere, one per pixel centre.
+
+    Attributes
+    ----------
+    mask : ndarray of bool, shape (size, size)
+        Where the pixel centre lies on the sphere.
+    position : ndarray, shape (size, size, 3)
+        Under the pixel centre; outside the mask in the plane of the rim.
+    normal : ndarray, shape (size, size, 3)
+        Outward unit normal, the same as the position; that of the nearest point of the rim outside
+        the mask.
+    texcoord : ndarray, shape (size, size, 2)
+        Latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards.
+    """
+
+    mask: np.ndarray
+    position: np.ndarray
+    normal: np.ndarray
+    texcoord: np.ndarray
+
+
+@lru_cache(maxsize=8)
+def sphere(size, margin=0):
+    """The points of the unit sphere under the pixel centres of a `size` x `size` picture.
+
+    A `margin` adds as many rows and columns of pixel centres around the frame.
+    """
+    axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
+    x, y = np.meshgrid(axis, -axis)
+    radius = np.hypot(x, y)
+    mask = radius < 1.0
+    scale = 1.0 / np.maximum(radius, 1.0)
+    z = np.sqrt(np.maximum(0.0, 1.0 - radius * radius))
+    position = np.stack([x, y, z], axis=-1)
+    normal = np.stack([x * scale, y * scale, z], axis=-1)
+    u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
+    v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
+    points = Sphere(mask, position, normal, np.stack([u, v], axis=-1))
+    for array in vars(points).values():
+        array.flags.writeable = False  # shared by all who ask for this size
+    return points

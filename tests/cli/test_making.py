@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is made of documents in other processes: in order, and whatever becomes of these."""
+
+import os
+import warnings
+
+import pytest
+
+from mxeon.cli.batch import Ended, Made, Source, make, picture, texts
+from mxeon.errors import DocumentError
+from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.library import examples_folder
+from tests.support.documents import lobe, material
+from tests.support.faults import misbehave
+
+CLAY = str(examples_folder() / "clay.mtlx")
+KNOWN = {"element": None, "library": "eonlib", "profile": None, "permissions": DEFAULT}
+
+with_processes = pytest.mark.parametrize("workers", [0, 2])
+
+
+def clay(target):
+    return texts(Source(CLAY, target), **KNOWN)
+
+
+def process(_):
+    return os.getpid()
+
+
+def hesitant(document):
+    warnings.warn(f"{document} is odd", stacklevel=2)
+    if document == "bad":
+        raise DocumentError("bad: must be good")
+    return document.upper()
+
+
+@with_processes
+def test_values_warnings_and_errors_come_in_order(workers):
+    one, bad, two = make(hesitant, ["one", "bad", "two"], workers, 60.0)
+    assert one == Made("ONE", ("one is odd",))
+    assert (bad.value, bad.warnings) == (None, ("bad is odd",))
+    assert isinstance(bad.error, DocumentError) and str(bad.error) == "bad: must be good"
+    assert two == Made("TWO", ("two is odd",))
+
+
+@with_processes
+def test_texts_are_those_of_generate(workers):
+    found = [each.value for each in make(clay, ["glsl", "osl"], workers, 60.0)]
+    assert found == [clay("glsl"), clay("osl")]
+    assert set(found[1]) == {"clay.terracotta.osl", "clay.modeling_clay.osl"}
+
+
+def test_no_workers_means_this_process():
+    assert [each.value for each in make(process, [0], 0, 60.0)] == [os.getpid()]
+    assert [each.value for each in make(process, [0], 1, 60.0)] != [os.getpid()]
+
+
+def test_a_process_that_crashes_costs_its_document_alone():
+    first, crashed, last = make(misbehave, [2, "SIGSEGV", 3], 1, 60.0)
+    assert (first, last) == (Made(4), Made(9))
+    assert isinstance(crashed.error, Ended) and str(crashed.error) == (
+        "SIGSEGV: must be worked on to the end; ended by SIGSEGV; last output: about to SIGSEGV"
+    )
+
+
+@pytest.mark.parametrize("workers, limit, words", [(-1, 1.0, "workers"), (1, 0.0, "limit")])
+def test_bad_options_are_refused(workers, limit, words):
+    with pytest.raises(ValueError, match=words):
+        list(make(process, [0], workers, limit))
+
+
+def test_a_picture_says_what_made_it(tmp_path):
+    (tmp_path / "look.mtlx").write_text(material(lobe()))
+    image, said = picture(
+        str(tmp_path / "look.mtlx"), "reference", "side", None, 4, None, "eonlib", DEFAULT
+    )
+    assert image.shape == (4, 4, 3)
+    assert (said["element"], said["scene"], said["library"]) == ("look", "side", "eonlib")
+
+
+def test_the_host_of_a_picture_closes_whatever_happens(tmp_path, monkeypatch):
+    closed = []
+    monkeypatch.setattr("mxeon.conformance.reference.Host.close", lambda host: closed.append(host))
+    with pytest.raises(ValueError, match="--element must name one of"):
+        picture(CLAY, "reference", "side", None, 4, None, "eonlib", DEFAULT)
+    assert len(closed) == 1

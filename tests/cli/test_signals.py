@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Signals that end a command: one line, the usual status, and nothing left behind."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from mxeon.jobs.signals import ENDING, Ended, blocked, raised
+from mxeon.shaders.library import examples_folder
+
+PLASTER = str(examples_folder() / "plaster.mtlx")
+CHECK = ["check", PLASTER, "--workers", "1", "--report", "report"]
+LINES = {
+    signal.SIGINT: "mxeon: interrupted",
+    signal.SIGTERM: "mxeon: ended by SIGTERM",
+    signal.SIGHUP: "mxeon: ended by SIGHUP",
+}
+DEADLINE = 300.0  # seconds, for a machine that is busy
+
+of_each_signal = pytest.mark.parametrize("number", ENDING, ids=[each.name for each in ENDING])
+
+
+def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(main())"):
+    """A command whose temporary files go to `folder`/tmp, which hears signals as in a terminal."""
+    (folder / "tmp").mkdir()
+    return subprocess.Popen(
+        [sys.executable, "-c", f"import sys\n{code}", *arguments],
+        cwd=folder,
+        env=os.environ | {"TMPDIR": str(folder / "tmp")},
+        stderr=subprocess.PIPE,
+        text=True,
+        process_group=0,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+
+
+def wait_for(condition, process):
+    end = time.monotonic() + DEADLINE
+    while not condition():
+        assert process.poll() is None and time.monotonic() < end
+        time.sleep(0.01)
+
+
+@of_each_signal
+@pytest.mark.parametrize("to", ["command", "terminal"])
+def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, number, to):
+    process = start(tmp_path, *CHECK)
+    journal = tmp_path / "report" / "journal" / "items.jsonl"
+    wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 1, process)
+    (os.kill if to == "command" else os.killpg)(process.pid, number)
+    _, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, errors) == (128 + number, f"{LINES[number]}\n")
+    assert not list((tmp_path / "tmp").iterdir())
+    assert not list(tmp_path.rglob(".[0-9]*"))
+
+
+def test_a_signal_before_the_workers_work_ends_them_too(tmp_path):
+    process = start(tmp_path, *CHECK)
+    wait_for(lambda: list((tmp_path / "tmp").iterdir()), process)
+    os.killpg(process.pid, signal.SIGTERM)
+    _, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, errors) == (143, "mxeon: ended by SIGTERM\n")
+    assert not list((tmp_path / "tmp").iterdir())
+
+
+def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+    try:
+        with raised():
+            os.kill(os.getpid(), signal.SIGHUP)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+@of_each_signal
+def test_a_blocked_signal_comes_afterwards(number):
+    steps = []
+    with pytest.raises(Ended) as ended, raised():
+        with blocked():
+            os.kill(os.getpid(), number)
+            steps.append("whole")
+        steps.append("never")
+    assert ended.value.status == 128 + number and steps == ["whole"]
+
+
+def test_handlers_are_as_before_afterwards():
+    before = [signal.getsignal(each) for each in ENDING]
+    with raised():
+        pass
+    assert [signal.getsignal(each) for each in ENDING] == before
+
+
+def test_an_interrupt_during_the_imports_shows_no_traceback(tmp_path):
+    code = """import mxeon.__main__ as m, builtins, os, signal
+usual = builtins.__import__
+def slow(name, *rest):
+    if name == "mxeon.cli": os.kill(os.getpid(), signal.SIGINT)
+    return usual(name, *rest)
+builtins.__import__ = slow
+m.main()"""
+    process = start(tmp_path, code=code)
+    _, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, errors) == (-signal.SIGINT, "")

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Python function judged like a host."""
+
+import numpy as np
+import pytest
+
+import mxeon
+from mxeon.models import table as reference
+from mxeon.models.brdf import eon_brdf
+
+PARAMETRIC = [row for row in reference.MODELS if row.parameter and row.name != "eon_approx"]
+SEES_ONLY = {"eon_clamped": {"value", "albedo"}, "eon_rho_cubed": {"value", "albedo"}}
+
+# Five lines: what a renderer's own suite would hold.
+test_eon_in_five_lines = mxeon.brdf_test(eon_brdf, "eon")
+
+
+def failed(run):
+    return {result.check for result in run.results if result.verdict != "passed"}
+
+
+@pytest.mark.parametrize("row", PARAMETRIC, ids=lambda row: row.name)
+def test_each_model_passes_as_itself(row):
+    assert failed(mxeon.check_brdf(row.brdf, row.name)) == set()
+
+
+@pytest.mark.parametrize("name", SEES_ONLY)
+def test_a_known_defect_is_named(name):
+    row = reference.model(name)
+    run = mxeon.check_brdf(row.brdf, "eon", "theirs")
+    assert failed(run) == SEES_ONLY[name]
+    diagnoses = {result.diagnosis for result in run.results if result.check == "value"}
+    assert f"nearest known model: {row.title}" in diagnoses.pop()
+    assert {result.host for result in run.results} == {"theirs"}
+
+
+def grazing(wo, wi, rho, roughness):
+    """EON divided by cos(theta_o) twice: infinite at the rim, and not reciprocal."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return eon_brdf(wo, wi, rho, roughness) / wo[:, 2:] ** 2
+
+
+def grey(wo, wi, rho, roughness):
+    """EON that leaves the inputs' colour and roughness alone."""
+    return eon_brdf(wo, wi, 0.5 + 0.0 * rho, 0.5)
+
+
+def test_values_that_are_not_finite_or_not_reciprocal_are_found():
+    assert {"finite", "reciprocity"} <= failed(mxeon.check_brdf(grazing))
+
+
+def test_inputs_without_effect_are_found():
+    assert {"inputs", "black", "lambert"} <= failed(mxeon.check_brdf(grey))
+
+
+def test_a_control_that_is_not_caught_is_said_to_be():
+    test = mxeon.brdf_test(lambda wo, wi, rho, roughness: rho / np.pi + 0.0 * wo[:, :1])
+    (check,) = [each for each in test.pytestmark[0].args[1] if each.key == "lambert"]
+    with pytest.raises(AssertionError, match="Lambert. the negative control is not caught: "):
+        test(check)
+
+
+def test_a_failing_test_says_figure_and_nearest_model():
+    test = mxeon.brdf_test(reference.model("eon_rho_cubed").brdf)
+    (value,) = [each for each in test.pytestmark[0].args[1] if each.key == "value"]
+    with pytest.raises(AssertionError, match="0.0404 > 2e-06 pi f cos; nearest known model: EON"):
+        test(value)
+
+
+def test_values_of_another_shape_are_refused():
+    with pytest.raises(ValueError, match=r"values of red must have shape \(65536, 3\); got"):
+        mxeon.check_brdf(lambda *arguments: eon_brdf(*arguments)[:, 0], name="red")
+
+
+@pytest.mark.parametrize("model", ["lambert", "none"])
+def test_a_model_without_parameter_or_name_is_refused(model):
+    with pytest.raises(ValueError, match="model must be one of .*; got"):
+        mxeon.check_brdf(eon_brdf, model)

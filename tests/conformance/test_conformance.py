@@ -1,0 +1,347 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The conformance suite judged: what passes, what it must catch, and what it calls by name."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mxeon.conformance import known_issues as ledger
+from mxeon.conformance.checks.evaluate import judge_subject, judge_twins
+from mxeon.conformance.checks.nodes import SUBJECTS, Subject
+from mxeon.conformance.checks.probes import GRAZING, PAIRS, PairProbe, PictureProbe
+from mxeon.conformance.checks.source import check_sources
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.diagnosis import nearest_value
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
+from mxeon.conformance.run import check
+from mxeon.conformance.run import plan as items
+from mxeon.errors import NotRun, ShaderError
+from mxeon.models import table as reference
+from mxeon.shaders.generation import TARGETS
+from mxeon.shaders.hosts import TEXT_ONLY, open_host
+from mxeon.shaders.library import examples_folder
+
+EON, QON, NODE = SUBJECTS
+EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
+VALUE_CHECKS = ("value", "albedo")
+
+
+class ModelHost:
+    """A host that is one row of the reference, whatever shader it is given."""
+
+    name, target, profile = "gl", "glsl", None
+
+    def __init__(self, row, change=lambda wo, wi, inputs: (wo, wi, inputs)):
+        self._row, self._change = row, change
+
+    def evaluate(self, shader, wo, wi, inputs, branch):
+        wo, wi, inputs = self._change(wo, wi, inputs)
+        roughness = np.minimum(np.broadcast_to(inputs["roughness"], len(wo)), 1.0)
+        parameter = [roughness] if self._row.parameter else []
+        color = np.broadcast_to(inputs["color"], wo.shape)
+        if branch == "environment":
+            return reference.model("eon").albedo_dir(wo[:, 2], color, roughness)
+        return self._row.brdf(wo, wi, color, *parameter) * wi[:, 2:]
+
+
+@pytest.fixture(scope="module")
+def run():
+    return check(EXAMPLES, ["gl"])
+
+
+def judged(host, subject=EON):
+    return {result.check: result for result in judge_subject(PairProbe(host, subject, "eonlib"))}
+
+
+# --- the domain and the table -------------------------------------------------------------------
+
+
+def test_pairs_are_a_million_with_back_lit_and_grazing_ones():
+    (batch,) = PairProbe(None, EON, "eonlib").batches
+    assert len(batch.wo) == PAIRS >= 1_000_000
+    assert np.mean(np.sum(batch.wo * batch.wi, axis=1) < 0.0) > 0.2
+    for directions in (batch.wo, batch.wi):
+        assert GRAZING <= directions[:, 2].min() < 2.0 * GRAZING
+    for values in batch.inputs.values():
+        assert values.min() == 0.0 and values.max() > 0.999999
+
+
+@pytest.mark.parametrize("row", CHECKS, ids=lambda row: row.key)
+def test_every_check_says_what_it_allows_and_what_it_must_catch(row):
+    assert row.claim.endswith(".") and row.variant
+    for tolerance in row.tolerances.values():
+        assert tolerance.limit >= 0.0 and tolerance.unit and tolerance.derivation
+
+
+# --- eonlib on OpenGL ---------------------------------------------------------------------------
+
+
+def test_eonlib_passes_every_check_on_gl(run):
+    wrong = [result for result in run.results if result.verdict != PASSED]
+    assert not wrong and not run.errors
+    assert {result.check for result in run.results if result.host == "gl"} >= {
+        row.key for row in CHECKS
+    }
+
+
+def test_every_control_is_caught(run):
+    assert all(result.control and result.control.caught for result in run.results)
+
+
+@pytest.mark.parametrize(
+    "key, limit", [("value", 2e-6), ("environment", 1e-6), ("loss", 1e-5), ("twins", 2e-6)]
+)
+def test_eonlib_reaches_the_accuracy_that_is_promised(run, key, limit):
+    figures = [each.figure for each in run.results if each.check == key and each.host == "gl"]
+    assert figures and max(figures) <= limit
+
+
+def test_a_material_with_other_lobes_is_asked_for_numbers_only(run):
+    found = [each for each in run.results if each.subject.startswith("openpbr")]
+    assert [each.check for each in found] == ["finite"] * len(found) and found
+    assert all("there is no model for node" in each.diagnosis for each in found)
+
+
+def test_pictures_come_with_the_reference_where_there_is_one(run):
+    known = {picture.document: picture.reference is not None for picture in run.pictures}
+    assert known == {"plaster.mtlx": True, "openpbr_rough_base.mtlx": False}
+
+
+def test_a_curve_follows_its_closed_form(run):
+    assert {curve.subject for curve in run.curves} == {subject.title for subject in SUBJECTS}
+    for curve in run.curves:
+        assert np.abs(curve.measured - curve.expected).max() <= 2e-6
+
+
+# --- what has to be caught ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["lambert", "oren_nayar", "qon", "fon", "eon_clamped", "eon_rho_cubed", "fon_white_lobe"],
+)
+def test_a_host_with_another_model_fails_and_is_named(name):
+    row = reference.model(name)
+    results = judged(ModelHost(row))
+    for key in VALUE_CHECKS:
+        assert results[key].verdict == FAILED
+        assert results[key].diagnosis.startswith(f"nearest known model: {row.title} (rms ")
+        assert results[key].worst
+
+
+@pytest.mark.parametrize(
+    "key, change",
+    [
+        ("reciprocity", lambda wo, wi, inputs: (wo, wi[:, [1, 0, 2]] * [-1, 1, 1], inputs)),
+        ("value", lambda wo, wi, inputs: (wi, wo, inputs)),
+        ("value", lambda wo, wi, inputs: (wo, wi, {**inputs, "roughness": 0.0})),
+        ("lambert", lambda wo, wi, inputs: (wo, wi, {**inputs, "roughness": 0.5})),
+        ("inputs", lambda wo, wi, inputs: (wo, wi, {**inputs, "color": (0.5, 0.5, 0.5)})),
+        ("black", lambda wo, wi, inputs: (wo, wi, {**inputs, "color": (0.5, 0.5, 0.5)})),
+        ("flag", lambda wo, wi, inputs: (wo, wi, inputs)),
+    ],
+    ids=["azimuth", "swapped", "smooth", "rough", "grey", "not black", "no flag"],
+)
+def test_a_defect_fails_the_check_made_for_it(key, change):
+    assert judged(ModelHost(reference.model("eon"), change))[key].verdict == FAILED
+
+
+def test_a_host_that_gives_no_numbers_fails():
+    host = ModelHost(reference.model("eon"))
+    host.evaluate = lambda shader, wo, wi, inputs, branch: np.full(wo.shape, np.nan)
+    result = judged(host)["value"]
+    assert result.verdict == FAILED and result.figure == np.inf
+    assert "not finite" in result.diagnosis
+
+
+def test_a_control_that_passes_makes_the_verdict_failed():
+    blind = [
+        replace(row, control=lambda probe: probe) for row in CHECKS if row.key == "reciprocity"
+    ]
+    probe = PairProbe(ModelHost(reference.model("eon")), EON, "eonlib")
+    (result,) = judge_subject(probe, blind)
+    assert result.figure <= result.tolerance and result.verdict == FAILED
+    assert not result.control.caught
+
+
+@pytest.mark.parametrize("error, verdict", [(NotRun, NOT_RUN), (ShaderError, FAILED)])
+def test_what_does_not_run_is_never_passed(error, verdict):
+    host = ModelHost(reference.model("eon"))
+
+    def evaluate(*arguments):
+        raise error("0:1(1): error: here")
+
+    host.evaluate = host.call = evaluate
+    results = [*judge_subject(PairProbe(host, EON, "eonlib")), *judge_twins(host, "eonlib")]
+    assert {result.verdict for result in results} == {verdict}
+    assert all("0:1(1): error" in result.reason + result.diagnosis for result in results)
+
+
+def test_the_nearest_model_comes_with_the_next_one():
+    words = nearest_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
+    assert words.startswith("nearest known model: Fujii Oren-Nayar (FON) (rms ")
+    assert ", then EON with rho^3 (0.0" in words
+
+
+# --- sources, documents, hosts ------------------------------------------------------------------
+
+
+def test_a_run_says_version_and_device_of_its_hosts(run):
+    [identity] = run.hosts
+    assert identity.name == "gl"
+    assert identity.version and identity.device
+
+
+def test_the_sources_of_every_target_use_every_input():
+    results = check_sources(SUBJECTS, "eonlib")
+    assert len([each for each in results if each.check == "source"]) == 3 * len(TARGETS)
+    assert {each.verdict for each in results} == {PASSED}
+    assert all(each.control.caught for each in results)
+
+
+def test_a_document_that_cannot_be_read_is_an_error_and_the_others_are_judged(tmp_path):
+    bad = tmp_path / "cut.mtlx"
+    bad.write_text("<materialx")
+    run = check([bad, EXAMPLES[0]], ["gl"])
+    assert [str(bad) in error for error in run.errors] == [True]
+    assert any(each.subject.startswith("plaster") for each in run.results)
+
+
+def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
+    def missing(name):
+        if name == "reference":
+            return open_host(name)
+        raise NotRun(f"{name}: nowhere")
+
+    monkeypatch.setattr(items, "open_host", missing)
+    run = check(EXAMPLES[:1], ["gl"])
+    results = [each for each in run.results if each.host == "gl"]
+    assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), items.TWINS}
+    assert {(each.verdict, each.reason) for each in results} == {(NOT_RUN, "gl: nowhere")}
+
+
+@pytest.mark.parametrize("host", TEXT_ONLY)
+def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
+    run = check(EXAMPLES[:1], [host])
+    (result,) = [each for each in run.results if each.host == host]
+    assert result.verdict == NOT_RUN and result.reason.startswith(f"{host}: running it needs ")
+    texts = [each for each in run.results if each.subject.endswith(f", {host}")]
+    assert texts and {each.verdict for each in texts} == {PASSED}
+
+
+@pytest.mark.parametrize("word", ["host", "library"])
+def test_an_unknown_name_lists_the_known_ones(word):
+    options = {"hosts": ["abacus"]} if word == "host" else {"libraries": ["abacus"]}
+    with pytest.raises(ValueError, match=f"^{word} must be one of .*; got 'abacus'$"):
+        check(EXAMPLES, **options)
+
+
+# --- stock MaterialX ----------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def stock():
+    return check(EXAMPLES[:1], ["gl"], ["stock"])
+
+
+@pytest.mark.parametrize(
+    "host, key, subject, words",
+    [
+        ("gl", "value", EON.title, "EON with clamped dot(wo, wi)"),
+        ("gl", "albedo", EON.title, "EON with clamped dot(wo, wi)"),
+        ("gl", "environment", QON.title, "QON with MaterialX's fit of its albedo"),
+        ("gl", "lobe", "open_pbr_surface", "EON with clamped dot(wo, wi)"),
+        ("gl", "lobe", "open_pbr_surface, thin-walled", "QON tinted twice"),
+        ("source", "source", f"{EON.title}, osl", "never used: energy_compensation"),
+        ("source", "clamp", f"{EON.title}, glsl", "s is wrong for back-lit pairs"),
+        ("gl", "flag", QON.title, "; see upstream/genglsl_clamped_dot.md"),
+        ("source", "tint", f"{EON.title}, mdl", "FON + white lobe"),
+    ],
+)
+def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, subject, words):
+    (result,) = [
+        each
+        for each in stock.results
+        if (each.host, each.check, each.subject) == (host, key, subject)
+    ]
+    assert result.verdict == FAILED and words in result.diagnosis
+    assert "; see upstream/" in result.diagnosis
+
+
+def test_the_text_of_the_other_model_is_not_held_against_qon(stock):
+    clamps = [each for each in stock.results if each.check == "clamp"]
+    assert clamps and all(EON.title in each.subject for each in clamps)
+
+
+def test_the_lobes_of_surface_shaders_are_judged_and_those_that_are_right_pass(stock, run):
+    right = {"standard_surface", "UsdPreviewSurface", "gltf_pbr"}
+    for findings, expected in ((stock, right), (run, right | {"open_pbr_surface"})):
+        lobes = [each for each in findings.results if each.check == "lobe"]
+        assert {each.subject for each in lobes if each.verdict == PASSED} == expected
+        assert all(each.control.caught for each in lobes)
+
+
+def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pass(stock):
+    def noted(*repaired):
+        results = [
+            replace(each, verdict=PASSED) if each.check in repaired else each
+            for each in stock.results
+        ]
+        return dict(map(reversed, ledger.repaired(results, {"MaterialX": "2.0"})))
+
+    page = "upstream/genglsl_clamped_dot.md"
+    assert noted() == {}
+    assert page not in noted("value", "albedo")
+    assert noted("value", "albedo", "lobe")[page].startswith("repaired in MaterialX 2.0")
+
+
+@pytest.mark.parametrize(
+    "library, words", [("stock", "see upstream/cycles_rho_cubed.md"), ("eonlib", "")]
+)
+def test_what_follows_from_a_defect_of_stock_refers_to_its_page(library, words):
+    result = Result("inputs", "claim.", QON.title, "cycles", library, FAILED)
+    assert ledger.referred(result).diagnosis == words
+
+
+def test_every_page_that_a_check_refers_to_is_there():
+    folder = Path(__file__).parents[2] / "docs" / "upstream"
+    assert all((folder / f"{defect.page}.md").is_file() for defect in ledger.DEFECTS)
+
+
+@pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
+def test_stock_materialx_in_cycles_is_called_by_its_name(hosts, subject):
+    probe = PictureProbe(hosts("cycles"), subject, "stock")
+    assert "nearest known model: EON with rho^3 (rms " in nearest_value(probe).text
+
+
+def test_what_stock_materialx_has_right_passes(stock):
+    passed = {(e.check, e.subject) for e in stock.results if e.verdict == PASSED}
+    assert passed >= {("value", QON.title), ("black", EON.title), ("furnace", EON.title)}
+
+
+def test_the_bundled_examples_leave_out_what_stock_lacks():
+    assert not any("eon_node" in Path(file).name for file in items._examples("stock"))
+
+
+def test_a_subject_writes_a_document_with_its_flag():
+    text = Subject("oren_nayar_diffuse_bsdf", True, "eon").document({"roughness": 0.5})
+    assert 'name="energy_compensation" type="boolean" value="true"' in text
+    assert 'name="roughness" type="float" value="0.5"' in text
+
+
+def test_a_black_material_passes(tmp_path):
+    path = tmp_path / "black.mtlx"
+    path.write_text(SUBJECTS[0].document({"color": (0.0, 0.0, 0.0)}), encoding="utf-8")
+    (result,) = [each for each in check([path]).results if each.check == "picture"]
+    assert result.verdict == PASSED and result.control.caught and result.figure == 0.0
+
+
+def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path):
+    check(EXAMPLES[:1], folder=tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    for wrong in ({"workers": -1}, {"limit": 0.0}, {"scheduler": "tcp://127.0.0.1:9"}):
+        with pytest.raises(ValueError, match=r"^(workers|limit|scheduler) must be "):
+            check(EXAMPLES[:1], folder=tmp_path, **wrong)
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before

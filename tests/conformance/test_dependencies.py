@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run depends on: a run is resumed with the same files, options and drivers only."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from mxeon.cli import main
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.run import check, read_run
+from mxeon.conformance.run import plan as items
+from mxeon.conformance.run.dependencies import digests
+from mxeon.conformance.run.journal_lines import NAME
+from mxeon.shaders.document.policy import Permissions
+from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.gl import Host
+from mxeon.shaders.library import examples_folder
+
+INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="{}"/>'
+FILE = '<input name="file" type="filename" value="{}"/>'
+
+
+def document(path, *parts, root=""):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    text = f'<?xml version="1.0"?><materialx version="1.39" {root}>{"".join(parts)}</materialx>'
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def texture(path):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(b"pixels")
+    return path
+
+
+def seen(file, **permissions):
+    """Names of the files in the folder of a document that its findings depend on."""
+    found = digests([file], Permissions(**permissions))
+    return {os.path.basename(path) for path in found if Path(path).is_absolute()} - {file.name}
+
+
+@pytest.mark.parametrize(
+    "parts, root, name",
+    [
+        ([FILE.format("grid.png")], "", "grid.png"),
+        ([FILE.format("images/grid.png")], "", "images/grid.png"),
+        ([FILE.format("grid.png")], 'fileprefix="images/"', "images/grid.png"),
+        ([FILE.format("set.&lt;UDIM&gt;.png")], "", "set.1001.png"),
+        ([FILE.format("set.<UDIM>.png")], "", "set.1001.png"),
+        ([FILE.format("[which].png")], "", "wood.png"),
+        (['<implementation name="i" file="own.glsl"/>'], "", "own.glsl"),
+        ([INCLUDE.format("part.mtlx")], "", "part.mtlx"),
+    ],
+)
+def test_what_a_document_names_is_a_dependency(tmp_path, parts, root, name):
+    file = document(tmp_path / "a.mtlx", *parts, root=root)
+    before = digests([file], Permissions())
+    texture(tmp_path / name)
+    after = digests([file], Permissions())
+    assert {path for path, _ in before.items() ^ after.items()} == {str(tmp_path / name)}
+
+
+def test_what_an_included_document_names_is_a_dependency(tmp_path):
+    file = document(tmp_path / "a.mtlx", INCLUDE.format("parts/b.mtlx"))
+    document(tmp_path / "parts" / "b.mtlx", INCLUDE.format("c.mtlx"), INCLUDE.format("../a.mtlx"))
+    document(tmp_path / "parts" / "c.mtlx", FILE.format("grid.png"))
+    texture(tmp_path / "parts" / "grid.png")
+    assert seen(file) == {"b.mtlx", "c.mtlx", "grid.png"}
+
+
+def test_files_on_the_search_path_are_dependencies(tmp_path):
+    file = document(tmp_path / "home" / "a.mtlx", FILE.format("images/grid.png"))
+    texture(tmp_path / "shared" / "images" / "grid.png")
+    assert seen(file) == set()
+    assert seen(file, path=(str(tmp_path / "shared"),)) == {"grid.png"}
+
+
+def test_a_document_in_another_encoding_has_dependencies(tmp_path):
+    text = f'<materialx version="1.39">{FILE.format("grid.png")}</materialx>'
+    file = tmp_path / "a.mtlx"
+    file.write_bytes(text.encode("utf-16"))
+    texture(tmp_path / "grid.png")
+    assert seen(file) == {"grid.png"}
+
+
+def test_files_that_a_document_may_not_name_are_not_looked_at(tmp_path):
+    file = document(tmp_path / "home" / "a.mtlx", FILE.format("../grid.png"))
+    texture(tmp_path / "grid.png")
+    assert seen(file) == set()
+    assert seen(file, outside=True) == {"grid.png"}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"", b"<", b"\0", b"\xff\xfe", b'<?xml version="1.0" encoding="ebcdic"?><a value="x"/>',
+        b'<!DOCTYPE a [<!ENTITY b "c">]><a value="&b;"/>', b'<a value="' + b"x/" * 30_000 + b'"/>',
+    ],
+)  # fmt: skip
+def test_a_document_that_is_none_is_a_dependency_itself(tmp_path, text):
+    file = tmp_path / "a.mtlx"
+    file.write_bytes(text)
+    assert digests([file], Permissions())[str(file)] != "" and seen(file) == set()
+
+
+def test_a_pipe_or_a_folder_has_no_digest(tmp_path):
+    os.mkfifo(tmp_path / "pipe.mtlx")
+    (tmp_path / "folder").mkdir()
+    found = digests([tmp_path / "pipe.mtlx", tmp_path / "folder"], Permissions())
+    assert [found[str(tmp_path / name)] for name in ("pipe.mtlx", "folder")] == ["", ""]
+
+
+def test_the_code_and_the_libraries_are_dependencies():
+    found = digests([], Permissions())
+    names = ["mxeon/jobs/pool.py", "eonlib/eonlib_defs.mtlx", "eonlib/genglsl/eon.glsl"]
+    names += ["eonlib/genosl/eon.osl", "MaterialX/libraries/pbrlib/pbrlib_defs.mtlx"]
+    assert all(len(found[name]) == 64 for name in names)
+    assert any(name.startswith("eonlib/profiles/cycles/") for name in found)
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """A folder with a short run on the gl host, and its document."""
+    monkeypatch.setattr(items, "subjects", lambda library: SUBJECTS[:1])
+    monkeypatch.setattr(items, "SURFACES", ())
+    monkeypatch.setattr(items, "CHECKS", ())
+    texture(tmp_path / "grid.png")
+    token = '<token name="t" type="string" value="grid.png"/></materialx>'
+    text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")
+    file = tmp_path / "plaster.mtlx"
+    file.write_text(text.replace("</materialx>", token), encoding="utf-8")
+    check([file], folder=tmp_path / "run")
+    return tmp_path / "run", file
+
+
+def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
+    folder, file = run
+    (file.parent / "grid.png").write_bytes(b"other")
+    assert main(["check", str(file), "--report", str(folder), "--resume"]) == 2
+    error = capsys.readouterr().err
+    assert error.endswith(f"these differ: {file.parent / 'grid.png'}\n") and error.count("\n") == 1
+
+
+def test_an_option_that_changed_is_named(run):
+    folder, file = run
+    with pytest.raises(ValueError, match=r"differ: --allowCode \(False, now True\), --maxSize \("):
+        options = {"permissions": Permissions(code=True, size=10**6)}
+        check([file], folder=folder, resume=True, **options)
+
+
+def test_a_driver_that_changed_is_named_once_its_items_go_on(run, monkeypatch):
+    folder, file = run
+    interrupt(folder)
+    monkeypatch.setattr(Host, "identity", lambda self: Identity("gl", "5.0", "another"))
+    with pytest.raises(ValueError, match=r"these differ: host gl \(.*, now 5.0, another\)$"):
+        check([file], folder=folder, resume=True)
+    assert read_run(folder).missing
+
+
+def interrupt(folder):
+    """Take the last item from a journal."""
+    path = folder / NAME
+    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))

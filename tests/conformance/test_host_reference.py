@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The models as a host: graphs of diffuse lobes, and what they cannot say."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.image import judge_document
+from mxeon.errors import NotRun
+from mxeon.models.brdf import eon_brdf, qon_brdf
+from mxeon.shaders.document.reading import DocumentWarning
+from mxeon.shaders.generation import generate
+from mxeon.shaders.hosts import open_host
+from mxeon.shaders.scene import FRONT, FURNACE, Scene
+from tests.support.documents import EON, OREN_NAYAR, connected, lobe, material
+
+A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
+B = f'<{EON} name="b" type="BSDF"><input name="color" type="color3" value="0.1, 0.2, 0.6"/></{EON}>'
+OUTSIDE = (
+    ({"color": "0.5, 1.5, 0.5"}, "rho must lie in [0, 1]; got 1.5"),
+    ({"weight": "1.5"}, "weight must lie in [0, 1]; got 1.5"),
+    ({"roughness": "1.6"}, "sigma must lie in [0, pi/2]; got 1.6"),
+)
+CENTRE = np.s_[15:17, 15:17]
+SMALL = Scene("front", light=(0.0, 0.0, 1.0), size=32)
+
+
+def centre(text):
+    """The picture's middle, where a smooth lobe under frontal light shows nearly its colour."""
+    image = open_host("reference").picture(generate(text, "glsl")[0], SMALL)
+    return image[CENTRE].mean(axis=(0, 1))
+
+
+def colour(*channels):
+    """What a Lambertian of this colour shows there."""
+    node = f'<{EON} name="lobe" type="BSDF"><input name="color" type="color3" value="{channels}"/>'
+    return centre(material(f"{node}</{EON}>".replace("(", "").replace(")", "")))
+
+
+@pytest.mark.parametrize(
+    "nodes, channels",
+    [
+        (
+            f"""{A}{B}<mix name="lobe" type="BSDF"><input name="fg" type="BSDF" nodename="a"/>
+            <input name="bg" type="BSDF" nodename="b"/><input name="mix" type="float" value="0.25"/>
+            </mix>""",
+            (0.275, 0.25, 0.475),
+        ),
+        (
+            f"""{A}{B}<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="a"/>
+            <input name="in2" type="BSDF" nodename="b"/></add>""",
+            (0.9, 0.6, 0.7),
+        ),
+        (
+            f"""{A}<multiply name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="a"/>
+            <input name="in2" type="color3" value="0.5, 1.0, 0.0"/></multiply>""",
+            (0.4, 0.4, 0.0),
+        ),
+        (
+            f"""{A}<multiply name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="a"/>
+            <input name="in2" type="float" value="0.5"/></multiply>""",
+            (0.4, 0.2, 0.05),
+        ),
+        (
+            f"""<constant name="c" type="color3"><input name="value" type="color3"
+            value="0.3, 0.2, 0.1"/></constant><{EON} name="lobe" type="BSDF">
+            <input name="color" type="color3" nodename="c"/>
+            <input name="weight" type="float" value="0.5"/></{EON}>""",
+            (0.15, 0.1, 0.05),
+        ),
+    ],
+    ids=["mix", "add", "multiply by a colour", "multiply by a number", "constant and weight"],
+)
+def test_lobes_combine_as_their_nodes_say(nodes, channels):
+    assert np.allclose(centre(material(nodes)), colour(*channels), rtol=1e-6, atol=1e-9)
+
+
+def test_a_nodegraph_hands_its_inputs_down():
+    text = f"""<materialx version="1.39">
+      <nodedef name="ND_paint" node="paint"><input name="tone" type="color3" value="1, 1, 1"/>
+        <output name="out" type="BSDF"/></nodedef>
+      <nodegraph name="NG_paint" nodedef="ND_paint">
+        <{EON} name="lobe" type="BSDF"><input name="color" type="color3" interfacename="tone"/></{EON}>
+        <output name="out" type="BSDF" nodename="lobe"/></nodegraph>
+      <paint name="wall" type="BSDF"><input name="tone" type="color3" value="0.6, 0.3, 0.2"/></paint>
+      <surface name="shading" type="surfaceshader">
+        <input name="bsdf" type="BSDF" nodename="wall"/></surface>
+      <surfacematerial name="look" type="material">
+        <input name="surfaceshader" type="surfaceshader" nodename="shading"/></surfacematerial>
+    </materialx>"""
+    assert np.allclose(centre(text), colour(0.6, 0.3, 0.2), rtol=1e-6)
+
+
+def test_a_colour_given_in_srgb_becomes_linear():
+    node = f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
+      value="0.5, 0.02, 1.0" colorspace="srgb_texture"/></{EON}>"""
+    text = material(node).replace('version="1.39"', 'version="1.39" colorspace="lin_rec709"')
+    linear = ((0.5 + 0.055) / 1.055) ** 2.4
+    assert np.allclose(centre(text), colour(linear, 0.02 / 12.92, 1.0), rtol=1e-6)
+
+
+@pytest.mark.parametrize("compensation, brdf", [(0.0, qon_brdf), (1.0, eon_brdf)])
+def test_lama_diffuse_mixes_the_two_models_at_half_its_squared_roughness(compensation, brdf):
+    node = f"""<LamaDiffuse name="lobe" type="BSDF">
+      <input name="color" type="color3" value="0.8, 0.4, 0.1"/>
+      <input name="roughness" type="float" value="0.9"/>
+      <input name="energyCompensation" type="float" value="{compensation}"/></LamaDiffuse>"""
+    shader = generate(material(node), "glsl")[0]
+    image = open_host("reference").picture(shader, Scene("front", light=(0.0, 0.0, 1.0), size=1))
+    up = np.array([0.0, 0.0, 1.0])
+    assert np.allclose(image[0, 0], np.pi * brdf(up, up, [0.8, 0.4, 0.1], 0.405), rtol=1e-6)
+
+
+@pytest.mark.parametrize("flag, brdf", [("true", eon_brdf), ("false", qon_brdf)])
+def test_it_evaluates_pairs_like_any_host(flag, brdf):
+    node = f"""<{OREN_NAYAR} name="lobe" type="BSDF">
+      <input name="energy_compensation" type="boolean" value="{flag}"/></{OREN_NAYAR}>"""
+    wo, wi = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, -0.8, 0.6]])
+    shader = generate(material(node), "glsl")[0]
+    inputs = {"color": np.array([[0.8, 0.4, 0.1]]), "roughness": np.array([0.5])}
+    values = open_host("reference").evaluate(shader, wo, wi, inputs, "direct")
+    assert np.allclose(values, 0.6 * brdf(wo, wi, inputs["color"], 0.5), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "nodes, scene, words",
+    [
+        (
+            f"""{A}<dielectric_bsdf name="gloss" type="BSDF"/><layer name="lobe" type="BSDF">
+            <input name="top" type="BSDF" nodename="gloss"/>
+            <input name="base" type="BSDF" nodename="a"/></layer>""",
+            FRONT,
+            "no model for node 'layer'",
+        ),
+        (
+            f"""<normalmap name="bump" type="vector3"/><{EON} name="lobe" type="BSDF">
+            <input name="normal" type="vector3" nodename="bump"/></{EON}>""",
+            FRONT,
+            "no model for node 'normalmap'|a normal other than",
+        ),
+        (
+            f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
+            value="0.5, 0.5, 0.5" colorspace="acescg"/></{EON}>""",
+            FRONT,
+            "no transform for colour space 'acescg'",
+        ),
+        (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
+    ],
+    ids=["layer", "normal map", "colour space", "image of a surrounding"],
+)
+def test_what_the_models_do_not_cover_did_not_run(nodes, scene, words):
+    shader = generate(material(nodes), "glsl")[0]
+    with pytest.raises(NotRun, match=words):
+        open_host("reference").picture(shader, scene)
+
+
+def test_a_white_furnace_of_eon_is_white():
+    node = f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3" value="1, 1, 1"/>
+      <input name="roughness" type="float" value="1"/></{EON}>"""
+    image = open_host("reference").picture(generate(material(node), "glsl")[0], FURNACE)
+    assert set(np.unique(image)) == {0.0, 1.0}
+
+
+@pytest.mark.parametrize("inputs, rule", OUTSIDE, ids=str)
+def test_a_value_outside_its_model_is_not_judged(tmp_path, inputs, rule):
+    path = tmp_path / "look.mtlx"
+    path.write_text(material(lobe(**inputs)))
+    hosts = open_host("gl"), open_host("reference")
+    [result], pictures, notes = judge_document(path, *hosts, "eonlib")
+    assert result.verdict == "not run" and not pictures
+    assert f"reference: node 'lobe': {rule}" in result.reason
+    assert "where its model is defined" in notes[0][0]
+
+
+def test_the_largest_sigma_of_float32_is_a_quarter_turn():
+    text = material(lobe(roughness="1.5707963267948966"))
+    assert open_host("reference").picture(generate(text, "glsl")[0], SMALL).any()
+
+
+def test_an_ignored_connection_leaves_the_default():
+    graph = """<nodegraph name="ng"><constant name="c" type="color3"/>
+      <output name="out" type="color3" nodename="c"/></nodegraph>"""
+    with pytest.warns(DocumentWarning, match="which MaterialX ignores"):
+        shown = centre(material(graph + connected(color='nodename="ng"')))
+    assert shown == pytest.approx(colour(0.18, 0.18, 0.18), abs=1e-3)

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A systematic attack: families of cases, each the product of tables, of which some are tried.
+
+    python -m tests.fuzz.attack [FAMILY ...] [--cases N] [--keep]
+
+Where `python -m tests.fuzz` mutates at random, a family covers its tables evenly: every element kind with
+every type, every attribute with every odd value, every spelling of a number, every encoding, every
+option. The figures go to docs/reliability.json under "attack".
+"""
+
+import argparse
+import encodings.aliases
+import json
+import random
+import sys
+from collections import Counter
+from itertools import product
+from xml.etree import ElementTree
+
+from tqdm import tqdm
+
+from mxeon.jobs import pool
+from tests.fuzz.__main__ import keep
+from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
+from tests.fuzz.documents import originals
+from tests.fuzz.found import LOBE, MATERIAL
+from tests.fuzz.trial import judged
+from tests.fuzz.words import ATTRIBUTES, CATEGORIES, PATHS, SNIPPETS, TYPES, VALUES
+
+SEED = 1
+LIMIT = 60.0  # seconds for one case
+STATUSES = {0: "accepted", 1: "failed", 2: "refused", 3: "not_run"}
+
+NUMBERS = (
+    "0.5f", "0.5F", "0.5d", "1d5", "1e", "1e+", "e5", "0x10", "0x1p3", "0b1", "0o7", "1/2", "50%",
+    "0.5;0.5", "0.5.0", "1.#INF", "1.#IND", "-1.#QNAN", "INF", "+inf", "Infinity", "NAN", "nan(1)",
+    "+0.5", "--1", "+-1", "1_000", "1,000", "1 000", "1'000", ".5", "5.", ".", "-", "+", "0,5",
+    "(0.5)", "[0.5]", "{0.5}", "0.5 0.5", "0.5,", ",0.5", "0.5,,0.5", "1e400", "1e-400", "\uff11",
+    "\u0661", "\u00bd", "\u22121", "true", "M_PI", "pi", "0.5 m", "0.5\u00a0", "1E5", "00001", "1e0x1",
+)  # fmt: skip
+NUMERIC = ("float", "integer", "color3", "color4", "vector2", "vector3", "matrix33", "floatarray")
+NO_CODECS = (
+    "ebcdic",
+    "UCS-4",
+    "x-user-defined",
+    "",
+    " ",
+    "utf-8\n",
+    "a" * 5000,
+    "mbcs",
+    "oem",
+    "locale",
+)
+
+
+def documents():
+    """Documents with an element of every category and type, and with every pair of snippets."""
+    port = '<{0} name="odd" type="{1}"><input name="in" type="{1}" value="1"/></{0}>'
+    for category, kind in product(CATEGORIES, TYPES):
+        connected = f'<input name="color" type="{kind}" nodename="odd"/>'
+        yield port.format(category, kind) + LOBE.format(connected)
+    for first, second in product(SNIPPETS, SNIPPETS):
+        yield first + second + LOBE.format("")
+
+
+def attributes():
+    """The bundled documents with one attribute that has, or gets, an odd value."""
+    for text in dict.fromkeys(originals()):
+        count = sum(1 for _ in ElementTree.fromstring(text).iter())
+        for place, value in product(range(count), VALUES + PATHS):
+            for name in ATTRIBUTES:
+                yield text, place, name, value
+
+
+def numbers():
+    """Every spelling of a number as a value of every numeric type."""
+    value = (
+        '<constant name="odd" type="{0}"><input name="value" type="{0}" value="{1}"/></constant>'
+    )
+    for kind, number in product(NUMERIC, NUMBERS):
+        yield value.format(kind, number) + LOBE.format("")
+    for number in NUMBERS:
+        yield LOBE.format(f'<input name="roughness" type="float" value="{number}"/>')
+        yield LOBE.format(f'<input name="color" type="color3" value="{number}, 0.5, 0.5"/>')
+
+
+def codings():
+    """A document in every encoding that Python knows, declared rightly, wrongly or not at all."""
+    known = sorted(set(encodings.aliases.aliases) | set(encodings.aliases.aliases.values()))
+    for name in (*known, *NO_CODECS):
+        for used in (name, "utf-8", "utf-16"):
+            yield name, used
+
+
+def lines():
+    """Every command line with one argument replaced by every odd word."""
+    for command in COMMANDS:
+        for place, word in product(range(len(command)), VALUES + PATHS):
+            yield command, place, word
+
+
+def _document_case(rng, nodes):
+    return Case("document", (("base.mtlx", MATERIAL.format(nodes).encode()),), _arguments(rng))
+
+
+def _attribute_case(rng, row):
+    text, place, name, value = row
+    root = ElementTree.fromstring(text)
+    list(root.iter())[place].set(name, value)
+    data = ElementTree.tostring(root, encoding="unicode").encode(errors="surrogatepass")
+    return Case(f"{name} {place}", (("base.mtlx", data),), _arguments(rng))
+
+
+def _coding_case(rng, row):
+    declared, used = row
+    text = f'<?xml version="1.0" encoding="{declared}"?>' + MATERIAL.format(LOBE.format(""))
+    try:
+        data = text.encode(used)
+    except (LookupError, UnicodeError):
+        data = text.encode()
+    return Case(declared, (("base.mtlx", data),), _arguments(rng))
+
+
+def _line_case(_, row):
+    command, place, word = row
+    arguments = (*command[:place], word, *command[place + 1 :])
+    host = ("--host", "abacus") if command[0] == "check" else ()
+    data = MATERIAL.format(LOBE.format("")).encode()
+    return Case(" ".join(arguments), (("base.mtlx", data), ("part.mtlx", data)), arguments + host)
+
+
+def _arguments(rng):
+    """A command that reads the document: mostly it is generated, sometimes drawn."""
+    if rng.random() < 0.1:
+        size = ("--size", "4", "--output", f"{OUT}/a.png")
+        return "render", "base.mtlx", "--host", "reference", *size
+    return "generate", "base.mtlx", "--target", rng.choice(TARGETS), "--outputPath", OUT
+
+
+# Family -> its rows, how a row becomes a case, and how many are tried.
+FAMILIES = {
+    "documents": (documents, _document_case, 1500),
+    "attributes": (attributes, _attribute_case, 4000),
+    "numbers": (numbers, _document_case, 600),
+    "encodings": (codings, _coding_case, 600),
+    "command lines": (lines, _line_case, 1000),
+}
+
+
+def cases(family, count=None):
+    """Cases of a family: all of them or, where there are more than `count`, some."""
+    rows, to_case, usual = FAMILIES[family]
+    rng = random.Random(f"{SEED}-{family}")
+    rows = list(rows())
+    return [to_case(rng, row) for row in rng.sample(rows, min(count or usual, len(rows)))]
+
+
+def measure(families=FAMILIES, count=None, workers=1, progress=tqdm):
+    """Figures of an attack.
+
+    Returns
+    -------
+    dict
+        Of each family: tried, accepted, refused, failed, not_run, and faults, which are told.
+    """
+    figures = {}
+    for family in families:
+        tried = cases(family, count)
+        outcomes = pool.run(judged, tried, workers, LIMIT)
+        tally = Counter()
+        for place, outcome in progress(outcomes, total=len(tried), desc=family, disable=None):
+            status, fault = outcome.value or (None, outcome.failure)
+            tally["faults" if fault else STATUSES[status]] += 1
+            if fault:
+                print(f"{family}: {tried[place].name!r}: {fault}", file=sys.stderr, flush=True)
+        figures[family] = {"tried": len(tried), **tally}
+    return figures
+
+
+def main(arguments=None):
+    """Run the command; the exit status is 1 if there was a fault."""
+    parser = argparse.ArgumentParser(prog="tests.fuzz.attack", description=__doc__.splitlines()[0])
+    parser.add_argument("families", nargs="*", metavar="FAMILY", help=", ".join(FAMILIES))
+    parser.add_argument("--cases", type=int, help="of each family")
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--keep", action="store_true", help="write the figures to docs")
+    options = parser.parse_args(arguments)
+    figures = measure(options.families or FAMILIES, options.cases, options.workers)
+    print(json.dumps(figures, indent=1))
+    if options.keep:
+        keep("attack", figures)
+    return 1 if any(each.get("faults") for each in figures.values()) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

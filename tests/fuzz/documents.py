@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Documents made wrong: as trees of elements, and as bytes."""
+
+from copy import deepcopy
+from functools import cache
+from xml.etree import ElementTree
+
+from mxeon.shaders.library import examples_folder
+from tests.fuzz.words import (
+    ATTRIBUTES,
+    CATEGORIES,
+    ENCODINGS,
+    NODEDEF,
+    PATHS,
+    SNIPPETS,
+    TYPES,
+    VALUES,
+)
+
+XI = 'xmlns:xi="http://www.w3.org/2001/XInclude"'
+BOMB = '<!DOCTYPE x [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;">]>'
+EXTERNAL = '<!DOCTYPE x [<!ENTITY a SYSTEM "../secret.mtlx">]>'
+GRAPH = f"""<materialx version="1.39" {XI}>{NODEDEF}
+  <nodegraph name="NG_x" nodedef="ND_x"><oren_nayar_diffuse_bsdf name="inner" type="BSDF"/>
+    <output name="out" type="BSDF" nodename="inner"/></nodegraph>
+  <nodegraph name="ng"><input name="tint" type="color3" value="0.5, 0.4, 0.3"/>
+    <convert name="v" type="vector3"><input name="in" type="color3" interfacename="tint"/></convert>
+    <transformmatrix name="t" type="vector3"><input name="in" type="vector3" nodename="v"/>
+      <input name="mat" type="matrix33" value="1,0,0, 0,1,0, 0,0,1"/></transformmatrix>
+    <convert name="k" type="color3"><input name="in" type="vector3" nodename="t"/></convert>
+    <multiply name="m" type="color3"><input name="in1" type="color3" nodename="k"/>
+      <input name="in2" type="float" value="0.5"/></multiply>
+    <geompropvalue name="g" type="float"><input name="geomprop" type="string" value="wear"/>
+    </geompropvalue>
+    <output name="out" type="color3" nodename="m"/><output name="wear" type="float" nodename="g"/>
+  </nodegraph>
+  <oren_nayar_diffuse_bsdf name="a" type="BSDF">
+    <input name="color" type="color3" nodegraph="ng" output="out"/>
+    <input name="weight" type="float" nodegraph="ng" output="wear"/></oren_nayar_diffuse_bsdf>
+  <x name="b" type="BSDF"/>
+  <mix name="c" type="BSDF"><input name="fg" type="BSDF" nodename="a"/>
+    <input name="bg" type="BSDF" nodename="b"/><input name="mix" type="float" value="0.5"/></mix>
+  <surface name="s" type="surfaceshader"><input name="bsdf" type="BSDF" nodename="c"/></surface>
+  <surfacematerial name="look" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>
+</materialx>"""
+
+
+@cache
+def originals():
+    """Texts that are mutated: the bundled documents, and one of nodegraphs."""
+    files = sorted(examples_folder().glob("*.mtlx"))
+    return tuple(file.read_text(encoding="utf-8") for file in files) + (GRAPH,) * 3
+
+
+def document(rng):
+    """Bytes of a mutated document."""
+    text = rng.choice(originals())
+    if rng.random() < 0.8:
+        root = ElementTree.fromstring(text)
+        for _ in range(rng.choice((1, 1, 2, 3, 8))):
+            rng.choice(TREE)(rng, root)
+        text = _written(root)
+    if rng.random() < 0.02:
+        text = rng.choice((BOMB, EXTERNAL)) + text.replace("0.5", "&a;", 1)
+    data = text.encode(errors="surrogatepass")
+    if rng.random() < 0.1:
+        for _ in range(rng.choice((1, 1, 4, 16))):
+            data = rng.choice(BYTES)(rng, data)
+    return data
+
+
+def _written(root):
+    """The tree as text, and the prefix of its includes declared."""
+    text = ElementTree.tostring(root, encoding="unicode")
+    if "xi:" in text and "xmlns:xi" not in text:
+        text = text.replace("<materialx", f"<materialx {XI}", 1)
+    return text
+
+
+def word(rng, root=None):
+    """A word: odd, a path, or one that the document uses elsewhere."""
+    kind = rng.random()
+    if kind < 0.45 or (root is None and kind < 0.8):
+        return rng.choice(VALUES)
+    if kind < 0.6 or root is None:
+        return rng.choice(PATHS)
+    if kind < 0.7:
+        return rng.choice(TYPES)
+    values = [value for each in root.iter() for value in each.attrib.values()]
+    return rng.choice(values or [""])
+
+
+def _element(rng, root):
+    return rng.choice(list(root.iter()))
+
+
+def _change(rng, root):
+    element = _element(rng, root)
+    if element.attrib:
+        element.set(rng.choice(list(element.attrib)), word(rng, root))
+
+
+def _set(rng, root):
+    _element(rng, root).set(rng.choice(ATTRIBUTES), word(rng, root))
+
+
+def _path(rng, root):
+    files = [each for each in root.iter() if each.get("type") == "filename"]
+    rng.choice(files or [root]).set("value" if files else "fileprefix", rng.choice(PATHS))
+
+
+def _number(rng, root):
+    """A number where one belongs."""
+    numbers = [each for each in root.iter() if each.get("type") in ("float", "color3")]
+    element = rng.choice(numbers or [root])
+    number = rng.choice(("0", "1", "0.5", "1e-30", "1e30", "-1", "3", "1e39", "0.99999999"))
+    element.set("value", ", ".join([number] * (3 if element.get("type") == "color3" else 1)))
+
+
+def _connect(rng, root):
+    """An input connected to a node of its type, anywhere."""
+    inputs = [each for each in root.iter("input") if "type" in each.attrib]
+    port = rng.choice(inputs or [root])
+    fitting = [each for each in root.iter() if each.get("type") == port.get("type")]
+    nodes = [each.get("name", "") for each in fitting if each.tag not in ("input", "output")]
+    port.attrib = {key: port.get(key, "") for key in ("name", "type")}
+    port.set("nodename", rng.choice(nodes or [""]))
+
+
+def _text(rng, root):
+    """A word for one of the inputs that take any."""
+    category, name = rng.choice(TEXTS)
+    node = ElementTree.Element(category, {"name": "text", "type": "color3"})
+    attributes = {"name": name, "type": "string", "value": rng.choice(VALUES)}
+    ElementTree.SubElement(node, "input", attributes)
+    root.insert(0, node)
+    lobes = [each for each in root.iter() if each.tag.endswith("diffuse_bsdf")]
+    lobe = rng.choice(lobes or [root])
+    lobe[:] = [each for each in lobe if each.get("name") != "color"]
+    attributes = {"name": "color", "type": "color3", "nodename": "text"}
+    ElementTree.SubElement(lobe, "input", attributes)
+
+
+def _drop(rng, root):
+    element = _element(rng, root)
+    if element.attrib:
+        del element.attrib[rng.choice(list(element.attrib))]
+
+
+def _remove(rng, root):
+    parent = _element(rng, root)
+    if len(parent):
+        parent.remove(rng.choice(list(parent)))
+
+
+def _copy(rng, root):
+    original = _element(rng, root)
+    if original is not root:
+        copied = deepcopy(original)
+        if rng.random() < 0.5:
+            copied.set("name", f"copy{rng.randrange(1000)}")
+        _element(rng, root).append(copied)
+
+
+def _move(rng, root):
+    parent = _element(rng, root)
+    if len(parent):
+        child = rng.choice(list(parent))
+        parent.remove(child)
+        root.append(child)
+
+
+def _category(rng, root):
+    _element(rng, root).tag = rng.choice(CATEGORIES)
+
+
+def _add(rng, root):
+    attributes = {"name": f"new{rng.randrange(1000)}", "type": rng.choice(TYPES)}
+    child = ElementTree.SubElement(_element(rng, root), rng.choice(CATEGORIES), attributes)
+    child.set(rng.choice(ATTRIBUTES), word(rng, root))
+
+
+def _snippet(rng, root):
+    text = f"<part {XI}>{rng.choice(SNIPPETS)}</part>"
+    for child in ElementTree.fromstring(text.replace("xi:include", "xi-include")):
+        child.tag = child.tag.replace("xi-", "xi:")
+        root.insert(0, child)
+
+
+def _use(rng, root):
+    """Let a lobe be the node that a snippet defines."""
+    lobes = [each for each in root.iter() if each.get("type") == "BSDF"]
+    rng.choice(lobes or [root]).tag = "x"
+
+
+def _deep(rng, root):
+    element = _element(rng, root)
+    for depth in range(rng.choice((5, 70, 300))):
+        element = ElementTree.SubElement(element, "nodegraph", {"name": f"d{depth}"})
+
+
+def _long(rng, root):
+    """A chain of nodes, or nodes of two inputs, behind a lobe's colour."""
+    count, inputs = rng.choice((10, 100, 1100)), rng.choice((("in1",), ("in1", "in2")))
+    lobe = next((each for each in root.iter() if each.get("type") == "BSDF"), root)
+    attributes = {"name": "color", "type": "color3", "nodename": f"long{count - 1}"}
+    ElementTree.SubElement(lobe, "input", attributes)
+    for number in range(count):
+        node = ElementTree.SubElement(root, "add", {"name": f"long{number}", "type": "color3"})
+        for name in inputs if number else ():
+            attributes = {"name": name, "type": "color3", "nodename": f"long{number - 1}"}
+            ElementTree.SubElement(node, "input", attributes)
+
+
+def _doubled(rng, root):
+    """Nodegraphs each of which uses the one before twice, and a lobe that uses the last."""
+    count = rng.choice((3, 12, 30, 100))
+    for number in range(count):
+        inner = f"d{number - 1}" if number else "eon_diffuse_bsdf"
+        text = f"""<x><nodedef name="ND_d{number}" node="d{number}"><output name="out" type="BSDF"/>
+          </nodedef><nodegraph name="NG_d{number}" nodedef="ND_d{number}"><{inner} name="p"
+          type="BSDF"/><{inner} name="q" type="BSDF"/><add name="r" type="BSDF"><input name="in1"
+          type="BSDF" nodename="p"/><input name="in2" type="BSDF" nodename="q"/></add><output
+          name="out" type="BSDF" nodename="r"/></nodegraph></x>"""
+        root.extend(ElementTree.fromstring(text))
+    lobes = [each for each in root.iter() if each.get("type") == "BSDF" and each.tag != "output"]
+    lobe = rng.choice(lobes or [root])
+    lobe.tag = f"d{count - 1}"
+    lobe[:] = []
+
+
+TEXTS = (
+    ("geompropvalue", "geomprop"),
+    ("image", "uaddressmode"),
+    ("image", "filtertype"),
+    ("tiledimage", "frameendaction"),
+)
+TREE = (_number,) * 6 + (_connect,) * 4 + (_text,) * 2
+TREE += (_change,) * 8 + (_set,) * 4 + (_add, _category, _copy, _drop, _move, _path, _remove) * 2
+TREE += (_snippet, _snippet, _use, _deep, _long, _doubled)
+
+
+def _flip(rng, data):
+    place = rng.randrange(max(1, len(data)))
+    return data[:place] + bytes([rng.randrange(256)]) + data[place + 1 :]
+
+
+def _cut(rng, data):
+    return data[: rng.randrange(len(data) + 1)]
+
+
+def _insert(rng, data):
+    place = rng.randrange(len(data) + 1)
+    piece = rng.choice((b"\0", b"\xff", b"<", b">", b'"', b"&", b"&#0;", b"&#27;", b"&x;", b"]]>"))
+    return data[:place] + piece * rng.choice((1, 1, 100)) + data[place:]
+
+
+def _repeat(rng, data):
+    start, stop = sorted(rng.randrange(len(data) + 1) for _ in range(2))
+    return data[:stop] + data[start:stop] * rng.choice((1, 3)) + data[stop:]
+
+
+def _splice(rng, data):
+    other = rng.choice(originals()).encode()
+    return data[: rng.randrange(len(data) + 1)] + other[rng.randrange(len(other)) :]
+
+
+def _encode(rng, data):
+    encoding = rng.choice(("utf-16", "utf-32", "utf-8-sig", "utf-7", "latin-1"))
+    text = data.decode("utf-8", "replace")
+    if rng.random() < 0.5:
+        text = f'<?xml version="1.0" encoding="{rng.choice(ENCODINGS)}"?>{text}'
+    return text.encode(encoding, "replace")
+
+
+BYTES = (_flip, _flip, _flip, _cut, _insert, _insert, _repeat, _splice, _encode)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Faults that trials and the search for limits have found, as small cases that show them."""
+
+from tests.fuzz.cases import OUT, Case
+from tests.fuzz.words import POISON
+
+LOBE = '<oren_nayar_diffuse_bsdf name="lobe" type="BSDF">{}</oren_nayar_diffuse_bsdf>'
+MATERIAL = """<materialx version="1.39">{}
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe"/></surface>
+  <surfacematerial name="look" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading"/></surfacematerial>
+</materialx>"""
+TINTED = LOBE.format('<input name="color" type="color3" nodename="tint"/>')
+ROUGH = LOBE.format('<input name="roughness" type="float" value="0"/>')
+LEFT = '<mix name="lobe" type="BSDF"><input name="fg" type="BSDF" nodename="a"/></mix>'
+ADD = '<add name="a{}" type="color3">{}</add>'
+IMAGE = '<image name="tint" type="color3"><input name="{}" type="{}" value="{}"/></image>' + TINTED
+GEOMPROP = IMAGE.replace("image", "geompropvalue")
+DEFINED = '<nodedef name="ND_{0}" node="{0}" {1}><output name="out" type="BSDF"/></nodedef>'
+TWICE = """<nodegraph name="NG_g{0}" nodedef="ND_g{0}"><{1} name="x" type="BSDF"/>
+  <{1} name="y" type="BSDF"/><add name="z" type="BSDF"><input name="in1" type="BSDF" nodename="x"/>
+  <input name="in2" type="BSDF" nodename="y"/></add><output name="out" type="BSDF" nodename="z"/>
+</nodegraph>"""
+RENDER = ("render", "base.mtlx", "--host", "reference", "--size", "4", "--output", f"{OUT}/a.png")
+
+
+def row(count, names):
+    """A lobe's colour after nodes in a row, each connected to the one before by these inputs."""
+    port = '<input name="{}" type="color3" nodename="a{}"/>'
+    nodes = (
+        ADD.format(number, "".join(port.format(name, number - 1) for name in names if number))
+        for number in range(count)
+    )
+    return "".join(nodes) + LOBE.format(port.format("color", count - 1))
+
+
+def _generate(target):
+    return "generate", "base.mtlx", "--target", target, "--outputPath", OUT
+
+
+def doubled(count):
+    definitions = "".join(DEFINED.format(f"g{number}", "") for number in range(count))
+    parts = ["eon_diffuse_bsdf", *(f"g{number}" for number in range(count))]
+    graphs = "".join(TWICE.format(number, parts[number]) for number in range(count))
+    return f'{definitions}{graphs}<{parts[count]} name="lobe" type="BSDF"/>'
+
+
+def _inherited(count):
+    rows = (DEFINED.format(f"i{n}", f'inherit="ND_i{n - 1}"' if n else "") for n in range(count))
+    return "".join(rows) + f'<i{count - 1} name="lobe" type="BSDF"/>'
+
+
+# What it is, the nodes of the document, and the command.
+ROWS = (
+    (
+        "a lobe in an input",
+        '<input name="i" type="float">' + ROUGH + "</input>",
+        _generate("glsl"),
+    ),
+    ("a mix of one", f'<eon_diffuse_bsdf name="a" type="BSDF"/>{LEFT}', RENDER),
+    ("an image without a file", IMAGE.format("default", "color3", "1, 0, 0"), RENDER),
+    ("a row too long for recursion", row(900, ("in1",)), RENDER),
+    ("a row of which each uses the last twice", row(60, ("in1", "in2")), RENDER),
+    ("nodegraphs of which each uses the last twice", doubled(60), _generate("osl")),
+    ("definitions of which each inherits the last", _inherited(20_000), _generate("osl")),
+    (
+        "a type of the libraries with members",
+        '<typedef name="float"><member name="a" type="float"/></typedef>' + ROUGH,
+        _generate("glsl"),
+    ),
+    (
+        "a text that ends its quotes",
+        IMAGE.format("uaddressmode", "string", f"x&quot;; {POISON}; //"),
+        _generate("osl"),
+    ),
+    (
+        "a file name that ends its quotes",
+        IMAGE.format("file", "filename", f"&lt;UDIM&gt;&quot;; {POISON}; //"),
+        _generate("osl"),
+    ),
+    (
+        "a property that is more than a name",
+        GEOMPROP.format("geomprop", "string", f"x; {POISON};"),
+        _generate("glsl"),
+    ),
+    (
+        "a choice that is none",
+        IMAGE.format("uaddressmode", "string", f"periodic); {POISON}; ("),
+        _generate("mdl"),
+    ),
+)
+FOUND = tuple(
+    Case(name, (("base.mtlx", MATERIAL.format(nodes).encode()),), arguments)
+    for name, nodes, arguments in ROWS
+) + (
+    Case("an argument of one long word", (), ("library", "a" * 70_000)),
+    Case("an argument that turns what is said", (), ("library", "\u202elrat")),
+)

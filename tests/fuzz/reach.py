@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which attributes of a document reach generated source, found out by asking every target.
+
+Each attribute of a document that uses every kind of element gets a word of its own; those that come
+out in a shader reached it. Attributes that name each other are changed together.
+
+    python -m tests.fuzz.reach
+"""
+
+import re
+import sys
+from collections import defaultdict
+from contextlib import chdir
+from copy import deepcopy
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from xml.etree import ElementTree
+
+import MaterialX as mx
+
+from mxeon.errors import DocumentError
+from mxeon.shaders.document.words import NAMES
+from mxeon.shaders.generation import TARGETS, generate
+from mxeon.shaders.library import load_library
+from tests.fuzz.words import ATTRIBUTES
+
+XI = "http://www.w3.org/2001/XInclude"
+ElementTree.register_namespace("xi", XI)
+EVERY = Path(__file__).with_name("every.mtlx")
+POISON = "poison"
+# What ends a string or a line, and what means something outside a string.
+BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
+MEANING = tuple(
+    each + POISON for each in (" ", ";", "(", ")", ",", "=", "//", "/*", "*/", "#", "$", "{", "-")
+)
+MARK = re.compile(r"mark\d{5}x|77\d{5}")
+QUOTED = re.compile(r'"[^"]*"')
+
+
+# What is marked by itself, since a document holds together by it, and is judged wherever it stands.
+APART = NAMES | {"name", "value"}
+
+
+@dataclass(frozen=True)
+class Place:
+    """An attribute of an element, which is known by its number in the document."""
+
+    number: int
+    attribute: str
+
+
+def documents():
+    """Roots of documents that use every kind of element: as materials, and as outputs alone."""
+    whole, outputs = (ElementTree.parse(EVERY).getroot() for _ in range(2))
+    for kind in ("surfacematerial", "surface", "backdrop", "look", "lookgroup"):
+        outputs.remove(outputs.find(kind))
+    return {"materials": whole, "outputs": outputs}
+
+
+def furnish(folder):
+    """Put what the documents name into a folder, which has to be the working folder."""
+    for name in ("f/a.png", "f/c.png", "b.png"):
+        path = Path(folder, name)
+        path.parent.mkdir(exist_ok=True)
+        path.touch()
+    Path(folder, "part.mtlx").write_text('<materialx version="1.39"/>')
+
+
+@cache
+def attributes(root):
+    """Names of attributes: of a document, of MaterialX's Python module and libraries, of the fuzzer."""
+    kinds = [kind for kind in vars(mx).values() if isinstance(kind, type)]
+    named = {
+        getattr(kind, name) for kind in kinds for name in dir(kind) if name.endswith("_ATTRIBUTE")
+    }
+    used = {name for each in root.iter() for name in each.attrib}
+    library = {name for each in load_library().traverseTree() for name in each.getAttributeNames()}
+    return sorted(named | used | library | set(ATTRIBUTES))
+
+
+def present(root):
+    """Places with text, in groups that are marked at once."""
+    groups = defaultdict(list)
+    for number, element in enumerate(root.iter()):
+        for name in element.attrib:
+            groups[name if name in APART else ""].append(Place(number, name))
+    return tuple(groups.values())
+
+
+def absent(root):
+    """Places that could have text, in groups that are marked at once."""
+    elements = list(root.iter())
+    return tuple(
+        [Place(number, name) for number, each in enumerate(elements) if name not in each.attrib]
+        for name in attributes(root)
+        if name not in APART
+    )
+
+
+def reached(root, groups, targets=TARGETS):
+    """The places of a document whose words come out, and how: bare, quoted or in a comment.
+
+    Parameters
+    ----------
+    root : Element
+    groups : iterable of list of Place
+        Each is marked at once, and in parts where a target refuses that.
+    targets : sequence of str
+
+    Returns
+    -------
+    dict of Place to set of str
+    """
+    found = defaultdict(set)
+    for places in groups:
+        _search(root, places, targets, found)
+    return dict(found)
+
+
+def unjudged(root, found, targets=TARGETS):
+    """What gets hostile text into a shader, or is refused without its place.
+
+    Parameters
+    ----------
+    root : Element
+    found : dict of Place to set of str
+        What `reached` returns.
+    targets : sequence of str
+
+    Returns
+    -------
+    list of (str, str, str)
+        Category of element, attribute and hostile text; of places that are alike, of one.
+    """
+    elements = list(root.iter())
+    ways, alike = defaultdict(set), {}
+    for place, each in found.items():
+        element = elements[place.number]
+        kind = element.tag, place.attribute, element.get("type")
+        ways[kind] |= each
+        alike[kind] = place
+    return [
+        (kind[0], place.attribute, text)
+        for kind, place in alike.items()
+        for text in (*BREAKING, *(() if ways[kind] == {"quoted"} else MEANING))
+        if not _judged(root, place, text, targets)
+    ]
+
+
+def _judged(root, place, text, targets):
+    """Whether hostile text is refused in a line that names its place, or comes out nowhere."""
+    root = deepcopy(root)
+    element = list(root.iter())[place.number]
+    element.set(place.attribute, element.get(place.attribute, "") + text)
+    document = ElementTree.tostring(root, encoding="unicode")
+    for target in targets:
+        try:
+            shaders = generate(document, target)
+        except DocumentError as error:
+            said = str(error)
+            if "must give" in said:  # by this target alone
+                continue
+            return element.tag in said and "must" in said and said.isprintable()
+        except ValueError:  # a number that is none
+            continue
+        if any(POISON in source for each in shaders for source in each.stages.values()):
+            return False
+    return True
+
+
+def _search(root, places, targets, found):
+    """Mark places, all at once and, for the targets that refuse that, in halves."""
+    refused = []
+    for target in targets:
+        text, marks = _marked(root, places)
+        try:
+            shaders = generate(text, target)
+        except DocumentError as error:
+            refused.append(target)
+            if "must give" not in str(error):  # refused before any target was asked
+                refused = list(targets)
+                break
+            continue
+        for shader in shaders:
+            for source in shader.stages.values():
+                _note(source, marks, found)
+    if refused and len(places) > 1:
+        half = len(places) // 2
+        _search(root, places[:half], refused, found)
+        _search(root, places[half:], refused, found)
+
+
+def _note(source, marks, found):
+    for line in filter(MARK.search, source.splitlines()):
+        for mark in MARK.finditer(line):
+            before = line[: mark.start()]
+            place = marks.get(mark[0])
+            if place:
+                found[place].add(_context(before))
+
+
+def _context(before):
+    """What text stands in that comes after this in its line."""
+    if "//" in QUOTED.sub("", before):
+        return "comment"
+    return "quoted" if before.count('"') % 2 else "bare"
+
+
+def _marked(root, places):
+    """A document with marks in these places, and the place of each mark."""
+    root, marks, aliases = deepcopy(root), {}, {}
+    elements = list(root.iter())
+    for place in places:
+        element = elements[place.number]
+        old = element.get(place.attribute, "")
+        new, mark = _word(old, len(marks), place)
+        marks[mark] = place
+        element.set(place.attribute, new)
+        if place.attribute in ("name", "node"):
+            aliases[old] = new
+    for element in elements:
+        for name, value in element.attrib.items():
+            element.set(name, aliases.get(value, value) if value else value)
+        element.tag = aliases.get(element.tag, element.tag)
+    return ElementTree.tostring(root, encoding="unicode"), marks
+
+
+def _word(old, number, place):
+    """A new value of the kind of an old one, and the mark in it."""
+    if old.strip().isdigit():
+        return f"77{number:05}", f"77{number:05}"
+    mark = f"mark{number:05}x"
+    return (re.sub(r"\bw\b", mark, old), mark) if re.search(r"\bw\b", old) else (mark, mark)
+
+
+def search(targets=TARGETS):
+    """What reaches source, by document; and what of it is not judged.
+
+    Returns
+    -------
+    tuple of (set of (str, str), list of (str, str, str))
+        Categories of elements and attributes; what `unjudged` returns.
+    """
+    names, wrong = set(), []
+    for root in documents().values():
+        elements = list(root.iter())
+        found = reached(root, present(root), targets) | reached(root, absent(root), targets)
+        names |= {(elements[place.number].tag, place.attribute) for place in found}
+        wrong += unjudged(root, found, targets)
+    return names, wrong
+
+
+def main():
+    """Print what reaches source; the exit status is 1 if any of it is not judged."""
+    with TemporaryDirectory(prefix="mxeon-reach-") as folder, chdir(folder):
+        furnish(folder)
+        names, wrong = search()
+    print(*sorted(f"{tag} {attribute}" for tag, attribute in names), sep="\n")
+    print(*(f"not judged: {row}" for row in wrong), sep="\n")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One case tried: the command called in a folder of its own, and all it must not do."""
+
+import contextlib
+import io
+import itertools
+import os
+import resource
+import shutil
+import tempfile
+import traceback
+from functools import cache
+from pathlib import Path
+
+from mxeon.errors import STEERING
+from mxeon.shaders.library import examples_folder
+from tests.fuzz.cases import AROUND, case
+from tests.fuzz.words import CANARY, POISON
+
+STATUSES = (0, 2, 3)
+OUTPUTS = ("--outputPath", "--output", "--report")
+MAKING = (
+    "generate",
+    "render",
+)  # commands that have a process for each document, which hides crashes
+JUDGING = ("check", "kit", "report", "render", "library")  # commands that may end with 1: it failed
+LONGEST_LINE = 1200  # a message of 1000 characters, its prefix, and a path
+MEMORY = 6 * 2**30
+
+
+def numbered(key):
+    """What `mxeon` did wrong with the case of a seed and a number."""
+    return guarded(case(*key))
+
+
+def guarded(tried):
+    """What `mxeon` did wrong with a case, in a process that may have so much memory and no more."""
+    return judged(tried)[1]
+
+
+def judged(tried):
+    """Exit status of a case and what was wrong, in a process of limited memory."""
+    _limit_memory()
+    return _run(tried)
+
+
+def trial(tried):
+    """What `mxeon` did wrong with a case, in one line, or ""."""
+    return _run(tried)[1]
+
+
+def _run(tried):
+    """Exit status of a case, and what `mxeon` did wrong in one line, or ""."""
+    with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
+        root = Path(folder).resolve()
+        home = _prepared(root, tried)
+        before = _contents(root)
+        with contextlib.chdir(home):
+            status, out, err = _called(tried.arguments)
+        judging = set(tried.arguments[:1]) & set(JUDGING)
+        named = tuple(os.path.normpath(home / each) for each in _outputs(tried.arguments))
+        allowed = 0 if status == 1 and judging else status
+        return status, "; ".join(_faults(root, named, before, allowed, out, err))
+
+
+def _outputs(arguments):
+    """Where a command line asks for something to be written."""
+    pairs = itertools.pairwise(arguments)
+    return [path for option, path in pairs if option in OUTPUTS and "\0" not in path]
+
+
+@cache
+def _limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
+def _prepared(root, tried):
+    """The working folder, with a link out of it, and files beside it."""
+    home = root / "documents"
+    shutil.copytree(examples_folder() / "textures", home / "textures")
+    (home / "link").symlink_to(root)
+    (home / "own.glsl").write_text("void x(out BSDF r) { r = BSDF(vec3(0.0), vec3(1.0)); }\n")
+    (home / "results.json").write_text('{"format": 1, "results": [{"host": "gl"}], "pictures": []}')
+    for name, text in AROUND:
+        (root / name).write_text(text)
+    for name, data in tried.files:
+        (home / name).write_bytes(data)
+    return home
+
+
+def _called(arguments):
+    """Exit status, output and errors; a traceback counts as an error."""
+    from mxeon.cli import main
+
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            here = ("--workers", "0") if arguments[:1] and arguments[0] in MAKING else ()
+            status = main([*arguments[:1], *here, *arguments[1:]])
+        except SystemExit as ended:
+            status = ended.code or 0
+        except BaseException:
+            status = traceback.format_exc()
+    return status, out.getvalue(), err.getvalue()
+
+
+def _faults(root, named, before, status, out, err):
+    if status not in STATUSES:
+        lines = str(status).strip().splitlines()
+        yield f"ended with {lines[-1]} from {' '.join(lines[-4:-1])}"
+    lines = err.splitlines()
+    odd = (line for line in lines if not line.startswith("mxeon") or STEERING.search(line))
+    yield from (f"said {line!r}" for line in odd)
+    if any(len(line) > LONGEST_LINE for line in lines):
+        yield f"said a line of {max(map(len, lines))} characters"
+    if status == 2 and not lines:
+        yield "did not say why"
+    after = _contents(root)
+    written = {name: data for name, data in after.items() if before.get(name) != data}
+    yield from (f"wrote {name}" for name in written if not str(root / name).startswith(named))
+    texts = b"\n".join(written.values())
+    if CANARY in out or CANARY.encode() in texts:
+        yield "gave away a file from outside"
+    if POISON.encode() in texts and "brings code of its own" not in err:
+        yield "let a word into a shader as code"
+
+
+def _contents(root):
+    """All files below a folder; what the link leads to is below it anyway."""
+    files = (Path(each) / name for each, _, names in os.walk(root) for name in names)
+    return {str(file.relative_to(root)): file.read_bytes() for file in files}

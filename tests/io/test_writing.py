@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files that appear whole or not at all, on disks that are full: no file may exceed some bytes."""
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from mxeon.io.files import replacing, write_image, write_text
+from mxeon.shaders.library import examples_folder
+from tests.support.faults import room_for
+
+PLASTER = str(examples_folder() / "plaster.mtlx")
+NOISE = np.random.default_rng(1).random((33, 33, 3))
+IMAGES = {".exr": np.float32(NOISE), ".png": np.uint8(255.0 * NOISE)}
+# Room for nothing, for less than a header, for all but the last bytes.
+ROOM = {"nothing": lambda size: 0, "little": lambda size: 100, "nearly all": lambda size: size - 1}
+
+with_room = pytest.mark.parametrize("room", ROOM.values(), ids=ROOM)
+
+
+def run(room, *arguments):
+    """The command, its output read to the end, where no file may exceed `room` bytes."""
+    return subprocess.run(
+        [sys.executable, "-m", "mxeon", *map(str, arguments)],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def files(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+@with_room
+@pytest.mark.parametrize("ending", IMAGES)
+@pytest.mark.parametrize("side", [2, 33])
+def test_an_image_that_finds_no_room_is_an_error_and_nothing_stays(
+    tmp_path, capfd, ending, side, room
+):
+    path, pixels = tmp_path / f"a{ending}", np.ascontiguousarray(IMAGES[ending][:side, :side])
+    write_image(path, pixels, {})
+    size = path.stat().st_size
+    path.unlink()
+    with room_for(room(size)), pytest.raises(OSError) as error:
+        write_image(path, pixels, {})
+    assert error.value.filename == str(path) and f".a{ending}" not in error.value.strerror
+    assert not files(tmp_path) and capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("ending", IMAGES)
+def test_an_image_is_kept_as_it_is(tmp_path, ending):
+    pixels = IMAGES[ending].copy()
+    if ending == ".exr":
+        pixels[0, 0] = np.nan, np.inf, -0.0
+    write_image(tmp_path / f"a{ending}", pixels, {"mxeon:host": "gl"})
+    image = oiio.ImageInput.open(str(tmp_path / f"a{ending}"))
+    assert image.read_image(oiio.UNKNOWN).tobytes() == pixels.tobytes()
+    assert image.spec().get_string_attribute("mxeon:host") == "gl"
+
+
+@pytest.mark.parametrize("ending", IMAGES)
+def test_an_image_whose_name_is_no_text_is_an_error(tmp_path, ending):
+    with pytest.raises(OSError, match="the name must be UTF-8"):
+        write_image(tmp_path / f"\udcff{ending}", IMAGES[ending], {})
+    assert not files(tmp_path)
+
+
+def test_text_that_finds_no_room_leaves_the_old_file(tmp_path):
+    write_text(tmp_path / "a", "old")
+    with room_for(100), pytest.raises(OSError, match="File too large"):
+        write_text(tmp_path / "a", "new" * 100)
+    assert (tmp_path / "a").read_text() == "old" and files(tmp_path) == ["a"]
+
+
+def test_a_file_is_on_disk_before_it_takes_its_name(tmp_path, monkeypatch):
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    rule = "No space left on device: '.*/a'"
+    with pytest.raises(OSError, match=rule), replacing(tmp_path / "a") as beside:
+        beside.touch()
+    assert not files(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.exr"])
+def test_render_on_a_full_disk_is_one_line(tmp_path, name):
+    options = [
+        "--host",
+        "reference",
+        "--workers",
+        "0",
+        "--size",
+        "16",
+        "--element",
+        "ochre_plaster",
+    ]
+    ended = run(300, "render", PLASTER, *options, "--output", tmp_path / name)
+    assert ended.returncode == 2 and ended.stderr.count("\n") == 1
+    assert ended.stderr.startswith(f"mxeon: {tmp_path / name}: must be accessible; ")
+    assert not files(tmp_path)
+
+
+def test_generate_on_a_full_disk_is_one_line(tmp_path):
+    ended = run(
+        300, "generate", PLASTER, "--target", "osl", "--workers", "0", "--outputPath", tmp_path
+    )
+    assert ended.returncode == 2 and ended.stderr.count("\n") == 1
+    assert "must be accessible; File too large" in ended.stderr and not files(tmp_path)
+
+
+def test_a_kit_on_a_full_disk_is_one_line(tmp_path):
+    ended = run(1000, "kit", "export", tmp_path)
+    assert ended.returncode == 2 and ended.stderr.count("\n") == 1
+    assert "must be accessible; File too large" in ended.stderr
+    assert all(Path(tmp_path, name).stat().st_size <= 1000 for name in files(tmp_path))
+    assert not list(tmp_path.rglob(".[0-9]*"))
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png"])
+def test_a_figure_that_finds_no_room_is_an_error(tmp_path, suffix):
+    from mxeon.figures.sheet import Sheet
+
+    sheet = Sheet(tmp_path, host=None)
+    figure, _ = sheet.axes(1, 1, 2.0, 2.0)
+    with room_for(1000), pytest.raises(OSError, match=f"a.{suffix}"):
+        sheet.plot("a", figure, suffix)
+    assert not files(tmp_path)

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Dask cluster as a farm: real schedulers and worker processes on this machine."""
+
+import os
+import subprocess
+import sys
+from contextlib import ExitStack, contextmanager
+
+import dask
+import pytest
+from distributed import LocalCluster
+
+import mxeon
+from mxeon.conformance.run import check
+from mxeon.errors import NotRun
+from mxeon.jobs import dask as cluster
+from mxeon.jobs.pool import Outcome
+from mxeon.shaders.library import examples_folder
+from tests.support.faults import need, once, process, square
+
+OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
+# Dask leaves the sockets open by which it looks for a free port.
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+EXAMPLE = examples_folder() / "plaster.mtlx"
+
+
+def run(work, items, address, limit=60.0):
+    with cluster.connected(address) as workers:
+        return dict(cluster.run(work, items, workers, limit, NotRun))
+
+
+@contextmanager
+def farm(*workers):
+    """A scheduler's address; each worker is the environment variables that it has more."""
+    with ExitStack() as stack:
+        options = {"n_workers": 0, "dashboard_address": ":0", "protocol": "tcp"}
+        started = stack.enter_context(LocalCluster(**options))
+        for more in workers:
+            arguments = more.pop("arguments", ["--nthreads", "1"])
+            command = [
+                sys.executable,
+                "-m",
+                "distributed.cli.dask_worker",
+                started.scheduler_address,
+            ]
+            paths = os.pathsep.join(filter(None, sys.path))
+            process = subprocess.Popen(
+                [*command, "--no-dashboard", *arguments],
+                env=os.environ | {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1"} | more,
+                stderr=subprocess.DEVNULL,
+            )
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+        started.wait_for_workers(len(workers), timeout=300)
+        yield started.scheduler_address
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """Two workers, one of which has a lamp."""
+    with farm({}, {"LAMP": "on"}) as address:
+        yield address
+
+
+def test_every_item_is_worked_on_once_and_by_all_workers(pair):
+    assert run(square, range(20), pair) == {item: Outcome(item * item) for item in range(20)}
+    assert len({outcome.value for outcome in run(process, range(40), pair).values()}) == 2
+
+
+def test_what_one_worker_lacks_is_done_by_another(pair):
+    assert run(need, ["LAMP"] * 8, pair) == {place: Outcome("on") for place in range(8)}
+
+
+def test_what_all_workers_lack_is_not_run(pair):
+    assert run(need, ["MOON"], pair) == {0: Outcome(None, "MOON: missing")}
+
+
+def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
+    items = [str(tmp_path / name) for name in "ab"]
+    assert run(once, items, pair) == dict.fromkeys((0, 1), Outcome("done"))
+    assert run(square, [3], pair) == {0: Outcome(9)}
+
+
+def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}), farm({}) as address:
+        (outcome,) = run(_sleep, [60.0], address, limit=1.0).values()
+    assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
+
+
+@pytest.mark.parametrize(
+    "fault, words",
+    [
+        ("version", f"it must have mxeon {mxeon.__version__}; got 0.0.9"),
+        ("threads", "it must have one thread, --nthreads 1, as OpenGL needs; got 2"),
+    ],
+)
+def test_a_worker_that_does_not_fit_gets_no_work_and_is_named(tmp_path, fault, words):
+    preload = tmp_path / "preload.py"
+    preload.write_text(OTHER_VERSION)
+    arguments = ["--preload", str(preload), "--nthreads", "1"]
+    unfit = {"arguments": arguments if fault == "version" else ["--nthreads", "2"]}
+    with farm({"FIT": "yes"}, unfit) as address, pytest.warns(UserWarning, match=words):
+        found = run(need, ["FIT"] * 8, address)
+    assert found == {place: Outcome("yes") for place in range(8)}
+
+
+def test_a_cluster_without_a_fitting_worker_is_one_line():
+    rule = f"must have a worker with mxeon {mxeon.__version__} "
+    with (
+        farm({"arguments": ["--nthreads", "2"]}) as address,
+        pytest.warns(UserWarning),
+        pytest.raises(ValueError, match=rule),
+    ):
+        run(square, [1], address)
+
+
+class Client:
+    """A client of a scheduler that answers with these workers, one after the other."""
+
+    def __init__(self, *answers):
+        self._answers = list(answers)
+
+    def scheduler_info(self, n_workers):
+        return self._answers.pop(0) if len(self._answers) > 1 else self._answers[0]
+
+    def run(self, function, workers, on_error):
+        return dict.fromkeys(workers, mxeon.__version__)
+
+
+NOBODY, SOMEBODY = {"workers": {}}, {"workers": {"tcp://a": {"nthreads": 1}}}
+
+
+def test_workers_that_all_restart_are_waited_for(monkeypatch):
+    monkeypatch.setattr(cluster, "POLL", 0.0)
+    workers = cluster._Workers(Client(NOBODY, NOBODY, SOMEBODY, NOBODY, NOBODY, SOMEBODY), 60.0)
+    workers.await_fit()
+    assert workers.fit() == {"tcp://a"}
+
+
+@pytest.mark.parametrize("answers", [(NOBODY,), (SOMEBODY, NOBODY)], ids=["at first", "later"])
+def test_workers_that_do_not_come_are_one_line(answers):
+    rule = "cluster must have a worker that fits; none came within 0.01 s: --waitForWorkers moves"
+    with pytest.raises(NotRun, match=rule):
+        list(cluster.run(square, [1], cluster._Workers(Client(*answers), 0.01), 1.0, NotRun))
+
+
+def test_a_scheduler_that_ends_is_one_line():
+    workers = cluster._Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
+    with pytest.raises(NotRun, match="scheduler must run until the end; it answers no more"):
+        list(cluster.run(square, [1], workers, 1.0, NotRun))
+
+
+def test_an_impossible_wait_is_one_line():
+    with pytest.raises(ValueError, match="waitForWorkers must be positive and at most"):
+        check([EXAMPLE], scheduler="tcp://127.0.0.1:9", wait=0.0)
+
+
+def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch):
+    monkeypatch.setattr(cluster, "ANSWER", 1.0)
+    with pytest.raises(ValueError, match="scheduler must be the address of a running") as error:
+        run(square, [1], "tcp://127.0.0.1:9")
+    assert "\n" not in str(error.value)
+
+
+def test_a_farm_finds_what_one_machine_finds(pair, tmp_path):
+    found = check([EXAMPLE], scheduler=pair, folder=tmp_path)
+    assert found.results == check([EXAMPLE]).results and not found.missing
+
+
+def _sleep(seconds):
+    import time
+
+    time.sleep(seconds)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pool: whatever becomes of a worker costs its own item and no other."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import gettempdir
+
+import pytest
+from pebble import CONSTS
+
+from mxeon.jobs import pool
+from mxeon.jobs.pool import ATTEMPTS, LOCK, Outcome, in_order, run
+from tests.support.faults import Tar, misbehave, once, square
+
+NUMBERS = [1, 2, 3, 4]
+
+
+def test_every_item_is_worked_on_once():
+    found = dict(run(square, range(20), 2, 60.0))
+    assert found == {item: Outcome(item * item) for item in range(20)}
+
+
+@pytest.mark.parametrize(
+    "fault, end",
+    [
+        ("SIGKILL", "ended by SIGKILL; last output: about to SIGKILL"),
+        ("SIGSEGV", "ended by SIGSEGV; last output: about to SIGSEGV"),
+        ("exit", "exit status 7; last output: about to exit"),
+        ("hang", "no end within 1 s; last output: about to hang"),
+        ("raise", "RuntimeError: no light; last output: about to raise"),
+    ],
+)
+def test_a_fault_costs_its_item_alone_and_is_named(fault, end):
+    found = dict(
+        run(misbehave, [*NUMBERS[:2], fault, *NUMBERS[2:]], 2, 1.0 if fault == "hang" else 60.0)
+    )
+    assert found.pop(2) == Outcome(None, end, ATTEMPTS)
+    assert sorted(outcome.value for outcome in found.values()) == [1, 4, 9, 16]
+
+
+def test_processes_that_hang_before_they_begin_are_given_up(monkeypatch):
+    monkeypatch.setattr(pool, "START", 2.0)
+    (outcome,) = dict(pool.run(square, [Tar()], 1, 1.0)).values()
+    assert outcome == Outcome(None, "no end within 1 s; last output: none", ATTEMPTS)
+
+
+def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
+    items = [str(tmp_path / name) for name in "ab"]
+    found = dict(run(once, items, 2, 60.0))
+    assert found == dict.fromkeys((0, 1), Outcome("done", attempts=2))
+
+
+def test_workers_never_hear_of_ctrl_c():
+    (outcome,) = dict(run(_deaf, [0], 1, 60.0)).values()
+    assert outcome.value and not _deaf(0)
+
+
+def test_the_pool_leaves_the_constants_of_pebble_as_they_are():
+    code = "from pebble import CONSTS as c; a = vars(c).copy(); import mxeon.jobs.pool; assert vars(c) == a"
+    subprocess.run([sys.executable, "-c", code], check=True)
+    list(run(square, [0], 1, 60.0))
+    (outcome,) = dict(run(_lock_timeout, [0], 1, 60.0)).values()
+    assert outcome.value == LOCK != CONSTS.channel_lock_timeout
+
+
+def test_outcomes_are_put_in_order():
+    assert list(in_order([(1, "b"), (2, "c"), (0, "a"), (3, "d")])) == ["a", "b", "c", "d"]
+
+
+def test_what_workers_print_stays_out_of_ours(capfd):
+    list(run(misbehave, ["exit"], 1, 60.0))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_no_temporary_file_outlives_the_pool():
+    before = set(Path(gettempdir()).glob("mxeon-pool-*"))
+    found = run(square, range(4), 1, 60.0)
+    next(found)
+    assert set(Path(gettempdir()).glob("mxeon-pool-*")) > before
+    found.close()
+    assert set(Path(gettempdir()).glob("mxeon-pool-*")) == before
+
+
+def test_a_pool_that_breaks_again_and_again_is_given_up(monkeypatch):
+    monkeypatch.setattr(pool, "_serve", lambda *_: iter(()))
+    (outcome,) = dict(run(square, [3], 1, 1.0)).values()
+    assert outcome.failure == "the processes end before they begin to work"
+
+
+def test_what_the_work_raises_is_no_time_out_of_ours():
+    (outcome,) = dict(run(_late, [0], 1, 60.0)).values()
+    assert outcome.failure.startswith("TimeoutError: mine; last output:")
+
+
+def test_workers_are_other_processes():
+    ((_, outcome),) = run(_process, [0], 1, 60.0)
+    assert outcome.value != os.getpid()
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        ((0, 1.0), "workers must be at least 1; got 0"),
+        ((1, 0.0), "limit must be positive and at most 1e.06 s; got 0"),
+        ((1, float("inf")), "limit must be positive and at most 1e.06 s; got inf"),
+    ],
+)
+def test_an_impossible_pool_is_one_line(options, words):
+    with pytest.raises(ValueError, match=f"^{words}$"):
+        list(run(square, [1], *options))
+
+
+def _process(_):
+    return os.getpid()
+
+
+def _late(_):
+    raise TimeoutError("mine")
+
+
+def _deaf(_):
+    """Whether this process has had SIGINT blocked since it was started."""
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def _lock_timeout(_):
+    return CONSTS.channel_lock_timeout

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nobody's folder runs code: a Python file beside a document is never imported."""
+
+import os
+import subprocess
+import sys
+from importlib.metadata import packages_distributions
+
+import pytest
+
+from mxeon.errors import NotRun
+from mxeon.jobs import pool
+from mxeon.jobs.pool import Outcome
+from mxeon.jobs.processes import HOME
+from mxeon.shaders.hosts.cycles.process import interpreter
+from mxeon.shaders.library import examples_folder
+from tests.support.faults import square
+
+# What any process could ask for: the standard library, what is installed, Blender's modules, and
+# what Python looks for when it starts.
+NAMES = {*sys.stdlib_module_names, *packages_distributions(), "bpy", "_cycles", "mathutils"}
+NAMES |= {"sitecustomize", "usercustomize", "numpy", "mxeon"}
+NAMES = sorted(name for name in NAMES if name.isidentifier())
+PLANT = "import os\nos.write(os.open({!r}, os.O_CREAT | os.O_WRONLY), __file__.encode())\n"
+SCRIPT = """import sys  # as pip writes it
+from mxeon.__main__ import main
+if __name__ == "__main__":
+    sys.exit(main())
+"""
+
+RENDER = [
+    "render",
+    "in/plaster.mtlx",
+    "--element",
+    "ochre_plaster",
+    "--size",
+    "16",
+    "--workers",
+    "1",
+]
+COMMANDS = {
+    "generate": ["generate", "in/plaster.mtlx", "--target", "osl", "--outputPath", "out"],
+    "render": [*RENDER, "--output", "out/a.png"],
+    "cycles": [*RENDER, "--output", "out/a.exr", "--host", "cycles"],
+    "check": ["check", "in/plaster.mtlx", "--host", "msl", "--workers", "2", "--report", "out"],
+    "report make": ["report", "make", "report"],
+    "report diff": ["report", "diff", "report", "report"],
+    "library": ["library", "--verify"],
+    "kit export": ["kit", "export", "out", "--size", "64"],
+    "kit check": ["kit", "check", "out"],
+    "invert": ["invert", "0.5", "0.5", "0.5", "--roughness", "1"],
+}
+STATUS = {"check": 3, "report make": 3, "kit check": 3}  # msl and an empty kit do not run
+
+
+def plant(folder, names, text):
+    folder.mkdir(exist_ok=True)
+    for name in names:
+        (folder / f"{name}.py").write_text(text)
+
+
+def run(folder, *arguments):
+    """The command as pip installs it, from a folder with a document."""
+    (folder / "in").mkdir(exist_ok=True)
+    (folder / "bin").mkdir(exist_ok=True)
+    (folder / "bin" / "command").write_text(SCRIPT)
+    document = (examples_folder() / "plaster.mtlx").read_text()
+    (folder / "in" / "plaster.mtlx").write_text(document)
+    command = [sys.executable, str(folder / "bin" / "command"), *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture
+def hostile(tmp_path):
+    """A working folder, and folders for documents and results in it, with all these modules."""
+    for folder in (tmp_path, tmp_path / "in", tmp_path / "out"):
+        plant(folder, NAMES, PLANT.format(str(tmp_path / "RAN")))
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    assert run(folder, *COMMANDS["check"]).returncode == 3
+    return folder / "out"
+
+
+def need(command):
+    if command == "cycles":
+        try:
+            interpreter()
+        except NotRun as reason:
+            pytest.skip(str(reason))
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_command_imports_from_the_folders_it_works_in(hostile, report, command):
+    need(command)
+    (hostile / "report").symlink_to(report)
+    if command == "kit check":
+        run(hostile, *COMMANDS["kit export"])
+    ended = run(hostile, *COMMANDS[command])
+    assert not (hostile / "RAN").exists(), (hostile / "RAN").read_text()
+    assert ended.returncode == STATUS.get(command, 0), ended.stderr
+
+
+@pytest.mark.parametrize("name", ["socket", "signal", "pickle"])
+def test_a_file_that_happens_to_have_the_name_of_a_module_is_no_obstacle(tmp_path, name):
+    plant(tmp_path, [name], "x = 1\n")
+    ended = run(tmp_path, *COMMANDS["generate"])
+    assert (ended.returncode, ended.stderr) == (0, "") and list((tmp_path / "out").glob("*.osl"))
+
+
+def test_workers_of_an_interactive_parent_do_not_import_from_its_folder(hostile, monkeypatch):
+    monkeypatch.chdir(hostile)
+    monkeypatch.setattr("multiprocessing.process.ORIGINAL_DIR", str(hostile))
+    monkeypatch.syspath_prepend("")
+    assert dict(pool.run(square, [3], 1, 60.0)) == {0: Outcome(9)}
+    assert not (hostile / "RAN").exists()
+
+
+def test_workers_find_mxeon_where_the_parent_does(monkeypatch):
+    monkeypatch.setattr(sys, "path", ["" if each == HOME else each for each in sys.path])
+    monkeypatch.chdir(HOME)
+    assert dict(pool.run(square, [3], 1, 60.0)) == {0: Outcome(9)}
+
+
+def test_workers_are_safe_where_the_environment_does_not_count(hostile):
+    script = hostile / "bin" / "command"
+    run(hostile, "library")
+    command = [sys.executable, "-E", str(script), *COMMANDS["generate"], "--workers", "1"]
+    subprocess.run(command, cwd=hostile, check=True, capture_output=True)
+    assert not (hostile / "RAN").exists()
+
+
+def test_a_module_run_by_its_name_leaves_the_working_folder_off_the_path(tmp_path):
+    plant(tmp_path, ["pebble", "MaterialX", "numpy"], PLANT.format(str(tmp_path / "RAN")))
+    run(tmp_path, "library")
+    command = [sys.executable, "-m", "mxeon", *COMMANDS["generate"], "--workers", "1"]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    assert not (tmp_path / "RAN").exists()
+
+
+def test_starting_workers_changes_nothing_for_other_processes():
+    before = dict(os.environ), list(sys.path)
+    list(pool.run(square, [3], 1, 60.0))
+    command = [sys.executable, "-c", "import sys; print(sys.flags.safe_path)"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert ended.stdout == f"{sys.flags.safe_path}\n" and (dict(os.environ), sys.path) == before

@@ -1,0 +1,481 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The kit: what it holds, what it makes of pictures good and bad, and Cycles as the stranger."""
+
+import json
+import os
+import re
+import subprocess
+import warnings
+from pathlib import Path
+
+import MaterialX as mx
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from mxeon.cli import main
+from mxeon.io.images import write_exr
+from mxeon.kit.check import check_kit
+from mxeon.kit.encoding import fault
+from mxeon.kit.expected import expected, judged, pixel_means
+from mxeon.kit.export import export_kit
+from mxeon.kit.mesh import unit_sphere
+from mxeon.kit.noise import ratio, tiles
+from mxeon.kit.shots import LEVEL, MATERIALS, shots
+from mxeon.models import table as reference
+from mxeon.shaders.generation import ApproximationWarning, generate
+from mxeon.shaders.hosts.cycles.process import interpreter
+from tests.support.availability import available
+from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
+
+SIZE = 64
+SHOTS = {shot.name: shot for shot in shots(SIZE)}
+STRANGER = Path(__file__).parents[1] / "support" / "external_renderer.py"
+EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
+
+
+def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
+    """A kit, and pictures of these models with as much relative noise in each pixel."""
+    rng = np.random.default_rng(seed)
+    export_kit(folder, SIZE)
+    for shot in SHOTS.values():
+        row = reference.model(true if shot.material.energy_compensation else false)
+        mask, image = judged(shot.scene), np.zeros((SIZE, SIZE, 3))
+        values = pixel_means(row, shot)
+        image[mask] = values * (1.0 + noise * rng.standard_normal(values.shape))
+        write_exr(folder / "renders" / f"{shot.name}.exr", image, {})
+
+
+@pytest.fixture
+def kit(tmp_path):
+    """A kit with pictures of EON and QON."""
+    write_pictures(tmp_path)
+    return tmp_path
+
+
+def render(kit, name):
+    return kit / "renders" / f"{name}.exr"
+
+
+def read(path):
+    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+
+
+def found(run, check, subject):
+    """The one result of a check on a subject that begins so."""
+    (result,) = [
+        each for each in run.results if each.check == check and each.subject.startswith(subject)
+    ]
+    return result
+
+
+def names(run):
+    """The first name in each of the notes, by subject."""
+    pattern = r"(.*): nearest known model: (.*) \(rms .*?\), then (.*) \("
+    return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}
+
+
+def test_the_mesh_lies_on_the_sphere():
+    mesh = unit_sphere()
+    assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1.0).max() < 1e-15
+    assert mesh.depth < KIT_DEPTH
+
+
+def test_the_mesh_is_closed_and_turned_outwards():
+    mesh = unit_sphere()
+    a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
+    assert (np.linalg.det(np.stack([a, b, c], axis=1)) > 0.0).all()
+    edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+
+
+def test_the_obj_holds_the_mesh(tmp_path):
+    export_kit(tmp_path, SIZE)
+    lines = (tmp_path / "sphere.obj").read_text().splitlines()
+    rows = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
+    assert np.abs(np.linalg.norm(rows, axis=1) - 1.0).max() < KIT_PRINTED
+    assert sum(line.startswith("f ") for line in lines) == len(unit_sphere().triangles)
+
+
+@pytest.mark.parametrize("material", MATERIALS, ids=lambda each: each.name)
+@pytest.mark.parametrize("target", ["glsl", "osl", "mdl"])
+def test_each_material_is_a_document_that_generates(tmp_path, material, target):
+    export_kit(tmp_path, SIZE)
+    document = tmp_path / "materials" / f"{material.name}.mtlx"
+    assert len(generate(document, target, library="stock")) == 1
+
+
+def test_the_description_says_what_the_scenes_say(tmp_path):
+    export_kit(tmp_path, SIZE)
+    kit = json.loads((tmp_path / "kit.json").read_text())
+    assert {Path(each["file"]).stem for each in kit["pictures"]} == set(SHOTS)
+    for each in kit["pictures"]:
+        usd = (tmp_path / "scenes" / f"{Path(each['file']).stem}.usda").read_text()
+        material = kit["materials"][each["material"]]
+        assert f"inputs:color = ({', '.join(map(str, material['color']))})" in usd
+        distant = kit["scenes"][each["scene"]].get("distant")
+        assert not distant or f"({', '.join(map(repr, distant['direction']))}, 0.0)" in usd
+
+
+def test_the_page_names_every_picture(tmp_path):
+    text = export_kit(tmp_path, SIZE).read_text()
+    assert [name for name in SHOTS if f"renders/{name}.exr" not in text] == []
+    assert "$" not in text
+
+
+@pytest.mark.parametrize("size", [63, 2049])
+def test_a_size_out_of_range_is_refused(tmp_path, size):
+    with pytest.raises(ValueError, match=rf"size must lie in \[64, 2048\]; got {size}"):
+        export_kit(tmp_path, size)
+
+
+def test_pure_noise_is_not_called_bias():
+    rng, shot = np.random.default_rng(1), SHOTS["true_front"]
+    mask = judged(shot.scene)
+    noise = rng.standard_normal((200, mask.sum(), 3))
+    alarms = [ratio([tiles(each, 0.0 * each, mask)]) > 1.0 for each in noise]
+    assert sum(alarms) <= KIT_FALSE_ALARMS
+
+
+def test_bias_far_below_the_noise_of_a_pixel_is_found():
+    rng, shot = np.random.default_rng(1), SHOTS["true_front"]
+    mask = judged(shot.scene)
+    error = 0.1 * rng.standard_normal((mask.sum(), 3)) + 0.1
+    assert ratio([tiles(error, 0.0 * error, mask)]) > 1.0
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+@pytest.mark.parametrize("name", ["eon", "fon", "eon_rho_cubed", "eon_clamped", "fon_white_lobe"])
+def test_each_model_is_named_whatever_the_noise(tmp_path, name, noise):
+    write_pictures(tmp_path, true=name, noise=noise)
+    title = reference.model(name).title
+    found = names(check_kit(tmp_path))
+    assert found["energy_compensation true, distant light"] == title
+    assert found["energy_compensation true, surrounding"] == title
+
+
+@pytest.mark.parametrize("name", ["lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii"])
+def test_each_model_of_the_flag_false_is_named(tmp_path, name):
+    write_pictures(tmp_path, false=name, noise=0.02)
+    title = reference.model(name).title
+    assert names(check_kit(tmp_path))["energy_compensation false, distant light"] == title
+
+
+def test_right_pictures_pass(kit):
+    run = check_kit(kit)
+    assert {result.verdict for result in run.results} == {"passed"}
+    assert all(result.control.caught for result in run.results)
+    assert len(run.pictures) == len(SHOTS)
+
+
+def test_too_much_noise_is_said_and_passes_nothing(tmp_path):
+    write_pictures(tmp_path, noise=1.0)
+    result = found(check_kit(tmp_path), "white", "white")
+    assert result.verdict == "not run"
+    assert "too noisy" in result.reason
+
+
+def test_a_model_that_noise_hides_is_mentioned(tmp_path):
+    write_pictures(tmp_path, false="qon", noise=0.1)
+    subject = "energy_compensation false, surrounding"
+    (note,) = [each for each in check_kit(tmp_path).notes if each.startswith(subject)]
+    assert "cannot be told from QON with MaterialX's fit" in note
+
+
+def test_a_missing_picture_is_not_run(kit):
+    render(kit, "true_back").unlink()
+    run = check_kit(kit)
+    assert "true_back.exr: must be in" in found(run, "file", "true_back").reason
+    assert found(run, "model", "energy_compensation true, distant").verdict == "not run"
+
+
+def spoiled(kit, name, change):
+    """The result on the file of a picture that was changed."""
+    write_exr(render(kit, name), change(read(render(kit, name))), {})
+    return found(check_kit(kit), "file", name)
+
+
+def planted(value):
+    def change(image):
+        image = image.copy()
+        image[SIZE // 2, SIZE // 2, 1] = value
+        return image
+
+    return change
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_are_refused(kit, value):
+    result = spoiled(kit, "true_side", planted(value))
+    assert result.verdict == "failed"
+    assert "must be finite numbers" in result.diagnosis and "row 32, column 32" in result.diagnosis
+
+
+def test_a_wrong_size_is_refused(kit):
+    result = spoiled(kit, "true_side", lambda image: image[:32])
+    assert result.diagnosis == "true_side.exr: must be 64 x 64 pixels; got 64 x 32"
+
+
+def test_eight_bits_in_a_float_file_are_refused(kit):
+    result = spoiled(kit, "true_side", lambda image: np.rint(image * 255.0) / 255.0)
+    assert "never rounded to eight bits" in result.diagnosis
+
+
+def test_an_eight_bit_file_is_refused(kit):
+    render(kit, "true_side").unlink()
+    path = kit / "renders" / "true_side.png"
+    image = oiio.ImageBuf(oiio.ImageSpec(SIZE, SIZE, 3, oiio.UINT8))
+    assert image.write(str(path))
+    assert "got uint8" in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+def test_two_files_of_a_name_are_refused(kit):
+    (kit / "renders" / "true_side.csv").write_text("")
+    assert "must be one file" in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+def test_a_file_that_is_no_image_is_refused(kit):
+    render(kit, "true_side").write_text("nothing")
+    assert "must be an EXR or CSV file" in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+def write_channels(kit, name, image, names, **place):
+    spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
+    spec.channelnames = names
+    for attribute, value in place.items():
+        setattr(spec, attribute, value)
+    file = oiio.ImageOutput.create(str(render(kit, name)))
+    assert file.open(str(render(kit, name)), spec) and file.write_image(image)
+    file.close()
+
+
+def test_red_green_and_blue_are_found_by_name(kit):
+    image = read(render(kit, "true_side"))
+    layers = np.concatenate([np.ones_like(image), image[..., ::-1]], axis=-1, dtype=np.float32)
+    names = [f"depth.{each}" for each in "XYZ"] + [f"beauty.{each}" for each in "BGR"]
+    write_channels(kit, "true_side", layers, names)
+    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
+
+
+@pytest.mark.parametrize("names", ["XYZ", ["a.R", "a.G", "a.B", "b.R", "b.G", "b.B"]])
+def test_channels_that_are_no_one_red_green_and_blue_are_refused(kit, names):
+    image = np.ones((SIZE, SIZE, len(names)), dtype=np.float32)
+    write_channels(kit, "true_side", image, list(names))
+    message = found(check_kit(kit), "file", "true_side").diagnosis
+    assert f"must hold one R, G and B; got channels {', '.join(names)}" in message
+
+
+def test_a_picture_beside_its_place_is_refused(kit):
+    image = read(render(kit, "true_side")).astype(np.float32)
+    write_channels(kit, "true_side", image, list("RGB"), x=5, y=9)
+    message = found(check_kit(kit), "file", "true_side").diagnosis
+    assert "must begin at the display window's corner; got (5, 9)" in message
+
+
+def test_half_a_file_is_refused(kit):
+    path = render(kit, "true_side")
+    path.write_bytes(path.read_bytes()[:900])
+    assert "true_side.exr: must be" in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+@pytest.mark.parametrize("renderer", ["", " ", "two\nlines", "\x1b[31m", "\udcff"])
+def test_a_renderer_has_a_name_that_can_be_printed(kit, renderer):
+    with pytest.raises(ValueError, match="renderer must be a name on one line"):
+        check_kit(kit, renderer)
+
+
+def srgb(image):
+    curve = 1.055 * np.maximum(image, 1e-9) ** (1.0 / 2.4) - 0.055
+    return np.where(image <= 0.0031308, 12.92 * image, curve)
+
+
+FAULTS = {
+    "sRGB-encoded": srgb,
+    "encoded with a power of 1/2.2": lambda image: image ** (1.0 / 2.2),
+    "tone-mapped by x / (1 + x)": lambda image: image / (1.0 + image),
+    "upside down": lambda image: image[::-1],
+    "mirrored left to right": lambda image: image[:, ::-1],
+    "turned by half a turn": lambda image: image[::-1, ::-1],
+    "clipped": lambda image: np.minimum(image, 0.35),
+    "pi times as bright": lambda image: np.pi * image,
+    "1/pi times as bright": lambda image: image / np.pi,
+    "100 times as bright": lambda image: 100.0 * image,
+    "1e+03 times as bright": lambda image: 1e3 * image,
+    "black": np.zeros_like,
+    "1.23 times as bright": lambda image: 1.23 * image,
+    "sRGB-encoded and 2 times as bright": lambda image: srgb(image * 2.0),
+    "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise": lambda image: (
+        np.tanh(4.0 * image) ** 0.5
+    ),
+    "": lambda image: image,
+}
+
+
+@pytest.mark.parametrize("words", FAULTS)
+def test_what_is_wrong_with_light_or_encoding_is_named(words):
+    shot = SHOTS[LEVEL.name]
+    model, mask = expected(reference.model("lambert"), shot, 0.0), judged(shot.scene)
+    image = np.zeros((SIZE, SIZE, 3))
+    image[mask] = model.value
+    assert fault(FAULTS[words](image), model, mask) == words
+
+
+def test_where_the_encoding_is_wrong_no_model_is_named(kit):
+    for name in SHOTS:
+        write_exr(render(kit, name), srgb(read(render(kit, name))), {})
+    run = check_kit(kit)
+    assert found(run, "level", "lambert").diagnosis == "lambert_side is sRGB-encoded"
+    result = found(run, "model", "energy_compensation true, distant light")
+    assert result.reason == "lambert_side is sRGB-encoded"
+    assert names(run) == {}
+
+
+def as_csv(kit, name):
+    image = read(render(kit, name))
+    rows = [",".join(map(str, (*place, *image[place]))) for place in np.ndindex(SIZE, SIZE)]
+    render(kit, name).unlink()
+    path = kit / "renders" / f"{name}.csv"
+    path.write_text("\n".join(["row,column,red,green,blue", *rows]) + "\n")
+    return path
+
+
+def test_values_may_come_as_csv(kit):
+    as_csv(kit, "true_side")
+    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("row,column", "x,y", "must begin with row,column,red,green,blue; got x,y"),
+        ("5,5,", "64,5,", "must hold row and column of a pixel, of 64 x 64"),
+        ("5,5,", "-59,5,", "must hold row and column of a pixel, of 64 x 64"),
+        ("5,5,", "5,5,none,", "and three numbers"),
+        ("32,32,", "31,32,", "that no line before it has"),
+        ("32,32,.*\n", "", "must be finite numbers"),
+        ("5,5,", f"5,5,{'9' * 200_000},", "must be CSV in UTF-8; field larger"),
+    ],
+)
+def test_a_wrong_csv_is_refused(kit, old, new, message):
+    path = as_csv(kit, "true_side")
+    path.write_text(re.sub(f"(?m)^{old}", new, path.read_text(), count=1))
+    assert message in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+def test_csv_may_have_a_byte_order_mark_and_empty_lines(kit):
+    path = as_csv(kit, "true_side")
+    path.write_text("\ufeff" + path.read_text() + "\n\n", encoding="utf-8")
+    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
+
+
+@pytest.mark.parametrize("data", [b"", b"row\xff", "row".encode("utf-16")])
+def test_csv_that_is_none_costs_its_picture_alone(kit, data):
+    as_csv(kit, "true_side").write_bytes(data)
+    run = check_kit(kit)
+    assert "true_side.csv: must be" in found(run, "file", "true_side").diagnosis
+    assert found(run, "level", "lambert").verdict == "passed"
+
+
+def test_a_folder_that_is_no_kit_is_refused(tmp_path, capsys):
+    assert main(["kit", "check", str(tmp_path)]) == 2
+    assert "folder must hold kit.json" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", '{"format": 0, "size": 64}', '{"format": 1, "size": "64"}', 9999 * "["]
+)
+def test_a_description_of_another_format_is_refused(tmp_path, text):
+    (tmp_path / "kit.json").write_text(text)
+    with pytest.raises(ValueError, match="must be"):
+        check_kit(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "key, value, words",
+    [
+        ("format", True, "format must be 1; got True"),
+        ("format", 1.0, "format must be 1; got 1.0"),
+        ("size", None, "size must be a whole number; got None"),
+        ("size", 64.0, "size must be a whole number; got 64.0"),
+        ("size", True, "size must be a whole number; got True"),
+        ("size", 10**400, r"size must lie in \[64, 2048\]"),
+        ("size", -1, r"size must lie in \[64, 2048\]"),
+        ("camera", {}, "camera must be as kit export writes it: export it again"),
+        ("sphere", None, "sphere must be as kit export writes it"),
+        ("materials", {"clay": 1}, "materials must be as kit export writes it"),
+        ("pictures", [3], "pictures must be as kit export writes it"),
+    ],
+)
+def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):
+    export_kit(tmp_path, 64)
+    content = json.loads((tmp_path / "kit.json").read_text())
+    (tmp_path / "kit.json").write_text(json.dumps(content | {key: value}))
+    assert main(["kit", "check", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert re.search(f"kit.json: {words}", error) and error.count("\n") == 1
+
+
+@pytest.mark.parametrize("suffix", [".exr", ".csv"])
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir], ids=["pipe", "folder"])
+def test_what_is_no_regular_file_is_no_picture(kit, suffix, make):
+    render(kit, "true_side").unlink()
+    make(render(kit, "true_side").with_suffix(suffix))
+    assert "; not a regular file" in found(check_kit(kit), "file", "true_side").diagnosis
+
+
+def test_a_pipe_in_place_of_a_description_blocks_nobody(tmp_path):
+    os.mkfifo(tmp_path / "kit.json")
+    with pytest.raises(
+        ValueError, match="kit.json: must be a kit's description; not a regular file"
+    ):
+        check_kit(tmp_path)
+
+
+def test_the_command_exports_and_judges(tmp_path, capsys):
+    assert main(["kit", "export", str(tmp_path), "--size", "64"]) == 0
+    assert main(["kit", "check", str(tmp_path)]) == 3
+    write_pictures(tmp_path)
+    assert main(["kit", "check", str(tmp_path), "--report", str(tmp_path / "report")]) == 0
+    assert (tmp_path / "report" / "report.html").is_file()
+    write_pictures(tmp_path, true="eon_rho_cubed")
+    assert main(["kit", "check", str(tmp_path), "--json"]) == 1
+    assert f"nearest known model: {CUBED}" in capsys.readouterr().out
+
+
+def write_osl(kit, library, profile):
+    """The materials of a kit as OSL, made from its documents."""
+    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+    folder = kit / "osl"
+    folder.mkdir()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ApproximationWarning)
+        for file in (kit / "materials").glob("*.mtlx"):
+            text = generate(file, "osl", library=library, profile=profile)[0].stages["pixel"]
+            text = text.replace('"mx_funcs.h"', f'"{header.asString()}"')
+            (folder / f"{file.stem}.osl").write_text(text)
+    return folder
+
+
+def stranger_renders(kit, library, profile=None):
+    """Cycles' pictures of a new kit, judged."""
+    with available("cycles"):
+        python = interpreter()
+    export_kit(kit, SIZE)
+    sources = write_osl(kit, library, profile)
+    command = [python, "-I", "-W", "ignore", STRANGER, kit, sources, "256"]
+    subprocess.run(command, capture_output=True, check=True, timeout=300)
+    return check_kit(kit, "Cycles")
+
+
+def test_cycles_as_a_stranger_is_named_eon_with_rho_cubed(tmp_path):
+    run = stranger_renders(tmp_path, "stock")
+    assert found(run, "level", "lambert").verdict == "passed"
+    assert set(names(run).values()) == {CUBED}
+    assert len(names(run)) == 4
+
+
+def test_cycles_with_the_profile_is_named_eon(tmp_path):
+    run = stranger_renders(tmp_path, "eonlib", "cycles")
+    for light in ("distant light", "surrounding"):
+        assert found(run, "model", f"energy_compensation true, {light}").verdict == "passed"
+        assert names(run)[f"energy_compensation true, {light}"] == EON

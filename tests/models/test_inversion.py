@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reflectance from albedo: exact inversion, the paper's polynomials, and ours of the same form."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from mxeon.models import inversion
+from mxeon.models.albedo import eon_albedo_avg, eon_albedo_dir, fon_albedo_avg, fon_albedo_dir
+from tests.support import tolerances
+
+# Colors and roughness on [0, 1], and at all magnitudes beside 0 and 1.
+SMALL = 10.0 ** np.arange(-300.0, 0.0, 7.0)
+EDGES = np.unique(np.concatenate([SMALL, 1.0 - SMALL, np.linspace(0.0, 1.0, 201)]))
+NORMAL = inversion.eon_rho_from_albedo_normal
+AVERAGE = inversion.eon_rho_from_albedo_avg
+
+both = pytest.mark.parametrize("function", [NORMAL, AVERAGE])
+
+
+def on_grid(function):
+    """Values on all colors (last axis) and roughness (first axis)."""
+    return function(EDGES, EDGES)
+
+
+def largest_error(approximation, exact):
+    """Largest error of rho."""
+    return np.abs(on_grid(approximation) - on_grid(exact)).max()
+
+
+@both
+def test_without_roughness_rho_is_the_color(function):
+    np.testing.assert_allclose(function(EDGES, 0.0), EDGES, rtol=tolerances.RHO)
+
+
+@both
+def test_black_stays_black_and_white_stays_white(function):
+    np.testing.assert_array_equal(function(0.0, EDGES), 0.0)
+    np.testing.assert_allclose(function(1.0, EDGES), 1.0, rtol=tolerances.RHO)
+
+
+@both
+def test_rho_is_in_range_and_grows_with_the_color_and_the_roughness(function):
+    rho = on_grid(function)
+    assert rho.min() >= 0.0 and rho.max() <= 1.0
+    assert (np.diff(rho, axis=1) >= 0.0).all()
+    smooth = function(np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101))
+    assert (np.diff(smooth, axis=0) >= -tolerances.RHO).all()
+
+
+def test_albedo_at_normal_incidence_returns_to_the_color():
+    albedo = eon_albedo_dir(1.0, on_grid(NORMAL), EDGES)
+    np.testing.assert_allclose(albedo, np.tile(EDGES, (len(EDGES), 1)), rtol=tolerances.ROUND_TRIP)
+
+
+def test_average_albedo_returns_to_the_color():
+    albedo = eon_albedo_avg(on_grid(AVERAGE), EDGES)
+    np.testing.assert_allclose(albedo, np.tile(EDGES, (len(EDGES), 1)), rtol=tolerances.ROUND_TRIP)
+
+
+def exact_normal(color, r):
+    """Eq. (30), by mpmath."""
+    c1, c2 = mp.mpf(1) / 2 - 2 / (3 * mp.pi), mp.mpf(2) / 3 - 28 / (15 * mp.pi)
+    normal, mean = 1 / (1 + c1 * r), (1 + c2 * r) / (1 + c1 * r)
+    a, b = mean - normal, normal + color * (1 - mean)
+    return (-b + mp.sqrt(b * b + 4 * a * color)) / (2 * a)
+
+
+def exact_average(color, r):
+    """Eq. (33), by mpmath."""
+    c1, c2 = mp.mpf(1) / 2 - 2 / (3 * mp.pi), mp.mpf(2) / 3 - 28 / (15 * mp.pi)
+    return color / (color + (1 + c2 * r) / (1 + c1 * r) * (1 - color))
+
+
+@pytest.mark.parametrize("function, exact", [(NORMAL, exact_normal), (AVERAGE, exact_average)])
+def test_inversion_agrees_with_the_printed_equations_at_hundreds_of_digits(function, exact):
+    found = on_grid(function)[1:-1:4, 1:-1:4]
+    with mp.workdps(700):
+        grid = [[exact(mp.mpf(c), mp.mpf(r)) for c in EDGES[1:-1:4]] for r in EDGES[1:-1:4]]
+    np.testing.assert_allclose(found, np.array(grid, dtype=float), rtol=tolerances.RHO)
+
+
+def test_equation_30_as_printed_loses_its_digits_at_low_roughness():
+    color, r = 0.3, 1e-12
+    mean, normal = fon_albedo_avg(r), fon_albedo_dir(1.0, r)
+    a, b = mean - normal, normal + color * (1.0 - mean)
+    printed = (-b + np.sqrt(b * b + 4.0 * a * color)) / (2.0 * a)
+    assert abs(printed - NORMAL(color, r)) > 1e-5
+
+
+def test_equation_32_misses_its_stated_accuracy():
+    error = largest_error(inversion.eon_rho_from_albedo_normal_approx, NORMAL)
+    assert 0.0044 < error < tolerances.EQUATION_32
+
+
+def test_equation_34_keeps_its_stated_accuracy():
+    error = largest_error(inversion.eon_rho_from_albedo_avg_approx, AVERAGE)
+    assert 0.0028 < error < tolerances.EQUATION_34 < 0.003
+
+
+def test_our_coefficients_keep_the_accuracy_stated_for_equation_32():
+    error = largest_error(inversion.eon_rho_from_albedo_normal_refit_approx, NORMAL)
+    assert error < tolerances.NORMAL_REFIT < 0.003
+
+
+def test_our_coefficient_is_better_than_that_of_equation_34():
+    error = largest_error(inversion.eon_rho_from_albedo_avg_refit_approx, AVERAGE)
+    assert error < tolerances.AVERAGE_REFIT

@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The models: limits, invariants, agreement with 50 digits, the closed domain, and evaluation."""
+
+import tracemalloc
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from mxeon.models import geometry
+from mxeon.models.albedo import fon_albedo_avg, fon_albedo_dir_approx
+from mxeon.models.brdf import eon_brdf, fon_brdf, lambert_brdf, oren_nayar_brdf
+from mxeon.models.table import DEFECTS, MODELS, model
+from tests.support import oracle, tolerances
+from tests.support.cases import direction, pairs, parameter
+
+ALL = MODELS + DEFECTS
+
+
+def named(rows):
+    """Parametrise a test over rows of the reference."""
+    return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
+
+
+def digits(numbers):
+    """The same numbers with 50 digits."""
+    return [mp.mpf(float(number)) for number in numbers]
+
+
+def largest_quotient(wo, wi):
+    """The larger of 1 and the largest |s / t| that the cosines of a pair allow."""
+    mu_o, mu_i = wo[..., 2], wi[..., 2]
+    return np.maximum(1.0, 1.0 / np.maximum(mu_o, mu_i))
+
+
+def assert_same(value, again, wo, wi):
+    """Require values of the same pairs, whose functions NumPy may compute in another order."""
+    scale = largest_quotient(np.atleast_2d(wo), np.atleast_2d(wi))
+    assert (np.pi * np.abs(value - again) <= 2.0 * tolerances.BRDF * scale[..., np.newaxis]).all()
+
+
+# --- limits ----------------------------------------------------------------------------------
+
+
+@named([row for row in MODELS if row.parameter])
+def test_roughness_zero_is_lambert_to_the_last_bit(row):
+    wo, wi, rho, _ = pairs(1000, seed=1)
+    assert np.array_equal(row.brdf(wo, wi, rho, 0.0), rho / np.pi)
+
+
+@named(MODELS)
+def test_black_reflects_nothing(row):
+    wo, wi, _, fraction = pairs(1000, seed=2)
+    assert not row.brdf(wo, wi, 0.0, *parameter(row, fraction)).any()
+
+
+def test_full_oren_nayar_at_normal_incidence_is_its_first_coefficient_and_interreflection():
+    sigma, rho = 0.7, 0.8
+    first = 1.0 - 0.5 * sigma**2 / (sigma**2 + 0.33)
+    second = 0.17 * rho * sigma**2 / (sigma**2 + 0.13)
+    value = oren_nayar_brdf([0, 0, 1], direction(0.3, 1.0), rho, sigma)
+    assert value * np.pi == pytest.approx(rho * (first + second), abs=tolerances.BRDF)
+
+
+# --- invariants ------------------------------------------------------------------------------
+
+
+@named(ALL)
+def test_model_is_reciprocal_to_the_last_bit(row):
+    wo, wi, rho, fraction = pairs(1000, seed=3)
+    arguments = (rho, *parameter(row, fraction))
+    assert np.array_equal(row.brdf(wo, wi, *arguments), row.brdf(wi, wo, *arguments))
+
+
+@named(ALL)
+def test_model_does_not_change_when_the_pair_turns_about_the_normal(row):
+    wo, wi, rho, fraction = pairs(1000, seed=4)
+    arguments = (rho, *parameter(row, fraction))
+    turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    change = row.brdf(wo @ turn.T, wi @ turn.T, *arguments) - row.brdf(wo, wi, *arguments)
+    scale = largest_quotient(wo, wi)[:, np.newaxis]
+    assert (np.pi * np.abs(change) / scale).max() <= tolerances.ROTATION
+
+
+@named([row for row in MODELS if row.name != "oren_nayar"])
+def test_model_is_never_negative(row):
+    wo, wi, rho, fraction = pairs(20000, seed=5)
+    assert row.brdf(wo, wi, rho, *parameter(row, fraction)).min() >= 0.0
+
+
+def test_full_oren_nayar_falls_below_zero_as_far_as_documented():
+    mu = np.geomspace(1e-9, 1.0, 100)
+    wo, wi = direction(mu[:, np.newaxis], 0.0), direction(mu, np.pi)
+    lowest = np.pi * oren_nayar_brdf(wo, wi, 1e-6, np.pi / 2.0).min() / 1e-6
+    assert -0.275 <= lowest <= -0.265
+
+
+def test_eon_is_a_mixture_of_its_own_white_and_of_white_fon():
+    wo, wi, rho, r = pairs(1000, seed=6)
+    average = fon_albedo_avg(r)[:, np.newaxis]
+    weight = rho**2 * average / (1.0 - rho * (1.0 - average))
+    mixture = (rho - weight) * fon_brdf(wo, wi, 1.0, r) + weight * eon_brdf(wo, wi, 1.0, r)
+    scale = largest_quotient(wo, wi)[:, np.newaxis]
+    error = np.pi * np.abs(mixture - eon_brdf(wo, wi, rho, r)) / scale
+    assert error.max() <= 2.0 * tolerances.BRDF
+
+
+def test_back_lit_pairs_see_a_signed_s():
+    wo, wi = direction(0.2, 0.0), direction(0.3, np.pi)
+    assert fon_brdf(wo, wi, 1.0, 1.0) < fon_brdf(wo, direction(0.3, np.pi / 2.0), 1.0, 1.0)
+
+
+# --- agreement -------------------------------------------------------------------------------
+
+
+@named(MODELS)
+def test_model_agrees_with_fifty_digits_of_the_printed_equations(row):
+    wo, wi, rho, fraction = pairs(300, seed=7)
+    values = row.brdf(wo, wi, rho[:, :1], *parameter(row, fraction))[:, 0]
+    exact_of = getattr(oracle, row.name)
+    for index, value in enumerate(values):
+        arguments = (rho[index, 0], *parameter(row, fraction[index]))
+        exact = exact_of(digits(wo[index]), digits(wi[index]), *digits(arguments))
+        error = abs(mp.pi * (mp.mpf(float(value)) - exact))
+        assert error <= tolerances.BRDF * largest_quotient(wo[index], wi[index])
+
+
+def test_quartic_agrees_with_eon_to_its_documented_error():
+    wo, wi, rho, r = pairs(20000, seed=8)
+    error = np.pi * np.abs(model("eon_approx").brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r))
+    assert error.max() <= tolerances.QUARTIC_BRDF
+
+
+def test_quartic_differs_from_the_listing_by_its_epsilon_alone():
+    wo, wi, rho, r = pairs(20000, seed=15)
+    r = 10.0 ** (-5.0 * r)
+    mu_o, mu_i = wo[:, 2], wi[:, 2]
+    lost = [np.maximum(1e-7, 1.0 - fon_albedo_dir_approx(mu, r)) for mu in (mu_o, mu_i)]
+    average = fon_albedo_avg(r)
+    lobe = (lost[0] * lost[1] / np.maximum(1e-7, 1.0 - average))[:, np.newaxis]
+    average = average[:, np.newaxis]
+    listing = fon_brdf(wo, wi, rho, r)
+    listing += rho**2 * average / (1.0 - rho * (1.0 - average)) / np.pi * lobe
+    error = np.pi * np.abs(listing - model("eon_approx").brdf(wo, wi, rho, r))
+    scale = largest_quotient(wo, wi)[:, np.newaxis]
+    assert (error <= tolerances.LISTING_EPSILON + tolerances.BRDF * scale).all()
+
+
+# --- the closed domain -----------------------------------------------------------------------
+
+EDGE_COSINES = np.array([0.0, 5e-324, 1e-310, 3e-308, 1e-160, 1e-8, 0.5, 1.0 - 2.0**-53, 1.0])
+
+
+@named(ALL)
+@pytest.mark.parametrize("fraction", [0.0, 1e-300, 1e-9, 1.0])
+def test_model_is_finite_on_the_whole_closed_domain(row, fraction):
+    azimuths = np.array([0.0, 1e-9, np.pi / 2.0, np.pi])
+    wo = direction(EDGE_COSINES[:, np.newaxis, np.newaxis], 0.0)
+    wi = direction(EDGE_COSINES[:, np.newaxis], azimuths)
+    rho = [0.0, 1e-300, 0.5, 1.0]
+    assert np.isfinite(row.brdf(wo, wi, rho, *parameter(row, fraction))).all()
+
+
+@named(ALL)
+def test_directions_rounded_to_float32_are_valid_and_give_float64(row):
+    wo, wi, rho, fraction = pairs(5000, seed=9)
+    wo[:100] = direction(1.0 - np.geomspace(1e-16, 1e-6, 100), 0.3)
+    longer = np.float32(wo) * np.float32(1.0000002)
+    value = row.brdf(longer, np.float32(wi), np.float32(rho), *parameter(row, np.float32(fraction)))
+    assert longer[..., 2].max() > 1.0
+    assert value.dtype == np.float64 and np.isfinite(value).all()
+
+
+def test_towards_the_light_at_grazing_the_quotient_without_a_limit_counts_as_zero():
+    grazing = [1.0, 0.0, 0.0]
+    assert fon_brdf(grazing, grazing, 1.0, 1.0) == fon_brdf([0, 0, 1], [0, 0, 1], 1.0, 1.0)
+
+
+def test_away_from_the_light_at_grazing_full_oren_nayar_takes_its_limit():
+    wo, wi = direction([0.0, 1e-7], 0.0), direction([0.0, 1e-7], np.pi)
+    at, near = oren_nayar_brdf(wo, wi, 1.0, 1.0)
+    assert at == pytest.approx(near, abs=1e-6)
+
+
+# --- evaluation ------------------------------------------------------------------------------
+
+SHAPES = (
+    ((3,), (3,), (3,), ()),
+    ((5, 3), (3,), (1,), (5,)),
+    ((4, 1, 3), (5, 3), (4, 5, 2), (5,)),
+    ((3,), (3,), (2, 6, 3), (6,)),
+    ((0, 3), (3,), (3,), ()),
+)
+
+
+@named(MODELS)
+@pytest.mark.parametrize("shapes", SHAPES, ids=str)
+def test_arguments_broadcast_as_if_each_pair_stood_alone(row, shapes):
+    rng = np.random.default_rng(10)
+    wo, wi = (direction(*rng.random((2, *shape[:-1]))) for shape in shapes[:2])
+    rho, fraction = rng.random(shapes[2]), rng.random(shapes[3])
+    value = row.brdf(wo, wi, rho, *parameter(row, fraction))
+    lead = np.broadcast_shapes(*(shape[:-1] for shape in shapes[:3]), shapes[3])
+    assert value.shape == lead + shapes[2][-1:]
+    wo, wi = (np.broadcast_to(w, lead + (3,)) for w in (wo, wi))
+    rho, fraction = np.broadcast_to(rho, value.shape), np.broadcast_to(fraction, lead)
+    for index in np.ndindex(lead):
+        alone = row.brdf(wo[index], wi[index], rho[index], *parameter(row, fraction[index]))
+        assert_same(value[index], alone, wo[index], wi[index])
+
+
+@named(ALL)
+def test_blocks_of_any_size_give_the_same_values(row, monkeypatch):
+    wo, wi, rho, fraction = pairs(60, seed=11)
+    arguments = wo[:, np.newaxis], wi[:7], rho[:, np.newaxis], *parameter(row, fraction[:7])
+    whole = row.brdf(*arguments)
+    for size in (1, 5, 50):
+        monkeypatch.setattr(geometry, "BLOCK", size)
+        assert_same(row.brdf(*arguments), whole, *np.broadcast_arrays(*arguments[:2]))
+
+
+@named([row for row in MODELS if row.name in ("oren_nayar", "eon")])
+def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes(row, monkeypatch):
+    monkeypatch.setattr(geometry, "WORKERS", 4)
+    wo, wi, rho, fraction = pairs(800_000, seed=14)
+    tracemalloc.start()
+    result = row.brdf(wo, wi, rho, *parameter(row, fraction))
+    beyond = tracemalloc.get_traced_memory()[1] - result.nbytes
+    tracemalloc.stop()
+    assert beyond < 2**26
+
+
+def test_checked_arguments_come_back_as_they_were():
+    wo, _, rho, _ = pairs(3, seed=16)
+    assert geometry.checked_directions("wo", wo) is wo
+    assert geometry.checked("rho", rho) is rho
+
+
+def test_arguments_are_left_as_they_were():
+    wo, wi, rho, r = pairs(10, seed=12)
+    copies = [argument.copy() for argument in (wo, wi, rho, r)]
+    eon_brdf(wo, wi, rho, r)
+    assert all(np.array_equal(old, new) for old, new in zip(copies, (wo, wi, rho, r), strict=True))
+
+
+def test_a_number_is_one_channel():
+    assert lambert_brdf([0, 0, 1], [0, 0, 1], 1).shape == (1,)
+
+
+# --- the table -------------------------------------------------------------------------------
+
+
+@named(ALL)
+def test_row_is_found_by_its_name(row):
+    assert model(row.name) is row
+
+
+@named([row for row in MODELS if row.parameter])
+def test_row_knows_the_interval_of_its_parameter(row):
+    wo = [0, 0, 1]
+    for end in row.interval:
+        row.brdf(wo, wo, 1.0, end)
+    with pytest.raises(ValueError, match=row.parameter):
+        row.brdf(wo, wo, 1.0, np.nextafter(row.interval[1], 2.0))
+
+
+def test_lambert_has_no_interval():
+    assert model("lambert").interval is None
+
+
+# --- known wrong variants --------------------------------------------------------------------
+
+
+@named([row for row in DEFECTS if row.parameter == "roughness"])
+def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
+    wo, wi, rho, r = pairs(2000, seed=13)
+    front = np.sum(wo * wi, axis=-1) > 1e-6
+    white = np.pi * np.abs(row.brdf(wo, wi, 1.0, r) - eon_brdf(wo, wi, 1.0, r))[front]
+    scale = largest_quotient(wo, wi)[front, np.newaxis]
+    assert (white / scale).max() <= 2.0 * tolerances.BRDF
+    assert np.pi * np.abs(row.brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r)).max() > 1e-2
+
+
+def test_qon_tinted_twice_is_right_where_it_is_white():
+    row = model("qon_tinted_twice")
+    wo, wi, rho, sigma = pairs(2000, seed=14)
+    right = model("qon").brdf
+    assert np.array_equal(row.brdf(wo, wi, 1.0, sigma), right(wo, wi, 1.0, sigma))
+    assert np.array_equal(row.brdf(wo, wi, rho, sigma), rho * right(wo, wi, rho, sigma))
+
+
+def test_fitted_albedo_of_qon_is_lambert_when_smooth_and_off_when_rough():
+    fitted, exact = model("qon_fitted").albedo_dir, model("qon").albedo_dir
+    mu = np.linspace(0.0, 1.0, 101)
+    assert np.array_equal(fitted(mu, [0.3, 1.0], 0.0), np.tile([0.3, 1.0], (101, 1)))
+    assert 0.05 < np.abs(fitted(mu, 1.0, 0.5 * np.pi) - exact(mu, 1.0, 0.5 * np.pi)).max() < 0.07

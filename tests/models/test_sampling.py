@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Samplers: limits, invariants, and the agreement of samples, densities and models."""
+
+import numpy as np
+import pytest
+
+from mxeon.models.albedo import eon_albedo_dir
+from mxeon.models.brdf import eon_brdf, fon_brdf
+from mxeon.models.formulas import C1
+from mxeon.models.sampling import (
+    SAMPLERS,
+    cltc,
+    cosine_pdf,
+    eon_cltc_sample,
+    eon_pdf,
+    eon_sample,
+    ltc,
+)
+from mxeon.models.sampling import eon as eon_sampling
+from tests.support import tolerances
+from tests.support.hemispheres import (
+    BY_NAME,
+    COSINES,
+    every_sampler,
+    every_scene,
+    hemisphere,
+    uniforms,
+    view,
+)
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS[1:], ids=lambda sampler: sampler.name)
+@pytest.mark.parametrize("mu", COSINES)
+def test_without_roughness_every_sampler_but_uniform_is_cosine(sampler, mu):
+    wi, _ = hemisphere(mu, 8)
+    pdf = sampler.pdf(view(mu), wi, 0.0)
+    np.testing.assert_allclose(pdf, cosine_pdf(wi), rtol=tolerances.SAMPLE_PDF, atol=0.0)
+
+
+@every_scene
+def test_eon_pdf_is_the_brdf_times_the_cosine(mu, roughness):
+    wi, _ = hemisphere(mu, 8)
+    value = eon_brdf(view(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2]
+    pdf = eon_pdf(view(mu), wi, roughness)
+    np.testing.assert_allclose(pdf, value, rtol=tolerances.PDF, atol=0.0)
+
+
+@pytest.mark.parametrize("rho", [1e-9, 0.18, 0.8, 1.0])
+@every_scene
+def test_grey_eon_pdf_is_the_brdf_times_the_cosine_over_the_albedo(mu, roughness, rho):
+    wi, _ = hemisphere(mu, 8)
+    value = eon_brdf(view(mu), wi, rho, roughness)[..., 0] * wi[..., 2]
+    value = value / eon_albedo_dir(mu, rho, roughness)
+    pdf = eon_pdf(view(mu), wi, roughness, rho=rho)
+    np.testing.assert_allclose(pdf, value, rtol=tolerances.PDF, atol=0.0)
+
+
+def test_eon_pdf_of_a_black_surface_is_that_of_fon():
+    wi, weights = hemisphere(0.3)
+    value = fon_brdf(view(0.3), wi, 1.0, 1.0)[..., 0] * wi[..., 2]
+    pdf = eon_pdf(view(0.3), wi, 1.0, rho=0.0)
+    np.testing.assert_allclose(pdf, value / (value @ weights), rtol=tolerances.QUADRATURE)
+
+
+@every_sampler
+@every_scene
+def test_pdf_integrates_to_what_is_not_wasted(sampler, mu, roughness):
+    wi, weights = hemisphere(mu)
+    kept = 1.0
+    if sampler.name == "ltc":
+        kept = cltc.kept_part(ltc.coefficients(mu, roughness)[3])
+    clipped = sampler.name in ("ltc", "cltc", "eon_cltc")
+    bound = tolerances.KINK_QUADRATURE if clipped else tolerances.QUADRATURE
+    assert abs(sampler.pdf(view(mu), wi, roughness) @ weights - kept) < bound
+
+
+@pytest.mark.parametrize("mu", [0.0, 1e-9, 0.3, 1.0 - 1e-9, 1.0])
+@pytest.mark.parametrize("roughness", [0.0, 1e-9, 0.3, 1.0])
+def test_the_four_parts_of_eon_sum_to_one(mu, roughness):
+    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    total = eon_sampling.integrals(np.float64(mu), S, roughness, 1.0).sum()
+    assert abs(total / (1.0 + C1 * roughness) - 1.0) < tolerances.PDF
+
+
+def assert_same_density(pdf, again):
+    """Require two densities that should differ by rounding alone."""
+    np.testing.assert_allclose(pdf, again, rtol=tolerances.SAMPLE_PDF, atol=tolerances.DIRECTION)
+
+
+def turned(w, angle):
+    """`w` turned about the normal."""
+    x, y, z = np.moveaxis(w, -1, 0)
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+
+
+@every_sampler
+def test_turning_both_directions_leaves_the_pdf(sampler):
+    wi, _ = hemisphere(0.3, 8)
+    pdf = sampler.pdf(view(0.3, azimuth=2.0), turned(wi, 2.0), 1.0)
+    assert_same_density(pdf, sampler.pdf(view(0.3), wi, 1.0))
+
+
+@pytest.mark.parametrize("name", ["ltc0", "ltc", "cltc", "eon"])
+def test_turning_the_view_turns_the_samples(name):
+    wi, pdf = BY_NAME[name].sample(view(0.3), uniforms(1000, 1), 1.0)
+    again, again_pdf = BY_NAME[name].sample(view(0.3, azimuth=2.0), uniforms(1000, 1), 1.0)
+    same = np.abs(again - turned(wi, 2.0)).max(axis=-1) <= tolerances.TURNED_DIRECTION
+    assert np.mean(~same) <= tolerances.TURNED_SHARE
+    moved = again_pdf[same] - pdf[same]
+    assert (np.abs(moved) <= tolerances.SAMPLE_PDF * pdf[same] + tolerances.TURNED_PDF).all()
+
+
+@pytest.mark.parametrize("name", ["ltc0", "ltc", "cltc", "eon_cltc", "eon"])
+def test_arguments_broadcast(name):
+    wo = np.stack([view(mu) for mu in COSINES])[:, np.newaxis]
+    u, roughness = uniforms(7, 4), np.linspace(0.0, 1.0, 7)
+    wi, pdf = BY_NAME[name].sample(wo, u, roughness)
+    assert wi.shape == (len(COSINES), 7, 3) and pdf.shape == (len(COSINES), 7)
+    one, one_pdf = BY_NAME[name].sample(wo[2, 0], u[3], roughness[3])
+    np.testing.assert_allclose(wi[2, 3], one, rtol=0.0, atol=tolerances.DIRECTION)
+    assert_same_density(pdf[2, 3], one_pdf)
+
+
+@every_sampler
+def test_edges_give_unit_directions_above_the_horizon_and_finite_pdf(sampler):
+    # One unit in the last place beside 0 and 1, and where squares underflow.
+    edges = np.array([0.0, 5e-324, 1e-200, 2.0**-53, 1e-9, 0.25, 0.5, 0.75, 1.0 - 2.0**-53])
+    u = np.stack(np.meshgrid(edges, edges), axis=-1)
+    for mu in (*edges, 1.0):
+        for roughness in (*edges, 1.0):
+            wi, pdf = sampler.sample(view(mu, azimuth=1.0), u, roughness)
+            assert np.isfinite(wi).all() and np.isfinite(pdf).all() and (pdf >= 0.0).all()
+            assert (np.abs(np.sum(wi * wi, axis=-1) - 1.0) < tolerances.DIRECTION).all()
+            assert sampler.name == "ltc" or (wi[..., 2] >= 0.0).all()
+
+
+@pytest.mark.parametrize("roughness", [1e-300, 1e-306, 1e-307, 1e-308, 5e-324])
+@every_sampler
+def test_the_least_roughness_overflows_nothing(sampler, roughness):
+    for mu in (0.0, 1e-20, 0.3, 0.999999, 1.0):
+        wi, pdf = sampler.sample(view(mu), uniforms(1000, 5), roughness)
+        assert np.isfinite(wi).all() and np.isfinite(pdf).all()
+
+
+def test_eon_samples_always_have_a_weight():
+    edges = np.array([0.0, 5e-324, 2.0**-53, 0.5, 1.0 - 2.0**-53])
+    u = np.stack(np.meshgrid(edges, edges), axis=-1)
+    for mu in (*edges, 1.0):
+        for roughness in (*edges, 1.0):
+            wi, pdf = eon_sample(view(mu), u, roughness)
+            weight = eon_brdf(view(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2] / pdf
+            np.testing.assert_allclose(weight, 1.0, rtol=tolerances.PDF)
+
+
+def test_the_mixture_has_a_density_where_listing_4_has_none():
+    wi, pdf = eon_cltc_sample(view(0.5), [0.0, 0.5], 0.0)
+    assert wi.tolist() == [0.0, 0.0, 1.0] and pdf == 1.0 / np.pi
+
+
+@pytest.mark.parametrize("d", [-0.5, -1e-3, 0.0, 1e-3, 0.5])
+def test_clipped_cosine_keeps_the_side_of_the_lune_that_lands_above_the_horizon(d):
+    u = np.moveaxis(uniforms(10000, 2), -1, 0)
+    wh = cltc.clipped_cosine(u, d, cltc.kept_part(d))
+    assert (d * wh[..., 0] + wh[..., 2] >= -tolerances.LUNE).all()
+
+
+def test_listing_3_keeps_the_wrong_side_where_d_is_positive():
+    d = float(ltc.coefficients(1.0, 1.0)[3])
+    # The listing does whatever the sign what `clipped_cosine` does for a negative one.
+    x, _, z = cltc.clipped_cosine((1.0 - 1e-9, 0.0), -d, cltc.kept_part(d))
+    assert d > 0.0 and d * x + z < -0.9 * d
+
+
+def test_general_ltc_wastes_most_at_grazing_and_full_roughness():
+    mu, roughness = np.meshgrid(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 51))
+    waste = 1.0 - cltc.kept_part(ltc.coefficients(mu, roughness)[3])
+    assert waste.argmax() == np.ravel_multi_index((50, 0), waste.shape)
+    assert abs(waste.max() - 0.0534) < tolerances.FIGURE * 0.0534
+
+
+def test_the_matrix_never_turns_the_hemisphere_over():
+    mu, roughness = np.meshgrid(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 51))
+    a, b, c, d = ltc.coefficients(mu, roughness)
+    assert (c * (a - b * d)).min() > 0.9
+
+
+@every_sampler
+@every_scene
+def test_the_density_of_a_sample_is_the_pdf(sampler, mu, roughness):
+    wi, pdf = sampler.sample(view(mu), uniforms(1000, 3), roughness)
+    above = wi[..., 2] >= 0.0
+    again = sampler.pdf(view(mu), wi[above], roughness)
+    assert_same_density(pdf[above], again)

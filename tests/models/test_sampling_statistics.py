@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Samples are distributed as their density says.
+
+The seeds are fixed. FALSE_ALARM is the probability that a test of this file fails although all is
+right: each of the file's comparisons runs at its share of it.
+"""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from mxeon.models.sampling import SAMPLERS, Sampler, eon_pdf, eon_sample
+from tests.support.hemispheres import (
+    BY_NAME,
+    COSINES,
+    SCENES,
+    binned,
+    every_scene,
+    expected,
+    hemisphere,
+    uniforms,
+    view,
+)
+
+FALSE_ALARM = 1e-4
+
+# The exact sampler for grey surfaces.
+GREY = [
+    Sampler(f"eon_{rho}", partial(eon_sample, rho=rho), partial(eon_pdf, rho=rho), f"rho = {rho}")
+    for rho in (0.0, 0.5)
+]
+ALL = [*SAMPLERS, *GREY]
+
+# Half of it for the chi-square tests; the other half for three times as many means, each with two
+# sides.
+SHARE = 0.5 * FALSE_ALARM / (len(ALL) * len(SCENES))
+
+every_sampler = pytest.mark.parametrize("sampler", ALL, ids=lambda sampler: sampler.name)
+
+
+def seed_of(sampler, mu, roughness):
+    """A seed for each comparison."""
+    return [ALL.index(sampler), SCENES.index((mu, roughness))]
+
+
+def chi_square(sampler, pdf_of, mu, roughness, samples=100_000, count=12):
+    """Probability of a chi-square as large, for `sampler` against the density of `pdf_of`."""
+    u = uniforms(samples, seed_of(sampler, mu, roughness))
+    edges = np.unique(np.append(np.arccos(np.sqrt(np.linspace(0.0, 1.0, 9))), np.arccos(mu)))
+    seen = binned(sampler.sample(view(mu), u, roughness)[0], edges, count)
+    mean = samples * expected(pdf_of, mu, roughness, edges, count)
+    # Pool the bins in which the statistic would not be chi-square.
+    rare = mean < 10.0
+    seen, mean = np.append(seen[~rare], seen[rare].sum()), np.append(mean[~rare], mean[rare].sum())
+    if mean[-1] < 10.0:
+        seen, mean = seen[:-1], mean[:-1]
+    return stats.chi2.sf(np.sum((seen - mean) ** 2 / mean), len(mean) - 1)
+
+
+@every_sampler
+@every_scene
+def test_samples_pass_the_chi_square_test_against_their_pdf(sampler, mu, roughness):
+    assert chi_square(sampler, sampler, mu, roughness) > SHARE
+
+
+@pytest.mark.parametrize("mu", COSINES)
+def test_chi_square_tells_the_samplers_apart(mu):
+    for sampler in SAMPLERS[:4]:
+        assert chi_square(sampler, BY_NAME["eon"], mu, 1.0) < SHARE
+
+
+@every_sampler
+@every_scene
+def test_mean_of_the_samples_is_that_of_the_pdf(sampler, mu, roughness):
+    wi, weights = hemisphere(mu)
+    mean = np.einsum("n,nk,n->k", sampler.pdf(view(mu), wi, roughness), wi, weights)
+    u = uniforms(20_000, seed_of(sampler, mu, roughness))
+    drawn, _ = sampler.sample(view(mu), u, roughness)
+    drawn = drawn * (drawn[:, 2:] >= 0.0)
+    error = np.abs(drawn.mean(axis=0) - mean) / (drawn.std(axis=0) / np.sqrt(len(drawn)))
+    assert error.max() < stats.norm.isf(SHARE / 3.0 / 2.0)

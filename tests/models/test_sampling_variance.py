@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the samplers reach: the variance and the largest value of the throughput weight.
+
+At unit reflectance the weight is f cos(theta_i) / p. Its mean is 1. That of the exact sampler is 1
+everywhere by the density it returns; here it is taken over the density that its samples really
+have, which differs by what the two fits leave.
+"""
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from mxeon.models.brdf import eon_brdf
+from mxeon.models.formulas import C1, C2, fon_quotient, loss
+from mxeon.models.sampling import eon as eon_sampling
+from mxeon.models.sampling import eon_pdf
+from tests.support import tolerances
+from tests.support.hemispheres import BY_NAME, every_scene, hemisphere, view
+
+UNBIASED = [BY_NAME[name] for name in ("uniform", "cosine", "ltc0", "eon_cltc", "eon")]
+ANGLES = (0.0, 1e-3, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0)
+# Down to where cosine sampling is all but exact.
+ROUGHNESS = (1e-9, 1e-6, 1e-3, 0.05, 0.25, 0.5, 0.75, 1.0)
+# Roots of a random number in which the fits are written, dense at both ends.
+ROOTS = np.sin(0.5 * np.pi * (np.arange(4001) + 0.5) / 4001) ** 2
+
+
+def weights_of(sampler, mu, roughness):
+    """Throughput weights over the hemisphere where the pdf is positive, and probabilities."""
+    wi, solid_angle = hemisphere(mu, 32)
+    pdf = sampler.pdf(view(mu), wi, roughness)
+    wi, pdf, solid_angle = wi[pdf > 0.0], pdf[pdf > 0.0], solid_angle[pdf > 0.0]
+    value = eon_brdf(view(mu), wi, 1.0, roughness)[..., 0] * wi[..., 2]
+    return value / pdf, pdf * solid_angle
+
+
+def largest(name, quantity, roughness, cosines):
+    """Largest value of a quantity of weights and probabilities, over the polar angle."""
+    return max(quantity(*weights_of(BY_NAME[name], mu, roughness)) for mu in cosines)
+
+
+def variance(weight, probability):
+    """Of a weight whose mean is 1."""
+    return (weight - 1.0) ** 2 @ probability
+
+
+@pytest.mark.parametrize("sampler", UNBIASED, ids=lambda sampler: sampler.name)
+@every_scene
+def test_mean_weight_is_one(sampler, mu, roughness):
+    weight, probability = weights_of(sampler, mu, roughness)
+    assert abs(weight @ probability - 1.0) < tolerances.QUADRATURE
+
+
+def multiple_error():
+    """Cosines, and the relative error of the density that `multiple` draws them with."""
+    w = Polynomial([0.0, 1.0])
+    a, b, c, d, e, f = eon_sampling.MULTIPLE
+    t = 1.0 - w**2
+    mu = t * (1.0 + w**2 * (a + w**2 * (b + w * (c + w * (d + w * (e + w**4 * f))))))
+    np.testing.assert_allclose(
+        eon_sampling.multiple_cosine(t(ROOTS) ** 3)[0], mu(ROOTS), atol=tolerances.DIRECTION
+    )
+    # The random number is t^3, its derivative by w is -6 w t^2.
+    slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
+    return mu(ROOTS), 1.0 / (slope * 2.0 * loss(mu(ROOTS)) * mu(ROOTS) / (C1 - C2)) - 1.0
+
+
+def upper_error(mu_o):
+    """Cosines, and the relative error of the density that `upper` draws them with."""
+    y = Polynomial([0.0, 1.0])
+    fit = y * (1.0 + (1.0 - y) * Polynomial(eon_sampling.UPPER))
+    S_o = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
+    K_o = eon_sampling.segment(mu_o, S_o)
+    y_o = (K_o / (0.25 * np.pi - 1.0 / 3.0)) ** 0.4
+    scale = (1.0 - mu_o) / fit(y_o)
+    mu, S = eon_sampling.upper_cosine(ROOTS**2.5, mu_o, S_o)
+    np.testing.assert_allclose(mu, 1.0 - scale * fit(y_o * ROOTS), atol=tolerances.DIRECTION)
+    # The random number is y^2.5.
+    slope = scale * y_o * fit.deriv()(y_o * ROOTS) / (2.5 * ROOTS**1.5)
+    return mu, K_o / (slope * S * (1.0 - mu)) - 1.0
+
+
+def excess(mu, roughness):
+    """Relative excess of the density of exact samples over `eon_pdf`, with its probabilities."""
+    wi, solid_angle = hemisphere(mu, 32)
+    mu_i, s = wi[:, 2], view(mu)[0] * wi[:, 0]
+    multiple = roughness * loss(mu_i) * loss(mu) / (C1 - C2)
+    upper = np.where(mu_i >= mu, roughness * np.maximum(s, 0.0) * (1.0 / mu_i - 1.0), 0.0)
+    total = 1.0 + roughness * fon_quotient(mu, mu_i, s) + multiple
+    extra = multiple * np.interp(mu_i, *(row[::-1] for row in multiple_error()))
+    if mu < 1.0:
+        extra += upper * np.interp(mu_i, *(row[::-1] for row in upper_error(mu)))
+    return extra / total, eon_pdf(view(mu), wi, roughness) * solid_angle
+
+
+def test_what_the_fits_leave_is_what_the_documentation_states():
+    errors = [multiple_error()[1]] + [upper_error(mu)[1] for mu in np.linspace(0.0, 0.99, 100)]
+    assert max(np.abs(error).max() for error in errors) < tolerances.EON_DENSITY
+
+
+@pytest.mark.parametrize("mu", ANGLES)
+@pytest.mark.parametrize("roughness", ROUGHNESS)
+def test_exact_sampling_has_no_variance_left(mu, roughness):
+    relative, probability = excess(mu, roughness)
+    weight = 1.0 / (1.0 + relative)
+    assert weight.max() <= 1.0 + tolerances.EON_WEIGHT
+    assert variance(weight, probability) < tolerances.EON_VARIANCE
+
+
+@pytest.mark.parametrize("mu", ANGLES)
+@pytest.mark.parametrize("roughness", ROUGHNESS)
+def test_exact_sampling_is_never_worse_than_cosine(mu, roughness):
+    relative, probability = excess(mu, roughness)
+    exact = variance(1.0 / (1.0 + relative), probability)
+    assert exact <= variance(*weights_of(BY_NAME["cosine"], mu, roughness))
+
+
+@pytest.mark.parametrize("roughness, figure", [(0.25, 0.0087), (0.5, 0.0156), (1.0, 0.0365)])
+def test_variance_of_the_mixture_is_that_of_the_paper(roughness, figure):
+    found = largest("eon_cltc", variance, roughness, np.linspace(0.0, 1.0, 51))
+    assert abs(found - figure) < tolerances.FIGURE * figure
+
+
+def test_largest_weight_of_the_mixture_is_that_of_the_paper():
+    found = largest("eon_cltc", lambda weight, _: weight.max(), 1.0, np.linspace(0.0, 1.0, 51))
+    assert abs(found - 1.47) < tolerances.FIGURE * 1.47
+
+
+def test_the_mixture_is_worse_than_cosine_where_the_roughness_is_low():
+    for mu in ANGLES:
+        mixture, cosine = (
+            variance(*weights_of(BY_NAME[name], mu, 0.02)) for name in ("eon_cltc", "cosine")
+        )
+        assert mixture > cosine
+
+
+def test_clipped_sampling_alone_loses_up_to_nine_thousandths():
+    lost = [
+        largest("cltc", lambda weight, p: 1.0 - weight @ p, r, np.linspace(0.0, 1.0, 51))
+        for r in (0.6, 0.7, 0.8)
+    ]
+    assert abs(max(lost) - 0.009) < tolerances.FIGURE * 0.009

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Two reports compared: what got worse is said first and by the exit status."""
+
+import json
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mxeon.cli import main
+from mxeon.conformance.records import read_record
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Picture, Result, Run
+from mxeon.report import to_json, write
+from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare
+from mxeon.shaders.hosts import Identity
+
+PLACE = "gl, eonlib, value, clay"
+
+
+def made_run(verdict=PASSED, figure=1e-7, device="llvmpipe", difference=1e-7, subject="clay"):
+    pixels = np.zeros((4, 4, 3))
+    picture = Picture("d", "e", "gl", "eonlib", "side", pixels + difference, pixels, {})
+    result = Result("value", "claim", subject, "gl", "eonlib", verdict, figure, tolerance=1e-6)
+    return Run("1.0", {"Python": "3"}, (Identity("gl", "4.5", device),), (result,), (picture,))
+
+
+def changes(before, after):
+    return compare(*(read_record(json.loads(to_json(run)), Report) for run in (before, after)))
+
+
+def test_equal_runs_do_not_differ():
+    assert changes(made_run(), made_run(figure=1.5e-7)) == ()
+
+
+@pytest.mark.parametrize(
+    "after, expected",
+    [
+        ({"verdict": FAILED}, Change(WORSE, PLACE, "passed at 1e-07", "failed at 1e-07")),
+        ({"verdict": NOT_RUN, "figure": None}, Change(WORSE, PLACE, "passed at 1e-07", "not run")),
+        ({"figure": 3e-7}, Change(OTHER, PLACE, "passed at 1e-07", "passed at 3e-07")),
+        ({"figure": float("nan")}, Change(OTHER, PLACE, "passed at 1e-07", "passed at NaN")),
+        ({"device": "GPU"}, Change(OTHER, "host gl", "4.5, llvmpipe", "4.5, GPU")),
+        (
+            {"difference": 1e-3},
+            Change(OTHER, "gl, eonlib, d, e, side, largest difference", "1e-07", "0.001"),
+        ),
+    ],
+)
+def test_each_kind_of_change_is_told(after, expected):
+    assert changes(made_run(), made_run(**after)) == (expected,)
+
+
+def test_what_got_better_is_no_worse():
+    (change,) = changes(made_run(verdict=FAILED), made_run())
+    assert change.kind == BETTER
+
+
+def test_a_check_that_went_is_worse_and_one_that_came_is_not():
+    found = changes(made_run(), made_run(subject="slate"))
+    assert [change.kind for change in found] == [WORSE, OTHER]
+    assert (found[0].after, found[1].before) == ("none", "none")
+
+
+def test_records_of_one_name_are_told_apart():
+    before, after = made_run(), made_run(FAILED)
+    passed = replace(before, results=before.results * 2)
+    (change,) = changes(passed, replace(before, results=before.results + after.results))
+    assert change.kind == WORSE and change.place == f"{PLACE}, number 2"
+
+
+@pytest.mark.parametrize("verdict, status", [(PASSED, 0), (FAILED, 1)])
+def test_the_exit_status_says_whether_anything_got_worse(tmp_path, capsys, verdict, status):
+    for name, run in (("a", made_run()), ("b", made_run(verdict))):
+        write(run, tmp_path / name)
+    assert main(["report", "diff", str(tmp_path / "a"), str(tmp_path / "b")]) == status
+    printed = capsys.readouterr().out
+    assert printed.startswith("no difference" if status == 0 else "worse: gl, eonlib, value, clay")
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("[", "must be the results.json of a report; "),
+        ("[]", "must be the results.json of a report; "),
+        ("[" * 100_000, "must be the results.json of a report; "),
+        ("1" * 5000, "must be the results.json of a report; "),
+        ("{}", "must be the results.json of a report; lacks 'format'"),
+        ('{"format": 1}', "must be the results.json of a report; lacks "),
+        ('{"format": 1, "results": 3, "pictures": []}', "must be the results.json of a report; "),
+        ('{"format": 0}', "format must be 1; got 0: make it anew"),
+    ],
+)
+def test_what_is_no_report_is_one_line(tmp_path, capsys, text, words):
+    (tmp_path / "results.json").write_text(text)
+    assert words in refusal_of(tmp_path, capsys)
+
+
+def refusal_of(folder, capsys):
+    """The one line by which `report diff` refuses a report."""
+    assert main(["report", "diff", str(folder), str(folder)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and error.startswith("mxeon: ")
+    return error
+
+
+@pytest.mark.parametrize(
+    "key, value, words",
+    [
+        ("figure", 10**400, "must be a number below 1.8e308; got one of 401 digits"),
+        ("figure", "1e-7", "must be a number; got '1e-7'"),
+        ("figure", True, "must be a number; got True"),
+        ("tolerance", None, "figure must have its tolerance; got 1e-07 and none"),
+        ("figure", -1.0, "figure and tolerance must be at least 0; got -1.0 and 1e-06"),
+        ("figure", "-Infinity", "figure and tolerance must be at least 0; got -inf"),
+        ("verdict", "maybe", "verdict must be one of passed, failed, not run; got 'maybe'"),
+        ("verdict", None, "must be a text; got None @ $.results[0].verdict"),
+        ("verdict", [], "must be a text; got [] @ $.results[0].verdict"),
+        ("worst", {"a": None}, "$.results[0].worst"),
+        ("host", 3, "must be a text; got 3 @ $.results[0].host"),
+        ("control", "x", "$.results[0].control"),
+        ("more", 1, "more"),
+    ],
+)
+def test_a_value_that_no_report_has_is_named_with_its_place(tmp_path, capsys, key, value, words):
+    edit(tmp_path, lambda content: content["results"][0].update({key: value}))
+    assert words in refusal_of(tmp_path, capsys)
+
+
+@pytest.mark.parametrize("key", list(json.loads(to_json(made_run()))))
+@pytest.mark.parametrize("value", [None, -1, "x", {"x": 1}, [1], [[]], 10**400])
+def test_a_key_of_another_type_or_without_is_one_line(tmp_path, capsys, key, value):
+    edit(tmp_path, lambda content: content.update({key: value}))
+    if key != "curves" and (key, value) not in [("sentence", "x"), ("version", "x")]:
+        refusal_of(tmp_path, capsys)
+    edit(tmp_path, lambda content: content.pop(key))
+    refusal_of(tmp_path, capsys)
+
+
+def edit(folder, change):
+    """A report whose results.json was changed."""
+    content = json.loads(to_json(made_run()))
+    change(content)
+    (folder / "results.json").write_text(json.dumps(content))
+
+
+@pytest.mark.parametrize("difference", [-1.0, "x", 10**400, "-Infinity"])
+def test_a_difference_of_pictures_has_to_be_a_number(tmp_path, capsys, difference):
+    edit(tmp_path, lambda content: content["pictures"][0].update(largest_difference=difference))
+    assert "$.pictures[0]" in refusal_of(tmp_path, capsys)
+
+
+def test_a_pipe_in_place_of_a_report_blocks_nobody(tmp_path, capsys):
+    os.mkfifo(tmp_path / "results.json")
+    assert "results.json of a report; not a regular file" in refusal_of(tmp_path, capsys)
+
+
+def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
+    for name in "ab":
+        write(made_run(subject=f"\x1b[2Jclay {name}\n"), tmp_path / name)
+    assert main(["report", "diff", str(tmp_path / "a"), str(tmp_path / "b")]) == 1
+    printed = capsys.readouterr().out
+    assert "\x1b" not in printed and printed.count("\n") == 2
+
+
+def test_figures_that_are_not_finite_are_the_same_only_by_name():
+    nan, infinite = (made_run(figure=float(name)) for name in ("nan", "inf"))
+    assert changes(nan, nan) == changes(infinite, infinite) == ()
+    (change,) = changes(nan, infinite)
+    assert (change.before, change.after) == ("passed at NaN", "passed at Infinity")

@@ -1,0 +1,393 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reports: nothing is lost, nothing is let through unescaped, files are whole."""
+
+import json
+import math
+import re
+import sys
+from base64 import b64encode
+from dataclasses import replace
+from hashlib import sha256
+from html.parser import HTMLParser
+from pathlib import Path
+from xml.etree import ElementTree
+
+import matplotlib
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Curve, Picture, Result, Run
+from mxeon.conformance.verdict import summarize
+from mxeon.io.images import difference_scale, srgb_encoded
+from mxeon.report import html, to_json, to_junit, write
+from mxeon.report.plots import SHOWN_SIZE, difference_pixels
+from mxeon.shaders.hosts import Identity
+from mxeon.shaders.scene import sphere
+from tests.support.faults import room_for
+
+HOSTILE = "<script>alert('\x08')</script>\"><img src=x onerror=y>&{{ 7 * 7 }}$"
+SIZE = 16
+
+
+def made_result(verdict, **changes):
+    ran = Result(
+        check="value",
+        claim="The shader returns the reference value.",
+        subject="oren_nayar_diffuse_bsdf, compensated",
+        host="gl",
+        library="eonlib",
+        verdict=verdict,
+        figure=1.25e-7,
+        unit="1/pi",
+        tolerance=2e-6,
+        derivation="Two roundings of 6e-8 each.",
+        worst={"wo": [0.0, 0.6, 0.8], "roughness": [1.0]},
+        control=Control("s clamped", 0.35, caught=True),
+    )
+    return replace(ran, **changes)
+
+
+FAILURE = made_result(FAILED, library="stock", figure=math.inf, diagnosis="nearest model: QON")
+MISSING = made_result(
+    NOT_RUN, host="cycles", figure=None, control=None, worst={}, reason="Blender is not here"
+)
+ATTACK = made_result(
+    FAILED, figure=math.nan, subject=HOSTILE, diagnosis=HOSTILE, unit=HOSTILE, claim=HOSTILE,
+    derivation=HOSTILE, worst={HOSTILE: [1.0]}, control=Control(HOSTILE, 0.0, caught=False),
+)  # fmt: skip
+
+
+def made_picture(element, host="gl", **changes):
+    normal = sphere(SIZE).normal.astype(np.float32)
+    reference = np.maximum(normal[..., 2:], 0.0) * np.float32([0.5, 0.25, 0.125])
+    metadata = {"version": "0.1.0", "host": host, "device": "test", "element": element}
+    image = reference * np.float32(1.5)
+    made = Picture("a/clay.mtlx", element, host, "eonlib", "side", image, reference, metadata)
+    return replace(made, **changes)
+
+
+def made_curve(rho):
+    mu = np.linspace(0.0, 1.0, 5)
+    expected = np.outer(1.0 - 0.1 * mu, rho)
+    return Curve(HOSTILE, "gl", "eonlib", rho, 1.0, mu, expected + 0.001, expected)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return Run(
+        version="0.1.0",
+        software={"MaterialX": "1.39.5"},
+        hosts=(Identity("gl", "OpenGL 4.5", "llvmpipe"), Identity("cycles", "5.0", HOSTILE)),
+        results=(made_result(PASSED), FAILURE, MISSING, ATTACK),
+        pictures=(
+            made_picture("clay"),
+            made_picture("Clay"),
+            made_picture(HOSTILE, reference=None, metadata={"element": HOSTILE}),
+        ),
+        curves=(made_curve((0.5, 0.5, 0.5)), made_curve((0.8, 0.5, 0.2))),
+        notes=(HOSTILE, "cycles cannot express QON"),
+        documents=(Path("a/clay.mtlx"),),
+    )
+
+
+class Page(HTMLParser):
+    """Elements, identifiers and text of a page."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.tags, self.attributes, self.words = [], [], []
+        self.feed(html)
+        self.text = " ".join(" ".join(self.words).split())
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    def values(self, *names):
+        return [value for name, value in self.attributes if name in names]
+
+
+def page_of(run):
+    return "".join(html(run))
+
+
+@pytest.fixture(scope="module")
+def page(run):
+    return Page(page_of(run))
+
+
+@pytest.fixture(scope="module")
+def folder(run, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    write(run, folder)
+    return folder
+
+
+def spec_of(path):
+    return oiio.ImageBuf(str(path)).spec()
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "expected"),
+    [
+        ((), NOT_RUN),
+        ((PASSED, PASSED), PASSED),
+        ((PASSED, NOT_RUN), NOT_RUN),
+        ((NOT_RUN,), NOT_RUN),
+        ((PASSED, NOT_RUN, FAILED), FAILED),
+    ],
+)
+def test_a_run_is_as_good_as_its_worst_check(verdicts, expected):
+    assert summarize([made_result(verdict) for verdict in verdicts]).verdict == expected
+
+
+def test_the_sentence_counts_and_says_where():
+    found = summarize([made_result(PASSED), FAILURE])
+    assert found.sentence == "1 of 2 checks failed: 1 on gl with stock."
+    assert found.counts == {PASSED: 1, FAILED: 1, NOT_RUN: 0}
+
+
+def test_page_runs_its_own_script_alone_and_escapes_what_it_was_given(page, run):
+    assert not {"iframe", "object", "link", "base", "form"} & set(page.tags)
+    assert page.tags.count("script") == 1
+    (script,) = re.findall(r"<script>(.*?)</script>", page_of(run), re.DOTALL)
+    (allowed,) = re.findall(r"script-src 'sha256-(.*?)'", page_of(run))
+    assert allowed == b64encode(sha256(script.encode()).digest()).decode()
+    assert not [name for name, _ in page.attributes if name.startswith("on")]
+    assert page.text.count("<script>alert(") > 8
+    assert "49" not in re.findall(r"&(\d+)\$", page.text)
+
+
+def test_page_loads_nothing(page, run):
+    assert all(value.startswith("data:image/png;") for value in page.values("src"))
+    assert all(value.startswith("#") for value in page.values("href", "xlink:href"))
+    assert not re.findall(r"url\((?!#)|@import", page_of(run))
+
+
+def test_page_has_unique_identifiers_and_no_loose_link(page):
+    identifiers = page.values("id")
+    assert len(identifiers) == len(set(identifiers))
+    assert {link[1:] for link in page.values("href", "xlink:href")} <= set(identifiers)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "2 of 4 checks failed",
+        "The shader returns the reference value.",
+        "1.25e-7",
+        "2e-6 1/pi",
+        "Two roundings of 6e-8 each.",
+        "wo (0, 0.6, 0.8)",
+        "nearest model: QON",
+        "s clamped: 0.35, caught",
+        "not caught",
+        "Blender is not here",
+        "cycles cannot express QON",
+        "llvmpipe",
+        "1.39.5",
+        "rho (0.8, 0.5, 0.2), roughness 1",
+    ],
+)
+def test_page_says(page, words):
+    assert words in page.text
+
+
+def test_page_gives_the_verdict_before_anything_else(page):
+    order = ("Failed", "What failed", "What did not run", "Checks", "Pictures", "What took part")
+    places = [page.text.index(words, len("mxeon:")) for words in order]
+    assert places == sorted(places)
+
+
+def test_page_shows_what_a_classification_was_nearest_to(run):
+    distances = {f"model {number}": 0.1 * number for number in range(9)}
+    text = Page(page_of(replace(run, results=(replace(FAILURE, distances=distances),)))).text
+    assert "model 4" in text and "model 5" not in text
+
+
+def test_an_unfinished_run_says_what_is_missing(run):
+    started = replace(run, results=(made_result(PASSED),), missing=("gl, value, clay, eonlib",))
+    text = Page(page_of(started)).text
+    assert "The run is not finished: 1 items are missing." in text
+    assert "gl, value, clay, eonlib" in text
+    assert json.loads(to_json(started))["missing"] == ["gl, value, clay, eonlib"]
+    assert json.loads(to_json(started))["verdict"] == NOT_RUN
+
+
+def test_a_run_with_refused_documents_says_so_everywhere(run):
+    refused = replace(run, results=(made_result(PASSED),), errors=(f"a.mtlx: {HOSTILE}",))
+    found = json.loads(to_json(refused))
+    assert found["verdict"] == NOT_RUN and found["errors"] == [f"a.mtlx: {HOSTILE}"]
+    assert found["sentence"].endswith("Refused: 1 documents.")
+    page = page_of(refused)
+    assert "Refused: a.mtlx: &lt;script&gt;" in page and HOSTILE not in page
+    suite = ElementTree.fromstring(to_junit(refused)).find("testsuite[@name='documents']")
+    assert (
+        suite.get("errors") == "1" and suite.find("testcase/error").get("message")[:6] == "a.mtlx"
+    )
+
+
+def test_pictures_beyond_the_first_materials_are_links_to_their_files(run, tmp_path, monkeypatch):
+    monkeypatch.setattr("mxeon.report.page.SHOWN_MATERIALS", 1)
+    many = replace(run, pictures=tuple(made_picture(name) for name in ("clay", "slate", "dust")))
+    write(many, tmp_path)
+    page = Page((tmp_path / "report.html").read_text(encoding="utf-8"))
+    links = [link for link in page.values("href") if not link.startswith("#")]
+    assert len(links) == 2 and all((tmp_path / link).is_file() for link in links)
+    assert "Further materials" in page.text
+
+
+def test_page_of_an_empty_run_says_that_nothing_ran():
+    empty = Run(version="0.1.0", software={}, hosts=(), results=())
+    assert "No check ran." in Page(page_of(empty)).text
+
+
+def test_page_shows_a_failure_without_a_figure(run):
+    crash = made_result(FAILED, figure=None, tolerance=None, diagnosis="no image came back")
+    text = Page(page_of(replace(run, results=(crash,), pictures=(), curves=()))).text
+    assert text.count("no image came back") == 2
+
+
+def test_page_shows_large_pictures_small(run):
+    size = 2 * SHOWN_SIZE
+    large = made_picture("clay", image=np.zeros((size, size, 3)), reference=None)
+    small = page_of(replace(run, pictures=(large,), curves=()))
+    assert len(small) < 60_000
+
+
+def strict_json(text):
+    def refuse(constant):
+        raise AssertionError(f"{constant} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_json_is_strict_and_has_the_documented_keys(run):
+    data = strict_json(to_json(run))
+    documented = re.findall(r"(?:- |; )(\w+):", to_json.__doc__.split("Keys:")[1])
+    assert set(data) == set(documented)
+    assert data["results"][1]["figure"] == "Infinity"
+    assert data["results"][3]["figure"] == "NaN"
+    assert data["results"][2]["control"] is None
+
+
+def test_json_names_the_pictures_that_are_written(run, folder):
+    data = strict_json((folder / "results.json").read_text(encoding="utf-8"))
+    named = [folder / one[kind] for one in data["pictures"] for kind in ("exr", "png")]
+    assert len({str(path).lower() for path in named}) == 2 * len(run.pictures)
+    assert all(path.is_file() for path in named)
+    assert data["pictures"][0]["largest_difference"] > 0.0
+    assert data["pictures"][2]["largest_difference"] is None
+
+
+def test_junit_counts_and_explains(run):
+    suites = ElementTree.fromstring(to_junit(run)).findall("testsuite")
+    counts = {suite.get("name"): suite.get("failures") + suite.get("skipped") for suite in suites}
+    assert counts == {"gl with eonlib": "10", "gl with stock": "10", "cycles with eonlib": "01"}
+    assert suites[2].find("testcase/skipped").get("message") == "Blender is not here"
+    failure = suites[1].find("testcase/failure")
+    assert failure.get("message").endswith("inf > 2e-06 1/pi")
+    assert "nearest model: QON" in failure.text and "wo" in failure.text
+
+
+def test_junit_replaces_what_xml_cannot_hold(run):
+    case = ElementTree.fromstring(to_junit(run)).findall("testsuite/testcase")[1]
+    assert case.get("name") == HOSTILE.replace("\x08", "\N{REPLACEMENT CHARACTER}")
+
+
+def test_pictures_are_float_exr_and_eight_bit_png_that_say_what_made_them(run, folder):
+    stem = folder / "pictures" / "clay-clay-gl-eonlib-side"
+    exr, png = oiio.ImageBuf(f"{stem}.exr"), oiio.ImageBuf(f"{stem}.png")
+    np.testing.assert_array_equal(exr.get_pixels(oiio.FLOAT), run.pictures[0].image)
+    np.testing.assert_array_equal(png.get_pixels(oiio.UINT8), srgb_encoded(run.pictures[0].image))
+    for key, value in run.pictures[0].metadata.items():
+        assert exr.spec()[f"mxeon:{key}"] == png.spec()[f"mxeon:{key}"] == value
+    assert exr.spec()["oiio:ColorSpace"] == "lin_rec709_scene"
+    assert png.spec()["oiio:ColorSpace"] == "srgb_rec709_scene"
+
+
+def test_references_are_written_once(folder):
+    spec = spec_of(folder / "pictures" / "clay-clay-reference-eonlib-side.exr")
+    assert spec["mxeon:host"] == "reference"
+    assert "mxeon:device" not in [attribute.name for attribute in spec.extra_attribs]
+    assert len(list((folder / "pictures").glob("*-reference-*.exr"))) == 2
+
+
+def test_srgb_codes_follow_the_standard():
+    # Both sides of the toe's end, at 0.0031308, then beyond both ends.
+    linear = np.array([[0.003, 0.0032, 0.5], [-1.0, 7.0, 1.0]])
+    assert srgb_encoded(linear).tolist() == [[10, 11, 188], [0, 255, 255]]
+
+
+def test_what_is_not_finite_is_shown_in_magenta():
+    assert srgb_encoded([np.nan, 0.0, 0.0]).tolist() == [255, 0, 255]
+    assert difference_pixels(np.array([[np.inf]]), 1.0).tolist() == [[[255, 0, 255]]]
+
+
+@pytest.mark.parametrize("largest", [0.0, 1e-9, 3e-7, 0.02, 0.0201, 1.0, 9.9, 123.0])
+def test_difference_scale_covers_and_is_at_most_two_and_a_half_times_too_long(largest):
+    scale = difference_scale([0.0, largest])
+    assert largest <= scale <= max(2.5 * largest, 1e-9)
+
+
+def test_difference_scale_disregards_a_hundredth_of_the_pixels():
+    assert difference_scale([*np.full(995, 0.9e-6), *np.full(5, 1.0)]) == 1e-6
+
+
+def test_files_are_replaced_whole_and_nothing_else_stays_behind(run, folder):
+    (folder / "report.html").write_text("old")
+    before = sorted(folder.rglob("*"))
+    write(run, folder)
+    assert sorted(folder.rglob("*")) == before
+    assert (folder / "report.html").read_text(encoding="utf-8") == page_of(run)
+
+
+def test_a_folder_that_cannot_be_written_is_an_error(run, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(OSError, match="file"):
+        write(run, tmp_path / "file" / "report")
+
+
+def test_a_matplotlibrc_in_the_working_folder_changes_no_page(run):
+    before = page_of(run)
+    with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 40.0, "text.usetex": True}):
+        assert page_of(run) == before
+
+
+@pytest.mark.parametrize("name", ["results.json", "pictures", "report.html"])
+def test_on_a_full_disk_each_file_is_whole_or_missing_and_said_so(run, tmp_path, name):
+    write(run, tmp_path / "whole")
+    sizes = {file.name: file.stat().st_size for file in (tmp_path / "whole").rglob("*.*")}
+    room = max(
+        file.stat().st_size for file in (tmp_path / "whole").rglob("*.*") if name in str(file)
+    )
+    with room_for(room - 1), pytest.raises(OSError) as error:
+        write(run, tmp_path / "part")
+    assert not Path(error.value.filename).exists()
+    for file in (tmp_path / "part").rglob("*.*"):
+        assert file.stat().st_size == sizes[file.name]
+
+
+def test_a_picture_that_cannot_be_written_leaves_the_old_one(run, tmp_path):
+    path = tmp_path / "pictures" / "clay-clay-gl-eonlib-side.exr"
+    path.parent.mkdir()
+    path.write_text("old")
+    wrong = replace(run.pictures[0], image=np.zeros((0, 0, 3)), reference=None)
+    with pytest.raises(OSError, match=r"clay-clay.*\.exr"):
+        write(replace(run, pictures=(wrong,)), tmp_path)
+    assert [entry.read_text() for entry in path.parent.iterdir()] == ["old"]
+
+
+@pytest.mark.parametrize("library", ["jinja2", "matplotlib"])
+def test_without_the_report_extra_all_but_the_page_is_written(run, tmp_path, monkeypatch, library):
+    for name in ("mxeon.report.page", "mxeon.report.plots"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(ImportError, match=rf"{library}: pip install 'mxeon\[report\]'"):
+        write(run, tmp_path)
+    written = sorted(path.name for path in tmp_path.iterdir())
+    assert written == ["junit.xml", "pictures", "results.json"]

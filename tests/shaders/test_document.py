@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bad documents: each ends in one line that names the place, the rule and the value."""
+
+import os
+import warnings
+from math import pi
+from pathlib import Path
+
+import MaterialX as mx
+import pytest
+
+from mxeon.errors import LONGEST, DocumentError
+from mxeon.shaders.document.notes import MissingFileWarning
+from mxeon.shaders.document.reading import DocumentWarning, read_document
+from mxeon.shaders.generation import generate
+from tests.support.documents import EON, FLAG, connected, lobe, material
+
+INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
+DEFINED = '<nodedef name="ND_{0}" node="{0}"><output name="out" type="BSDF"/></nodedef>'
+INNER = '<{} name="inner" type="BSDF"/><output name="out" type="BSDF" nodename="inner"/>'
+INSIDE = '<nodegraph name="NG_{}" nodedef="ND_{}">' + INNER + "</nodegraph>"
+LINKED = f"""<nodegraph name="NG_a">{INNER.format("a")}</nodegraph>
+    <implementation name="IM_a" nodedef="ND_a" nodegraph="NG_a"/>"""
+CYCLE = (
+    '<add name="a" type="color3"><input name="in1" type="color3" nodename="b"/></add>'
+    '<add name="b" type="color3"><input name="in1" type="color3" nodename="a"/></add>'
+)
+IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
+A = '<a name="lobe" type="BSDF"/>'
+
+# What a file holds, and what is said of it.
+FILES = {
+    "empty": ("", "must be a MaterialX document; XML parse error"),
+    "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
+    "binary": ("".join(map(chr, range(256))), "must be a MaterialX document in UTF-8; invalid"),
+    "cut short": (material(lobe())[:150], "must be a MaterialX document; XML parse error"),
+    "html": ("<html><body/></html>", "must be a MaterialX document; No root MaterialX element"),
+    "too deep": (
+        material("<a>" * 1000 + "</a>" * 1000),
+        "must have at most 64 elements within each other; got 65",
+    ),
+    "future": ('<materialx version="1.99"/>', "MaterialX upgrades to 1.39; got '1.99'"),
+    "next": ('<materialx version="2"/>', "MaterialX upgrades to 1.39; got '2'"),
+    "no version": ('<materialx version="x"/>', "MaterialX upgrades to 1.39; got 'x'"),
+    "no include": (INCLUDE.format('<xi:include href="none.mtlx"/>'), "none.mtlx"),
+    "own include": (
+        INCLUDE.format('<xi:include href="bad.mtlx"/>'),
+        "must not lead back to the same document",
+    ),
+    "lobe alone": (f'<materialx version="1.39">{lobe()}</materialx>', "must contain a renderable"),
+    "nothing": ('<materialx version="1.39"/>', "must contain a renderable element"),
+    "look alone": (
+        '<materialx version="1.39"><surfacematerial name="look" type="material"/></materialx>',
+        "must contain a renderable element",
+    ),
+    "idle output": (
+        '<materialx version="1.39"><output name="out" type="surfaceshader"/></materialx>',
+        "must contain a renderable element",
+    ),
+}
+
+# Values of inputs of the lobe, and what is said of them.
+VALUES = (
+    ({"color": "nan, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got n'),
+    ({"color": "red"}, 'input "lobe/color" must be a valid color3 of finite numbers; got red'),
+    ({"color": "1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got 1, 1'),
+    ({"color": "1, 1, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got 1'),
+    ({"roughness": "inf"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
+    ({"roughness": "1e999"}, 'input "lobe/roughness" must be a valid float of finite numbers; got'),
+    ({"energy_compensation": "x"}, 'Invalid value: <input name="energy_compensation"'),
+)
+
+# Values that MaterialX takes, and what is said of them.
+MODEL = "where its model is defined; got"
+OUTSIDE = (
+    ({"color": "0.5, -0.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, -0.1, 0.5'),
+    ({"color": "0.5, 1.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, 1.1, 0.5'),
+    ({"color": "0,&#10;2,&#10;0"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0, 2, 0'),
+    ({"weight": "-1"}, f'input "lobe/weight" must lie in [0, 1], {MODEL} -1'),
+    ({"roughness": "-0.1"}, f'input "lobe/roughness" must lie in [0, 1.5708], {MODEL} -0.1'),
+    ({"roughness": "1.6"}, f'input "lobe/roughness" must lie in [0, 1.5708], {MODEL} 1.6'),
+    ({"roughness": "1.2"} | FLAG, f'input "lobe/roughness" must lie in [0, 1], {MODEL} 1.2'),
+)
+
+# Texts of a float, and what MaterialX reads of them.
+READ = {"0.5f": 0.5, "0x10": 0, "1d5": 1, "1/2": 1, "50%": 50, "0.5;0.5": 0.5, "0.5.0": 0.5}
+READ |= {"1.#INF": 1, "1_0": 1, "0.5, 0.6": 0.5, "1e5f": 100000, "0 5": 0}
+INTEGERS = {"1.5": 1, "9e9": 9, "0x7f": 0, "1,2": 1}
+CONSTANT = (
+    '<constant name="c" type="float"><input name="value" type="float" value="{}"/></constant>'
+)
+SWITCH = '<switch name="s" type="float"><input name="which" type="integer" value="{}"/></switch>'
+
+# Nodes around the lobe, and what is said of them.
+NODES = {
+    "unknown node": ('<nosuch_bsdf name="lobe" type="BSDF"/>', "Could not find a nodedef for node"),
+    "no implementation": (DEFINED.format("a") + A, "Could not find a matching implementation"),
+    "no source file": (
+        DEFINED.format("a") + '<implementation name="IM_a" nodedef="ND_a" file="none.glsl"/>' + A,
+        'implementation "IM_a" must not bring code of its own; got file "none.glsl"',
+    ),
+    "circle": (CYCLE + connected(color='nodename="a"'), 'node "a" must not be upstream of itself'),
+    "circle of lobes": (
+        '<add name="lobe" type="BSDF"><input name="in1" type="BSDF" nodename="lobe"/></add>',
+        'node "lobe" must not be upstream of itself',
+    ),
+    "circle of inheritance": (
+        DEFINED.format("a").replace("node=", 'inherit="ND_a" node=') + A,
+        'definition "ND_a" must not inherit itself',
+    ),
+    "own part": (
+        DEFINED.format("a") + INSIDE.format("a", "a", "a") + A,
+        'nodedef "ND_a" must not contain itself',
+    ),
+    "own part, linked": (DEFINED.format("a") + LINKED + A, "must not contain itself"),
+    "parts of each other": (
+        "".join(map(DEFINED.format, "ab")) + "".join(map(INSIDE.format, "ab", "ab", "ba")) + A,
+        'nodedef "ND_a" must not contain itself',
+    ),
+    "folder for a texture": (
+        IMAGE.format("/") + connected(color='nodename="image"'),
+        'input "image/file" must name a file in ',
+    ),
+    "unconnected node": (connected(color='nodename="none"'), "Invalid port connection: <input"),
+    "unconnected graph": (
+        connected(color='nodegraph="none" output="out"'),
+        'Invalid port connection: <input name="color"',
+    ),
+    "unconnected interface": (
+        connected(color='interfacename="none"'),
+        'Interface name not found in referenced declaration: <input name="color"',
+    ),
+    "another type": (
+        '<constant name="a" type="float"/>' + connected(color='nodename="a"'),
+        'Mismatched types in port connection: <input name="color"',
+    ),
+    "unknown input": (
+        connected(color="").replace('name="color"', 'name="colour"'),
+        "Input 'colour' doesn't match declaration",
+    ),
+    "odd name": (
+        lobe(name="l o;b"),
+        "'name' must be a name of letters, digits, _ and :; got 'l o;b'",
+    ),
+    "node without name": (lobe(name=""), 'Invalid port connection: <input name="bsdf"'),
+    "name of a type": (
+        lobe(name="float") + '<add name="lobe" type="BSDF">'
+        '<input name="in1" type="BSDF" nodename="float"/></add>',
+        'Invalid port connection: <input name="in1"',
+    ),
+}
+
+
+def refusal(source, target="glsl"):
+    """What is said of a document, which has to be one line."""
+    with pytest.raises(DocumentError) as refused:
+        generate(source, target)
+    message = str(refused.value)
+    assert message and "\n" not in message
+    return message
+
+
+@pytest.mark.parametrize("content, rule", FILES.values(), ids=FILES)
+def test_a_bad_file_is_refused_by_its_name(tmp_path, content, rule):
+    path = tmp_path / "bad.mtlx"
+    path.write_text(content, encoding="latin-1")
+    message = refusal(path)
+    assert message.startswith(f"{path}: ")
+    assert rule in message
+
+
+@pytest.mark.parametrize("name", ["", "none.mtlx", ".", "/dev/null", "n" * 5000, "n\0n"])
+def test_what_is_no_file_is_refused(name):
+    assert refusal(name).startswith("document must be a readable file; got ")
+
+
+@pytest.mark.parametrize("inputs, rule", VALUES, ids=[str(inputs) for inputs, _ in VALUES])
+def test_a_bad_value_is_refused_with_its_place_and_its_range(inputs, rule):
+    assert rule in refusal(material(lobe(**inputs)))
+
+
+@pytest.mark.parametrize("nodes, rule", NODES.values(), ids=NODES)
+@pytest.mark.parametrize("target", ["glsl", "osl"])
+def test_bad_nodes_are_refused_with_their_names(nodes, rule, target):
+    assert rule in refusal(material(nodes), target)
+
+
+@pytest.mark.parametrize(
+    "inputs", [{"roughness": str(pi / 2)}, {"roughness": "1"} | FLAG, {"color": "0, 1, 0"}], ids=str
+)
+def test_the_ends_of_a_range_are_accepted(inputs):
+    assert generate(material(lobe(**inputs)), "glsl")
+
+
+def warned(text, **options):
+    """What is said of a document for which shaders are written."""
+    with pytest.warns(DocumentWarning) as caught:
+        assert generate(text, "glsl", **options)
+    [message] = [str(each.message) for each in caught]
+    return message
+
+
+@pytest.mark.parametrize("inputs, rule", OUTSIDE, ids=[str(inputs) for inputs, _ in OUTSIDE])
+@pytest.mark.parametrize("library", ["eonlib", "stock"])
+def test_a_value_outside_its_model_is_written_with_a_warning(library, inputs, rule):
+    assert rule in warned(material(lobe(**inputs)), library=library)
+
+
+def test_roughness_of_the_eon_node_is_at_most_1():
+    rule = "must lie in [0, 1], where its model is defined; got 1.2"
+    assert rule in warned(material(lobe(EON, roughness="1.2")))
+
+
+@pytest.mark.parametrize("text, read", READ.items())
+def test_a_number_of_which_a_part_is_read_is_named(text, read):
+    said = f"must be a valid float; got {text}, which MaterialX reads as {read:g}"
+    message = warned(material(CONSTANT.format(text) + lobe()))
+    assert message == f'document text: input "c/value" {said}'
+
+
+@pytest.mark.parametrize("text, read", INTEGERS.items())
+def test_an_integer_of_which_a_part_is_read_is_named(text, read):
+    said = f'input "s/which" must be a valid integer; got {text}, which MaterialX reads as {read}'
+    assert said in warned(material(SWITCH.format(text) + lobe()))
+
+
+@pytest.mark.parametrize("text", ["1 1,1", "1 1 1", "1,1,1", " 1 , 1,  1 ", "1e0 +1. .1e1"])
+@pytest.mark.filterwarnings("error")
+def test_numbers_are_separated_by_commas_and_spaces(text):
+    [shader] = generate(material(lobe(color=text)), "glsl")
+    assert {each.name: each.value for each in shader.inputs}["lobe_color"] == (1.0, 1.0, 1.0)
+
+
+def test_what_is_alike_is_said_once():
+    message = warned(material(lobe(color="2, 2, 2", weight="2") + lobe(name="other", weight="2")))
+    assert 'input "lobe/color"' in message and message.endswith("; 2 more like it")
+
+
+def test_a_color_space_without_a_transform_is_named():
+    text = material(lobe(color="1, 1, 1")).replace('value="1', 'colorspace="srgb_txt" value="1')
+    said = "must have a color space with a transform to lin_rec709; got srgb_txt, which MaterialX"
+    assert said in warned(text.replace("<materialx", '<materialx colorspace="lin_rec709"'))
+
+
+def test_a_nodegraph_that_is_connected_as_a_node_is_named():
+    graph = '<nodegraph name="ng"><constant name="c" type="color3"/>'
+    graph += '<output name="out" type="color3" nodename="c"/></nodegraph>'
+    said = "must be connected to a node; got nodename 'ng', which MaterialX ignores"
+    assert said in warned(material(graph + connected(color='nodename="ng"')))
+
+
+def test_a_message_quotes_no_more_than_a_screenful():
+    assert len(refusal(material(lobe(color=", ".join("1" * 5000))))) <= LONGEST
+
+
+def test_a_value_of_a_type_made_of_others_is_no_fault():
+    pair = '<typedef name="pair"><member name="a" type="float" value="1"/></typedef>'
+    node = DEFINED.format("a").replace(
+        "<output", '<input name="p" type="pair" value="{1}"/><output'
+    )
+    assert generate(material(pair + node + lobe()), "glsl")
+
+
+@pytest.mark.parametrize("name", ["none.png", "n" * 5000, "[token].png", "&lt;a>&lt;a>.png"])
+def test_a_missing_texture_is_named_and_the_shader_written(name):
+    nodes = IMAGE.format(name) + connected(color='nodename="image"')
+    with pytest.warns(MissingFileWarning, match='input "image/file" must name a file that exists'):
+        assert generate(material(nodes), "glsl")
+
+
+def test_a_missing_texture_of_another_material_is_no_fault():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MissingFileWarning)
+        assert generate(material(IMAGE.format("none.png") + lobe()), "glsl")
+
+
+@pytest.mark.parametrize("version", ["2.0", "abc", "", "0.5"])
+def test_an_included_document_follows_the_rule_of_its_version(tmp_path, version):
+    part, look = tmp_path / "part.mtlx", tmp_path / "look.mtlx"
+    part.write_text(f'<materialx version="{version}">{lobe()}</materialx>')
+    look.write_text(INCLUDE.format('<xi:include href="part.mtlx"/>'))
+    rule = f"version must be one that MaterialX upgrades to 1.39; got {version!r}"
+    assert refusal(look) == f"{part}: {rule}"
+
+
+@pytest.mark.parametrize("kind", [str, Path])
+def test_a_file_whose_name_begins_as_xml_does_is_a_file(tmp_path, monkeypatch, kind):
+    monkeypatch.chdir(tmp_path)
+    Path("<look>.mtlx").write_text(material(lobe()))
+    assert read_document(kind("<look>.mtlx")).getNode("lobe")
+    if kind is Path:
+        assert refusal(Path("<none>.mtlx")).startswith("document must be a readable file")
+
+
+def test_a_circle_that_no_material_uses_is_no_fault():
+    assert generate(material(CYCLE + lobe()), "glsl")
+
+
+def test_an_older_document_is_read_as_todays():
+    older = f'<materialx version="1.37">{lobe()}</materialx>'
+    assert read_document(older).getVersionString() == "1.39"
+
+
+def test_relative_names_start_at_the_file(tmp_path, monkeypatch):
+    (tmp_path / "maps").mkdir()
+    (tmp_path / "maps" / "albedo.png").touch()
+    nodes = IMAGE.format("maps/albedo.png") + connected(color='nodename="image"')
+    (tmp_path / "nodes.mtlx").write_text(f'<materialx version="1.39">{nodes}</materialx>')
+    file = tmp_path / "look.mtlx"
+    file.write_text(INCLUDE.format('<xi:include href="nodes.mtlx"/>'))
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    image = read_document(file).getDescendant("image/file")
+    assert image.getValueString() == str(tmp_path / "maps" / "albedo.png")
+
+
+def test_relative_names_of_a_text_start_at_the_working_folder(tmp_path, monkeypatch):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    (tmp_path / "albedo.png").touch()
+    (inside / "albedo.png").touch()
+    monkeypatch.chdir(inside)
+    nodes = IMAGE.format("albedo.png") + connected(color='nodename="image"')
+    image = read_document(material(nodes)).getDescendant("image/file")
+    assert image.getValueString() == str(inside / "albedo.png")
+
+
+def test_a_document_is_copied_and_stays_as_it_is():
+    document = mx.createDocument()
+    mx.readFromXmlString(document, material(lobe()))
+    before = mx.writeToXmlString(document)
+    read = read_document(document)
+    read.getNode("lobe").setName("other")
+    assert mx.writeToXmlString(document) == before
+    assert document.getDataLibrary() is None
+
+
+@pytest.mark.parametrize("name", [b"\xff.mtlx", b"\xff/a.mtlx"])
+def test_a_path_that_is_no_text_is_refused(tmp_path, name):
+    path = tmp_path / os.fsdecode(name)
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(material(lobe()))
+    with pytest.raises(DocumentError, match="document must lie at a path in UTF-8; got"):
+        read_document(path)

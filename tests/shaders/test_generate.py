@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Generated shaders: every target, every input, and the compilers that run here."""
+
+import json
+import re
+import shutil
+import subprocess
+import warnings
+from dataclasses import replace
+
+import MaterialX as mx
+import pytest
+
+from mxeon.errors import DocumentError
+from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
+from mxeon.shaders.hosts.cycles.process import interpreter
+from mxeon.shaders.library import data_folder, examples_folder, load_library
+from tests.support.availability import available
+from tests.support.documents import EON, FLAG, OREN_NAYAR, lobe, material
+
+EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
+RASTERISED = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang")
+VALIDATED = {"glsl": (), "essl": (), "vulkan": ("-V",)}
+SURFACES = ("open_pbr_surface", "standard_surface", "gltf_pbr", "UsdPreviewSurface")
+
+# Every input of the nodes, with a value and another.
+VALUES = {
+    "weight": ("0.5", "0.25"),
+    "color": ("0.8, 0.4, 0.1", "0.1, 0.4, 0.8"),
+    "roughness": ("0.5", "0.75"),
+    "normal": ("0, 0, 1", "0, 1, 0"),
+    "energy_compensation": ("false", "true"),
+}
+FIRST = {name: first for name, (first, _) in VALUES.items()}
+EON_FIRST = {name: value for name, value in FIRST.items() if name not in FLAG}
+NODES = ((OREN_NAYAR, FIRST), (EON, EON_FIRST))
+
+SURFACE = """<materialx version="1.39">
+  <{0} name="shading" type="surfaceshader"/>
+  <surfacematerial name="look" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
+  </surfacematerial>
+</materialx>"""
+SUM = '<add name="{}" type="BSDF"><input name="in1" type="BSDF" nodename="{}"/>' + (
+    '<input name="in2" type="BSDF" nodename="{}"/></add>'
+)
+GRAPH = """<materialx version="1.39">
+  <nodegraph name="a"><surface_unlit name="shading" type="surfaceshader"/>
+    <output name="b" type="surfaceshader" nodename="shading"/></nodegraph>
+  <surface_unlit name="shading" type="surfaceshader"/>
+  <output name="a_b" type="surfaceshader" nodename="shading"/>
+</materialx>"""
+
+COMPILE = """
+import json, sys
+import bpy, _cycles
+compiled = {path: _cycles.osl_compile(path, path.replace(".osl", ".oso")) for path in sys.argv[1:]}
+print(json.dumps([path for path in compiled if not compiled[path]]))
+"""
+
+on_each_target = pytest.mark.parametrize("target", TARGETS)
+of_each_example = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+of_each_node = pytest.mark.parametrize("node, inputs", NODES, ids=[node for node, _ in NODES])
+
+
+def pixel(text, target, **options):
+    """The one pixel shader of a document."""
+    [shader] = generate(text, target, **options)
+    return shader.stages["pixel"]
+
+
+def statements(source):
+    """The lines of a shader that compute or take the lobe."""
+    return "\n".join(line for line in source.splitlines() if "lobe_out" in line)
+
+
+def validate(shader, target, folder):
+    """Nothing, if glslangValidator accepts every stage."""
+    files = []
+    for stage, suffix in (("pixel", "frag"), ("vertex", "vert")):
+        files.append(folder / f"{shader.name}.{suffix}")
+        files[-1].write_text(shader.stages[stage])
+    command = ["glslangValidator", *VALIDATED[target], *files]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+def every_lobe():
+    """One material with every BSDF node of pbrlib and both of ours, and their names."""
+    stock = load_library("stock").getNodeDefs()
+    names = sorted({each.getNodeString() for each in stock if each.getAttribute("bsdf")} | {EON})
+    nodes, total = "", "none"
+    for name in names:
+        nodes += lobe(name, f"{name}_lobe") + SUM.format(f"{name}_sum", total, f"{name}_lobe")
+        total = f"{name}_sum"
+    nodes = nodes.replace('<input name="in1" type="BSDF" nodename="none"/>', "")
+    return material(nodes.replace(f'"{total}"', '"lobe"')), names
+
+
+@of_each_example
+@on_each_target
+def test_every_example_becomes_shaders_on_every_target(path, target):
+    for shader in generate(path, target):
+        assert list(shader.stages) == ["pixel", "vertex"][: 1 + (target in RASTERISED)]
+        assert all(shader.stages.values())
+
+
+@of_each_example
+@on_each_target
+def test_stock_makes_every_example_but_those_with_our_node(path, target):
+    if EON in path.read_text():
+        with pytest.raises(DocumentError, match="Could not find a nodedef for node"):
+            generate(path, target, library="stock")
+    else:
+        assert generate(path, target, library="stock")
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+@on_each_target
+def test_the_surfaces_of_materialx_are_made_on_every_target(surface, target):
+    assert pixel(SURFACE.format(surface), target)
+
+
+@on_each_target
+def test_lama_diffuse_is_made_on_every_target(target):
+    assert pixel(material('<LamaDiffuse name="lobe" type="BSDF"/>'), target)
+
+
+@of_each_node
+@on_each_target
+def test_every_input_of_the_nodedef_is_used(node, inputs, target):
+    used = statements(pixel(material(lobe(node, **inputs)), target))
+    ports = load_library().getNodeDef(f"ND_{node}").getInputs()
+    assert {port.getName() for port in ports} == set(inputs)
+    assert [name for name in inputs if not re.search(rf"\blobe_{name}\b", used)] == []
+
+
+@of_each_node
+def test_every_input_is_used_with_the_profile(node, inputs):
+    second = {name: VALUES[name][1] for name in inputs}
+    used = statements(pixel(material(lobe(node, **second)), "osl", profile="cycles"))
+    assert [name for name in inputs if not re.search(rf"\blobe_{name}\b", used)] == []
+
+
+def test_stock_osl_does_not_use_the_flag():
+    used = statements(pixel(material(lobe(**FIRST)), "osl", library="stock"))
+    assert [name for name in FIRST if f"lobe_{name}" not in used] == ["energy_compensation"]
+
+
+@pytest.mark.parametrize(
+    "path",
+    sorted(
+        [*data_folder().glob("genglsl/*_bsdf.glsl"), *data_folder().glob("genosl/*_bsdf_*.osl")]
+    ),
+    ids=lambda path: path.name,
+)
+def test_every_parameter_of_an_entry_point_is_used_in_its_body(path):
+    code = re.sub(r"//.*", "", path.read_text())
+    [(parameters, body)] = re.findall(r"(?ms)^void \w+\((.*?)\)\s*{(.*)^}", code)
+    names = [each.split()[-1] for each in parameters.split(",")]
+    assert len(names) >= 5
+    assert [name for name in names if not re.search(rf"\b{name}\b", body)] == []
+
+
+@of_each_node
+@on_each_target
+def test_a_change_of_an_input_changes_the_shader(node, inputs, target):
+    before = generate(material(lobe(node, **inputs)), target)
+    assert generate(material(lobe(node, **inputs)), target) == before
+    for name in inputs:
+        changed = inputs | {name: VALUES[name][1]}
+        assert generate(material(lobe(node, **changed)), target) != before
+
+
+@of_each_node
+@pytest.mark.parametrize("target", RASTERISED)
+def test_rasterised_targets_hold_our_function_and_not_the_stock_one(node, inputs, target):
+    source = pixel(material(lobe(node, **inputs)), target)
+    assert re.search(rf"^ *void {node}\(ClosureData closureData,", source, re.MULTILINE)
+    assert re.search(r"^ *(vec3|float3) eon_brdf_mu\(", source, re.MULTILINE)
+    assert "mx_oren_nayar" not in source
+
+
+@pytest.mark.parametrize("target", VALIDATED)
+def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_path):
+    text, names = every_lobe()
+    assert {OREN_NAYAR, EON, "burley_diffuse_bsdf", "subsurface_bsdf"} < set(names)
+    [shader] = generate(text, target, lights=True)
+    validate(shader, target, tmp_path)
+    assert all(f"{name}_lobe_" in shader.stages["pixel"] for name in names)
+
+
+@of_each_example
+@pytest.mark.parametrize("target", VALIDATED)
+def test_every_example_compiles(path, target, tmp_path):
+    for shader in generate(path, target):
+        validate(shader, target, tmp_path)
+
+
+@pytest.mark.parametrize("target", VALIDATED)
+def test_a_wrong_shader_does_not_compile(target, tmp_path):
+    [shader] = generate(material(lobe()), target)
+    wrong = shader.stages | {"pixel": shader.stages["pixel"].replace("vec3 eon_brdf_mu", "vec3 x")}
+    with pytest.raises(AssertionError, match="'eon_brdf_mu' : no matching overloaded function"):
+        validate(replace(shader, stages=wrong), target, tmp_path)
+
+
+def test_generated_osl_compiles(tmp_path):
+    with available("cycles"):
+        python = interpreter()
+    headers = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include").asString()
+    shutil.copytree(headers, tmp_path, dirs_exist_ok=True)
+    sources = [*EXAMPLES, every_lobe()[0], *map(SURFACE.format, SURFACES)]
+    written = []
+    for number, source in enumerate(sources):
+        for profile in (None, "cycles"):
+            with warnings.catch_warnings(action="ignore", category=ApproximationWarning):
+                shaders = generate(source, "osl", profile=profile)
+            for shader in shaders:
+                written.append(tmp_path / f"{number}_{profile}_{shader.name}.osl")
+                written[-1].write_text(shader.stages["pixel"])
+    wrong = tmp_path / "wrong.osl"
+    wrong.write_text("shader wrong() { none(); }")
+    command = [python, "-c", COMPILE, *written, wrong]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout.splitlines()[-1]) == [str(wrong)], done.stdout
+
+
+def test_names_that_osl_does_not_take_are_replaced():
+    for name, expected in (("3d", "shader_3d"), ("color", "shader_color"), ("a:b", "a_b")):
+        [shader] = generate(material(lobe()).replace('"look"', f'"{name}"'), "osl")
+        assert (shader.name, shader.element) == (expected, name)
+        assert f"\nshader {expected}\n" in shader.stages["pixel"]
+
+
+def test_elements_have_names_of_their_own():
+    shaders = generate(GRAPH, "osl")
+    assert sorted(shader.element for shader in shaders) == ["a/b", "a_b"]
+    assert sorted(shader.name for shader in shaders) == ["a_b", "a_b2"]
+
+
+def test_one_element_is_made_by_its_name_or_path():
+    by_name = {each.element: each.name for each in generate(GRAPH, "osl")}
+    for element in by_name:
+        [shader] = generate(GRAPH, "osl", element)
+        assert (shader.element, shader.name) == (element, by_name[element])
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"target": "hlsl"}, f"target must be one of {', '.join(TARGETS)}; got 'hlsl'"),
+        ({"element": "none"}, "element must be one of look; got 'none'"),
+        ({"library": "none"}, "library must be one of eonlib, stock; got 'none'"),
+        ({"profile": "none"}, "profile must be one of cycles; got 'none'"),
+    ],
+)
+def test_an_unknown_name_lists_the_known(options, message):
+    with pytest.raises(ValueError, match=f"^{message}"):
+        generate(material(lobe()), **{"target": "glsl"} | options)
+
+
+def test_a_file_a_text_and_a_document_give_the_same(tmp_path, monkeypatch):
+    text = material(lobe(**FIRST))
+    (tmp_path / "look.mtlx").write_text(text)
+    document = mx.createDocument()
+    mx.readFromXmlString(document, text)
+    monkeypatch.chdir(tmp_path)
+    sources = tmp_path / "look.mtlx", "look.mtlx", text, document, read_document(text)
+    assert len({pixel(source, "glsl") for source in sources}) == 1
+
+
+def test_generation_leaves_a_document_as_it_is():
+    document = mx.createDocument()
+    mx.readFromXmlString(document, material(lobe()))
+    before = mx.writeToXmlString(document)
+    generate(document, "glsl")
+    assert mx.writeToXmlString(document) == before
+
+
+@on_each_target
+def test_a_type_stays_in_the_document_that_defines_it(target):
+    plain, grain = (
+        material(lobe()),
+        '<typedef name="grain"><member name="size" type="float"/></typedef>',
+    )
+    before = pixel(plain, target)
+    assert "grain" in pixel(material(grain + lobe()), target)
+    assert pixel(plain, target) == before
+
+
+@of_each_example
+def test_a_file_gives_the_same_from_every_working_folder(path, tmp_path, monkeypatch):
+    here = [shader.inputs for shader in generate(path.resolve(), "glsl")]
+    monkeypatch.chdir(tmp_path)
+    assert [shader.inputs for shader in generate(path.resolve(), "glsl")] == here
+
+
+@on_each_target
+def test_inputs_say_name_type_value_and_place(target):
+    [shader] = generate(material(lobe(**FLAG, color="0.8, 0.4, 0.1")), target)
+    found = {each.path: each for each in shader.inputs}
+    color = tuple(map(pytest.approx, (0.8, 0.4, 0.1)))
+    assert found["lobe/color"] == Input("lobe_color", "color3", color, "lobe/color")
+    flag = found["lobe/energy_compensation"]
+    assert (flag.name, flag.value) == ("lobe_energy_compensation", True)
+    assert flag.type == ("integer" if target == "wgsl" else "boolean")
+
+
+@pytest.mark.parametrize("flag", ["false", "true"])
+def test_the_profile_warns_of_qon_alone(flag):
+    text = material(lobe(energy_compensation=flag))
+    with warnings.catch_warnings(record=True, action="always") as caught:
+        generate(text, "osl", profile="cycles")
+    assert [each.category for each in caught] == [ApproximationWarning] * (flag == "false")
+
+
+def test_the_profile_warns_of_qon_inside_a_surface():
+    with pytest.warns(ApproximationWarning, match="^look: Cycles has no closure for qualitative"):
+        generate(SURFACE.format("standard_surface"), "osl", profile="cycles")
+
+
+def test_the_profile_has_nothing_to_warn_of_elsewhere():
+    generate(material(lobe(EON)), "osl", profile="cycles")
+    generate(material(lobe()), "osl")
+    generate(material(lobe()), "glsl", profile="cycles")

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The browser as a host: what is missing is said, and a browser that fails is replaced."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mxeon.conformance import reference
+from mxeon.errors import NotRun
+from mxeon.shaders.generation import generate
+from mxeon.shaders.hosts import webgl
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.scene import BACK, FURNACE, SIDE
+from tests.support.availability import available
+
+MU = np.array([0.5])
+
+
+def started(**options):
+    with available("webgl"):
+        return webgl.Host(**options)
+
+
+def test_a_missing_playwright_is_not_run_and_names_the_remedy(monkeypatch):
+    monkeypatch.setattr(webgl, "sync_api", None)
+    with pytest.raises(NotRun, match=r"Playwright is not installed; pip install 'mxeon\[webgl\]'"):
+        webgl.Host()
+
+
+def test_a_missing_browser_is_not_run_and_names_the_remedy(monkeypatch):
+    monkeypatch.setenv("MXEON_CHROMIUM", "no-such-browser")
+    with pytest.raises(NotRun, match="no program 'no-such-browser'; .* apt-get install chromium"):
+        webgl.Host()
+
+
+def test_a_program_that_is_no_browser_is_not_run(monkeypatch):
+    if webgl.sync_api is None:
+        pytest.skip("webgl: Playwright is not installed")
+    monkeypatch.setenv("MXEON_CHROMIUM", "true")
+    with pytest.raises(NotRun, match="webgl: the browser fails; "):
+        webgl.Host()
+
+
+def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():
+    host = started(limit=5.0)
+    with pytest.raises(NotRun, match="webgl: the browser fails; .*[Tt]imeout"):
+        host._ask("() => { for (;;); }")
+    assert host.call("fon_albedo_dir", MU, np.array([0.0])).tolist() == [[1.0, 1.0, 1.0]]
+    host.close()
+
+
+def test_two_browsers_work_side_by_side():
+    first, second = started(), started()
+    values = [each.call("fon_a", MU) for each in (first, second)]
+    np.testing.assert_array_equal(*values)
+    first.close()
+    second.close()
+
+
+def test_no_name_resolves_in_the_browser():
+    host = started()
+    script = """async () => {
+        const found = await fetch("https://example.org/").then(() => "found", () => "nothing");
+        return { found };
+    }"""
+    assert host._ask(script)["found"] == "nothing"
+    host.close()
+
+
+@pytest.mark.parametrize("scene", (SIDE, BACK, FURNACE), ids=lambda scene: scene.name)
+@pytest.mark.parametrize("name", ("plaster", "brick"))
+def test_a_picture_is_the_references(name, scene):
+    host = started()
+    document = examples_folder() / f"{name}.mtlx"
+    shader = generate(document, host.target, lights=True)[0]
+    image = host.picture(shader, replace(scene, size=64))
+    host.close()
+    expected = reference.Host().picture(shader, replace(scene, size=64))
+    assert expected.max() > 0.1
+    np.testing.assert_allclose(image, expected, atol=2.0**-8 if name == "brick" else 1e-5)

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Documents from strangers: what they may not do is refused in one line, with its remedy."""
+
+import pickle
+import warnings
+from dataclasses import replace
+
+import MaterialX as mx
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from mxeon import cli
+from mxeon.errors import DocumentError
+from mxeon.shaders.document.policy import DEFAULT, LIMITS, Permissions
+from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.generation import CodeWarning, generate
+from mxeon.shaders.hosts import open_host
+from mxeon.shaders.hosts import textures as images
+from mxeon.shaders.scene import FURNACE
+from tests.fuzz.found import doubled, row
+from tests.support.documents import connected, lobe, material
+
+TRUSTED = Permissions(outside=True, code=True)
+XI = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
+INCLUDE = XI.format('<xi:include href="{}"/>')
+PART = f'<materialx version="1.39">{lobe()}</materialx>'
+IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
+NODEDEF = '<nodedef name="ND_a" node="a"><output name="out" type="BSDF"/></nodedef>'
+BROUGHT = NODEDEF + '<implementation name="IM_a" nodedef="ND_a" {}/><a name="lobe" type="BSDF"/>'
+INLINE = (
+    '<nodedef name="ND_t" node="t"><output name="out" type="color3"/></nodedef>'
+    '<implementation name="IM_t" nodedef="ND_t" sourcecode="vec3(0.5)"/><t name="t" type="color3"/>'
+) + connected(color='nodename="t"')
+SOURCE = "void a(out BSDF r) { r = BSDF(vec3(0.0), vec3(1.0)); }"
+BOMB = """<?xml version="1.0"?><!DOCTYPE materialx [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;">]>
+<materialx version="1.39"><constant name="&b;" type="float"/></materialx>"""
+FETCH = BOMB.replace('"ha"', 'SYSTEM "../secret.mtlx"')
+
+
+@pytest.fixture
+def home(tmp_path):
+    """A document's folder with a link out of it, and what lies outside."""
+    folder = tmp_path / "documents"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path)
+    (folder / "tile.1001.png").symlink_to(tmp_path / "secret.png")
+    (folder / "inside.png").touch()
+    for name, text in {"secret.png": "", "secret.mtlx": PART, "secret.glsl": SOURCE}.items():
+        (tmp_path / name).write_text(text)
+    return folder
+
+
+def written(folder, text):
+    """The document's file."""
+    path = folder / "look.mtlx"
+    path.write_text(text)
+    return path
+
+
+def refusal(source, permissions=DEFAULT):
+    """What is said of a document, which has to be one line."""
+    with pytest.raises(DocumentError) as refused:
+        generate(source, "glsl", permissions=permissions)
+    message = str(refused.value)
+    assert message.isprintable()
+    return message
+
+
+def textured(name):
+    return material(IMAGE.format(name) + connected(color='nodename="image"'))
+
+
+# --- files outside ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../secret.png",
+        "link/secret.png",
+        "{}/secret.png",
+        "tile.&lt;UDIM&gt;.png",
+        "../&lt;UDIM&gt;.png",
+    ],
+)
+def test_a_texture_outside_needs_permission(home, name):
+    path = written(home, textured(name.format(home.parent)))
+    assert "--allowOutside lets it" in refusal(path)
+    assert read_document(path, permissions=TRUSTED)
+
+
+@pytest.mark.parametrize("name", ["../secret.mtlx", "link/secret.mtlx", "{}/secret.mtlx"])
+def test_an_include_outside_needs_permission(home, name):
+    path = written(home, INCLUDE.format(name.format(home.parent)))
+    assert "--allowOutside lets it" in refusal(path)
+    assert read_document(path, permissions=TRUSTED).getNode("lobe")
+
+
+@pytest.mark.parametrize("name", ["../secret.glsl", "link/secret.glsl"])
+def test_a_source_outside_needs_permission(home, name):
+    path = written(home, material(BROUGHT.format(f'file="{name}" function="a"')))
+    assert "--allowOutside lets it" in refusal(path, Permissions(code=True))
+    with pytest.warns(CodeWarning):
+        assert generate(path, "glsl", permissions=TRUSTED)
+
+
+def test_a_set_of_textures_inside_needs_no_permission(home):
+    (home / "bark.1001.png").touch()
+    assert read_document(written(home, textured("bark.&lt;UDIM&gt;.png")))
+
+
+def test_a_set_of_textures_lies_in_one_folder(home):
+    path = written(home, textured("&lt;UDIM&gt;/a.png"))
+    assert "must name one folder" in refusal(path)
+
+
+def test_what_an_included_document_includes_is_judged_too(home):
+    (home / "part.mtlx").write_text(INCLUDE.format("../secret.mtlx"))
+    message = refusal(written(home, INCLUDE.format("part.mtlx")))
+    assert "part.mtlx: include must name a file in" in message
+
+
+def test_files_inside_and_in_the_libraries_need_no_permission(home):
+    library = f"{mx.getDefaultDataSearchPath().asString()}/libraries/targets/genglsl.mtlx"
+    for name in ("inside.png", "link/documents/inside.png", library):
+        assert read_document(written(home, textured(name)))
+
+
+# --- code ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("how", ['file="own.glsl" function="a"', 'sourcecode="BSDF()"'])
+def test_code_of_its_own_needs_permission_and_is_reported(home, how):
+    (home / "own.glsl").write_text(SOURCE)
+    path = written(home, material(BROUGHT.format(how)))
+    assert 'implementation "IM_a" must not bring code of its own' in refusal(path)
+    with pytest.warns(CodeWarning, match=r"look.mtlx: brings code of its own: IM_a"):
+        assert generate(path, "glsl", permissions=Permissions(code=True))
+
+
+def test_a_nodegraph_is_no_code():
+    graph = '<nodegraph name="NG_a" nodedef="ND_a"><eon_diffuse_bsdf name="x" type="BSDF"/>'
+    graph += '<output name="out" type="BSDF" nodename="x"/></nodegraph><a name="lobe" type="BSDF"/>'
+    with warnings.catch_warnings(action="error"):
+        assert generate(material(NODEDEF + graph), "glsl")
+
+
+def test_generating_reports_code_and_running_it_needs_the_option(home, capsys):
+    path = str(written(home, material(INLINE)))
+    out = str(home / "out")
+    with warnings.catch_warnings(action="default"):
+        assert cli.main(["generate", path, "--target", "glsl", "--outputPath", out]) == cli.PASSED
+    assert "warning: " in capsys.readouterr().err
+    render = ["render", path, "--size", "4", "--output", f"{out}/a.png"]
+    assert cli.main(render) == cli.MISUSE
+    assert "--allowCode lets it" in capsys.readouterr().err
+    with warnings.catch_warnings(action="default"):
+        assert cli.main([*render, "--allowCode"]) == cli.PASSED
+
+
+# --- limits -------------------------------------------------------------------------------------
+
+ROW = material(row(8, ("in1",)))
+SMALL = material(lobe())
+
+# Which limit, a document, and the least value with which it is accepted.
+LIMITED = (
+    ("size", SMALL, len(SMALL)),
+    ("length", SMALL, len("oren_nayar_diffuse_bsdf") - 10),
+    ("depth", SMALL, 3),
+    ("elements", SMALL, 6),
+    ("nodes", ROW, 11),
+    ("chain", ROW, 11),
+    ("depth", material(doubled(4)), 5),
+)
+
+
+@pytest.mark.parametrize("name, text, least", LIMITED, ids=[f"{n}-{k}" for n, _, k in LIMITED])
+def test_a_limit_is_kept_and_names_its_option(name, text, least):
+    assert generate(text, "glsl", permissions=replace(DEFAULT, **{name: least}))
+    low = replace(DEFAULT, **{name: least - 1})
+    message = refusal(text, low)
+    assert f"at most {least - 1} " in message
+    assert f"--max{name.capitalize()} moves the limit" in message
+
+
+def test_includes_in_a_row_are_limited(tmp_path):
+    for number in range(4):
+        (tmp_path / f"{number}.mtlx").write_text(INCLUDE.format(f"{number + 1}.mtlx"))
+    (tmp_path / "4.mtlx").write_text(PART)
+    assert read_document(tmp_path / "0.mtlx", permissions=Permissions(includes=4)).getNode("lobe")
+    assert "--maxIncludes" in refusal(tmp_path / "0.mtlx", Permissions(includes=3))
+
+
+def test_what_is_included_often_counts_as_often(tmp_path):
+    for number in range(12):
+        include = f'<xi:include href="{number + 1}.mtlx"/>'
+        (tmp_path / f"{number}.mtlx").write_text(XI.format(include * 2))
+    (tmp_path / "12.mtlx").write_text('<materialx version="1.39"/>')
+    assert "--maxElements" in refusal(tmp_path / "0.mtlx", Permissions(elements=1000))
+
+
+def test_a_document_that_includes_itself_is_refused_at_once(tmp_path):
+    for one, other in ("ab", "ba"):
+        (tmp_path / f"{one}.mtlx").write_text(INCLUDE.format(f"./../{tmp_path.name}/{other}.mtlx"))
+    assert "must not lead back to the same document" in refusal(tmp_path / "a.mtlx")
+
+
+def test_an_option_moves_a_limit(tmp_path, capsys):
+    arguments = ["generate", str(written(tmp_path, SMALL)), "--target", "osl"]
+    arguments += ["--outputPath", str(tmp_path / "out"), "--maxElements"]
+    assert cli.main([*arguments, "5"]) == cli.MISUSE
+    assert "--maxElements moves the limit" in capsys.readouterr().err
+    assert cli.main([*arguments, "6"]) == cli.PASSED
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_a_limit_is_not_negative(name):
+    with pytest.raises(ValueError, match=f"{name} must be at least 0; got -1"):
+        Permissions(**{name: -1})
+
+
+def test_permissions_travel():
+    assert pickle.loads(pickle.dumps(TRUSTED)) == TRUSTED
+
+
+# --- text and names -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", [BOMB, FETCH], ids=["entities", "file"])
+def test_entities_are_refused(text):
+    assert "must have no document type" in refusal(text)
+
+
+def test_a_type_of_the_libraries_gets_no_members():
+    members = '<typedef name="float"><member name="a" type="float"/></typedef>'
+    assert refusal(SMALL.replace("</materialx>", members + "</materialx>")) == (
+        'document text: typedef "float" must have no members, as a type of the libraries; got a: '
+        "rename the type"
+    )
+
+
+@pytest.mark.parametrize("character", ["\x7f", "\x85", "\u202e"])
+def test_control_characters_are_refused(character):
+    text = SMALL.replace("look", f"lo{character}ok")
+    assert "surfacematerial must have no control characters in 'name'" in refusal(text)
+
+
+@pytest.mark.parametrize("name", ["../look", "/look", "look.", "lo ok", "l" * 200, "..", "ng/look"])
+def test_names_are_no_paths(name):
+    message = refusal(SMALL.replace('"look"', f'"{name}"'))
+    assert "must be a name of letters" in message or "name of at most 128 characters" in message
+
+
+def test_the_name_of_a_file_steers_no_terminal(tmp_path, capsys):
+    path = tmp_path / "a\x1b[31m\nb\u202e.mtlx"
+    path.write_text(SMALL)
+    out = tmp_path / "out"
+    assert cli.main(["generate", str(path), "--target", "osl", "--outputPath", str(out)]) == 0
+    assert [each.name.isprintable() for each in out.iterdir()] == [True]
+    path.write_text("")
+    cli.main(["generate", str(path), "--target", "osl", "--outputPath", str(out)])
+    assert capsys.readouterr().err.rstrip("\n").isprintable()
+
+
+def test_an_image_larger_than_its_file_is_refused(tmp_path, monkeypatch):
+    path = str(tmp_path / "a.png")
+    oiio.ImageBuf(np.zeros((8, 8, 3), dtype=np.float32)).write(path)
+    assert images.read_image(path).shape == (8, 8, 3)
+    monkeypatch.setattr(images, "LARGEST", 8 * 8 * 3 - 1)
+    with pytest.raises(ValueError, match="must be an image of at most 191 values; got 192"):
+        images.read_image(path)
+
+
+# --- depth --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("names", [("in1",), ("in1", "in2")], ids=["in a row", "each used twice"])
+def test_the_reference_evaluates_long_graphs(names):
+    shader = generate(material(row(900, names)), "glsl")[0]
+    image = open_host("reference").picture(shader, replace(FURNACE, size=4))
+    assert np.isfinite(image).all()
+
+
+def test_many_uses_of_a_nodegraph_are_one_of_many_nodes():
+    assert generate(material(doubled(12)), "osl")
+    assert "--maxNodes" in refusal(material(doubled(40)))

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hosts that evaluate pairs: each is the model, on every host alike, and says who it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.checks.probes import PairProbe
+from mxeon.errors import ShaderError
+from mxeon.models import table as reference
+from mxeon.shaders.generation import generate
+from tests.support.tolerances import TWIN_ALBEDO, TWIN_VALUE
+
+HOSTS = ("gl", "webgl", "vulkan", "slang")
+COUNT = 20_000
+PAIR = np.array([[0.6, 0.0, 0.8]])
+
+
+@pytest.fixture(scope="module", params=HOSTS)
+def host(request, hosts):
+    return hosts(request.param)
+
+
+@pytest.fixture(params=SUBJECTS, ids=lambda subject: subject.title)
+def probe(host, request):
+    return PairProbe(host, request.param, "eonlib")
+
+
+def test_the_identity_names_a_version_and_a_device_after_work_too(host):
+    host.call("fon_albedo_dir", np.array([0.5]), np.array([0.0]))
+    identity = host.identity()
+    assert identity.name == host.name and identity.version and identity.device
+
+
+def test_the_generated_bsdf_is_the_model(probe):
+    batch = probe.few[0].first(COUNT)
+    np.testing.assert_allclose(
+        probe.direct(batch), batch.expected(probe.subject.model), rtol=0.0, atol=TWIN_VALUE
+    )
+
+
+def test_the_environment_branch_is_the_albedo(probe):
+    batch = probe.few[0].first(COUNT)
+    row = reference.model(probe.subject.model)
+    expected = row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], batch.inputs["roughness"])
+    np.testing.assert_allclose(probe.albedo(batch), expected, rtol=0.0, atol=TWIN_ALBEDO)
+
+
+def test_a_function_of_the_twins_is_the_model(host):
+    batch = PairProbe(host, SUBJECTS[0], "eonlib").few[0].first(COUNT)
+    rho, roughness = batch.inputs["color"], batch.inputs["roughness"]
+    brdf = host.call("eon_brdf", batch.wo, batch.wi, rho, roughness)
+    np.testing.assert_allclose(
+        np.pi * brdf * batch.wi[:, 2:], batch.expected("eon"), rtol=0.0, atol=TWIN_VALUE
+    )
+
+
+def test_a_scalar_fills_three_columns_and_one_row_serves_all(host):
+    values = host.call("fon_albedo_dir", np.array([0.25, 0.5, 1.0]), np.array([0.0]))
+    assert values.shape == (3, 3) and (values == 1.0).all()
+
+
+def test_inputs_that_are_not_given_have_the_documents_values(host):
+    shader = generate(SUBJECTS[2].document({"weight": 0.25}), host.target)[0]
+    white = {"color": np.ones((1, 3)), "roughness": np.zeros(1)}
+    values = host.evaluate(shader, PAIR, PAIR, white, "direct")
+    np.testing.assert_allclose(np.pi * values, 0.25 * 0.8, rtol=0.0, atol=TWIN_VALUE)
+
+
+def test_what_the_compiler_refuses_is_a_shader_error(host):
+    shader = generate(SUBJECTS[2].document(), host.target)[0]
+    wrong = shader.stages["pixel"].replace("eon_brdf_mu", "no_such_function", 1)
+    shader = replace(shader, stages={**shader.stages, "pixel": wrong})
+    with pytest.raises(ShaderError, match=f"^{host.name}: (.|\n)*eon_brdf_mu"):
+        host.evaluate(shader, PAIR, PAIR, {}, "direct")
+
+
+def test_an_unknown_branch_is_refused(host):
+    shader = generate(SUBJECTS[2].document(), host.target)[0]
+    with pytest.raises(ValueError, match="branch must be one of direct, environment; got 'both'"):
+        host.evaluate(shader, PAIR, PAIR, {}, "both")
+
+
+def test_an_unknown_function_is_refused(host):
+    with pytest.raises(ValueError, match="function must be one of .*; got 'no_such_function'"):
+        host.call("no_such_function", PAIR)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Images: read the right way up, refused in one line, and turned into irradiance."""
+
+import os
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from mxeon.errors import ImageError
+from mxeon.shaders.hosts.textures import irradiance, read_image, read_latlong, read_texture
+
+# Sums over a map of 64 x 128 pixels miss the integral of a cosine by the square of a pixel's angle,
+# (pi / 64)^2, a twelfth of it for the middle of an interval; ten times that.
+SUM = 10.0 * (np.pi / 64.0) ** 2 / 12.0
+
+
+def write(path, pixels):
+    image = oiio.ImageOutput.create(str(path))
+    height, width, channels = pixels.shape
+    image.open(str(path), oiio.ImageSpec(width, height, channels, oiio.FLOAT))
+    image.write_image(pixels.astype(np.float32))
+    image.close()
+    return path
+
+
+@pytest.fixture
+def picture(tmp_path):
+    return write(tmp_path / "a.exr", np.arange(24.0).reshape(2, 4, 3))
+
+
+def test_row_0_is_at_the_top_of_an_image_and_at_the_bottom_of_a_texture(picture):
+    assert read_image(picture)[0, 0].tolist() == [0.0, 1.0, 2.0]
+    assert read_texture(picture)[0, 0].tolist() == [12.0, 13.0, 14.0]
+
+
+@pytest.mark.parametrize("name, data", [("text.exr", b"text"), ("a.txt", b"text")])
+def test_what_is_no_image_is_refused_with_its_name_in_one_line(tmp_path, name, data):
+    path = tmp_path / name
+    path.write_bytes(data)
+    with pytest.raises(
+        ValueError, match=f"{name}: must be an image that OpenImageIO reads; ."
+    ) as error:
+        read_image(path)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, None], ids=["pipe", "folder", "none"])
+def test_what_is_no_regular_file_is_no_image_and_blocks_nobody(tmp_path, make):
+    path = tmp_path / "a.exr"
+    if make:
+        make(path)
+    reason = "not a regular file" if make else "No such file or directory"
+    with pytest.raises(ImageError, match=f"a.exr: must be an image file; {reason}$"):
+        read_image(path)
+
+
+def test_a_surrounding_without_colours_is_refused(tmp_path):
+    path = write(tmp_path / "grey.exr", np.ones((4, 8, 1)))
+    with pytest.raises(ValueError, match="grey.exr: must have red, green and blue; got 1 channels"):
+        read_latlong(path)
+
+
+def test_a_surrounding_is_an_image_or_uniform_or_nothing(picture):
+    assert read_latlong(picture).shape == (2, 4, 3)
+    assert read_latlong(0.5).tolist() == [[[0.5, 0.5, 0.5]]]
+    assert read_latlong(None).tolist() == [[[0.0, 0.0, 0.0]]]
+
+
+def test_the_irradiance_of_a_uniform_surrounding_is_its_radiance():
+    assert irradiance(read_latlong(0.7)).tolist() == read_latlong(0.7).tolist()
+    spread = irradiance(np.full((100, 200, 3), 0.7, dtype=np.float32))
+    np.testing.assert_allclose(spread, 0.7, rtol=1e-6)
+
+
+@pytest.mark.parametrize("shape", [(64, 128), (128, 256), (640, 5), (3, 700)])
+def test_a_sky_over_a_black_ground_lights_what_faces_it(shape):
+    rows, columns = shape
+    radiance = np.zeros((rows, columns, 3), dtype=np.float32)
+    radiance[: rows // 2] = 1.0
+    found = irradiance(radiance)
+    assert found.shape == (32, 64, 3) and np.isfinite(found).all()
+    assert found[0].min() > found[-1].max()
+    if rows % 2 == 0 and rows < 640:  # (1 + cos(theta)) / 2 at the middle of each row
+        polar = np.pi * (np.arange(32) + 0.5) / 32
+        expected = 0.5 * (1.0 + np.cos(polar))
+        np.testing.assert_allclose(found[:, 0, 0], expected, rtol=0.0, atol=SUM)

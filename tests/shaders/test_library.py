@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The data library eonlib: what MaterialX finds with it, in every order, mode and client."""
+
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import MaterialX as mx
+import pytest
+
+from mxeon.models.albedo import fon_albedo_avg
+from mxeon.shaders import library
+from mxeon.shaders.generation import TARGETS
+from mxeon.shaders.hosts.cycles.process import interpreter
+from tests.support.availability import available
+from tests.support.documents import EON, OREN_NAYAR, lobe, material
+from tests.support.tolerances import MDL_TINT
+
+SCRIPTS = Path(mx.__file__).parent / "_scripts"
+STOCK = mx.getDefaultDataLibraryFolders()
+OURS = str(library.eonlib_folder())
+DOCUMENTS = sorted(
+    [
+        *library.eonlib_folder().glob("*.mtlx"),
+        *library.data_folder().glob("profiles/*/*.mtlx"),
+        *library.examples_folder().glob("*.mtlx"),
+    ]
+)
+BOTH = (
+    lobe(OREN_NAYAR, "first") + lobe(EON, "second") + '<add name="lobe" type="BSDF">'
+    '<input name="in1" type="BSDF" nodename="first"/>'
+    '<input name="in2" type="BSDF" nodename="second"/></add>'
+)
+
+# What a shader of a target calls for each node.
+CALLS = {
+    "glsl": ("oren_nayar_diffuse_bsdf(closureData, ", "eon_diffuse_bsdf(closureData, "),
+    "osl": ('"energy_compensation", first_energy_compensation)', '"energy_compensation", 1)'),
+    "mdl": ("multiscatter_tint: first_energy_compensation", "multiscatter_tint: second_color"),
+}
+
+ORDERS = {"ours first": [OURS, *STOCK], "stock first": [*STOCK, OURS]}
+in_each_order = pytest.mark.parametrize("folders", ORDERS.values(), ids=ORDERS)
+on_each_target = pytest.mark.parametrize("target", library.TARGETS)
+of_each_node = pytest.mark.parametrize("node", library.NODES)
+
+USD = """
+import sys
+import bpy
+from pathlib import Path
+bundled = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
+sys.path += map(str, bundled.glob("python*/site-packages"))
+from pxr import Sdr
+registry = Sdr.Registry()
+for name in sys.argv[1:]:
+    node = registry.GetShaderNodeByIdentifier(name)
+    print("found", name, node and node.GetResolvedDefinitionURI())
+"""
+
+
+def loaded(folders):
+    """A document with the libraries of some folders, in their order."""
+    document = mx.createDocument()
+    mx.loadLibraries(folders, mx.getDefaultDataSearchPath(), document)
+    return document
+
+
+def attached(mode, data):
+    """A material document whose library is attached in a mode."""
+    document = mx.createDocument()
+    mx.readFromXmlString(document, material(lobe(EON)))
+    getattr(document, mode)(data)
+    return document
+
+
+def run(*arguments, **options):
+    """The output of a Python script, which has to succeed."""
+    command = [sys.executable, *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@of_each_node
+@on_each_target
+@pytest.mark.parametrize("profile", [None, *library.PROFILES])
+def test_every_target_finds_eonlibs_implementation(node, target, profile):
+    found = library.implementations(library.load_library(profile=profile))
+    assert [each.ours for each in found if (each.node, each.target) == (node, target)] == [True]
+
+
+@on_each_target
+def test_stock_finds_its_own_implementation(target):
+    stock = library.load_library("stock")
+    found = {each.node: each for each in library.implementations(stock) if each.target == target}
+    assert found["ND_oren_nayar_diffuse_bsdf"].name.startswith("IM_oren_nayar_diffuse_bsdf_gen")
+    assert not found["ND_oren_nayar_diffuse_bsdf"].ours
+    assert found["ND_eon_diffuse_bsdf"].name == ""
+
+
+@pytest.mark.parametrize("profile, folder", [(None, "libraries|eonlib"), ("cycles", "cycles")])
+def test_the_profile_takes_the_place_of_the_osl_implementations(profile, folder):
+    found = library.implementations(library.load_library(profile=profile))
+    folders = {Path(each.document).parent.name for each in found if each.target == "genosl"}
+    assert len(folders) == 1 and re.fullmatch(folder, *folders)
+
+
+def test_a_library_is_loaded_once():
+    assert library.load_library() is library.load_library()
+    assert library.load_library() is not library.load_library("stock")
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (("mine",), "library must be one of eonlib, stock; got 'mine'"),
+        (("eonlib", "arnold"), "profile must be one of cycles; got 'arnold'"),
+    ],
+)
+def test_an_unknown_name_lists_the_known(arguments, message):
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        library.load_library(*arguments)
+
+
+def test_the_wrong_order_raises_with_node_target_and_remedy():
+    with pytest.raises(library.LibraryError) as raised:
+        library.assert_ours(loaded([*STOCK, OURS]))
+    message = str(raised.value)
+    assert "\n" not in message
+    assert "ND_oren_nayar_diffuse_bsdf for genglsl must be eonlib's; got " in message
+    assert "pbrlib_genglsl_impl.mtlx" in message
+    assert message.endswith(f"load {OURS} before the standard libraries")
+
+
+def test_a_missing_library_raises_too():
+    with pytest.raises(library.LibraryError, match="must be eonlib's; got nothing: load "):
+        library.assert_ours(mx.createDocument())
+
+
+@in_each_order
+@pytest.mark.parametrize("mode", ["setDataLibrary", "importLibrary"])
+@on_each_target
+def test_the_node_of_our_own_works_in_every_order_and_mode(folders, mode, target):
+    document = attached(mode, loaded(folders))
+    found = document.getNode("lobe").getImplementation(target)
+    assert library.data_folder() in Path(found.getActiveSourceUri()).resolve().parents
+
+
+@of_each_node
+def test_every_input_is_documented_and_every_number_has_a_range(node):
+    for port in library.load_library().getNodeDef(node).getInputs():
+        assert port.getAttribute("doc").endswith(".")
+        limits = port.getAttribute("uimin"), port.getAttribute("uimax")
+        assert all(limits) == (port.getName() not in ("normal", "energy_compensation"))
+
+
+def test_the_interface_of_oren_nayar_is_the_standard_one():
+    def interface(name):
+        node = library.load_library(name).getNodeDef("ND_oren_nayar_diffuse_bsdf")
+        assert node.getNodeString() == OREN_NAYAR and node.getType() == "BSDF"
+        kept = "type", "value", "defaultgeomprop", "uniform"
+        return {
+            port.getName(): [port.getAttribute(each) for each in kept] for port in node.getInputs()
+        }
+
+    assert interface("eonlib") == interface("stock")
+
+
+@of_each_node
+@pytest.mark.parametrize("rho", [0.0, 0.2, 0.5, 1.0])
+@pytest.mark.parametrize("r", [0.0, 0.3, 1.0])
+def test_the_mdl_tint_is_the_multiple_scattering_of_eon(node, rho, r):
+    source = library.load_library().getNodeDef(node).getImplementation("genmdl")
+    _, _, expression = source.getAttribute("sourcecode").partition("multiscatter_tint: ")
+    expression = expression.removesuffix("))))")
+    expression = re.sub(r"{{energy_compensation}} \? (.*) : color\(0.0\)", r"\1", expression)
+    expression = re.sub(r"{{(\w+)}}", r"\1", expression.replace("math::PI", "PI"))
+    tint = eval(expression, {"PI": math.pi}, {"color": Rho(rho), "roughness": r})
+    average = fon_albedo_avg(r)
+    expected = rho**2 * average / (1.0 - rho * (1.0 - average))
+    assert float(tint) == pytest.approx(expected, rel=MDL_TINT, abs=0.0)
+
+
+class Rho(float):
+    """A reflectance that can also be called, since MDL's type is called color too."""
+
+    __call__ = staticmethod(float)
+
+
+def test_without_the_flag_the_mdl_tint_is_black():
+    source = library.load_library().getNodeDef(library.NODES[0]).getImplementation("genmdl")
+    assert source.getAttribute("sourcecode").endswith(" : color(0.0)))))")
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_generateshader_finds_the_library_by_its_absolute_folder(tmp_path, target):
+    file = tmp_path / "both.mtlx"
+    file.write_text(material(BOTH))
+    options = "--library", OURS, "--target", target, "--outputPath", tmp_path
+    run(SCRIPTS / "generateshader.py", *options, file, cwd=tmp_path)
+    written = [path for path in tmp_path.glob(f"look.{target}*") if path.suffix != ".vert"]
+    calls = CALLS.get(target, CALLS["glsl"])
+    assert [call in written[0].read_text() for call in calls] == [True, True]
+
+
+def test_generateshader_takes_the_profile_before_the_library(tmp_path):
+    file = tmp_path / "both.mtlx"
+    file.write_text(material(BOTH))
+    folders = library.data_folder() / "profiles" / "cycles", OURS
+    options = "--library", *folders, "--target", "osl", "--outputPath", tmp_path
+    run(SCRIPTS / "generateshader.py", *options, file, cwd=tmp_path)
+    assert "oren_nayar_diffuse_bsdf_cycles(first_" in (tmp_path / "look.osl").read_text()
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.stem)
+def test_mxvalidate_accepts_every_document(path):
+    assert f"{path} is a valid MaterialX document" in run(SCRIPTS / "mxvalidate.py", path)
+
+
+def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
+    with available("cycles"):  # USD with MaterialX comes with Blender
+        python = interpreter()
+    monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
+    command = [python, "-c", USD, *library.NODES]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    definitions = library.eonlib_folder() / "eonlib_defs.mtlx"
+    assert re.findall("found .*", done.stdout) == [
+        f"found {node} {definitions}" for node in library.NODES
+    ]
+    assert "MaterialX" not in done.stderr

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes: unit vectors, sizes in their range, and points of the sphere under the pixel centres."""
+
+import numpy as np
+import pytest
+
+from mxeon.shaders.scene import LARGEST, SCENES, Scene, scene, sphere
+
+
+@pytest.mark.parametrize("known", SCENES, ids=lambda each: each.name)
+def test_a_scene_has_one_light_of_unit_direction_or_one_surrounding(known):
+    assert scene(known.name) is known
+    assert (known.light is None) == (known.environment is not None)
+    if known.light:
+        assert np.linalg.norm(known.light) == pytest.approx(1.0, abs=1e-15)
+
+
+def test_an_unknown_scene_lists_the_known_ones():
+    with pytest.raises(
+        ValueError, match="scene must be one of front, side, back, furnace; got 'top'"
+    ):
+        scene("top")
+
+
+@pytest.mark.parametrize("size", [0, -1, LARGEST + 1])
+def test_a_size_outside_its_range_is_refused(size):
+    with pytest.raises(ValueError, match=rf"size must lie in \[1, {LARGEST}\]; got {size}"):
+        Scene("a", light=(0.0, 0.0, 1.0), size=size)
+
+
+@pytest.mark.parametrize("size", [1, 2, 7, 64])
+def test_points_lie_on_the_sphere_under_the_pixel_centres(size):
+    points = sphere(size)
+    x, y, z = np.moveaxis(points.position, -1, 0)
+    np.testing.assert_allclose(x[0], (2.0 * np.arange(size) + 1.0) / size - 1.0, atol=1e-15)
+    np.testing.assert_array_equal(y, -x.T)  # row 0 at the top
+    np.testing.assert_array_equal(points.mask, np.hypot(x, y) < 1.0)
+    np.testing.assert_allclose((points.position**2).sum(axis=-1)[points.mask], 1.0, atol=1e-15)
+    np.testing.assert_array_equal(points.normal[points.mask], points.position[points.mask])
+    assert (z[~points.mask] == 0.0).all()
+    np.testing.assert_allclose(np.linalg.norm(points.normal, axis=-1), 1.0, atol=1e-15)
+
+
+def test_texture_coordinates_face_the_viewer_in_the_middle():
+    points = sphere(65)
+    np.testing.assert_allclose(points.texcoord[32, 32], 0.5, atol=1e-15)
+    assert points.texcoord[32, 40, 0] > 0.5 and points.texcoord[20, 32, 1] > 0.5
+    inside = points.texcoord[points.mask]
+    assert inside.min() >= 0.0 and inside.max() <= 1.0
+
+
+def test_a_margin_adds_rows_and_columns_around_the_same_points():
+    wide, narrow = sphere(8, margin=1), sphere(8)
+    np.testing.assert_array_equal(wide.position[1:-1, 1:-1], narrow.position)
+
+
+def test_shared_points_cannot_be_changed():
+    with pytest.raises(ValueError, match="read-only"):
+        sphere(8).normal[0, 0, 0] = 2.0

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files that documents name: where they are looked for, and what a missing one means to whom."""
+
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from mxeon.cli import batch as making
+from mxeon.cli import main
+from mxeon.conformance.checks.image import judge_document
+from mxeon.errors import DocumentError, ImageError
+from mxeon.shaders.document.notes import MissingFileWarning
+from mxeon.shaders.document.policy import Permissions
+from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.generation import CodeWarning, generate
+from mxeon.shaders.hosts import open_host
+from tests.support.documents import connected, lobe, material
+
+IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
+INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
+TINT = (0.25, 0.5, 0.75)
+
+
+def textured(name):
+    return material(IMAGE.format(name) + connected(color='nodename="image"'))
+
+
+def picture(path, channels=TINT):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    oiio.ImageBuf(np.full((2, 2, len(channels)), channels, dtype=np.float32)).write(str(path))
+
+
+@pytest.fixture
+def home(tmp_path):
+    """A document's folder; `shared`, beside it, has pictures and part of another document."""
+    picture(tmp_path / "shared/maps/a.exr")
+    picture(tmp_path / "shared/set.1001.exr")
+    picture(tmp_path / "shared/tile.u1_v1.exr")
+    picture(tmp_path / "private/b.exr")
+    (tmp_path / "shared/part.mtlx").write_text(f'<materialx version="1.39">{lobe()}</materialx>')
+    (tmp_path / "home").mkdir()
+    return tmp_path / "home"
+
+
+def written(home, text):
+    path = home / "look.mtlx"
+    path.write_text(text)
+    return path
+
+
+def searched(home):
+    return Permissions(path=(str(home.parent / "none"), str(home.parent / "shared")))
+
+
+def test_an_image_is_looked_for_on_the_path_and_may_lie_there(home):
+    path = written(home, textured("maps/a.exr"))
+    image = read_document(path, permissions=searched(home)).getDescendant("image/file")
+    assert image.getValueString() == str(home.parent / "shared/maps/a.exr")
+    with pytest.warns(MissingFileWarning, match="must name a file that exists; got maps/a.exr"):
+        assert generate(path, "osl")
+
+
+def test_the_folder_of_the_document_comes_first(home):
+    picture(home / "maps/a.exr")
+    path = written(home, textured("maps/a.exr"))
+    image = read_document(path, permissions=searched(home)).getDescendant("image/file")
+    assert image.getValueString() == str(home / "maps/a.exr")
+
+
+def test_a_prefix_is_part_of_the_name(home):
+    path = written(home, textured("a.exr").replace("<image ", '<image fileprefix="maps/" '))
+    image = read_document(path, permissions=searched(home)).getDescendant("image/file")
+    assert image.getValueString() == str(home.parent / "shared/maps/a.exr")
+
+
+def test_a_name_that_leads_out_of_the_path_is_refused(home):
+    path = written(home, textured("../private/b.exr"))
+    with pytest.raises(DocumentError, match="on the search path or in the libraries"):
+        read_document(path, permissions=searched(home))
+
+
+def test_an_include_is_looked_for_on_the_path(home):
+    path = written(home, INCLUDE.format('<xi:include href="part.mtlx"/>'))
+    assert read_document(path, permissions=searched(home)).getNode("lobe")
+    with pytest.raises(DocumentError, match="include must name a file that exists; got part.mtlx"):
+        read_document(path)
+
+
+def test_an_include_of_an_include_is_looked_for_where_the_document_is(home):
+    (home / "parts").mkdir()
+    (home / "parts/first.mtlx").write_text(INCLUDE.format('<xi:include href="second.mtlx"/>'))
+    (home / "second.mtlx").write_text(f'<materialx version="1.39">{lobe()}</materialx>')
+    path = written(home, INCLUDE.format('<xi:include href="parts/first.mtlx"/>'))
+    assert read_document(path).getNode("lobe")
+
+
+def test_a_source_is_looked_for_on_the_path(home):
+    (home.parent / "shared/own.glsl").write_text("void own(ClosureData c, inout BSDF b) {}\n")
+    text = '<nodedef name="ND_a" node="a"><output name="out" type="BSDF"/></nodedef>'
+    text += '<implementation name="IM_a" nodedef="ND_a" file="own.glsl" function="own"/>'
+    path = written(home, material(text + '<a name="lobe" type="BSDF"/>'))
+    permissions = Permissions(code=True, path=(str(home.parent / "shared"),))
+    with pytest.warns(CodeWarning):
+        [shader] = generate(path, "glsl", permissions=permissions)
+    assert "void own(" in shader.stages["pixel"]
+
+
+def test_the_environment_names_folders_too(home, monkeypatch):
+    monkeypatch.setenv("MATERIALX_SEARCH_PATH", f"{home.parent / 'none'}:{home.parent / 'shared'}:")
+    assert Permissions().path == searched(home).path
+
+
+@pytest.mark.parametrize("workers", ["0", "1"])
+def test_the_command_searches_folders(home, workers, capfd, monkeypatch):
+    monkeypatch.chdir(home.parent)
+    written(home, textured("maps/a.exr"))
+    options = ["--workers", workers, "--outputPath", "out", "--target", "osl", "--path", "shared"]
+    assert main(["generate", "home/look.mtlx", *options]) == 0
+    assert capfd.readouterr().err == ""
+    assert str(home.parent / "shared/maps/a.exr") in Path("out/look.look.osl").read_text()
+
+
+def test_a_folder_of_the_path_must_exist(home, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["generate", "look.mtlx", "--target", "osl", "--outputPath", "o", "--path", "nowhere"])
+    assert ended.value.code == 2
+    assert "--path: must name a folder that exists; got 'nowhere'" in capsys.readouterr().err
+
+
+def test_a_missing_image_is_an_error_to_render_and_check(home, capfd):
+    path = written(home, textured("none.exr"))
+    error = 'input "image/file" must name a file that exists; got none.exr: --path FOLDER'
+    options = ["--host", "reference", "--output", str(home / "a.exr"), "--workers", "0"]
+    assert main(["render", str(path), *options]) == 2
+    assert error in capfd.readouterr().err
+    reference = open_host("reference")
+    with pytest.raises(DocumentError, match="must name a file that exists"):
+        judge_document(path, open_host("gl"), reference, "eonlib")
+
+
+@pytest.mark.parametrize("name", ["set.&lt;UDIM&gt;.exr", "set.<UDIM>.exr", "tile.<UVTILE>.exr"])
+@pytest.mark.parametrize("host", ["gl", "reference"])
+def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
+    rest = ("front", None, 16, None, "eonlib", searched(home))
+    shown, expected = (
+        making.picture(str(written(home, textured(each))), host, *rest)[0]
+        for each in (name, "maps/a.exr")
+    )
+    assert expected.any() and np.array_equal(shown, expected)
+
+
+def test_a_set_of_textures_without_a_file_is_missing(home):
+    path = written(home, textured("none.<UDIM>.exr"))
+    with pytest.warns(MissingFileWarning, match="got none.<UDIM>.exr"):
+        assert generate(path, "glsl")
+
+
+@pytest.mark.parametrize("host", ["gl", "reference"])
+def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
+    picture(home / "five.exr", (0.1, 0.2, 0.3, 0.4, 0.5))
+    path = str(written(home, textured("five.exr")))
+    with pytest.raises(ImageError, match="five.exr: must have at most 4 channels; got 5"):
+        making.picture(path, host, "front", None, 16, None, "eonlib", Permissions())
+
+
+def test_a_texture_of_two_channels_is_not_the_references(home):
+    picture(home / "two.exr", (0.1, 0.2))
+    path = written(home, textured("two.exr"))
+    [result], _, _ = judge_document(path, open_host("gl"), open_host("reference"), "eonlib")
+    assert (result.check, result.verdict) == ("finite", "passed")
+    assert "two.exr: must be read as float, or as color3 from an image of 3" in result.diagnosis
+
+
+def test_a_texture_of_one_channel_is_gray(home):
+    picture(home / "one.exr", (0.5,))
+    path = written(home, textured("one.exr"))
+    [result], _, _ = judge_document(path, open_host("gl"), open_host("reference"), "eonlib")
+    assert (result.check, result.verdict) == ("picture", "passed")

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The shader twins: one text in two languages, and the values of the GLSL one against float64."""
+
+import inspect
+import re
+
+import numpy as np
+import pytest
+
+from mxeon.models import albedo, formulas
+from mxeon.models import brdf as models
+from mxeon.shaders import functions as twins
+from mxeon.shaders.library import data_folder
+from tests.support.cases import directions_32
+from tests.support.tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
+
+STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling")
+WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "osl": "glsl"}
+MODELS = ("lambert", "oren_nayar", "qon", "fon", "eon")
+SAMPLERS = ("uniform", "cosine", "ltc0", "ltc", "cltc")
+VALUES = (
+    models.lambert_brdf,
+    models.oren_nayar_brdf,
+    models.qon_brdf,
+    models.qon_footnote_brdf,
+    models.qon_fujii_brdf,
+    models.fon_brdf,
+    models.eon_brdf,
+    models.eon_brdf_approx,
+)
+ALBEDOS = (
+    albedo.qon_albedo_dir,
+    albedo.qon_albedo_avg,
+    albedo.fon_albedo_dir,
+    albedo.fon_albedo_dir_approx,
+    albedo.fon_albedo_avg,
+    albedo.eon_albedo_dir,
+    albedo.eon_albedo_dir_approx,
+    albedo.eon_albedo_avg,
+)
+
+by_stem = pytest.mark.parametrize("stem", STEMS)
+by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
+
+
+def text(language, stem):
+    return (data_folder() / f"gen{language}" / f"{stem}.{language}").read_text(encoding="utf-8")
+
+
+def code(stem):
+    return re.sub(r"//.*", "", text("glsl", stem))
+
+
+def materials(rng, count):
+    """Reflectances and roughnesses in float32; the first two are corners of their ranges."""
+    corners = np.float32([[0.0] * 3, [1.0] * 3])
+    roughness = np.append([1.0, 0.0], rng.random(count - 2)).astype("f4")
+    rho = np.append(corners, rng.random((count - 2, 3), "f4"), axis=0)
+    return {"rho": rho, "roughness": roughness, "sigma": np.float32(1.57) * roughness}
+
+
+def twin_error(gl, function, drawn):
+    """What the twin of a Python function returns, less what that returns, (N, C)."""
+    arguments = [drawn[name] for name in inspect.signature(function).parameters]
+    exact = function(*arguments)
+    return gl.call(function.__name__, *arguments) - exact.reshape(len(exact), -1)
+
+
+def name_of(function):
+    return function.__name__
+
+
+@by_stem
+def test_osl_twin_with_four_words_replaced_is_the_glsl_twin(stem):
+    pattern = re.compile(rf"\b({'|'.join(WORDS)})\b")
+    assert pattern.sub(lambda word: WORDS[word[0]], text("osl", stem)) == text("glsl", stem)
+
+
+@by_stem
+def test_twins_keep_constants_in_macros_and_functions_under_names_of_models_and_samplers(stem):
+    outside = [line for line in code(stem).splitlines() if line and line[0] not in " {}"]
+    function = rf"(float|vec3) ({'|'.join(MODELS + SAMPLERS)})_\w+\(.*\)"
+    allowed = re.compile(rf"#define EON_\w+ .*|#include \"\w+.glsl\"|{function}")
+    assert [line for line in outside if not allowed.fullmatch(line)] == []
+
+
+@by_stem
+def test_twins_use_no_word_or_number_that_one_language_lacks(stem):
+    words = r"\b(const|bool|true|false|int|in|out|inout)\b"
+    numbers = r"(?<!e-)(?<![\w.])\d+(?![\w.])|\d\.(?!\d)|\d\.\d+f"
+    assert re.findall(f"{words}|{numbers}", code(stem)) == []
+
+
+@by_stem
+def test_twins_take_components_of_directions_only(stem):
+    found = set(re.findall(r"(\w+)\.[a-z]\w*", re.sub(r'".*"', "", code(stem))))
+    assert found <= {"wo", "wi", "wh", "back", "turn"}
+
+
+@pytest.mark.parametrize("function", VALUES + ALBEDOS, ids=name_of)
+@by_language
+def test_twins_have_the_functions_and_arguments_of_the_python_package(language, function):
+    names = [name for _, name in twins.signature(language, function.__name__)]
+    assert names == list(inspect.signature(function).parameters)
+
+
+def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():
+    found = re.findall(r"#define EON_G\d (\S+)", text("glsl", twins.FAMILY))
+    assert tuple(map(float, found)) == formulas.FON_G
+
+
+@pytest.mark.parametrize("function", VALUES, ids=name_of)
+def test_twin_values_agree_with_float64_down_to_grazing(gl, function):
+    rng = np.random.default_rng(1)
+    wo, wi = directions_32(rng, 100_000), directions_32(rng, 100_000)
+    error = twin_error(gl, function, {"wo": wo, "wi": wi} | materials(rng, 100_000))
+    assert np.max(np.abs(np.pi * error * wi[:, 2:])) <= TWIN_VALUE
+
+
+@pytest.mark.parametrize("function", VALUES, ids=name_of)
+def test_twin_values_agree_with_float64_on_the_edges_of_the_domain(gl, function):
+    axes = np.float32([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, 0, 1], [0.6, 0, 0.8]])
+    o, i, rho, parameter = map(np.ravel, np.meshgrid(range(5), range(5), [0.0, 1.0], [0.0, 1.0]))
+    drawn = {"wo": axes[np.intp(o)], "wi": axes[np.intp(i)], "rho": np.repeat(rho[:, None], 3, 1)}
+    error = twin_error(gl, function, drawn | {"sigma": parameter, "roughness": parameter})
+    assert np.max(np.abs(np.pi * error)) <= TWIN_VALUE
+
+
+@pytest.mark.parametrize("function", ALBEDOS, ids=name_of)
+def test_twin_albedos_agree_with_float64_on_the_closed_domain(gl, function):
+    rng = np.random.default_rng(2)
+    mu = np.append([0.0, 1.0], 10.0 ** rng.uniform(-8, 0, 9_998)).astype("f4")
+    error = twin_error(gl, function, {"mu": mu} | materials(rng, 10_000))
+    assert np.max(np.abs(error)) <= TWIN_ALBEDO
+
+
+def test_twin_loss_keeps_its_relative_accuracy_down_to_grazing(gl):
+    mu = np.logspace(-8, 0, 100_000).astype("f4")
+    error = gl.call("fon_loss", mu)[:, 0] / formulas.loss(np.float64(mu)) - 1.0
+    assert np.max(np.abs(error)) <= TWIN_LOSS

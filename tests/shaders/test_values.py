@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Inputs of every type come out of shaders as plain Python values, and go back into programs."""
+
+from dataclasses import replace
+
+import MaterialX as mx
+import numpy as np
+import pytest
+
+from mxeon.errors import NotRun
+from mxeon.shaders.document.policy import Permissions
+from mxeon.shaders.document.values import plain
+from mxeon.shaders.generation import TARGETS, generate
+from mxeon.shaders.hosts import open_host
+from mxeon.shaders.library import load_library
+from mxeon.shaders.scene import FURNACE
+from tests.support.documents import material
+
+NINE, SIXTEEN = (tuple(map(float, range(count))) for count in (9, 16))
+VALUES = {
+    "boolean": ("true", True),
+    "integer": ("3", 3),
+    "float": ("0.5", 0.5),
+    "color3": ("0, 0.5, 1", (0.0, 0.5, 1.0)),
+    "color4": ("0, 0.5, 1, 2", (0.0, 0.5, 1.0, 2.0)),
+    "vector2": ("0, 0.5", (0.0, 0.5)),
+    "vector3": ("0, 0.5, 1", (0.0, 0.5, 1.0)),
+    "vector4": ("0, 0.5, 1, 2", (0.0, 0.5, 1.0, 2.0)),
+    "matrix33": (str(NINE)[1:-1], NINE),
+    "matrix44": (str(SIXTEEN)[1:-1], SIXTEEN),
+    "string": ("a b", "a b"),
+    "filename": ("a/b.png", "a/b.png"),
+    "geomname": ("/a", "/a"),
+    "integerarray": ("1, 2", (1, 2)),
+    "floatarray": ("0.5, 1", (0.5, 1.0)),
+    "stringarray": ("a, b c", ("a", "b c")),
+}
+STRUCTURES = """<typedef name="pair"><member name="x" type="float" value="0.5"/>
+    <member name="y" type="float" value="0.25"/></typedef>
+  <typedef name="nest"><member name="p" type="pair" value="{0.5;0.5}"/>
+    <member name="z" type="float" value="1"/></typedef>
+  <nodedef name="ND_pick" node="pick"><input name="in" type="nest" value="{{0;0};0}"/>
+    <output name="out" type="float" value="0"/></nodedef>"""
+STRUCTURES += "".join(
+    f'<implementation name="IM_{each}" nodedef="ND_pick" target="gen{each}" '
+    'sourcecode="{{in}}.p.y"/>'
+    for each in ("glsl", "msl", "osl", "mdl", "slang")
+)
+PICK = (
+    STRUCTURES
+    + """<pick name="pick" type="float">
+    <input name="in" type="nest" value="{{0.75;0.5};2}"/></pick>
+  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
+    <input name="weight" type="float" nodename="pick"/></oren_nayar_diffuse_bsdf>"""
+)
+NODE = """<transformmatrix name="t" type="vector{size}">
+    <input name="in" type="vector{size}" value="{vector}"/>
+    <input name="mat" type="matrix{size}{size}" value="{matrix}"/></transformmatrix>
+  <separate{size} name="s" type="multioutput">
+    <input name="in" type="vector{size}" nodename="t"/></separate{size}>
+  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
+    <input name="weight" type="float" nodename="s" output="outy"/></oren_nayar_diffuse_bsdf>"""
+MATRICES = {
+    size: NODE.format(
+        size=size,
+        vector=", ".join(["0.1", "0.2", "0.3", "0.4"][:size]),
+        matrix=", ".join(str(each / 32) for each in range(size * size)),
+    )
+    for size in (3, 4)
+}
+TRUSTED = Permissions(code=True)
+pytestmark = pytest.mark.filterwarnings("ignore:.*brings code of its own")
+
+
+@pytest.mark.parametrize("kind", VALUES)
+def test_a_value_of_every_type_is_plain(kind):
+    text, value = VALUES[kind]
+    found = plain(mx.Value.createValueFromStrings(text, kind), mx.createDocument())
+    assert found == value and type(found) is type(value)
+
+
+def test_every_type_of_the_library_that_has_values_is_known():
+    closures = {"material", "none", "BSDF", "EDF", "VDF"}
+    for each in load_library("stock").getTypeDefs():
+        kind = each.getName()
+        if kind not in VALUES and kind not in closures and not kind.endswith("shader"):
+            assert isinstance(plain(mx.Value.createValueFromStrings("1, 2", kind), None), str), kind
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_public_structure_is_the_tuple_of_its_members(target):
+    [shader] = generate(material(PICK), target, permissions=TRUSTED)
+    assert {each.path: each.value for each in shader.inputs}["pick/in"] == ((0.75, 0.5), 2.0)
+
+
+@pytest.mark.parametrize("size", MATRICES)
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_public_matrix_is_its_numbers_row_after_row(target, size):
+    [shader] = generate(material(MATRICES[size]), target)
+    expected = tuple(each / 32 for each in range(size * size))
+    assert {each.path: each.value for each in shader.inputs}["t/mat"] == expected
+
+
+@pytest.fixture(scope="module", params=["gl", "webgl"])
+def host(request):
+    try:
+        host = open_host(request.param)
+    except NotRun as reason:
+        pytest.skip(str(reason))
+    yield host
+    host.close()
+
+
+def brightness(host, nodes, **values):
+    """What a white furnace shows of a material with these values by the paths of their inputs."""
+    found = generate(material(nodes), host.target, lights=True, permissions=TRUSTED)[0]
+    inputs = (replace(each, value=values.get(each.path, each.value)) for each in found.inputs)
+    shader = replace(found, inputs=tuple(inputs))
+    return float(host.picture(shader, replace(FURNACE, size=16))[8, 8, 0]) / 0.18
+
+
+@pytest.mark.parametrize("size", MATRICES)
+def test_a_host_sets_a_matrix(host, size):
+    matrix = np.arange(size * size).reshape(size, size) / 32
+    vector = np.array([0.1, 0.2, 0.3, 0.4])[:size]
+    assert brightness(host, MATRICES[size]) == pytest.approx((vector @ matrix)[1], rel=1e-5)
+    other = {"t/mat": tuple(matrix.T.ravel())}
+    transposed = brightness(host, MATRICES[size], **other)
+    assert transposed == pytest.approx((matrix @ vector)[1], rel=1e-5)
+
+
+def test_a_host_sets_the_members_of_a_structure(host):
+    assert brightness(host, PICK) == pytest.approx(0.5, rel=1e-5)
+    other = {"pick/in": ((0.75, 0.25), 2.0)}
+    assert brightness(host, PICK, **other) == pytest.approx(0.25, rel=1e-5)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Other versions of MaterialX: what mxeon needs of them is looked up in them, not in a list."""
+
+import shutil
+import warnings
+
+import MaterialX as mx
+import pytest
+
+from mxeon.cli import main
+from mxeon.conformance.results import NOT_RUN, PASSED
+from mxeon.conformance.run import check
+from mxeon.errors import InterfaceError, NotRun
+from mxeon.shaders import generation, hosts, library
+from mxeon.shaders.hosts import open_host
+from mxeon.shaders.library import UntestedVersionWarning, check_closure_calls, load_library
+from tests.support.documents import lobe, material
+
+EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
+DEFINITION = "void eon_diffuse_bsdf(ClosureData closureData, float weight, inout BSDF bsdf)"
+CACHES = (load_library, generation._library_generator)
+
+
+@pytest.fixture
+def fresh():
+    """Libraries and generators as in a new process, before the test and after it."""
+    for cache in CACHES:
+        cache.cache_clear()
+    yield
+    for cache in CACHES:
+        cache.cache_clear()
+
+
+@pytest.fixture
+def other_interface(fresh, monkeypatch, tmp_path):
+    """A checkout whose oren_nayar_diffuse_bsdf takes one argument more than MaterialX passes."""
+    for name in ("libraries", "genglsl", "genosl", "profiles"):
+        shutil.copytree(library.data_folder() / name, tmp_path / name)
+    source = tmp_path / "genglsl" / "oren_nayar_diffuse_bsdf.glsl"
+    text = source.read_text().replace(
+        "float weight, vec3 color", "float gain, float weight, vec3 color"
+    )
+    source.write_text(text)
+    monkeypatch.setattr(library, "data_folder", lambda: tmp_path)
+
+
+@pytest.mark.parametrize("name", library.LIBRARIES)
+def test_an_untested_version_runs_with_a_warning(fresh, monkeypatch, name):
+    monkeypatch.setattr(mx, "getVersionString", lambda: "1.40.0")
+    with pytest.warns(UntestedVersionWarning, match=r"^MaterialX 1.40.0 has not been tested with"):
+        assert load_library(name).getNodeDef("ND_oren_nayar_diffuse_bsdf")
+
+
+def test_the_report_of_an_untested_version_says_so(monkeypatch):
+    monkeypatch.setattr(mx, "getVersionString", lambda: "1.40.0")
+    with warnings.catch_warnings(action="ignore"):
+        run = check([EXAMPLE])
+    assert {result.verdict for result in run.results} == {PASSED}
+    assert any(note.startswith("MaterialX 1.40.0 has not been tested with") for note in run.notes)
+
+
+def test_the_installed_version_needs_no_warning(fresh):
+    assert library.untested(mx.getVersionString()) == ""
+    with warnings.catch_warnings(action="error"):
+        load_library("stock")
+
+
+def test_a_version_that_lacks_a_method_is_refused_in_one_line(fresh, monkeypatch, capsys):
+    monkeypatch.setattr(library, "REQUIRED", ((mx.Document, "setOtherLibrary"),))
+    assert main(["check", EXAMPLE]) == 2
+    assert capsys.readouterr().err.startswith(
+        f"mxeon: MaterialX {mx.getVersionString()} lacks Document.setOtherLibrary; install 1.39.3"
+    )
+
+
+def test_another_closure_interface_is_refused_for_its_node_and_target(other_interface):
+    with pytest.raises(
+        InterfaceError, match=r"^glsl: MaterialX .* does not call eonlib's function"
+    ):
+        generation.generate(material(lobe()), "glsl")
+    assert generation.generate(material(lobe()), "osl")
+    assert generation.generate(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'), "glsl")
+
+
+def test_checks_of_another_closure_interface_are_not_run(other_interface):
+    verdicts = {result.subject: result.verdict for result in check([EXAMPLE]).results}
+    assert verdicts["oren_nayar_diffuse_bsdf, energy_compensation true"] == NOT_RUN
+    assert verdicts["eon_diffuse_bsdf"] == PASSED
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "eon_diffuse_bsdf_reflection(L, V, P)",
+        "eon_diffuse_bsdf(L, V)",
+        "eon_diffuse_bsdf(c, f(a, b))",
+    ],
+)
+def test_calls_of_another_form_are_refused(call):
+    with pytest.raises(
+        InterfaceError, match="eon_diffuse_bsdf.ClosureData closureData, float weight"
+    ):
+        check_closure_calls(f"{DEFINITION} {{}}\nvoid main() {{ {call}; }}", "glsl")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{DEFINITION} {{}}\nvoid main() {{ eon_diffuse_bsdf(c, max(0.0, w), result); }}",
+        "oren_nayar_diffuse_bsdf(normal, color, roughness)",
+        "void mx_oren_nayar_diffuse_bsdf(ClosureData c)\nmx_oren_nayar_diffuse_bsdf(c, w)",
+    ],
+)
+def test_calls_of_the_same_form_and_other_functions_are_accepted(text):
+    check_closure_calls(text, "glsl")
+
+
+def test_a_host_whose_target_this_version_lacks_is_not_run(monkeypatch):
+    targets = tuple(target for target in generation.TARGETS if target != "slang")
+    monkeypatch.setattr(hosts, "TARGETS", targets)
+    with pytest.raises(
+        NotRun, match="slang: MaterialX must have a generator for slang; .* none: pip"
+    ):
+        open_host("slang")

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What text of a document reaches generated source is words, wherever it stands."""
+
+import MaterialX as mx
+import pytest
+
+from mxeon.errors import DocumentError
+from mxeon.shaders import generation
+from mxeon.shaders.document import words
+from mxeon.shaders.document.reading import read_document
+from tests.fuzz import reach
+from tests.support.documents import connected, lobe, material
+
+SOME = ("glsl", "osl", "mdl")  # one of each family of generators
+IMAGE = '<image name="image" type="color3"><input name="{}" type="{}" value="{}"/></image>'
+KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def furnished(tmp_path_factory):
+    """A working folder with what the documents name; and no values of inputs, which are no source."""
+    folder = tmp_path_factory.mktemp("reach")
+    reach.furnish(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(generation, "_inputs", lambda *_: ())
+        patch.chdir(folder)
+        yield
+
+
+@pytest.fixture(scope="module")
+def materials(furnished):
+    """The document of materials, and which of its places reach source."""
+    root = reach.documents()["materials"]
+    return root, reach.reached(root, reach.present(root))
+
+
+def named(root, places):
+    elements = list(root.iter())
+    return {(elements[place.number].tag, place.attribute) for place in places}
+
+
+def test_the_document_has_every_kind_of_element():
+    there = {each.tag for each in reach.documents()["materials"].iter()}
+    assert {kind.CATEGORY for kind in KINDS} - {"node"} <= there
+
+
+def test_text_that_reaches_source_in_materials_is_words(materials):
+    assert reach.unjudged(*materials) == []
+
+
+def test_text_that_reaches_source_in_outputs_is_words():
+    root = reach.documents()["outputs"]
+    found = reach.reached(root, reach.present(root), SOME)
+    assert ("materialx", "namespace") in named(root, found)
+    assert reach.unjudged(root, found, SOME) == []
+
+
+def test_no_attribute_where_it_does_not_belong_reaches_source(materials):
+    root, _ = materials
+    assert reach.reached(root, reach.absent(root), SOME) == {}
+
+
+def test_the_search_sees_what_is_known_to_reach_source(materials):
+    known = {("geompropdef", "index"), ("geompropdef", "space"), ("surfacematerial", "namespace")}
+    assert known | {("input", "value"), ("typedef", "name")} <= named(*materials)
+
+
+@pytest.mark.parametrize("name", ["index", "space", "namespace"])
+def test_the_search_notices_what_is_not_judged(materials, monkeypatch, name):
+    monkeypatch.setattr(words, "NAMES", words.NAMES - {name})
+    root, found = materials
+    places = {place: ways for place, ways in found.items() if place.attribute == name}
+    assert reach.unjudged(root, places, SOME)
+
+
+REFUSED = {
+    "index": (
+        '<geompropdef name="a" type="vector2" index="0&#10;;"/>',
+        "geompropdef \"a\": 'index'",
+    ),
+    "space": ('<geompropdef name="a" type="vector3" space="x&quot;"/>', "'space' must be a name"),
+    "namespace": ('<nodegraph name="a" namespace="x y"/>', "'namespace' must be a name of letters"),
+    "color space": (
+        IMAGE.format("default", "color3", '0,0,0" colorspace="a\\'),
+        "must be without quotes",
+    ),
+    "comment": (IMAGE.format("layer", "string", "a//b"), "without //; got 'a//b'"),
+    "choice": (IMAGE.format("uaddressmode", "string", "a, b"), "'value' must be one word"),
+    "member": (
+        '<typedef name="p"><member name="t" type="string" value="w&quot;"/></typedef>',
+        "member \"p/t\": 'value' must be words",
+    ),
+    "structure": (
+        '<nodegraph name="a"><input name="b" type="p" value="{1;w&quot;}"/></nodegraph>',
+        "input \"a/b\": 'value' must be words",
+    ),
+}
+
+
+@pytest.mark.parametrize("nodes, reason", REFUSED.values(), ids=REFUSED)
+def test_more_than_words_is_refused_in_one_line(nodes, reason):
+    with pytest.raises(DocumentError) as refused:
+        read_document(material(nodes + lobe()))
+    message = str(refused.value)
+    assert message.startswith("document text: ") and reason in message and message.isprintable()
+
+
+def test_a_choice_is_one_word_through_an_interface_too():
+    graph = '<nodegraph name="g"><input name="wrap" type="string" value="a, b"/>'
+    image = IMAGE.replace("value", "interfacename").format("uaddressmode", "string", "wrap")
+    output = '<output name="o" type="color3" nodename="image"/></nodegraph>'
+    with pytest.raises(DocumentError, match="'value' must be one word"):
+        read_document(material(graph + image + output + connected(color='nodegraph="g"')))
+
+
+ACCEPTED = {
+    "prose": '<nodegraph name="a" doc="see http://x/y: &quot;*/\\&quot;&#10;;" uiname="a // b" uifolder="a/b"/>',
+    "an application's own": '<nodegraph name="a" app="{&quot;x&quot;: 1} // y"/>',
+    "a namespace": '<nodegraph name="n:a" namespace="n"/>',
+    "a color space of OCIO": '<nodegraph name="a" colorspace="Linear Rec.709 (sRGB)"/>',
+    "geometry": '<collection name="c" includegeom="/a/*, /b (c)/d"/>',
+    "a structure": '<typedef name="p"><member name="t" type="string" value="w"/></typedef>'
+    '<nodegraph name="a"><input name="b" type="p" value="{w}"/></nodegraph>',
+    "a layer": IMAGE.format("layer", "string", "left eye.R-1"),
+}
+
+
+@pytest.mark.parametrize("nodes", ACCEPTED.values(), ids=ACCEPTED)
+def test_legitimate_text_is_accepted(nodes):
+    assert read_document(material(nodes + lobe()))
+
+
+@pytest.mark.parametrize("name", ["a b (1) #2 &amp; ü.png", "it's, 100%.png"])
+def test_names_of_files_are_free_but_for_what_ends_a_string(tmp_path, name):
+    (tmp_path / name.replace("&amp;", "&")).touch()
+    path = tmp_path / "look.mtlx"
+    path.write_text(material(IMAGE.format("file", "filename", name) + lobe()), encoding="utf-8")
+    assert read_document(path)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Work that goes wrong on purpose, in processes that the tests of the pool start; full disks."""
+
+import os
+import resource
+import signal
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+from mxeon.errors import NotRun
+
+
+def square(item):
+    return item * item
+
+
+def misbehave(item):
+    """Do what the item says; a number is squared."""
+    if isinstance(item, int):
+        return square(item)
+    print(f"about to {item}", file=sys.stderr, flush=True)
+    if item == "hang":
+        time.sleep(60.0)
+    if item == "exit":
+        os._exit(7)
+    if item == "raise":
+        raise RuntimeError("no light")
+    os.kill(os.getpid(), getattr(signal, item))
+
+
+class Tar:
+    """An item that a process never comes to: it hangs while it takes it."""
+
+    def __reduce__(self):
+        return time.sleep, (60.0,)
+
+
+def once(item):
+    """Die at the first attempt: the item is a file that the first attempt leaves behind."""
+    path = Path(item)
+    if not path.exists():
+        path.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "done"
+
+
+def process(item):
+    """Number of the process that works, after a moment."""
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def need(item):
+    """Ask for the environment variable that the item names."""
+    if item not in os.environ:
+        raise NotRun(f"{item}: missing")
+    return os.environ[item]
+
+
+@contextmanager
+def room_for(size):
+    """Let no file grow beyond so many bytes: what a full disk does, without one."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Views, random numbers, and a quadrature of the hemisphere, for the tests of the samplers."""
+
+import numpy as np
+import pytest
+
+from mxeon.models.sampling import SAMPLERS
+
+COSINES = (1.0, 0.9, 0.5, 0.1, 1e-3, 0.0)
+ROUGHNESS = (0.0, 0.01, 0.4, 1.0)
+SCENES = [(mu, r) for mu in COSINES for r in ROUGHNESS]
+BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
+
+every_sampler = pytest.mark.parametrize("sampler", SAMPLERS, ids=lambda sampler: sampler.name)
+every_scene = pytest.mark.parametrize(("mu", "roughness"), SCENES)
+
+
+def view(mu, azimuth=0.0):
+    """Direction with cosine `mu`."""
+    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return np.array([S * np.cos(azimuth), S * np.sin(azimuth), mu])
+
+
+def polar_angle(mu):
+    """Angle whose cosine is `mu`, no rounding above a right angle."""
+    return np.minimum(np.arccos(mu), 0.5 * np.pi)
+
+
+def rule(edges, count):
+    """Nodes and weights of Gauss-Legendre between each two edges, shape (panels, count)."""
+    x, w = np.polynomial.legendre.leggauss(count)
+    edges = np.asarray(edges)[:, np.newaxis]
+    half = 0.5 * np.diff(edges, axis=0)
+    return edges[:-1] + half * (1.0 + x), half * w
+
+
+def directions(theta, phi):
+    """Unit vectors on the grid of the two angles, shape (*theta, *phi, 3)."""
+    theta = theta.reshape(theta.shape + (1,) * phi.ndim)
+    parts = (np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0.0 * phi)
+    return np.stack(parts, axis=-1)
+
+
+def hemisphere(mu, count=64):
+    """Directions and weights in solid angle, exact across the kinks of EON for this `mu`."""
+    theta, dtheta = rule(np.unique([0.0, polar_angle(mu), 0.5 * np.pi]), count)
+    phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
+    weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
+    return directions(theta, phi).reshape(-1, 3), weights.ravel()
+
+
+def uniforms(count, seed):
+    """Random numbers, shape (count, 2)."""
+    return np.random.default_rng(seed).random((count, 2))
+
+
+def binned(wi, edges, count):
+    """Number of directions in each bin of polar angle times azimuth, and of those below."""
+    row = np.digitize(np.arccos(np.clip(wi[:, 2], -1.0, 1.0)), edges[1:-1])
+    column = np.floor((np.arctan2(wi[:, 1], wi[:, 0]) / (2.0 * np.pi) % 1.0) * count).astype(int)
+    bins = np.where(wi[:, 2] < 0.0, 0, 1 + row * count + np.minimum(column, count - 1))
+    return np.bincount(bins, minlength=1 + count * (len(edges) - 1))
+
+
+def expected(sampler, mu, roughness, edges, count):
+    """Probability of each bin of `binned`, by quadrature."""
+    theta, dtheta = rule(edges, 16)
+    phi, dphi = rule(2.0 * np.pi * np.arange(count + 1) / count, 16)
+    pdf = sampler.pdf(view(mu), directions(theta, phi), roughness)
+    bins = np.einsum("ikjl,ik,jl->ij", pdf, dtheta * np.sin(theta), dphi)
+    return np.append(max(0.0, 1.0 - bins.sum()), bins)
