@@ -115,11 +115,11 @@ def check_limit(permissions, name, value, rule, what):
     Raises
     ------
     DocumentError
-        Otherwise; names the option that moves the limit.
+        Otherwise; names the option that raises the limit.
     """
     limit = getattr(permissions, name)
     if value > limit:
         raise DocumentError(
-            f"{rule} at most {limit} {what}; got {value}: --max{name.capitalize()} moves the limit"
+            f"{rule} at most {limit} {what}; got {value}: raise it with --max{name.capitalize()}"
         )
 

@@ -39,7 +39,7 @@ def check_inside(path, home, permissions, place):
     if not permissions.outside and not inside(path, home):
         raise DocumentError(
             f"{place} must name a file in {home} or in the libraries; got {path}: "
-            "--allowOutside lets it"
+            "pass --allowOutside to permit it"
         )
 
 
@@ -90,7 +90,8 @@ def check_code(document, permissions, called):
         place = f'{called}: implementation "{element.getName()}"'
         if not permissions.code:
             raise DocumentError(
-                f"{place} must not bring code of its own; got {_code(element)}: --allowCode lets it"
+                f"{place} must not bring code of its own; got {_code(element)}: "
+                "pass --allowCode to permit it"
             )
         for path in _sources(element, home):
             check_inside(path, home, permissions, place)
