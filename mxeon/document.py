@@ -12,7 +12,7 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.expansion import check_inheritance
+from mxeon.expansion import check_inheritance, check_interfaces
 from mxeon.library import load_library
 from mxeon.permissions import DEFAULT
 from mxeon.screening import DocumentError, Screening, check_limit
@@ -135,6 +135,7 @@ def _check(document, permissions):
             f"got {version[0]}.{version[1]}"
         )
     check_inheritance(document, permissions, label(document))
+    check_interfaces(document, permissions, label(document))
     check_code(document, permissions, label(document))
     check_words(document, label(document))
     _check_types(document)

@@ -45,7 +45,7 @@ class Screening:
 
     def __init__(self, permissions):
         self._permissions = permissions
-        self._size = self._elements = self._depth = 0
+        self._size = self._elements = self._attributes = self._depth = 0
         self._place = ""
 
     def read(self, file):
@@ -87,7 +87,9 @@ class Screening:
         self._depth += 1
         self._elements += 1
         self._limit("depth", self._depth, "elements within each other")
+        self._attributes += len(attributes)
         self._limit("elements", self._elements, "elements, with all that it includes")
+        self._limit("attributes", self._attributes, "attributes, with all that it includes")
         for key, value in attributes.items():
             self._limit("length", len(value), f"characters in {key!r} of {name!r}")
             if STEERING.search(value):
