@@ -4,6 +4,8 @@
 import pickle
 import warnings
 from dataclasses import replace
+from itertools import product
+from pathlib import Path
 
 import MaterialX as mx
 import numpy as np
@@ -86,21 +88,21 @@ def textured(name):
 )
 def test_a_texture_outside_needs_permission(home, name):
     path = written(home, textured(name.format(home.parent)))
-    assert "--allowOutside lets it" in refusal(path)
+    assert "pass --allowOutside to permit it" in refusal(path)
     assert read_document(path, permissions=TRUSTED)
 
 
 @pytest.mark.parametrize("name", ["../secret.mtlx", "link/secret.mtlx", "{}/secret.mtlx"])
 def test_an_include_outside_needs_permission(home, name):
     path = written(home, INCLUDE.format(name.format(home.parent)))
-    assert "--allowOutside lets it" in refusal(path)
+    assert "pass --allowOutside to permit it" in refusal(path)
     assert read_document(path, permissions=TRUSTED).getNode("lobe")
 
 
 @pytest.mark.parametrize("name", ["../secret.glsl", "link/secret.glsl"])
 def test_a_source_outside_needs_permission(home, name):
     path = written(home, material(BROUGHT.format(f'file="{name}" function="a"')))
-    assert "--allowOutside lets it" in refusal(path, Permissions(code=True))
+    assert "pass --allowOutside to permit it" in refusal(path, Permissions(code=True))
     with pytest.warns(CodeWarning):
         assert generate(path, "glsl", permissions=TRUSTED)
 
@@ -154,7 +156,7 @@ def test_generating_reports_code_and_running_it_needs_the_option(home, capsys):
     assert "warning: " in capsys.readouterr().err
     render = ["render", path, "--size", "4", "--output", f"{out}/a.png"]
     assert cli.main(render) == cli.MISUSE
-    assert "--allowCode lets it" in capsys.readouterr().err
+    assert "pass --allowCode to permit it" in capsys.readouterr().err
     with warnings.catch_warnings(action="default"):
         assert cli.main([*render, "--allowCode"]) == cli.PASSED
 
@@ -170,6 +172,15 @@ LIMITED = (
     ("length", SMALL, len("oren_nayar_diffuse_bsdf") - 10),
     ("depth", SMALL, 3),
     ("elements", SMALL, 6),
+    ("attributes", SMALL, 13),
+    ("inputs", SMALL, 1),
+    (
+        "tokens",
+        SMALL.replace("</surface>", '<token name="a" type="string" value="b"/></surface>'),
+        1,
+    ),
+    ("shaders", SMALL, 1),
+    ("ports", SMALL, 5 + 4 + 3),
     ("nodes", ROW, 11),
     ("chain", ROW, 11),
     ("depth", material(doubled(4)), 5),
@@ -182,7 +193,17 @@ def test_a_limit_is_kept_and_names_its_option(name, text, least):
     low = replace(DEFAULT, **{name: least - 1})
     message = refusal(text, low)
     assert f"at most {least - 1} " in message
-    assert f"--max{name.capitalize()} moves the limit" in message
+    assert f"raise it with --max{name.capitalize()}" in message
+
+
+def test_names_that_differ_in_punctuation_alone_are_told_apart_in_linear_time(monkeypatch):
+    steps, increment = [], mx.incrementName
+    monkeypatch.setattr(mx, "incrementName", lambda name: steps.append(name) or increment(name))
+    marks = ["".join(each) for each in product("_:", repeat=8)]
+    look = SMALL[SMALL.index("<surfacematerial") : SMALL.index("</materialx>")]
+    looks = [look.replace('"look"', f'"a{each}b"') for each in marks]
+    shaders = generate(SMALL.replace(look, "".join(looks)), "osl")
+    assert len({shader.name for shader in shaders}) == len(marks) > len(steps)
 
 
 def test_includes_in_a_row_are_limited(tmp_path):
@@ -211,8 +232,15 @@ def test_an_option_moves_a_limit(tmp_path, capsys):
     arguments = ["generate", str(written(tmp_path, SMALL)), "--target", "osl"]
     arguments += ["--outputPath", str(tmp_path / "out"), "--maxElements"]
     assert cli.main([*arguments, "5"]) == cli.MISUSE
-    assert "--maxElements moves the limit" in capsys.readouterr().err
+    assert "raise it with --maxElements" in capsys.readouterr().err
     assert cli.main([*arguments, "6"]) == cli.PASSED
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_the_page_on_security_has_every_limit_and_its_default(name):
+    page = Path(cli.__file__).parents[1] / "docs" / "security.md"
+    row = f"| `--max{name.capitalize()}` | {getattr(DEFAULT, name):,} | {LIMITS[name]} |"
+    assert row in page.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", LIMITS)

@@ -291,8 +291,9 @@ def generate(
         raise InputError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
     document = read_document(document, library, profile, permissions)
     found = renderable(document)
-    chosen, names = _chosen(found, element), _names(found)
+    chosen = _chosen(found, element)
     check_expansion(document, chosen, permissions, label(document))
+    names = _names(found)
     generator = _generator(document, target, library, profile)
     context = _context(document, target, generator, lights, permissions.path)
     shaders = tuple(
@@ -383,14 +384,16 @@ def _context(document, target, generator, lights, path):
 
 def _names(elements):
     """Names for shaders by name path: identifiers in every language, no two alike."""
-    names = {}
+    names, taken, last = {}, set(), {}
     for element in elements:
-        name = re.sub(r"\W", "_", element.getNamePath(), flags=re.ASCII)
-        if name[0].isdigit() or name in RESERVED:
-            name = f"shader_{name}"
-        while name in names.values():
+        stem = re.sub(r"\W", "_", element.getNamePath(), flags=re.ASCII)
+        if stem[0].isdigit() or stem in RESERVED:
+            stem = f"shader_{stem}"
+        name = last.get(stem, stem)  # all before it are taken
+        while name in taken:
             name = mx.incrementName(name)
-        names[element.getNamePath()] = name
+        names[element.getNamePath()] = last[stem] = name
+        taken.add(name)
     return names
 
 

@@ -28,11 +28,12 @@ def check_expansion(document, elements, permissions, called):
     Raises
     ------
     DocumentError
-        If nodes or nodegraphs lead back to themselves, or there are too many of them in all, in a
-        row or within each other.
+        If nodes or nodegraphs lead back to themselves, or there are too many of them, or of their
+        inputs, in all, in a row or within each other.
     """
-    rule, total = f"{called}: must have", 0
+    rule, total, ports = f"{called}: must have", 0, 0
     weights, weigh = {}, _Weights(document, permissions, called)
+    check_limit(permissions, "shaders", len(elements), rule, "renderable elements")
     for element in elements:
         graph = reached([element.getNamePath()], lambda path: _upstream(document, path))
         order = _ordered(graph, f"{called}: node", "be upstream of itself")
@@ -43,6 +44,9 @@ def check_expansion(document, elements, permissions, called):
             if definition not in weights:
                 weights[definition] = weigh(definition)
             total += weights[definition]
+            ports += _inputs(document.getNodeDef(definition))
+        ports += _inputs(element.getParent())
+        check_limit(permissions, "ports", ports, rule, "inputs of nodes in all its shaders")
         check_limit(permissions, "nodes", total, rule, "nodes in all its shaders")
 
 
@@ -63,6 +67,16 @@ def check_inheritance(document, permissions, called):
     deepest = max(_heights(graph, order).values(), default=0)
     rule = f"{called}: must have"
     check_limit(permissions, "depth", deepest, rule, "definitions that inherit each other")
+
+
+def check_interfaces(document, permissions, called):
+    """Raise DocumentError if an element has too many inputs, or there are too many tokens."""
+    tokens = 0
+    for element in document.traverseTree():
+        tokens += element.isA(mx.Token)
+        rule = f'{called}: {element.getCategory()} "{element.getNamePath()}" must have'
+        check_limit(permissions, "inputs", _inputs(element), rule, "inputs")
+    check_limit(permissions, "tokens", tokens, f"{called}: must have", "tokens")
 
 
 class _Weights:
@@ -141,3 +155,8 @@ def _connected(port):
 def _definition(element):
     definition = element.getNodeDef() if element.isA(mx.Node) else None
     return definition.getName() if definition else ""
+
+
+def _inputs(element):
+    """How many inputs an element has, if it is one that can."""
+    return len(element.getInputs()) if element and element.isA(mx.InterfaceElement) else 0

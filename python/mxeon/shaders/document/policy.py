@@ -14,9 +14,14 @@ LIMITS = {
     "length": "characters of one attribute",
     "depth": "elements, nodegraphs or definitions within each other",
     "elements": "elements of a document, with all that it includes",
+    "attributes": "attributes of a document, with all that it includes",
+    "inputs": "inputs of one element",
+    "tokens": "tokens of a document",
     "includes": "documents that include each other in a row",
     "nodes": "nodes of a document's shaders, nodegraphs counted wherever they are used",
     "chain": "nodes connected in a row",
+    "shaders": "renderable elements",
+    "ports": "inputs of the nodes of all shaders, nodegraphs counted as one node",
 }
 
 
@@ -47,12 +52,22 @@ class Permissions:
         Elements, nodegraphs or inherited definitions within each other.
     elements : int
         Elements of the document and all that it includes.
+    attributes : int
+        Attributes of the document and all that it includes.
+    inputs : int
+        Inputs of one element.
+    tokens : int
+        Tokens, each of which MaterialX looks for in each name of a file.
     includes : int
         Documents that include each other in a row.
     nodes : int
         Nodes of all its shaders together, those of a nodegraph counted wherever it is used.
     chain : int
         Nodes connected in a row.
+    shaders : int
+        Renderable elements.
+    ports : int
+        Inputs of the nodes of all its shaders together, and of the nodegraphs they lie in.
 
     Raises
     ------
@@ -61,11 +76,23 @@ class Permissions:
 
     Notes
     -----
-    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst documents found. Its time
-    grows with the square of the number of file names (94 s at 50,000) and of definitions that
-    inherit each other (50 s at 10,000), and doubles with each nodegraph that uses another twice,
-    which `nodes` counts. On a stack of 8 MiB it took chains of 100,000 nodes and 3,000 nodegraphs
-    within each other; a thread may have a hundredth of that.
+    The limits keep MaterialX 1.39.5 below 15 s and 512 MiB for the worst documents known. Seconds of
+    a processor shared with others, for documents as large as each limit lets them be:
+
+    ======================================================  =====
+    9,800 names of files, with tokens                          12
+    one node of 2,490 inputs in 80 shaders                      9
+    7 nodegraphs of 2,500 inputs, all unused                    7
+    3,000 outputs of one nodegraph                              5
+    3,000 materials, whose names differ in `_` and `:` alone    3
+    200,000 attributes                                          2
+    ======================================================  =====
+
+    The time grows with the square of the number of file names (94 s at 50,000), of outputs of a
+    nodegraph, of unused inputs of an element, and of definitions that inherit each other (50 s at
+    10,000); with tokens times names of files; and doubles with each nodegraph that uses another
+    twice, which `nodes` counts. On a stack of 8 MiB it took chains of 100,000 nodes and 3,000
+    nodegraphs within each other; a thread may have a hundredth of that.
     """
 
     outside: bool = False
@@ -75,9 +102,14 @@ class Permissions:
     length: int = 65_536
     depth: int = 64
     elements: int = 20_000
+    attributes: int = 200_000
+    inputs: int = 2_500
+    tokens: int = 100
     includes: int = 16
     nodes: int = 50_000
     chain: int = 1_000
+    shaders: int = 3_000
+    ports: int = 200_000
 
     def __post_init__(self):
         for name in LIMITS:

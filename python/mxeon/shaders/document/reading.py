@@ -14,7 +14,7 @@ import MaterialX as mx
 
 from mxeon.errors import DocumentError
 from mxeon.shaders.document.encoding import decode, strict
-from mxeon.shaders.document.graph_size import check_inheritance
+from mxeon.shaders.document.graph_size import check_inheritance, check_interfaces
 from mxeon.shaders.document.notes import (
     TEXT,
     DocumentWarning,
@@ -175,6 +175,7 @@ def _check(document, permissions):
     """Refuse what MaterialX lets through. The order matters: a later check relies on the former."""
     _check_version(document, label(document))
     check_inheritance(document, permissions, label(document))
+    check_interfaces(document, permissions, label(document))
     check_code(document, permissions, label(document))
     check_words(document, label(document))
     _check_types(document)

@@ -40,7 +40,7 @@ def check_inside(path, home, permissions, place):
     if not permissions.outside and not inside(path, home, permissions.path):
         raise DocumentError(
             f"{place} must name a file in {home}, on the search path or in the libraries; got "
-            f"{path}: --allowOutside lets it"
+            f"{path}: pass --allowOutside to permit it"
         )
 
 
@@ -94,7 +94,8 @@ def check_code(document, permissions, called):
         place = f'{called}: implementation "{element.getName()}"'
         if not permissions.code:
             raise DocumentError(
-                f"{place} must not bring code of its own; got {_code(element)}: --allowCode lets it"
+                f"{place} must not bring code of its own; got {_code(element)}: "
+                "pass --allowCode to permit it"
             )
         for path in _sources(element, home, permissions.path):
             check_inside(path, home, permissions, place)

@@ -24,7 +24,7 @@ class Screening:
 
     def __init__(self, permissions):
         self._permissions = permissions
-        self._size = self._elements = self._depth = 0
+        self._size = self._elements = self._attributes = self._depth = 0
         self._place = ""
 
     def read(self, file):
@@ -70,7 +70,9 @@ class Screening:
         self._depth += 1
         self._elements += 1
         self._limit("depth", self._depth, "elements within each other")
+        self._attributes += len(attributes)
         self._limit("elements", self._elements, "elements, with all that it includes")
+        self._limit("attributes", self._attributes, "attributes, with all that it includes")
         for key, value in attributes.items():
             self._limit("length", len(value), f"characters in {key!r} of {name!r}")
             if STEERING.search(value):
@@ -98,10 +100,10 @@ def check_limit(permissions, name, value, rule, what):
     Raises
     ------
     DocumentError
-        Otherwise; names the option that moves the limit.
+        Otherwise; names the option that raises the limit.
     """
     limit = getattr(permissions, name)
     if value > limit:
         raise DocumentError(
-            f"{rule} at most {limit} {what}; got {value}: --max{name.capitalize()} moves the limit"
+            f"{rule} at most {limit} {what}; got {value}: raise it with --max{name.capitalize()}"
         )
