@@ -14,7 +14,7 @@ from tests.support.documents import lobe, material
 from tests.support.faults import misbehave
 
 CLAY = str(examples_folder() / "clay.mtlx")
-KNOWN = {"element": None, "library": "eonlib", "profile": None, "permissions": DEFAULT}
+KNOWN = {"element": None, "library": "eonlib", "profile": None, "policy": DEFAULT}
 
 with_processes = pytest.mark.parametrize("workers", [0, 2])
 

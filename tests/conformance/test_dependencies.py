@@ -12,7 +12,7 @@ from mxeon.conformance.run import check, read_run
 from mxeon.conformance.run import plan as items
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.journal_lines import NAME
-from mxeon.shaders.document.policy import Permissions
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.hosts import Identity
 from mxeon.shaders.hosts.gl import Host
 from mxeon.shaders.library import examples_folder
@@ -34,9 +34,9 @@ def texture(path):
     return path
 
 
-def seen(file, **permissions):
+def seen(file, **policy):
     """Names of the files in the folder of a document that its findings depend on."""
-    found = digests([file], Permissions(**permissions))
+    found = digests([file], Policy(**policy))
     return {os.path.basename(path) for path in found if Path(path).is_absolute()} - {file.name}
 
 
@@ -55,9 +55,9 @@ def seen(file, **permissions):
 )
 def test_what_a_document_names_is_a_dependency(tmp_path, parts, root, name):
     file = document(tmp_path / "a.mtlx", *parts, root=root)
-    before = digests([file], Permissions())
+    before = digests([file], Policy())
     texture(tmp_path / name)
-    after = digests([file], Permissions())
+    after = digests([file], Policy())
     assert {path for path, _ in before.items() ^ after.items()} == {str(tmp_path / name)}
 
 
@@ -101,18 +101,18 @@ def test_files_that_a_document_may_not_name_are_not_looked_at(tmp_path):
 def test_a_document_that_is_none_is_a_dependency_itself(tmp_path, text):
     file = tmp_path / "a.mtlx"
     file.write_bytes(text)
-    assert digests([file], Permissions())[str(file)] != "" and seen(file) == set()
+    assert digests([file], Policy())[str(file)] != "" and seen(file) == set()
 
 
 def test_a_pipe_or_a_folder_has_no_digest(tmp_path):
     os.mkfifo(tmp_path / "pipe.mtlx")
     (tmp_path / "folder").mkdir()
-    found = digests([tmp_path / "pipe.mtlx", tmp_path / "folder"], Permissions())
+    found = digests([tmp_path / "pipe.mtlx", tmp_path / "folder"], Policy())
     assert [found[str(tmp_path / name)] for name in ("pipe.mtlx", "folder")] == ["", ""]
 
 
 def test_the_code_and_the_libraries_are_dependencies():
-    found = digests([], Permissions())
+    found = digests([], Policy())
     names = ["mxeon/jobs/pool.py", "eonlib/eonlib_defs.mtlx", "eonlib/genglsl/eon.glsl"]
     names += ["eonlib/genosl/eon.osl", "MaterialX/libraries/pbrlib/pbrlib_defs.mtlx"]
     assert all(len(found[name]) == 64 for name in names)
@@ -145,7 +145,7 @@ def test_a_texture_that_changed_is_named_and_the_run_not_resumed(run, capsys):
 def test_an_option_that_changed_is_named(run):
     folder, file = run
     with pytest.raises(ValueError, match=r"differ: --allowCode \(False, now True\), --maxSize \("):
-        options = {"permissions": Permissions(code=True, size=10**6)}
+        options = {"policy": Policy(code=True, size=10**6)}
         check([file], folder=folder, resume=True, **options)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from mxeon.conformance.checks.probes import directions, picture_pairs
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders.document.policy import Permissions
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader, generate
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.hosts.textures import irradiance, read_latlong
@@ -31,7 +31,7 @@ LOBES = {
 
 
 def shader(nodes):
-    return generate(material(nodes), "glsl", lights=True, permissions=Permissions(outside=True))[0]
+    return generate(material(nodes), "glsl", lights=True, policy=Policy(outside=True))[0]
 
 
 def picture(host, nodes, scene):

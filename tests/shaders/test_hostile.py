@@ -14,7 +14,7 @@ import pytest
 
 from mxeon import cli
 from mxeon.errors import DocumentError
-from mxeon.shaders.document.policy import DEFAULT, LIMITS, Permissions
+from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
 from mxeon.shaders.hosts import open_host
@@ -23,7 +23,7 @@ from mxeon.shaders.scene import FURNACE
 from tests.fuzz.found import doubled, row
 from tests.support.documents import connected, lobe, material
 
-TRUSTED = Permissions(outside=True, code=True)
+TRUSTED = Policy(outside=True, code=True)
 XI = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 INCLUDE = XI.format('<xi:include href="{}"/>')
 PART = f'<materialx version="1.39">{lobe()}</materialx>'
@@ -60,10 +60,10 @@ def written(folder, text):
     return path
 
 
-def refusal(source, permissions=DEFAULT):
+def refusal(source, policy=DEFAULT):
     """What is said of a document, which has to be one line."""
     with pytest.raises(DocumentError) as refused:
-        generate(source, "glsl", permissions=permissions)
+        generate(source, "glsl", policy=policy)
     message = str(refused.value)
     assert message.isprintable()
     return message
@@ -89,22 +89,22 @@ def textured(name):
 def test_a_texture_outside_needs_permission(home, name):
     path = written(home, textured(name.format(home.parent)))
     assert "pass --allowOutside to permit it" in refusal(path)
-    assert read_document(path, permissions=TRUSTED)
+    assert read_document(path, policy=TRUSTED)
 
 
 @pytest.mark.parametrize("name", ["../secret.mtlx", "link/secret.mtlx", "{}/secret.mtlx"])
 def test_an_include_outside_needs_permission(home, name):
     path = written(home, INCLUDE.format(name.format(home.parent)))
     assert "pass --allowOutside to permit it" in refusal(path)
-    assert read_document(path, permissions=TRUSTED).getNode("lobe")
+    assert read_document(path, policy=TRUSTED).getNode("lobe")
 
 
 @pytest.mark.parametrize("name", ["../secret.glsl", "link/secret.glsl"])
 def test_a_source_outside_needs_permission(home, name):
     path = written(home, material(BROUGHT.format(f'file="{name}" function="a"')))
-    assert "pass --allowOutside to permit it" in refusal(path, Permissions(code=True))
+    assert "pass --allowOutside to permit it" in refusal(path, Policy(code=True))
     with pytest.warns(CodeWarning):
-        assert generate(path, "glsl", permissions=TRUSTED)
+        assert generate(path, "glsl", policy=TRUSTED)
 
 
 def test_a_set_of_textures_inside_needs_no_permission(home):
@@ -138,7 +138,7 @@ def test_code_of_its_own_needs_permission_and_is_reported(home, how):
     path = written(home, material(BROUGHT.format(how)))
     assert 'implementation "IM_a" must not bring code of its own' in refusal(path)
     with pytest.warns(CodeWarning, match=r"look.mtlx: brings code of its own: IM_a"):
-        assert generate(path, "glsl", permissions=Permissions(code=True))
+        assert generate(path, "glsl", policy=Policy(code=True))
 
 
 def test_a_nodegraph_is_no_code():
@@ -189,7 +189,7 @@ LIMITED = (
 
 @pytest.mark.parametrize("name, text, least", LIMITED, ids=[f"{n}-{k}" for n, _, k in LIMITED])
 def test_a_limit_is_kept_and_names_its_option(name, text, least):
-    assert generate(text, "glsl", permissions=replace(DEFAULT, **{name: least}))
+    assert generate(text, "glsl", policy=replace(DEFAULT, **{name: least}))
     low = replace(DEFAULT, **{name: least - 1})
     message = refusal(text, low)
     assert f"at most {least - 1} " in message
@@ -210,8 +210,8 @@ def test_includes_in_a_row_are_limited(tmp_path):
     for number in range(4):
         (tmp_path / f"{number}.mtlx").write_text(INCLUDE.format(f"{number + 1}.mtlx"))
     (tmp_path / "4.mtlx").write_text(PART)
-    assert read_document(tmp_path / "0.mtlx", permissions=Permissions(includes=4)).getNode("lobe")
-    assert "--maxIncludes" in refusal(tmp_path / "0.mtlx", Permissions(includes=3))
+    assert read_document(tmp_path / "0.mtlx", policy=Policy(includes=4)).getNode("lobe")
+    assert "--maxIncludes" in refusal(tmp_path / "0.mtlx", Policy(includes=3))
 
 
 def test_what_is_included_often_counts_as_often(tmp_path):
@@ -219,7 +219,7 @@ def test_what_is_included_often_counts_as_often(tmp_path):
         include = f'<xi:include href="{number + 1}.mtlx"/>'
         (tmp_path / f"{number}.mtlx").write_text(XI.format(include * 2))
     (tmp_path / "12.mtlx").write_text('<materialx version="1.39"/>')
-    assert "--maxElements" in refusal(tmp_path / "0.mtlx", Permissions(elements=1000))
+    assert "--maxElements" in refusal(tmp_path / "0.mtlx", Policy(elements=1000))
 
 
 def test_a_document_that_includes_itself_is_refused_at_once(tmp_path):
@@ -246,7 +246,7 @@ def test_the_page_on_security_has_every_limit_and_its_default(name):
 @pytest.mark.parametrize("name", LIMITS)
 def test_a_limit_is_not_negative(name):
     with pytest.raises(ValueError, match=f"{name} must be at least 0; got -1"):
-        Permissions(**{name: -1})
+        Policy(**{name: -1})
 
 
 def test_permissions_travel():

@@ -12,7 +12,7 @@ from mxeon.cli import main
 from mxeon.conformance.checks.image import judge_document
 from mxeon.errors import DocumentError, ImageError
 from mxeon.shaders.document.notes import MissingFileWarning
-from mxeon.shaders.document.policy import Permissions
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
 from mxeon.shaders.hosts import open_host
@@ -51,12 +51,12 @@ def written(home, text):
 
 
 def searched(home):
-    return Permissions(path=(str(home.parent / "none"), str(home.parent / "shared")))
+    return Policy(path=(str(home.parent / "none"), str(home.parent / "shared")))
 
 
 def test_an_image_is_looked_for_on_the_path_and_may_lie_there(home):
     path = written(home, textured("maps/a.exr"))
-    image = read_document(path, permissions=searched(home)).getDescendant("image/file")
+    image = read_document(path, policy=searched(home)).getDescendant("image/file")
     assert image.getValueString() == str(home.parent / "shared/maps/a.exr")
     with pytest.warns(MissingFileWarning, match="must name a file that exists; got maps/a.exr"):
         assert generate(path, "osl")
@@ -65,25 +65,25 @@ def test_an_image_is_looked_for_on_the_path_and_may_lie_there(home):
 def test_the_folder_of_the_document_comes_first(home):
     picture(home / "maps/a.exr")
     path = written(home, textured("maps/a.exr"))
-    image = read_document(path, permissions=searched(home)).getDescendant("image/file")
+    image = read_document(path, policy=searched(home)).getDescendant("image/file")
     assert image.getValueString() == str(home / "maps/a.exr")
 
 
 def test_a_prefix_is_part_of_the_name(home):
     path = written(home, textured("a.exr").replace("<image ", '<image fileprefix="maps/" '))
-    image = read_document(path, permissions=searched(home)).getDescendant("image/file")
+    image = read_document(path, policy=searched(home)).getDescendant("image/file")
     assert image.getValueString() == str(home.parent / "shared/maps/a.exr")
 
 
 def test_a_name_that_leads_out_of_the_path_is_refused(home):
     path = written(home, textured("../private/b.exr"))
     with pytest.raises(DocumentError, match="on the search path or in the libraries"):
-        read_document(path, permissions=searched(home))
+        read_document(path, policy=searched(home))
 
 
 def test_an_include_is_looked_for_on_the_path(home):
     path = written(home, INCLUDE.format('<xi:include href="part.mtlx"/>'))
-    assert read_document(path, permissions=searched(home)).getNode("lobe")
+    assert read_document(path, policy=searched(home)).getNode("lobe")
     with pytest.raises(DocumentError, match="include must name a file that exists; got part.mtlx"):
         read_document(path)
 
@@ -101,15 +101,15 @@ def test_a_source_is_looked_for_on_the_path(home):
     text = '<nodedef name="ND_a" node="a"><output name="out" type="BSDF"/></nodedef>'
     text += '<implementation name="IM_a" nodedef="ND_a" file="own.glsl" function="own"/>'
     path = written(home, material(text + '<a name="lobe" type="BSDF"/>'))
-    permissions = Permissions(code=True, path=(str(home.parent / "shared"),))
+    policy = Policy(code=True, path=(str(home.parent / "shared"),))
     with pytest.warns(CodeWarning):
-        [shader] = generate(path, "glsl", permissions=permissions)
+        [shader] = generate(path, "glsl", policy=policy)
     assert "void own(" in shader.stages["pixel"]
 
 
 def test_the_environment_names_folders_too(home, monkeypatch):
     monkeypatch.setenv("MATERIALX_SEARCH_PATH", f"{home.parent / 'none'}:{home.parent / 'shared'}:")
-    assert Permissions().path == searched(home).path
+    assert Policy().path == searched(home).path
 
 
 @pytest.mark.parametrize("workers", ["0", "1"])
@@ -162,7 +162,7 @@ def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
     picture(home / "five.exr", (0.1, 0.2, 0.3, 0.4, 0.5))
     path = str(written(home, textured("five.exr")))
     with pytest.raises(ImageError, match="five.exr: must have at most 4 channels; got 5"):
-        making.picture(path, host, "front", None, 16, None, "eonlib", Permissions())
+        making.picture(path, host, "front", None, 16, None, "eonlib", Policy())
 
 
 def test_a_texture_of_two_channels_is_not_the_references(home):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mxeon.errors import NotRun
-from mxeon.shaders.document.policy import Permissions
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.values import plain
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.hosts import open_host
@@ -68,7 +68,7 @@ MATRICES = {
     )
     for size in (3, 4)
 }
-TRUSTED = Permissions(code=True)
+TRUSTED = Policy(code=True)
 pytestmark = pytest.mark.filterwarnings("ignore:.*brings code of its own")
 
 
@@ -89,7 +89,7 @@ def test_every_type_of_the_library_that_has_values_is_known():
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_a_public_structure_is_the_tuple_of_its_members(target):
-    [shader] = generate(material(PICK), target, permissions=TRUSTED)
+    [shader] = generate(material(PICK), target, policy=TRUSTED)
     assert {each.path: each.value for each in shader.inputs}["pick/in"] == ((0.75, 0.5), 2.0)
 
 
@@ -113,7 +113,7 @@ def host(request):
 
 def brightness(host, nodes, **values):
     """What a white furnace shows of a material with these values by the paths of their inputs."""
-    found = generate(material(nodes), host.target, lights=True, permissions=TRUSTED)[0]
+    found = generate(material(nodes), host.target, lights=True, policy=TRUSTED)[0]
     inputs = (replace(each, value=values.get(each.path, each.value)) for each in found.inputs)
     shader = replace(found, inputs=tuple(inputs))
     return float(host.picture(shader, replace(FURNACE, size=16))[8, 8, 0]) / 0.18

@@ -154,7 +154,7 @@ def _check(options):
         resume=options.resume,
         scheduler=options.scheduler,
         wait=options.waitForWorkers,
-        permissions=permitted(options),
+        policy=permitted(options),
         progress=_progress("mxeon check"),
     )
     return _judged(run, options)
@@ -271,7 +271,7 @@ def _make(work, documents, options, **known):
     """What `work` makes of documents as the options say; its warnings are printed."""
     from mxeon.cli.batch import make
 
-    work = partial(work, permissions=permitted(options), **known)
+    work = partial(work, policy=permitted(options), **known)
     for found in make(work, documents, options.workers, options.limit):
         for warning in found.warnings:
             _warn(warning)

@@ -6,7 +6,7 @@ import os
 
 import mxeon
 from mxeon.errors import MISUSE, one_line
-from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Permissions, environment_path
+from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
 DESCRIPTION = (
@@ -165,7 +165,7 @@ def _permissions(command, runs=False):
             help="run the shader code that documents bring along",
         )
     for name, meaning in LIMITS.items():
-        limit = getattr(Permissions, name)
+        limit = getattr(Policy, name)
         group.add_argument(
             f"--max{name.capitalize()}",
             type=int,
@@ -186,7 +186,7 @@ def permitted(options):
     """What documents may do, as the options say."""
     limits = {name: getattr(options, f"max{name.capitalize()}") for name in LIMITS}
     path = (*map(os.path.abspath, options.path), *environment_path())
-    return Permissions(options.allowOutside, getattr(options, "allowCode", True), path, **limits)
+    return Policy(options.allowOutside, getattr(options, "allowCode", True), path, **limits)
 
 
 def _json(command):

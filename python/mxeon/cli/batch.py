@@ -110,7 +110,7 @@ def _ending(shader, stage):
     return {"pixel": ".frag", "vertex": ".vert"}[stage] if len(shader.stages) > 1 else ""
 
 
-def picture(file, host, scene, environment, size, element, library, permissions):
+def picture(file, host, scene, environment, size, element, library, policy):
     """A picture of a document's one material, and what is to be said of it in a file.
 
     Parameters
@@ -121,7 +121,7 @@ def picture(file, host, scene, environment, size, element, library, permissions)
         A latitude-longitude image that takes the place of the scene's light.
     size : int
         Width and height in pixels.
-    permissions : Permissions
+    policy : Policy
 
     Returns
     -------
@@ -139,7 +139,7 @@ def picture(file, host, scene, environment, size, element, library, permissions)
         options = {"library": library, "profile": engine.profile, "lights": True}
         with warnings.catch_warnings():
             warnings.simplefilter("error", MissingFileWarning)
-            found = generate(file, engine.target, element, permissions=permissions, **options)
+            found = generate(file, engine.target, element, policy=policy, **options)
         if len(found) > 1:
             known = ", ".join(shader.element for shader in found)
             raise InputError(f"--element must name one of {known}; got none")

@@ -228,7 +228,7 @@ def generate(
     library="eonlib",
     profile=None,
     lights=False,
-    permissions=DEFAULT,
+    policy=DEFAULT,
 ):
     """The shaders of a document, one for each renderable element.
 
@@ -246,7 +246,7 @@ def generate(
         "cycles" makes osl for Blender's Cycles.
     lights : bool
         Whether a shader of a rasterised target gets MaterialX's directional light, as light type 1.
-    permissions : Permissions
+    policy : Policy
         What the document may do, and how large it may be.
 
     Returns
@@ -289,13 +289,13 @@ def generate(
     """
     if target not in GENERATORS:
         raise InputError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
-    document = read_document(document, library, profile, permissions)
+    document = read_document(document, library, profile, policy)
     found = renderable(document)
     chosen = _chosen(found, element)
-    check_expansion(document, chosen, permissions, label(document))
+    check_expansion(document, chosen, policy, label(document))
     names = _names(found)
     generator = _generator(document, target, library, profile)
-    context = _context(document, target, generator, lights, permissions.path)
+    context = _context(document, target, generator, lights, policy.path)
     shaders = tuple(
         _generate(document, each, names[each.getNamePath()], target, generator, context)
         for each in chosen

@@ -40,7 +40,7 @@ MATCH = "The picture is the reference's in every pixel."
 FINITE = "No pixel is infinite or not a number."
 
 
-def judge_document(file, host, judge, library, permissions=DEFAULT):
+def judge_document(file, host, judge, library, policy=DEFAULT):
     """Pictures of every material of a document on a host, and whether they are the reference's.
 
     Parameters
@@ -50,7 +50,7 @@ def judge_document(file, host, judge, library, permissions=DEFAULT):
         Who is judged, and the reference.
     library : str
         Name of the data library.
-    permissions : Permissions
+    policy : Policy
         What the document may do, and how large it may be.
 
     Returns
@@ -67,7 +67,7 @@ def judge_document(file, host, judge, library, permissions=DEFAULT):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
-        shaders = generate(file, host.target, permissions=permissions, **options)
+        shaders = generate(file, host.target, policy=policy, **options)
     said = [each.message for each in caught]
     approximations = [each for each in said if isinstance(each, ApproximationWarning)]
     approximated = {each.element: each.approximation for each in approximations}

@@ -34,7 +34,7 @@ def check(
     resume=False,
     scheduler=None,
     wait=cluster.WAIT,
-    permissions=DEFAULT,
+    policy=DEFAULT,
     progress=lambda items, total: items,
 ):
     """Run every check on every host, and compare pictures of documents with the reference's.
@@ -60,7 +60,7 @@ def check(
         Address of a Dask scheduler whose workers do the work instead.
     wait : float
         Seconds that its cluster may be without a worker that fits.
-    permissions : Permissions
+    policy : Policy
         What the documents may do, and how large they may be.
     progress : callable (iterable, int) -> iterable
         Goes through the items that are to be done, whose number it is told; a progress bar, say.
@@ -79,10 +79,10 @@ def check(
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """
-    planned = plan(files, hosts, libraries, permissions, resumable=folder is not None)
+    planned = plan(files, hosts, libraries, policy, resumable=folder is not None)
     # Who cannot work must not touch what the folder holds.
     with (
-        _crew(permissions, workers, limit, scheduler, wait) as crew,
+        _crew(policy, workers, limit, scheduler, wait) as crew,
         _open_journal(folder, planned, resume) as journal,
     ):
         places = [place for place in range(len(planned.items)) if place not in journal.findings]
@@ -106,7 +106,7 @@ def read_run(folder):
     return to_run(*read_journal(folder))
 
 
-def work(permissions, item):
+def work(policy, item):
     """Findings of an item, by this process's judge: what workers run.
 
     Raises
@@ -114,12 +114,12 @@ def work(permissions, item):
     NotRun
         If the host cannot be opened here.
     """
-    return _judge(permissions).work(item)
+    return _judge(policy).work(item)
 
 
-def settled(permissions, item):
+def settled(policy, item):
     """Findings of an item whatever is missing: what cannot be done here is not run."""
-    return _settled(_judge(permissions), item)
+    return _settled(_judge(policy), item)
 
 
 def to_run(planned, findings):
@@ -176,19 +176,19 @@ def _open_journal(folder, planned, resume):
 
 
 @contextmanager
-def _crew(permissions, workers, limit, scheduler, wait):
+def _crew(policy, workers, limit, scheduler, wait):
     """Who works: a function from items to their outcomes."""
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
     pool.check_limit(limit)
     if scheduler:
         with cluster.connected(scheduler, wait) as found:
-            at_work = partial(work, permissions)
+            at_work = partial(work, policy)
             yield partial(cluster.run, at_work, workers=found, limit=limit, elsewhere=NotRun)
     elif workers:
-        yield partial(pool.run, partial(settled, permissions), workers=workers, limit=limit)
+        yield partial(pool.run, partial(settled, policy), workers=workers, limit=limit)
     else:
-        yield partial(_here, permissions)
+        yield partial(_here, policy)
 
 
 def _done(items, crew):
@@ -198,8 +198,8 @@ def _done(items, crew):
         yield place, not_run(items[place], outcome.failure) if failed else outcome.value
 
 
-def _here(permissions, items):
-    with closing(Judge(permissions)) as judge:
+def _here(policy, items):
+    with closing(Judge(policy)) as judge:
         for place, item in enumerate(items):
             yield place, pool.Outcome(_settled(judge, item))
 
@@ -212,8 +212,8 @@ def _settled(judge, item):
 
 
 @lru_cache(maxsize=1)
-def _judge(permissions):
-    return Judge(permissions)
+def _judge(policy):
+    return Judge(policy)
 
 
 def _untested(software):

@@ -25,13 +25,13 @@ INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
 OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
 
-def digests(documents, permissions):
+def digests(documents, policy):
     """SHA-256 of every file that findings on documents depend on.
 
     Parameters
     ----------
     documents : sequence of path-like
-    permissions : Permissions
+    policy : Policy
         Files that a document may not name are not looked at.
 
     Returns
@@ -43,21 +43,21 @@ def digests(documents, permissions):
     """
     found = {}
     for document in documents:
-        for path in (str(document), *_named(Path(document), permissions)):
+        for path in (str(document), *_named(Path(document), policy)):
             if path not in found:
                 found[path] = _digest(path)
     return found | _installed()
 
 
-def _named(document, permissions):
+def _named(document, policy):
     """The files that a document includes and names, and those that the included ones do."""
     home, waiting, seen = Path(os.path.realpath(document)).parent, [document], set()
     while waiting:
         text_file = waiting.pop()
-        for key, name in _names(_text(text_file, permissions), permissions.elements):
+        for key, name in _names(_text(text_file, policy), policy.elements):
             folders = {home, Path(os.path.realpath(text_file)).parent, Path.cwd()}
-            for path in _paths(name, folders | set(map(Path, permissions.path))):
-                allowed = permissions.outside or inside(path, home, permissions.path)
+            for path in _paths(name, folders | set(map(Path, policy.path))):
+                allowed = policy.outside or inside(path, home, policy.path)
                 if path in seen or not allowed:
                     continue
                 seen.add(path)
@@ -66,11 +66,11 @@ def _named(document, permissions):
     return sorted(seen)
 
 
-def _text(path, permissions):
+def _text(path, policy):
     """Text of a document, or "" of one that is too large or cannot be read."""
     with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
-        data = file.read(permissions.size + 1)
-        return strict(decode(data, str(path))) if len(data) <= permissions.size else ""
+        data = file.read(policy.size + 1)
+        return strict(decode(data, str(path))) if len(data) <= policy.size else ""
     return ""
 
 

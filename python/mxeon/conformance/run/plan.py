@@ -44,7 +44,7 @@ CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
 }
 
 
-def plan(files, hosts, libraries, permissions=DEFAULT, resumable=False):
+def plan(files, hosts, libraries, policy=DEFAULT, resumable=False):
     """The items of a run, those of one host and library beside each other.
 
     Parameters
@@ -52,7 +52,7 @@ def plan(files, hosts, libraries, permissions=DEFAULT, resumable=False):
     files : sequence of path-like
         Documents; none for the bundled examples.
     hosts, libraries : sequence of str
-    permissions : Permissions
+    policy : Policy
     resumable : bool
         Whether the plan has to say which files the run depends on.
 
@@ -79,10 +79,8 @@ def plan(files, hosts, libraries, permissions=DEFAULT, resumable=False):
             items += _on_host(host, library, named)
     items += [item for host in dict.fromkeys(hosts) for item in _native(host)]
     documents = tuple(dict.fromkeys(documents))
-    files = digests(documents, permissions) if resumable else {}
-    return Plan(
-        mxeon.__version__, _software(), tuple(items), documents, _options(permissions), files
-    )
+    files = digests(documents, policy) if resumable else {}
+    return Plan(mxeon.__version__, _software(), tuple(items), documents, _options(policy), files)
 
 
 def subjects(library):
@@ -102,12 +100,12 @@ class Judge:
 
     Parameters
     ----------
-    permissions : Permissions
+    policy : Policy
         What documents may do, and how large they may be.
     """
 
-    def __init__(self, permissions):
-        self._permissions = permissions
+    def __init__(self, policy):
+        self._permissions = policy
         self._hosts = {}
         self._reference = open_host("reference")
         self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
@@ -238,10 +236,10 @@ def _examples(library):
     return [file for file in files if not any(node in file.read_text() for node in lacking)]
 
 
-def _options(permissions):
-    """Permissions by the options of the command that change them."""
+def _options(policy):
+    """Policy by the options of the command that change them."""
     prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
-    values = vars(permissions) | {"path": os.pathsep.join(permissions.path) or "none"}
+    values = vars(policy) | {"path": os.pathsep.join(policy.path) or "none"}
     return {
         f"--{prefixes[name]}{name.capitalize()}" if name in prefixes else f"--{name}": str(value)
         for name, value in values.items()

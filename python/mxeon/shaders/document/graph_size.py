@@ -14,14 +14,14 @@ from mxeon.errors import DocumentError
 from mxeon.shaders.document.xml import check_limit
 
 
-def check_expansion(document, elements, permissions, called):
+def check_expansion(document, elements, policy, called):
     """Nothing, if the shaders of renderable elements stay within the limits.
 
     Parameters
     ----------
     document : MaterialX.Document
     elements : sequence of MaterialX.TypedElement
-    permissions : Permissions
+    policy : Policy
     called : str
         What messages call the document.
 
@@ -32,13 +32,13 @@ def check_expansion(document, elements, permissions, called):
         inputs, in all, in a row or within each other.
     """
     rule, total, ports = f"{called}: must have", 0, 0
-    weights, weigh = {}, _Weights(document, permissions, called)
-    check_limit(permissions, "shaders", len(elements), rule, "renderable elements")
+    weights, weigh = {}, _Weights(document, policy, called)
+    check_limit(policy, "shaders", len(elements), rule, "renderable elements")
     for element in elements:
         graph = reached([element.getNamePath()], lambda path: _upstream(document, path))
         order = _ordered(graph, f"{called}: node", "be upstream of itself")
         longest = max(_heights(graph, order).values())
-        check_limit(permissions, "chain", longest, rule, "nodes in a row")
+        check_limit(policy, "chain", longest, rule, "nodes in a row")
         for path in order:
             definition = _definition(document.getDescendant(path))
             if definition not in weights:
@@ -46,11 +46,11 @@ def check_expansion(document, elements, permissions, called):
             total += weights[definition]
             ports += _inputs(document.getNodeDef(definition))
         ports += _inputs(element.getParent())
-        check_limit(permissions, "ports", ports, rule, "inputs of nodes in all its shaders")
-        check_limit(permissions, "nodes", total, rule, "nodes in all its shaders")
+        check_limit(policy, "ports", ports, rule, "inputs of nodes in all its shaders")
+        check_limit(policy, "nodes", total, rule, "nodes in all its shaders")
 
 
-def check_inheritance(document, permissions, called):
+def check_inheritance(document, policy, called):
     """Nothing, if definitions inherit each other in rows short enough, and not themselves.
 
     Raises
@@ -66,24 +66,24 @@ def check_inheritance(document, permissions, called):
     order = _ordered(graph, f"{called}: definition", "inherit itself")
     deepest = max(_heights(graph, order).values(), default=0)
     rule = f"{called}: must have"
-    check_limit(permissions, "depth", deepest, rule, "definitions that inherit each other")
+    check_limit(policy, "depth", deepest, rule, "definitions that inherit each other")
 
 
-def check_interfaces(document, permissions, called):
+def check_interfaces(document, policy, called):
     """Raise DocumentError if an element has too many inputs, or there are too many tokens."""
     tokens = 0
     for element in document.traverseTree():
         tokens += element.isA(mx.Token)
         rule = f'{called}: {element.getCategory()} "{element.getNamePath()}" must have'
-        check_limit(permissions, "inputs", _inputs(element), rule, "inputs")
-    check_limit(permissions, "tokens", tokens, f"{called}: must have", "tokens")
+        check_limit(policy, "inputs", _inputs(element), rule, "inputs")
+    check_limit(policy, "tokens", tokens, f"{called}: must have", "tokens")
 
 
 class _Weights:
     """How many nodes a node stands for, by the name of its nodedef."""
 
-    def __init__(self, document, permissions, called):
-        self._document, self._permissions, self._called = document, permissions, called
+    def __init__(self, document, policy, called):
+        self._document, self._permissions, self._called = document, policy, called
 
     def __call__(self, name):
         graph = reached([name], self._parts)

@@ -32,7 +32,7 @@ def environment_path():
 
 
 @dataclass(frozen=True)
-class Permissions:
+class Policy:
     """What a document may do, and how large it may be; plain data, so it can be pickled.
 
     Attributes
@@ -117,4 +117,4 @@ class Permissions:
                 raise InputError(f"{name} must be at least 0; got {getattr(self, name)}")
 
 
-DEFAULT = Permissions()
+DEFAULT = Policy()

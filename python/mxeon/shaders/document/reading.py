@@ -35,7 +35,7 @@ __all__ = ["DocumentError", "DocumentWarning", "label", "read_document"]
 ERRORS = (mx.Exception, LookupError)  # what MaterialX raises
 
 
-def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
+def read_document(source, library="eonlib", profile=None, policy=DEFAULT):
     """A checked MaterialX document with its data library attached.
 
     Parameters
@@ -43,10 +43,10 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
     source : path-like, str or MaterialX.Document
         A file; or XML text, a str that begins with `<` and names no file; or a document, which is
         copied. XIncludes and relative file names are looked for in the folder of the file, or the
-        working folder, and then on the search path that the permissions name.
+        working folder, and then on the search path that the policy name.
     library, profile : str
         See `mxeon.shaders.library.load_library`.
-    permissions : Permissions
+    policy : Policy
         What the document may do, how large it may be, and where its files are looked for.
 
     Returns
@@ -71,15 +71,15 @@ def read_document(source, library="eonlib", profile=None, permissions=DEFAULT):
         document.copyContentFrom(source)
         document.setSourceUri(source.getSourceUri())
     elif _is_text(source):
-        _Reader(permissions, Path.cwd()).text(document, source)
+        _Reader(policy, Path.cwd()).text(document, source)
     elif os.path.isfile(source):  # a pipe or a device may have no end
         _check_path(source)
-        _Reader(permissions, Path(source).resolve().parent).file(document, str(source))
+        _Reader(policy, Path(source).resolve().parent).file(document, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
-    _find_files(document, [folder(document), *map(Path, permissions.path)])
+    _find_files(document, [folder(document), *map(Path, policy.path)])
     document.setDataLibrary(data)
-    _check(document, permissions)
+    _check(document, policy)
     return document
 
 
@@ -115,14 +115,14 @@ class _Reader:
 
     Parameters
     ----------
-    permissions : Permissions
+    policy : Policy
     home : Path
         The folder of the document.
     """
 
-    def __init__(self, permissions, home):
-        self._permissions, self._home = permissions, home
-        self._screening = Screening(permissions)
+    def __init__(self, policy, home):
+        self._permissions, self._home = policy, home
+        self._screening = Screening(policy)
         self._open = []  # files that are being read, each included by the one before
 
     def file(self, document, name):
@@ -171,17 +171,17 @@ class _Reader:
         self.file(document, path)
 
 
-def _check(document, permissions):
+def _check(document, policy):
     """Refuse what MaterialX lets through. The order matters: a later check relies on the former."""
     _check_version(document, label(document))
-    check_inheritance(document, permissions, label(document))
-    check_interfaces(document, permissions, label(document))
-    check_code(document, permissions, label(document))
+    check_inheritance(document, policy, label(document))
+    check_interfaces(document, policy, label(document))
+    check_code(document, policy, label(document))
     check_words(document, label(document))
     _check_types(document)
     for element in document.traverseTree():
         if element.isA(mx.ValueElement) and element.getValueString():
-            _check_value(element, permissions)
+            _check_value(element, policy)
     _check_validity(document)
     warn_of_elements(document)
 
@@ -207,7 +207,7 @@ def _check_types(document):
             )
 
 
-def _check_value(element, permissions):
+def _check_value(element, policy):
     kind, text = element.getType(), element.getValueString()
     if kind in NUMERIC:
         read = numbers(element)
@@ -215,7 +215,7 @@ def _check_value(element, permissions):
             rule = f"a valid {kind} of finite numbers"
             raise DocumentError(f"{place_of(element)} must be {rule}; got {text}")
     elif kind == "filename":
-        check_file(element, place_of(element), permissions)
+        check_file(element, place_of(element), policy)
 
 
 def _check_validity(document):

@@ -29,7 +29,7 @@ def inside(path, home, others=()):
     return any(real.is_relative_to(root) for root in roots)
 
 
-def check_inside(path, home, permissions, place):
+def check_inside(path, home, policy, place):
     """Nothing, if a document in the folder `home` may name that file.
 
     Raises
@@ -37,14 +37,14 @@ def check_inside(path, home, permissions, place):
     DocumentError
         Otherwise.
     """
-    if not permissions.outside and not inside(path, home, permissions.path):
+    if not policy.outside and not inside(path, home, policy.path):
         raise DocumentError(
             f"{place} must name a file in {home}, on the search path or in the libraries; got "
             f"{path}: pass --allowOutside to permit it"
         )
 
 
-def check_file(element, place, permissions):
+def check_file(element, place, policy):
     """Nothing, if the file that an input names may be read, should it be there.
 
     Of a set of textures, any that is there has to be one that may be read.
@@ -58,11 +58,11 @@ def check_file(element, place, permissions):
     if ENDS_A_STRING.search(text):
         raise DocumentError(f"{place} must name a file without quotes and backslashes; got {text}")
     path = home / text  # what MaterialX did not find there is relative still
-    check_inside(path, home, permissions, place)
+    check_inside(path, home, policy, place)
     if "<" in str(path.parent):
         raise DocumentError(f"{place} must name one folder; got {text}")
     for each in files(path):
-        check_inside(each, home, permissions, place)
+        check_inside(each, home, policy, place)
 
 
 def files(path):
@@ -81,7 +81,7 @@ def foreign_code(document):
     ]
 
 
-def check_code(document, permissions, called):
+def check_code(document, policy, called):
     """Nothing, if the code that a document brings may be used.
 
     Raises
@@ -92,13 +92,13 @@ def check_code(document, permissions, called):
     home = folder(document)
     for element in foreign_code(document):
         place = f'{called}: implementation "{element.getName()}"'
-        if not permissions.code:
+        if not policy.code:
             raise DocumentError(
                 f"{place} must not bring code of its own; got {_code(element)}: "
                 "pass --allowCode to permit it"
             )
-        for path in _sources(element, home, permissions.path):
-            check_inside(path, home, permissions, place)
+        for path in _sources(element, home, policy.path):
+            check_inside(path, home, policy, place)
 
 
 def _code(element):

@@ -19,11 +19,11 @@ class Screening:
 
     Parameters
     ----------
-    permissions : Permissions
+    policy : Policy
     """
 
-    def __init__(self, permissions):
-        self._permissions = permissions
+    def __init__(self, policy):
+        self._permissions = policy
         self._size = self._elements = self._attributes = self._depth = 0
         self._place = ""
 
@@ -94,7 +94,7 @@ class Screening:
         raise DocumentError(f"{self._place}: {reason}")
 
 
-def check_limit(permissions, name, value, rule, what):
+def check_limit(policy, name, value, rule, what):
     """Nothing, if a value is within the limit of that name; the rule says what must have what.
 
     Raises
@@ -102,7 +102,7 @@ def check_limit(permissions, name, value, rule, what):
     DocumentError
         Otherwise; names the option that raises the limit.
     """
-    limit = getattr(permissions, name)
+    limit = getattr(policy, name)
     if value > limit:
         raise DocumentError(
             f"{rule} at most {limit} {what}; got {value}: raise it with --max{name.capitalize()}"
