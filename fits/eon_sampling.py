@@ -17,7 +17,7 @@ from fits.fon_loss import closed_form
 from fits.minimax import least_largest, mp
 
 COUNT = 400  # points of a fit
-STEPS = 5  # after which Newton's last changes no digit that is printed
+STEPS = 4  # after which Newton's last changes no digit that is printed
 
 # Average of H over the projected hemisphere: c1 - c2 of [Portsmouth2025].
 LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6
