@@ -22,7 +22,7 @@ LIMIT = 3600  # seconds for the tests of one processor
 SIMD, CORE = "NPY_DISABLE_CPU_FEATURES", "OPENBLAS_CORETYPE"
 CORES = ("Haswell", "SkylakeX", "Zen", "Prescott")
 
-# Tests whose bounds are roundings of float64, with the float32 of the shader functions and samplers.
+# Tests whose bounds are roundings of float64, and those of shader functions and samplers in float32.
 FILES = (
     "albedo",
     "callable",
@@ -112,7 +112,8 @@ def _used(environment):
 def counts(report):
     """How many tests of a JUnit report passed, failed and were skipped, and which failed."""
     cases = ElementTree.fromstring(report).findall(".//testcase")
-    failed = [case.get("name") for case in cases if {"failure", "error"} & {part.tag for part in case}]
+    wrong = {"failure", "error"}
+    failed = [case.get("name") for case in cases if wrong & {part.tag for part in case}]
     skipped = sum(case.find("skipped") is not None for case in cases)
     passed = len(cases) - len(failed) - skipped
     return {"passed": passed, "failed": failed, "skipped": skipped}
