@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Directional albedo of any model, by Gauss-Legendre rules between the kinks of this family."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from mxeon.models.geometry import checked, lead_shape
@@ -62,8 +64,7 @@ def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
 
 def hemisphere_nodes(mu, nodes):
     """wo at azimuth 0, wi in half the hemisphere, and their shares of the projected hemisphere."""
-    x, weight = np.polynomial.legendre.leggauss(nodes)
-    x, weight = 0.5 * (1.0 + x), 0.5 * weight
+    x, weight = _unit_interval_rule(nodes)
     theta_o = np.arccos(mu)
     rest = np.pi / 2.0 - theta_o
     theta = np.concatenate([theta_o * (1.0 - x**5), theta_o + rest * x])
@@ -75,3 +76,10 @@ def hemisphere_nodes(mu, nodes):
     wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])
     shares = 2.0 * np.outer(d_theta, d_phi).ravel() * np.sin(theta) * z
     return wo, np.stack([x, y, z], axis=-1), shares
+
+
+@lru_cache(maxsize=8)  # the rule takes longer than what it is used for
+def _unit_interval_rule(nodes):
+    """Nodes and weights of Gauss-Legendre on [0, 1]."""
+    x, weight = np.polynomial.legendre.leggauss(nodes)
+    return 0.5 * (1.0 + x), 0.5 * weight
