@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import albedo
+from mxeon.models import albedo, known_defects
 from mxeon.models import brdf as models
-from mxeon.models import known_defects
 from mxeon.models.geometry import RANGES
 
 
