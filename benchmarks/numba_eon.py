@@ -10,8 +10,8 @@ import math
 import numba
 import numpy as np
 
+from mxeon.models.arguments import UNIT_TOLERANCE, checked, checked_directions
 from mxeon.models.formulas import C1, C2
-from mxeon.models.geometry import UNIT_TOLERANCE, checked, checked_directions
 
 TINY = np.finfo(np.float64).tiny
 # Products and sums may become one rounding; NaN and infinity keep their meaning.

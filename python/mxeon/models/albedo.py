@@ -7,8 +7,8 @@ and work on the closed domain; H is `fon_loss`.
 
 import numpy as np
 
+from mxeon.models.arguments import checked, lead_shape
 from mxeon.models.formulas import C1, C2, loss, loss_approx, qon_a, qon_b, recaptured
-from mxeon.models.geometry import checked, lead_shape
 
 
 def fon_loss(mu):

@@ -7,7 +7,7 @@ s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there 
 """
 
 from mxeon.models import formulas
-from mxeon.models.geometry import evaluate
+from mxeon.models.evaluation import evaluate
 
 
 def lambert_brdf(wo, wi, rho):

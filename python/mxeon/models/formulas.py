@@ -7,8 +7,6 @@ that it broadcasts against the rest. `r` is the roughness of FON and EON.
 
 import numpy as np
 
-from mxeon.models.geometry import cosines
-
 # FON loses r c1 / (1 + c1 r) at normal incidence and r (c1 - c2) / (1 + c1 r) on average:
 # [Portsmouth2025], Eqs. (10), (15), (29).
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
@@ -180,3 +178,34 @@ def _behind_slope(mu_o, mu_i, S_o, S_i):
     q = _right_angles(high, np.minimum(S_o, S_i))
     slope = quotient(q * (3.0 - 3.0 * q + q**2) - low**2 / (1.0 + np.maximum(S_o, S_i)), high)
     return np.where(high < np.finfo(np.float64).tiny, 6.0 / np.pi, slope)
+
+
+def cosines(wo, wi):
+    """Cosines with the normal, and the part of the pair's cosine that lies in the surface.
+
+        s = dot(wo, wi) - mu_o mu_i = wo.x wi.x + wo.y wi.y
+
+    Parameters
+    ----------
+    wo, wi : ndarray, shape (..., 3)
+        Unit vectors on or above the horizon.
+
+    Returns
+    -------
+    mu_o, mu_i : ndarray, shape (...)
+        Cosines, dimensionless, in [0, 1]: z, but 1 where a rounded direction has z > 1.
+    s : ndarray, shape (...)
+        Dimensionless, in [-1, 1] up to rounding; signed, never clamped.
+
+    References
+    ----------
+    [Portsmouth2025], below Eq. (3).
+
+    Examples
+    --------
+    >>> mu_o, mu_i, s = cosines(np.array([0.6, 0.0, 0.8]), np.array([-0.8, 0.0, 0.6]))
+    >>> [round(float(x), 12) for x in (mu_o, mu_i, s)]
+    [0.8, 0.6, -0.48]
+    """
+    s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
+    return np.minimum(wo[..., 2], 1.0), np.minimum(wi[..., 2], 1.0), s

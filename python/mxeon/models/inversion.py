@@ -6,8 +6,8 @@ Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no o
 
 import numpy as np
 
+from mxeon.models.arguments import checked, lead_shape
 from mxeon.models.formulas import C1, C2
-from mxeon.models.geometry import checked, lead_shape
 
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
 # where the paper states less than 0.3 %, and 2.84e-3.

@@ -6,7 +6,8 @@ import numpy as np
 from mxeon.models import formulas
 from mxeon.models.albedo import eon_albedo_dir, fon_albedo_dir, qon_albedo_dir
 from mxeon.models.brdf import qon_brdf
-from mxeon.models.geometry import cosines, evaluate
+from mxeon.models.evaluation import evaluate
+from mxeon.models.formulas import cosines
 
 
 def eon_clamped_brdf(wo, wi, rho, roughness):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.models.geometry import checked, lead_shape
+from mxeon.models.arguments import checked, lead_shape
 
 
 def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):

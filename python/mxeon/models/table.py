@@ -8,7 +8,7 @@ import numpy as np
 
 from mxeon.models import albedo, known_defects
 from mxeon.models import brdf as models
-from mxeon.models.geometry import RANGES
+from mxeon.models.arguments import RANGES
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,7 @@ the parts' errors under non-negative weights, so that the sum has no larger erro
 
 import numpy as np
 
-from mxeon.models.formulas import C1, C2, fon_quotient, loss, multiple_weight
-from mxeon.models.geometry import cosines
+from mxeon.models.formulas import C1, C2, cosines, fon_quotient, loss, multiple_weight
 from mxeon.models.sampling.hemisphere import (
     azimuth,
     checked_draw,

@@ -6,7 +6,7 @@ Directions leave the surface, local frame with the normal +z. Random numbers `u`
 
 import numpy as np
 
-from mxeon.models.geometry import checked, checked_directions, lead_shape
+from mxeon.models.arguments import checked, checked_directions, lead_shape
 
 
 def uniform_sample(u):
