@@ -42,6 +42,28 @@ def named(rows):
     return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
+# --- results ---------------------------------------------------------------------------------
+
+NUMBERS = (
+    (fon_loss, (0.5,)),
+    (qon_albedo_dir, (0.5, 0.5)),
+    (qon_albedo_avg, (0.5,)),
+    (fon_albedo_dir, (0.5, 0.5)),
+    (fon_albedo_dir_approx, (0.5, 0.5)),
+    (fon_albedo_avg, (0.5,)),
+)
+
+
+@pytest.mark.parametrize(
+    "function, arguments", NUMBERS, ids=lambda each: getattr(each, "__name__", "")
+)
+def test_an_albedo_of_numbers_is_a_number(function, arguments):
+    assert type(function(*arguments)) is np.float64
+    arrays = [np.full((2, 1), number, np.float32) for number in arguments]
+    result = function(*arrays)
+    assert result.shape == (2, 1) and result.dtype == np.float64
+
+
 # --- limits ----------------------------------------------------------------------------------
 
 
