@@ -85,6 +85,10 @@ def test_the_wheel_holds_the_data_of_the_checkout(wheel):
         assert names and names <= files
 
 
+def test_the_wheel_says_that_it_has_types(wheel):
+    assert "mxeon/py.typed" in contents(wheel)
+
+
 def test_no_folder_of_the_wheel_hides_materialxs_libraries(wheel):
     assert [name for name in contents(wheel) if "libraries" in name.split("/")] == []
 

@@ -85,7 +85,10 @@ def no_number():
 
 
 def determinant():
-    a, b, c, d = ltc.coefficients(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
+    a, b, c, d = (
+        entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
+        for entry in (ltc.ltc_a, ltc.ltc_b, ltc.ltc_c, ltc.ltc_d)
+    )
     det = c * (a - b * d)
     return f"det M from {det.min():.3f} to {det.max():.3f}", verdict(det.min() > 0.0)
 
@@ -93,9 +96,9 @@ def determinant():
 def side_of_the_lune():
     """What Listing 3 draws along the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
-    d = ltc.coefficients(mu, 1.0)[3]
+    d = ltc.ltc_d(mu, 1.0)
     u = np.random.default_rng(2).random((2, 200_000))
-    wh = cltc.clipped_cosine(u, -d[-1], cltc.kept_part(d[-1]))
+    wh = cltc.cltc_clipped(*u, -d[-1])
     lowest = np.min(d[-1] * wh[:, 0] + wh[:, 2])
     found = f"d > 0 for mu > {mu[d > 0.0].min():.5f}: up to {d.max():.1e} at r = 1"
     return f"{found}, where the listing draws z down to {lowest:.1e}", verdict(lowest >= 0.0)
@@ -112,8 +115,8 @@ def normalized():
 
 
 def wasted():
-    d = ltc.coefficients(COSINES, 1.0)[3]
-    share = 1.0 - cltc.kept_part(d)
+    d = ltc.ltc_d(COSINES, 1.0)
+    share = 1.0 - cltc.cltc_kept_fraction(d)
     at = COSINES[share.argmax()]
     return f"up to {100 * share.max():.2f} % of the samples at r = 1, at mu = {at:g}", HOLDS
 
