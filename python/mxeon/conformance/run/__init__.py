@@ -11,14 +11,14 @@ from pathlib import Path
 from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Findings, Run
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
-from mxeon.conformance.run.plan import JUDGED, Judge, not_run, plan
+from mxeon.conformance.run.plan import Judge, not_run, plan
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library import untested
 
-__all__ = ["JUDGED", "check", "read_run", "to_run", "work"]
+__all__ = ["check", "read_run", "to_run", "work"]
 
 LIMIT = 300.0  # seconds for one item
 
@@ -44,7 +44,7 @@ def check(
     files : sequence of path-like
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
-        Who is judged; `mxeon.conformance.JUDGED` has them.
+        Who is judged; `mxeon.shaders.hosts.host_names` has them.
     libraries : sequence of str
         "eonlib", and "stock" for MaterialX as it comes.
     workers : int
