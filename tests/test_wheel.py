@@ -12,7 +12,8 @@ import MaterialX as mx
 import pytest
 
 import mxeon
-from tests.support.documents import EON, lobe, material
+from mxeon.shaders.nodes import EON
+from tests.support.documents import lobe, material
 
 CHECKOUT = Path(__file__).parents[1]
 DATA = ("eonlib", "genglsl", "genosl", "profiles", "examples")

@@ -11,8 +11,9 @@ from mxeon.models.brdf import eon_brdf, qon_brdf
 from mxeon.shaders.document.reading import DocumentWarning
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import open_host
+from mxeon.shaders.nodes import EON, OREN_NAYAR
 from mxeon.shaders.scene import FRONT, FURNACE, Scene
-from tests.support.documents import EON, OREN_NAYAR, connected, lobe, material
+from tests.support.documents import connected, lobe, material
 
 A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
 B = f'<{EON} name="b" type="BSDF"><input name="color" type="color3" value="0.1, 0.2, 0.6"/></{EON}>'

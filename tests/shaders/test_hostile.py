@@ -15,10 +15,10 @@ import pytest
 from mxeon import cli
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError
+from mxeon.io import images
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
-from mxeon.shaders.hosts import textures as images
 from mxeon.shaders.scene import FURNACE
 from tests.fuzz.found import doubled, row
 from tests.support.documents import connected, lobe, material

@@ -10,28 +10,13 @@ from string import Template
 import mxeon
 from mxeon.io.files import write_text
 from mxeon.kit.mesh import to_obj, unit_sphere
-from mxeon.kit.shots import MATERIALS, NODE, USUAL, shots
+from mxeon.kit.shots import MATERIALS, USUAL, shots
 from mxeon.kit.usd import mesh_layer, scene_layer
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 KIT_FORMAT = 1
 DESCRIPTION = "kit.json"
 RENDERS = "renders"
-
-MATERIAL = """<?xml version="1.0"?>
-<materialx version="1.39">
-  <{node} name="lobe" type="BSDF">
-    <input name="color" type="color3" value="{color}" />
-    <input name="roughness" type="float" value="{roughness!r}" />
-    <input name="energy_compensation" type="boolean" value="{flag}" />
-  </{node}>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-  <surfacematerial name="{name}" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>
-"""
 
 
 def export_kit(folder, size=USUAL):
@@ -71,13 +56,12 @@ def export_kit(folder, size=USUAL):
 
 def material_document(material):
     """A material of the kit as MaterialX text."""
-    return MATERIAL.format(
-        node=NODE,
-        name=material.name,
-        color=", ".join(map(str, material.color)),
-        roughness=material.roughness,
-        flag=str(material.energy_compensation).lower(),
-    )
+    inputs = {
+        "color": material.color,
+        "roughness": material.roughness,
+        FLAG: material.energy_compensation,
+    }
+    return material_text(OREN_NAYAR, inputs, material.name)
 
 
 def description(pictures, size):
@@ -120,7 +104,7 @@ def description(pictures, size):
 def _material(material):
     return {
         "file": f"materials/{material.name}.mtlx",
-        "node": NODE,
+        "node": OREN_NAYAR,
         "color": material.color,
         "roughness": material.roughness,
         "energy_compensation": material.energy_compensation,

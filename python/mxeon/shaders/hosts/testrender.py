@@ -15,8 +15,8 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.errors import NotRun, ShaderError
+from mxeon.io.images import read_image
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.hosts.textures import read_image
 from mxeon.shaders.plane import DISTANCE, FOV, TILT, falloff
 
 PROGRAMS = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER"}  # and what may name them
