@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from mxeon import figures
-from mxeon.figures import FIGURES, SECTIONS, claims
+from mxeon.figures import FIGURES, SECTIONS, claims, curves, renders, tracer
 from mxeon.figures.claims import FAILS, HOLDS, IN_PART, inversion, specification, verdict
+from mxeon.models import table
+from mxeon.models.brdf import lambert_brdf
 
 SMALL = {"size": 16, "samples": 2, "draws": 100}
 RENDERS = ("01", "02", "04a", "04b", "05", "08", "09", "10", "14")
@@ -110,6 +112,21 @@ def test_page_shows_every_plot(output):
 def test_measurements_refute_these_claims_and_no_others(output):
     row = re.compile(r"^\| [^|]* \| ([^|]*) \| [^|]* \| [^|]* \| \*\*fails\*\* \|$", re.MULTILINE)
     assert set(row.findall(output.page)) == REFUTED
+
+
+def test_a_model_without_a_shader_function_is_compared_by_its_title(monkeypatch, tmp_path):
+    models = (*table.MODELS, table.Model("flat", "A flat model", lambert_brdf, None))
+    monkeypatch.setattr(table, "MODELS", models)
+    monkeypatch.setattr(curves, "MODELS", models)
+    with figures.styled():
+        curves.comparison(figures.Sheet(tmp_path, host=None, **SMALL))
+    header = (tmp_path / "figure_03.csv").read_text().partition("\n")[0]
+    assert "flat theta_i=15 phi=0" in header
+    assert curves.label("flat") == "A flat model"
+
+
+def test_figure_4_names_models_that_the_tracer_has():
+    assert set().union(*renders.GALLERY.values()) <= set(tracer.MODELS)
 
 
 def test_same_run_writes_the_same_tables(output, tmp_path):
