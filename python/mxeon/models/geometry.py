@@ -319,7 +319,7 @@ def _with_axes(array, ndim):
 def _part(array, block):
     """The part of `array` that meets a block of what it broadcasts to."""
     return array[
-        tuple(s if n > 1 else slice(None) for s, n in zip(block, array.shape, strict=True))
+        tuple(s if n > 1 else slice(None) for s, n in zip(block, array.shape, strict=False))
     ]
 
 
