@@ -10,8 +10,8 @@ from string import Template
 import mxeon
 from mxeon.io.files import write_text
 from mxeon.kit.mesh import to_obj, unit_sphere
-from mxeon.kit.shots import MATERIALS, USUAL, shots
 from mxeon.kit.usd import mesh_layer, scene_layer
+from mxeon.kit.views import MATERIALS, USUAL, views
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 KIT_FORMAT = 1
@@ -41,11 +41,11 @@ def export_kit(folder, size=USUAL):
     OSError
         If something cannot be written.
     """
-    folder, pictures, mesh = Path(folder), shots(size), unit_sphere()
+    folder, pictures, mesh = Path(folder), views(size), unit_sphere()
     for material in MATERIALS:
         write_text(folder / "materials" / f"{material.name}.mtlx", material_document(material))
-    for shot in pictures:
-        write_text(folder / "scenes" / f"{shot.name}.usda", scene_layer(shot))
+    for view in pictures:
+        write_text(folder / "scenes" / f"{view.name}.usda", scene_layer(view))
     write_text(folder / "sphere.obj", to_obj(mesh))
     write_text(folder / "sphere.usda", mesh_layer(mesh))
     write_text(folder / DESCRIPTION, json.dumps(description(pictures, size), indent=1) + "\n")
@@ -76,7 +76,7 @@ def description(pictures, size):
           `direction`, the unit vector towards it, and `irradiance`, an environment its `radiance`.
         - pictures: the material, the scene and the file of each.
     """
-    scenes = {shot.scene.name: shot.scene for shot in pictures}
+    scenes = {view.scene.name: view.scene for view in pictures}
     return {
         "format": KIT_FORMAT,
         "mxeon": mxeon.__version__,
@@ -92,11 +92,11 @@ def description(pictures, size):
         "scenes": {name: _light(scene) for name, scene in scenes.items()},
         "pictures": [
             {
-                "material": shot.material.name,
-                "scene": shot.scene.name,
-                "file": f"{RENDERS}/{shot.name}.exr",
+                "material": view.material.name,
+                "scene": view.scene.name,
+                "file": f"{RENDERS}/{view.name}.exr",
             }
-            for shot in pictures
+            for view in pictures
         ],
     }
 
@@ -121,15 +121,15 @@ def _page(pictures, size, mesh):
     """README.md of the kit."""
     text = files("mxeon.kit").joinpath("templates", "kit.md").read_text(encoding="utf-8")
     rows = [
-        f"| `{RENDERS}/{shot.name}.exr` | {shot.material.name} | {shot.scene.name} |"
-        for shot in pictures
+        f"| `{RENDERS}/{view.name}.exr` | {view.material.name} | {view.scene.name} |"
+        for view in pictures
     ]
     materials = [
         f"| {each.name} | {', '.join(map(str, each.color))} | {each.roughness} "
         f"| {str(each.energy_compensation).lower()} |"
         for each in MATERIALS
     ]
-    scenes = {shot.scene.name: shot.scene for shot in pictures}
+    scenes = {view.scene.name: view.scene for view in pictures}
     return Template(text).substitute(
         version=mxeon.__version__,
         size=size,
