@@ -10,11 +10,11 @@ import pytest
 from mxeon.models import geometry
 from mxeon.models.albedo import fon_albedo_avg, fon_albedo_dir_approx
 from mxeon.models.brdf import eon_brdf, fon_brdf, lambert_brdf, oren_nayar_brdf
-from mxeon.models.table import DEFECTS, MODELS, model
+from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from tests.support import oracle, tolerances
 from tests.support.cases import direction, pairs, parameter
 
-ALL = MODELS + DEFECTS
+ALL = MODELS + KNOWN_DEFECTS
 
 
 def named(rows):
@@ -271,7 +271,7 @@ def test_lambert_has_no_interval():
 # --- known wrong variants --------------------------------------------------------------------
 
 
-@named([row for row in DEFECTS if row.parameter == "roughness"])
+@named([row for row in KNOWN_DEFECTS if row.parameter == "roughness"])
 def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     wo, wi, rho, r = pairs(2000, seed=13)
     front = np.sum(wo * wi, axis=-1) > 1e-6

@@ -317,9 +317,9 @@ def _with_axes(array, ndim):
 
 
 def _part(array, block):
-    """The part of `array` that meets a block of what it broadcasts to."""
+    """Part of `array` that a block of its leading axes selects; an axis of length 1 stays."""
     return array[
-        tuple(s if n > 1 else slice(None) for s, n in zip(block, array.shape, strict=True))
+        tuple(s if n > 1 else slice(None) for s, n in zip(block, array.shape[:-1], strict=True))
     ]
 
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import albedo
+from mxeon.models import albedo, known_defects
 from mxeon.models import brdf as models
-from mxeon.models import known_defects as defects
 from mxeon.models.geometry import RANGES
 
 
@@ -44,7 +43,7 @@ class Model:
 
 
 def model(name):
-    """The row of `MODELS` or `DEFECTS` that is called `name`.
+    """The row of `MODELS` or `KNOWN_DEFECTS` with this name.
 
     Raises
     ------
@@ -56,10 +55,10 @@ def model(name):
     >>> model("eon").parameter
     'roughness'
     """
-    for row in MODELS + DEFECTS:
+    for row in MODELS + KNOWN_DEFECTS:
         if row.name == name:
             return row
-    known = ", ".join(row.name for row in MODELS + DEFECTS)
+    known = ", ".join(row.name for row in MODELS + KNOWN_DEFECTS)
     raise ValueError(f"model must be one of {known}; got {name!r}")
 
 
@@ -110,34 +109,36 @@ MODELS = (
     Model("eon_approx", "EON with the paper's quartic", models.eon_brdf_approx, "roughness"),
 )
 
-DEFECTS = (
-    Model("eon_clamped", "EON with clamped dot(wo, wi)", defects.eon_clamped_brdf, "roughness"),
+KNOWN_DEFECTS = (
+    Model(
+        "eon_clamped", "EON with clamped dot(wo, wi)", known_defects.eon_clamped_brdf, "roughness"
+    ),
     Model(
         "eon_rho_cubed",
         "EON with rho^3",
-        defects.eon_rho_cubed_brdf,
+        known_defects.eon_rho_cubed_brdf,
         "roughness",
-        defects.eon_rho_cubed_albedo_dir,
+        known_defects.eon_rho_cubed_albedo_dir,
     ),
     Model(
         "fon_white_lobe",
         "FON + white lobe",
-        defects.fon_white_lobe_brdf,
+        known_defects.fon_white_lobe_brdf,
         "roughness",
-        defects.fon_white_lobe_albedo_dir,
+        known_defects.fon_white_lobe_albedo_dir,
     ),
     Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
         models.qon_brdf,
         "sigma",
-        defects.qon_fitted_albedo_dir,
+        known_defects.qon_fitted_albedo_dir,
     ),
     Model(
         "qon_tinted_twice",
         "QON tinted twice",
-        defects.qon_tinted_twice_brdf,
+        known_defects.qon_tinted_twice_brdf,
         "sigma",
-        defects.qon_tinted_twice_albedo_dir,
+        known_defects.qon_tinted_twice_albedo_dir,
     ),
 )
