@@ -14,7 +14,7 @@ import numpy as np
 
 from mxeon.conformance.known_issues import ISSUES, STOCK
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import SOURCE, plan
+from mxeon.conformance.run.plan import SOURCE, make_plan
 from mxeon.io.files import write_text
 from mxeon.models import albedo, formulas
 from mxeon.models import brdf as models
@@ -96,7 +96,7 @@ def judged(host):
         If the host cannot run here.
     """
     rows = {row for issue in ISSUES for row in issue.rows}
-    tasks = plan((), () if host == SOURCE else (host,), (STOCK,)).tasks
+    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,)).tasks
     chosen = [
         each
         for each in tasks

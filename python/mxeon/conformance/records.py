@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_origin
 
 import cattrs
 import numpy as np
@@ -83,8 +83,8 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
         converter.register_structure_hook(kind, _exactly(kind, words))
     converter.register_structure_hook(float, _number)
     converter.register_unstructure_hook(float, spelled)
-    converter.register_structure_hook(np.ndarray, lambda rows, _: np.array(rows, dtype=float))
-    converter.register_unstructure_hook(np.ndarray, lambda array: array.tolist())
+    converter.register_structure_hook_func(_is_array, lambda rows, _: np.array(rows, dtype=float))
+    converter.register_unstructure_hook_func(_is_array, lambda array: array.tolist())
     for kind in (Control, Result):
         _register(converter, kind, FIGURE)
     if folder is not None:
@@ -115,6 +115,10 @@ def read_record(value: object, kind: type[T]) -> T:
     if converter.unstructure(record) != value:  # a text was taken for a list, for example
         raise InputError("it must hold the lists and names that mxeon writes")
     return record
+
+
+def _is_array(kind: object) -> bool:
+    return (get_origin(kind) or kind) is np.ndarray
 
 
 def _register(converter: cattrs.Converter, kind: type, fields: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Run
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run
-from mxeon.conformance.run.plan import JUDGED, Findings, Plan, Task, plan
+from mxeon.conformance.run.plan import JUDGED, Findings, Plan, Task, make_plan
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
@@ -82,7 +82,7 @@ def check(
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """
-    planned = plan(files, hosts, libraries, policy, resumable=folder is not None)
+    planned = make_plan(files, hosts, libraries, policy, resumable=folder is not None)
     # An executor that cannot work must not touch the folder.
     with (
         _executor(policy, workers, limit, scheduler, wait) as executor,

@@ -105,7 +105,7 @@ class Findings:
         )
 
 
-def plan(
+def make_plan(
     files: Sequence[str | os.PathLike[str]],
     hosts: Sequence[str],
     libraries: Sequence[str],
