@@ -203,10 +203,9 @@ def _progress(words):
 def _judged(run, options):
     """A run shown as the options ask for it, and the exit status that it means."""
     from mxeon import report
-    from mxeon.conformance.verdict import summarize
 
     page = report.write(run, options.report) if options.report else None
-    summary = summarize(run.results, run.missing, run.errors)
+    summary = run.summary
     if options.json:
         print(report.to_json(run))
     else:
@@ -219,15 +218,13 @@ def _judged(run, options):
 
 
 def _print_run(run, summary, page):
-    from mxeon.conformance.verdict import explained, place
-
     for (where, reason), count in _not_run(run.results).items():
         print(one_line(f"not run: {where}, {count} checks: {reason}"))
     for result in run.results:
         if result.verdict != "failed":
             continue
-        where = f"{place(result)}, {result.check}, {result.subject}"
-        print(one_line(f"failed: {where}: {explained(result)}"))
+        where = f"{result.location}, {result.check}, {result.subject}"
+        print(one_line(f"failed: {where}: {result.explanation}"))
     for note in run.notes:
         print(printable(" ".join(f"note: {note}".split())))
     print(printable(summary.sentence))
@@ -237,10 +234,8 @@ def _print_run(run, summary, page):
 
 def _not_run(results):
     """How many checks each reason kept from running at each place."""
-    from mxeon.conformance.verdict import place
-
     return Counter(
-        (place(result), result.reason) for result in results if result.verdict == "not run"
+        (result.location, result.reason) for result in results if result.verdict == "not run"
     )
 
 
