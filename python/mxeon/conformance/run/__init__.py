@@ -15,12 +15,11 @@ from mxeon.conformance.run.plan import JUDGED, Judge, not_run, plan
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
+from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library import untested
 
 __all__ = ["JUDGED", "check", "read_run", "to_run", "work"]
-
-LIMIT = 300.0  # seconds for one item
 
 
 def check(
@@ -29,11 +28,11 @@ def check(
     libraries=("eonlib",),
     *,
     workers=0,
-    limit=LIMIT,
+    timeout=TIMEOUT,
     folder=None,
     resume=False,
     scheduler=None,
-    wait=cluster.WAIT,
+    wait=WAIT,
     policy=DEFAULT,
     progress=lambda items, total: items,
 ):
@@ -49,7 +48,7 @@ def check(
         "eonlib", and "stock" for MaterialX as it comes.
     workers : int
         Processes that share the work, of which any may crash or hang; 0 to work in this one.
-    limit : float
+    timeout : float
         Seconds that one item may take in a worker.
     folder : path-like or None
         Where what is finished is kept, pictures included, so that an interrupted run can be
@@ -74,7 +73,7 @@ def check(
     ------
     ValueError
         If a host or a library is unknown, `folder` holds another run than the one to resume or
-        one of other drivers, `workers`, `limit` or `wait` leave their ranges, or no scheduler
+        one of other drivers, `workers`, `timeout` or `wait` leave their ranges, or no scheduler
         answers or has workers that fit.
     NotRun
         If no process can start, or the cluster has no workers for too long.
@@ -82,7 +81,7 @@ def check(
     planned = plan(files, hosts, libraries, policy, resumable=folder is not None)
     # Who cannot work must not touch what the folder holds.
     with (
-        _crew(policy, workers, limit, scheduler, wait) as crew,
+        _crew(policy, workers, timeout, scheduler, wait) as crew,
         _open_journal(folder, planned, resume) as journal,
     ):
         places = [place for place in range(len(planned.items)) if place not in journal.findings]
@@ -176,17 +175,17 @@ def _open_journal(folder, planned, resume):
 
 
 @contextmanager
-def _crew(policy, workers, limit, scheduler, wait):
+def _crew(policy, workers, timeout, scheduler, wait):
     """Who works: a function from items to their outcomes."""
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
-    pool.check_limit(limit)
+    check_timeout(timeout)
     if scheduler:
-        with cluster.connected(scheduler, wait) as found:
+        with cluster.connect(scheduler, wait) as found:
             at_work = partial(work, policy)
-            yield partial(cluster.run, at_work, workers=found, limit=limit, elsewhere=NotRun)
+            yield partial(cluster.run, at_work, workers=found, timeout=timeout, unavailable=NotRun)
     elif workers:
-        yield partial(pool.run, partial(settled, policy), workers=workers, limit=limit)
+        yield partial(pool.run, partial(settled, policy), workers=workers, timeout=timeout)
     else:
         yield partial(_here, policy)
 
