@@ -88,19 +88,19 @@ vec4 printed_cltc(vec3 wo, float u1, float u2, float roughness)
     float b = ltc_b(wo.z, roughness);
     float c = ltc_c(wo.z, roughness);
     float d = ltc_d(wo.z, roughness);
-    float kept = cltc_kept(d);
+    float kept = cltc_kept_fraction(d);
     vec3 wh = cltc_clipped(u1, u2, d);
     vec3 wi = vec3(a * wh.x + b * wh.z, c * wh.y, d * wh.x + wh.z);
     float size = length(wi);
     float pdf = wh.z / (EON_PI * kept) * size * size * size / (c * (a - b * d));
-    vec3 turn = eon_azimuth(wo);
-    return vec4(eon_turned(wi / size, turn.x, turn.y), pdf);
+    vec3 turn = eon_azimuth_frame(wo);
+    return vec4(eon_rotate_z(wi / size, turn.x, turn.y), pdf);
 }
 
 // [Portsmouth2025], Listing 4.
 vec4 printed_sample(vec3 wo, float u1, float u2, float roughness)
 {
-    float P_u = eon_cltc_share(wo.z, roughness);
+    float P_u = eon_cltc_probability(wo.z, roughness);
     vec4 drawn;
     if (u1 <= P_u)
     {

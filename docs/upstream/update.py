@@ -19,6 +19,7 @@ from mxeon.models import albedo, formulas
 from mxeon.models import brdf as models
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import OREN_NAYAR, SURFACE, document_text, input_text, node_text
 
 FOLDER = Path(__file__).parent
 BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
@@ -61,18 +62,6 @@ CAUSES = {
     "openpbr_thin_walled": Cause(OPENPBR, 140, "subsurface_thin_walled_reflection_bsdf"),
     "openpbr_thin_walled_tint": Cause(OPENPBR, 149, "subsurface_thin_walled_brdf_factor"),
 }
-
-GIVEN_NORMAL = """<materialx version="1.39">
-  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
-    <input name="normal" type="vector3" value="0.25, 0.5, 0.75" />
-  </oren_nayar_diffuse_bsdf>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-  <surfacematerial name="material" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>"""
 
 
 def stock_path(cause):
@@ -172,7 +161,9 @@ def printed_pi_block():
 
 def dropped_normal_block():
     """Whether generated GLSL holds a normal that the document gives as a literal value."""
-    [shader] = generate(GIVEN_NORMAL, "glsl", library=STOCK)
+    normal = input_text("normal", "vector3", (0.25, 0.5, 0.75))
+    lobe = node_text(OREN_NAYAR, "BSDF", "lobe", normal)
+    [shader] = generate(document_text(lobe + SURFACE), "glsl", library=STOCK)
     return _quantities(
         "shaders, of 1, that hold the value", [float("0.25" in shader.stages["pixel"])], [1.0]
     )

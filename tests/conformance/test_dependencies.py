@@ -13,7 +13,7 @@ from mxeon.conformance.run import plan as items
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.journal_lines import NAME
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.hosts.gl import Host
 from mxeon.shaders.library import examples_folder
 

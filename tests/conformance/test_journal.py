@@ -20,7 +20,7 @@ from mxeon.conformance.results import FAILED, Control, Curve, Findings, Item, Pi
 from mxeon.conformance.run import check, read_run, to_run
 from mxeon.conformance.run.journal import LOCK, PREVIOUS, Journal, read_journal
 from mxeon.conformance.run.journal_lines import NAME, to_line
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.library import examples_folder
 
 EXAMPLE = examples_folder() / "plaster.mtlx"

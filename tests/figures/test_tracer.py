@@ -20,8 +20,8 @@ UNBIASED = ("uniform", "cosine", "ltc0", "eon_cltc", "eon")
 
 def mean(image):
     """Mean of a picture, and its standard error were its pixels drawn from one distribution."""
-    grey = image.mean(axis=-1, dtype=np.float64)
-    return grey.mean(), grey.std() / np.sqrt(grey.size)
+    gray = image.mean(axis=-1, dtype=np.float64)
+    return gray.mean(), gray.std() / np.sqrt(gray.size)
 
 
 @pytest.mark.parametrize("sampler", UNBIASED)
@@ -46,7 +46,10 @@ def test_lambert_in_front_light_has_its_closed_form(gl):
     assert abs(value - 0.6 * np.pi / 6.0) <= STANDARD_ERRORS * error
 
 
-@pytest.mark.parametrize("model", reference.MODELS, ids=lambda model: model.name)
+TRACED = [row for row in reference.MODELS if row.name in MODELS]
+
+
+@pytest.mark.parametrize("model", TRACED, ids=lambda model: model.name)
 def test_side_lit_ball_has_the_values_of_the_numpy_models(gl, model):
     points, rho = sphere(512), (0.8, 0.4, 0.1)
     normal = points.normal[points.mask]

@@ -9,6 +9,7 @@ out in a shader reached it. Attributes that name each other are changed together
 
 import re
 import sys
+import warnings
 from collections import defaultdict
 from contextlib import chdir
 from copy import deepcopy
@@ -157,15 +158,17 @@ def _judged(root, place, text, targets):
     document = ElementTree.tostring(root, encoding="unicode")
     for target in targets:
         try:
-            shaders = generate(document, target)
+            sources = _sources(document, target)
         except DocumentError as error:
             said = str(error)
             if "must give" in said:  # by this target alone
                 continue
-            return element.tag in said and "must" in said and said.isprintable()
+            # What a prefix does wrong is said of the name of a file that it makes.
+            named = "file" if place.attribute == "fileprefix" else element.tag
+            return named in said and "must" in said and said.isprintable()
         except ValueError:  # a number that is none
             continue
-        if any(POISON in source for each in shaders for source in each.stages.values()):
+        if any(POISON in source for source in sources):
             return False
     return True
 
@@ -176,20 +179,26 @@ def _search(root, places, targets, found):
     for target in targets:
         text, marks = _marked(root, places)
         try:
-            shaders = generate(text, target)
+            sources = _sources(text, target)
         except DocumentError as error:
             refused.append(target)
             if "must give" not in str(error):  # refused before any target was asked
                 refused = list(targets)
                 break
             continue
-        for shader in shaders:
-            for source in shader.stages.values():
-                _note(source, marks, found)
+        for source in sources:
+            _note(source, marks, found)
     if refused and len(places) > 1:
         half = len(places) // 2
         _search(root, places[:half], refused, found)
         _search(root, places[half:], refused, found)
+
+
+def _sources(document, target):
+    """Texts of all stages, without what is said of a file that is not there."""
+    with warnings.catch_warnings(action="ignore"):
+        shaders = generate(document, target)
+    return [source for each in shaders for source in each.stages.values()]
 
 
 def _note(source, marks, found):

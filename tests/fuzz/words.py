@@ -27,6 +27,7 @@ ATTRIBUTES = (
     "name", "type", "value", "nodename", "nodegraph", "output", "interfacename", "inherit", "file",
     "sourcecode", "function", "target", "version", "fileprefix", "geomprefix", "colorspace", "unit",
     "unittype", "namespace", "href", "nodedef", "node", "implname", "defaultgeomprop", "geomprop",
+    "index", "space",
     "enum", "enumvalues", "uniform", "channels", "xpos", "hint", "isdefaultversion", "semantic",
     "collection", "material", "look", "geom", "variant", "variantset", "uiname", "doc", "member",
     "includecollection", "members", "bsdf", "cms", "colormanagementconfig", "nodecategory",

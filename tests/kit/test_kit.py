@@ -21,7 +21,7 @@ from mxeon.kit.expected import expected, judged, pixel_means
 from mxeon.kit.export import export_kit
 from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.noise import ratio, tiles
-from mxeon.kit.shots import LEVEL, MATERIALS, shots
+from mxeon.kit.views import MATERIALS, SETUP, views
 from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning, generate
 from mxeon.shaders.hosts.cycles.process import interpreter
@@ -29,7 +29,7 @@ from tests.support.availability import available
 from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
 
 SIZE = 64
-SHOTS = {shot.name: shot for shot in shots(SIZE)}
+VIEWS = {view.name: view for view in views(SIZE)}
 STRANGER = Path(__file__).parents[1] / "support" / "external_renderer.py"
 EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
 
@@ -38,12 +38,12 @@ def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
     """A kit, and pictures of these models with as much relative noise in each pixel."""
     rng = np.random.default_rng(seed)
     export_kit(folder, SIZE)
-    for shot in SHOTS.values():
-        row = reference.model(true if shot.material.energy_compensation else false)
-        mask, image = judged(shot.scene), np.zeros((SIZE, SIZE, 3))
-        values = pixel_means(row, shot)
+    for view in VIEWS.values():
+        row = reference.model(true if view.material.energy_compensation else false)
+        mask, image = judged(view.scene), np.zeros((SIZE, SIZE, 3))
+        values = pixel_means(row, view)
         image[mask] = values * (1.0 + noise * rng.standard_normal(values.shape))
-        write_exr(folder / "renders" / f"{shot.name}.exr", image, {})
+        write_exr(folder / "renders" / f"{view.name}.exr", image, {})
 
 
 @pytest.fixture
@@ -108,7 +108,7 @@ def test_each_material_is_a_document_that_generates(tmp_path, material, target):
 def test_the_description_says_what_the_scenes_say(tmp_path):
     export_kit(tmp_path, SIZE)
     kit = json.loads((tmp_path / "kit.json").read_text())
-    assert {Path(each["file"]).stem for each in kit["pictures"]} == set(SHOTS)
+    assert {Path(each["file"]).stem for each in kit["pictures"]} == set(VIEWS)
     for each in kit["pictures"]:
         usd = (tmp_path / "scenes" / f"{Path(each['file']).stem}.usda").read_text()
         material = kit["materials"][each["material"]]
@@ -119,7 +119,7 @@ def test_the_description_says_what_the_scenes_say(tmp_path):
 
 def test_the_page_names_every_picture(tmp_path):
     text = export_kit(tmp_path, SIZE).read_text()
-    assert [name for name in SHOTS if f"renders/{name}.exr" not in text] == []
+    assert [name for name in VIEWS if f"renders/{name}.exr" not in text] == []
     assert "$" not in text
 
 
@@ -130,16 +130,16 @@ def test_a_size_out_of_range_is_refused(tmp_path, size):
 
 
 def test_pure_noise_is_not_called_bias():
-    rng, shot = np.random.default_rng(1), SHOTS["true_front"]
-    mask = judged(shot.scene)
+    rng, view = np.random.default_rng(1), VIEWS["true_front"]
+    mask = judged(view.scene)
     noise = rng.standard_normal((200, mask.sum(), 3))
     alarms = [ratio([tiles(each, 0.0 * each, mask)]) > 1.0 for each in noise]
     assert sum(alarms) <= KIT_FALSE_ALARMS
 
 
 def test_bias_far_below_the_noise_of_a_pixel_is_found():
-    rng, shot = np.random.default_rng(1), SHOTS["true_front"]
-    mask = judged(shot.scene)
+    rng, view = np.random.default_rng(1), VIEWS["true_front"]
+    mask = judged(view.scene)
     error = 0.1 * rng.standard_normal((mask.sum(), 3)) + 0.1
     assert ratio([tiles(error, 0.0 * error, mask)]) > 1.0
 
@@ -151,7 +151,7 @@ def test_each_model_is_named_whatever_the_noise(tmp_path, name, noise):
     title = reference.model(name).title
     found = names(check_kit(tmp_path))
     assert found["energy_compensation true, distant light"] == title
-    assert found["energy_compensation true, surrounding"] == title
+    assert found["energy_compensation true, environment"] == title
 
 
 @pytest.mark.parametrize("name", ["lambert", "oren_nayar", "qon", "qon_footnote", "qon_fujii"])
@@ -165,7 +165,7 @@ def test_right_pictures_pass(kit):
     run = check_kit(kit)
     assert {result.verdict for result in run.results} == {"passed"}
     assert all(result.control.caught for result in run.results)
-    assert len(run.pictures) == len(SHOTS)
+    assert len(run.pictures) == len(VIEWS)
 
 
 def test_too_much_noise_is_said_and_passes_nothing(tmp_path):
@@ -177,7 +177,7 @@ def test_too_much_noise_is_said_and_passes_nothing(tmp_path):
 
 def test_a_model_that_noise_hides_is_mentioned(tmp_path):
     write_pictures(tmp_path, false="qon", noise=0.1)
-    subject = "energy_compensation false, surrounding"
+    subject = "energy_compensation false, environment"
     (note,) = [each for each in check_kit(tmp_path).notes if each.startswith(subject)]
     assert "cannot be told from QON with MaterialX's fit" in note
 
@@ -313,18 +313,18 @@ FAULTS = {
 
 @pytest.mark.parametrize("words", FAULTS)
 def test_what_is_wrong_with_light_or_encoding_is_named(words):
-    shot = SHOTS[LEVEL.name]
-    model, mask = expected(reference.model("lambert"), shot, 0.0), judged(shot.scene)
+    view = VIEWS[SETUP.name]
+    model, mask = expected(reference.model("lambert"), view, 0.0), judged(view.scene)
     image = np.zeros((SIZE, SIZE, 3))
     image[mask] = model.value
     assert fault(FAULTS[words](image), model, mask) == words
 
 
 def test_where_the_encoding_is_wrong_no_model_is_named(kit):
-    for name in SHOTS:
+    for name in VIEWS:
         write_exr(render(kit, name), srgb(read(render(kit, name))), {})
     run = check_kit(kit)
-    assert found(run, "level", "lambert").diagnosis == "lambert_side is sRGB-encoded"
+    assert found(run, "setup", "lambert").diagnosis == "lambert_side is sRGB-encoded"
     result = found(run, "model", "energy_compensation true, distant light")
     assert result.reason == "lambert_side is sRGB-encoded"
     assert names(run) == {}
@@ -373,7 +373,7 @@ def test_csv_that_is_none_costs_its_picture_alone(kit, data):
     as_csv(kit, "true_side").write_bytes(data)
     run = check_kit(kit)
     assert "true_side.csv: must be" in found(run, "file", "true_side").diagnosis
-    assert found(run, "level", "lambert").verdict == "passed"
+    assert found(run, "setup", "lambert").verdict == "passed"
 
 
 def test_a_folder_that_is_no_kit_is_refused(tmp_path, capsys):
@@ -469,13 +469,13 @@ def stranger_renders(kit, library, profile=None):
 
 def test_cycles_as_a_stranger_is_named_eon_with_rho_cubed(tmp_path):
     run = stranger_renders(tmp_path, "stock")
-    assert found(run, "level", "lambert").verdict == "passed"
+    assert found(run, "setup", "lambert").verdict == "passed"
     assert set(names(run).values()) == {CUBED}
     assert len(names(run)) == 4
 
 
 def test_cycles_with_the_profile_is_named_eon(tmp_path):
     run = stranger_renders(tmp_path, "eonlib", "cycles")
-    for light in ("distant light", "surrounding"):
+    for light in ("distant light", "environment"):
         assert found(run, "model", f"energy_compensation true, {light}").verdict == "passed"
         assert names(run)[f"energy_compensation true, {light}"] == EON

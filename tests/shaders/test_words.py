@@ -50,14 +50,17 @@ def test_text_that_reaches_source_in_materials_is_words(materials):
 
 def test_text_that_reaches_source_in_outputs_is_words():
     root = reach.documents()["outputs"]
-    found = reach.reached(root, reach.present(root), SOME)
+    groups = reach.present(root)  # names, types and values are judged alike wherever they stand
+    texts = [each for each in groups if each[0].attribute not in ("name", "type", "value")]
+    found = reach.reached(root, texts, SOME)
     assert ("materialx", "namespace") in named(root, found)
     assert reach.unjudged(root, found, SOME) == []
 
 
-def test_no_attribute_where_it_does_not_belong_reaches_source(materials):
+def test_text_that_reaches_source_where_it_does_not_belong_is_words(materials):
     root, _ = materials
-    assert reach.reached(root, reach.absent(root), SOME) == {}
+    found = reach.reached(root, reach.absent(root), SOME)
+    assert reach.unjudged(root, found, SOME) == []
 
 
 def test_the_search_sees_what_is_known_to_reach_source(materials):
@@ -80,10 +83,7 @@ REFUSED = {
     ),
     "space": ('<geompropdef name="a" type="vector3" space="x&quot;"/>', "'space' must be a name"),
     "namespace": ('<nodegraph name="a" namespace="x y"/>', "'namespace' must be a name of letters"),
-    "color space": (
-        IMAGE.format("default", "color3", '0,0,0" colorspace="a\\'),
-        "must be without quotes",
-    ),
+    "color space": ('<nodegraph name="a" colorspace="a\\"/>', "must be without quotes"),
     "comment": (IMAGE.format("layer", "string", "a//b"), "without //; got 'a//b'"),
     "choice": (IMAGE.format("uaddressmode", "string", "a, b"), "'value' must be one word"),
     "member": (

@@ -150,13 +150,14 @@ def picture(
     dict of str to str
         Versions and options that made it, as metadata for the file.
     """
+    from mxeon.conformance import reference
     from mxeon.shaders import scene as scenes
     from mxeon.shaders.hosts import open_host
 
     setting = scenes.scene(scene)
     if environment:
         setting = scenes.Scene("environment", environment=Path(environment))
-    with closing(open_host(host)) as engine:
+    with closing(open_host(host, reference.ROW)) as engine:
         shader = _one_shader(file, engine, element, library, policy)
         image = engine.picture(shader, replace(setting, size=size))
         identity = engine.identity()

@@ -8,19 +8,22 @@ from mxeon.cli.output import progress_bar
 from mxeon.cli.verdict import show_run
 from mxeon.errors import InputError
 from mxeon.jobs.timeouts import WAIT
-
-HOSTS = "gl (the default), webgl, vulkan, slang, cycles, cycles-native, testrender, msl, mdl, wgsl"
+from mxeon.shaders.hosts import host_names
 
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its options."""
+    default, *others = host_names()
     summary = "run the checks on hosts, and compare pictures of documents with the reference"
     command = arguments.add_command(commands, "check", summary, run)
     command.add_argument(
         "files", nargs="*", metavar="FILE", help="MaterialX documents; none: the examples"
     )
     command.add_argument(
-        "--host", action="append", metavar="NAME", help=f"{HOSTS}, or all; may be repeated"
+        "--host",
+        action="append",
+        metavar="NAME",
+        help=f"{default} (the default), {', '.join(others)}, or all; may be repeated",
     )
     command.add_argument(
         "--library",
@@ -50,14 +53,14 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check hosts and libraries; return the exit status."""
-    from mxeon.conformance.run import JUDGED, check
+    from mxeon.conformance.run import check
 
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
     hosts = options.host or ("gl",)
     result = check(
         options.files,
-        JUDGED if "all" in hosts else hosts,
+        host_names() if "all" in hosts else hosts,
         options.library or ("eonlib",),
         workers=options.workers,
         timeout=options.timeout,

@@ -8,15 +8,16 @@ from mxeon.cli import arguments
 from mxeon.cli.batch import picture, run_batch
 from mxeon.cli.output import warn
 from mxeon.errors import PASSED
+from mxeon.shaders.hosts import HOSTS
 
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its options."""
+    rows = (row.name for row in HOSTS if row.scenes and row.name != "gl")
+    hosts = ", ".join((*rows, "reference"))
     command = arguments.add_command(commands, "render", "draw a material on a sphere", run)
     command.add_argument("file", metavar="FILE", help="a MaterialX document")
-    command.add_argument(
-        "--host", default="gl", metavar="NAME", help="gl (the default), webgl, cycles or reference"
-    )
+    command.add_argument("--host", default="gl", metavar="NAME", help=f"gl (the default), {hosts}")
     command.add_argument("--element", metavar="NAME", help="needed where there are several")
     command.add_argument("--output", metavar="OUT", required=True, help="linear .exr or sRGB .png")
     command.add_argument(

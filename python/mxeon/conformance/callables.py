@@ -17,7 +17,7 @@ from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.verdict import explained
 from mxeon.errors import InputError
 from mxeon.models import table as reference
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 # What can be asked of values alone: there is no environment branch and no flag.
 KEYS = ("value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.errors import InputError
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 PASSED, FAILED, NOT_RUN = "passed", "failed", "not run"
 VERDICTS = (PASSED, FAILED, NOT_RUN)

@@ -2,7 +2,9 @@
 """The figures of [Portsmouth2025] as data and as plots, and the page "The paper, checked"."""
 
 import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path
 
 from mxeon.figures import claims, curves, renders, weights
@@ -29,26 +31,30 @@ FIGURES = (
     renders.noise,
     curves.inverted,
 )
-CLAIMS = {
-    "Sections 2 and 3: the models": claims_models.CLAIMS,
-    "Section 4: importance sampling": claims_sampling.CLAIMS,
-    "Appendix A: inversion of the albedo": claims_inversion.CLAIMS,
-    "The specification of MaterialX's pbrlib": claims_specification.CLAIMS,
-}
+SECTIONS = (
+    claims_models.SECTION,
+    claims_sampling.SECTION,
+    claims_inversion.SECTION,
+    claims_specification.SECTION,
+)
 
 
-def figures(folder, progress=iter, **work):
-    """Writes every figure to `folder`/figures, and `folder`/paper_checked.md.
+def figures(
+    folder: str | PathLike[str],
+    progress: Callable[[Sequence], Iterable] = iter,
+    **work: int,
+) -> Path:
+    """Write every figure to `folder`/figures, and `folder`/paper_checked.md.
 
     Parameters
     ----------
     folder : path-like
-        Made if need be; files of the same names are replaced.
+        Created if it does not exist; files of the same names are replaced.
     progress : callable
         Wraps the sequence of steps, such as `tqdm.tqdm`.
     **work : int
-        `size`, `samples` and `draws` of `mxeon.figures.sheet.Sheet`, where they should not be the
-        usual ones.
+        `size`, `samples` and `draws` of `mxeon.figures.sheet.Sheet`, to replace the
+        defaults.
 
     Returns
     -------
@@ -58,7 +64,7 @@ def figures(folder, progress=iter, **work):
     Raises
     ------
     NotRun
-        If there is no OpenGL: the pictures are traced on it.
+        If OpenGL is not available; the pictures are traced on it.
     """
     folder = Path(folder)
     sheet = replace(Sheet(folder / "figures", open_host("gl")), **work)
@@ -66,14 +72,14 @@ def figures(folder, progress=iter, **work):
     with styled():
         for step in progress((*FIGURES, claims.page)):
             if step is claims.page:
-                write_text(page, claims.page(CLAIMS) + _gallery(sheet.folder))
+                write_text(page, claims.page(SECTIONS) + _gallery(sheet.folder))
             else:
                 step(sheet)
     return page
 
 
-def _gallery(folder):
-    """Every plot under the sentence that says what it shows, as Markdown."""
+def _gallery(folder: Path) -> str:
+    """Every plot below the description of its figure, as Markdown."""
     lines = ["", "## The figures", ""]
     for step in FIGURES:
         lines += [step.__doc__, ""]

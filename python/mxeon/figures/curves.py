@@ -13,7 +13,7 @@ from mxeon.models.albedo import (
 )
 from mxeon.models.brdf import fon_brdf, qon_brdf
 from mxeon.models.quadrature import albedo_dir_quadrature
-from mxeon.models.table import MODELS
+from mxeon.models.table import MODELS, model
 
 DEGREES = np.linspace(0.0, 90.0, 181)
 DOTS = np.linspace(0.0, 90.0, 13)
@@ -23,7 +23,6 @@ ROUGHNESS = (0.25, 0.5, 0.75, 1.0)
 SIGMA = (0.1, 0.2, 0.4, 0.8, 0.5 * np.pi)
 WANTED = (0.1, 0.3, 0.5, 0.7, 0.9)
 SHORT = {
-    "lambert": "Lambert",
     "oren_nayar": "full Oren-Nayar",
     "qon": "QON",
     "qon_footnote": "QON, footnote 1",
@@ -32,6 +31,13 @@ SHORT = {
     "eon": "EON",
     "eon_approx": "EON, quartic",
 }
+# Its curve lies on that of EON.
+INDISTINGUISHABLE = "eon_approx"
+
+
+def label(name: str) -> str:
+    """A model's short name, or its title if it has none."""
+    return SHORT.get(name) or model(name).title
 
 
 def cosine(degrees):
@@ -53,11 +59,13 @@ def comparison(sheet):
     for row, phi in enumerate((0.0, 90.0, 180.0)):
         for column, theta_i in enumerate((15.0, 45.0, 75.0)):
             wo, wi = directions(DEGREES, phi), directions(theta_i, 0.0)
-            for model in MODELS[:-1]:
-                parameter = [0.5 * model.interval[1]] if model.parameter else []
-                value = model.brdf(wo, wi, 0.8, *parameter)[:, 0] * wi[2]
-                columns[f"{model.name} theta_i={theta_i:g} phi={phi:g}"] = value
-                axes[row, column].plot(DEGREES, value, label=SHORT[model.name])
+            for each in MODELS:
+                if each.name == INDISTINGUISHABLE:
+                    continue
+                parameter = [0.5 * each.interval[1]] if each.parameter else []
+                value = each.brdf(wo, wi, 0.8, *parameter)[:, 0] * wi[2]
+                columns[f"{each.name} theta_i={theta_i:g} phi={phi:g}"] = value
+                axes[row, column].plot(DEGREES, value, label=label(each.name))
             axes[row, column].set_title(f"$\\theta_i = {theta_i:g}°,\\ \\phi = {phi:g}°$")
     for cell in axes[2]:
         cell.set(xlabel="$\\theta_o$ (degrees)", xticks=ANGLE_TICKS)

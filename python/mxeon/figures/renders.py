@@ -6,8 +6,8 @@ The paper's objects are meshes; ours is analytic, and open, so that it lights it
 
 import numpy as np
 
-from mxeon.figures.curves import SHORT
-from mxeon.models.table import MODELS, model
+from mxeon.figures.curves import label
+from mxeon.models.table import model
 
 
 def _unit(*vector):
@@ -23,6 +23,11 @@ FURNACE = VIEW | {"bounces": 50, "environment": 1.0, "rho": (1.0, 1.0, 1.0)}
 # Seen along z and lit like this, QON has its dark ring in the middle of a ball.
 RING = {"light": _unit(-0.8, 0.6, 1.0), "opened": False, "bounces": 1, "half_width": 1.05}
 CLAY = (0.8, 0.38, 0.18)
+# The models of Figure 4: those of the paper, which all have a shader function to trace with.
+GALLERY = {
+    "a": ("lambert", "oren_nayar", "qon", "qon_footnote"),
+    "b": ("qon_fujii", "fon", "eon", "eon_approx"),
+}
 # Shown a little darker than they are, so that what is brighter than white shows too.
 FURNACE_SHOWN, LOBES_SHOWN = 0.8, 0.75
 
@@ -49,10 +54,9 @@ def backscattering(sheet):
 
 
 def gallery(sheet):
-    """Figure 4: every model at half its largest roughness, as in Figure 3."""
-    names = [row.name for row in MODELS]
-    for part, chosen in (("a", names[:4]), ("b", names[4:])):
-        _lit(sheet, f"figure_04{part}", chosen, 0.5, {"front-lit": FRONT, "side-lit": SIDE})
+    """Figure 4: the models at half their largest roughness, as in Figure 3."""
+    for part, names in GALLERY.items():
+        _lit(sheet, f"figure_04{part}", names, 0.5, {"front-lit": FRONT, "side-lit": SIDE})
 
 
 def _lit(sheet, name, models, part, lights):
@@ -61,7 +65,7 @@ def _lit(sheet, name, models, part, lights):
         [sheet.trace(STAGE | look(each, part), rho=CLAY, light=light) for each in models]
         for light in lights.values()
     ]
-    sheet.pictures(name, rows, [SHORT[each] for each in models], list(lights))
+    sheet.pictures(name, rows, [label(each) for each in models], list(lights))
 
 
 def furnaces(sheet):
@@ -71,7 +75,7 @@ def furnaces(sheet):
         ring = sheet.trace(RING | look(name))
         furnace = sheet.trace(FURNACE | look(name))
         row = [bounce, _contrast(ring), FURNACE_SHOWN * furnace]
-        titles = [f"{SHORT[name]}, one bounce", "one bounce, contrast", "white furnace, 50 bounces"]
+        titles = [f"{label(name)}, one bounce", "one bounce, contrast", "white furnace, 50 bounces"]
         sheet.pictures(figure, [row], titles)
         columns = {"mean": furnace.mean(dtype=np.float64), "least": furnace.min()}
         sheet.table(f"{figure}_furnace", columns)

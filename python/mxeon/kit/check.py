@@ -16,10 +16,10 @@ from mxeon.kit.expected import judged, pixel_means
 from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
 from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.questions import QUESTIONS, answer
-from mxeon.kit.renders import Missing, Unusable, read_render
-from mxeon.kit.shots import MATERIALS, shots
+from mxeon.kit.submitted import Missing, Unusable, read_render
+from mxeon.kit.views import MATERIALS, views
 from mxeon.models import table as reference
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import sphere
 
 RENDERER = "renderer"
@@ -57,7 +57,7 @@ def check_kit(folder, renderer=RENDERER, progress=list):
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
-    pictures, depth = shots(_size(folder)), unit_sphere().depth
+    pictures, depth = views(_size(folder)), unit_sphere().depth
     place = {"host": renderer, "library": LIBRARY}
     images, results = _read(folder / RENDERS, pictures, place)
     notes, level = [], ""
@@ -65,7 +65,7 @@ def check_kit(folder, renderer=RENDERER, progress=list):
         # Where the light is wrong, every model is: nothing else can be judged.
         result, words = answer(question, pictures, images, depth, place, obstacle=level)
         results.append(result)
-        if question.key == "level":
+        if question.key == "setup":
             level = words
         if words:
             notes.append(f"{question.title}: {words}")
@@ -91,7 +91,7 @@ def _size(folder):
     if type(size) is not int:
         raise InputError(f"{file}: size must be a whole number; got {size!r}: export it again")
     try:
-        exported = json.loads(json.dumps(description(shots(size), size)))
+        exported = json.loads(json.dumps(description(views(size), size)))
     except ValueError as error:
         raise InputError(f"{file}: {error}: export it again") from None
     for key in EXACT:
@@ -118,10 +118,10 @@ def _description(file):
 def _read(folder, pictures, place):
     """The usable images by name, and a result for each file that is not."""
     images, results = {}, []
-    for shot in pictures:
-        about = {"check": "file", "claim": READABLE, "subject": shot.name, **place}
+    for view in pictures:
+        about = {"check": "file", "claim": READABLE, "subject": view.name, **place}
         try:
-            images[shot.name] = read_render(folder, shot)
+            images[view.name] = read_render(folder, view)
         except Missing as error:
             results.append(Result(**about, verdict=NOT_RUN, reason=str(error)))
         except Unusable as error:
@@ -131,22 +131,22 @@ def _read(folder, pictures, place):
 
 def _pictures(pictures, images, place):
     """What could be read, each beside the model's picture."""
-    for shot in pictures:
-        if shot.name in images:
-            made = {"version": mxeon.__version__, "scene": shot.scene.name}
+    for view in pictures:
+        if view.name in images:
+            made = {"version": mxeon.__version__, "scene": view.scene.name}
             yield Picture(
-                document=f"{shot.material.name}.mtlx",
-                element=shot.material.name,
+                document=f"{view.material.name}.mtlx",
+                element=view.material.name,
                 **place,
-                scene=shot.scene.name,
-                image=images[shot.name].astype(np.float32) * judged(shot.scene)[..., None],
-                reference=_model_picture(shot),
+                scene=view.scene.name,
+                image=images[view.name].astype(np.float32) * judged(view.scene)[..., None],
+                reference=_model_picture(view),
                 metadata=made | place,
             )
 
 
-def _model_picture(shot):
+def _model_picture(view):
     """The model's values where they are judged, 0 elsewhere."""
-    image = np.zeros((*sphere(shot.scene.size).mask.shape, 3))
-    image[judged(shot.scene)] = pixel_means(reference.model(shot.material.model), shot)
+    image = np.zeros((*sphere(view.scene.size).mask.shape, 3))
+    image[judged(view.scene)] = pixel_means(reference.model(view.material.model), view)
     return image

@@ -44,8 +44,8 @@ def candidates(pictures, depth):
     -------
     list of Candidate
     """
-    rows = [row for row in reference.DEFECTS + reference.MODELS if row.name not in TOO_NEAR]
-    if all(case.shot.scene.light for case in pictures):
+    rows = [row for row in reference.KNOWN_DEFECTS + reference.MODELS if row.name not in TOO_NEAR]
+    if all(case.view.scene.light for case in pictures):
         rows = {row.brdf: row for row in rows}.values()  # some differ in their albedo alone
     return sorted((_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance)
 
@@ -53,7 +53,7 @@ def candidates(pictures, depth):
 def _candidate(row, pictures, depth):
     found = []
     for case in pictures:
-        model = expected(row, case.shot, depth)
+        model = expected(row, case.view, depth)
         found.append(tiles(case.values - model.value, model.slack, case.mask))
     means = np.concatenate([each.mean for each in found])
     return Candidate(row.title, float(np.sqrt(np.mean(means**2))), ratio(found))

@@ -6,15 +6,11 @@ Judged on Lambert under a distant light, whose true values are beyond dispute.
 
 import numpy as np
 
+from mxeon.io.images import srgb_decoded
 from mxeon.kit.noise import tiles
 
 LIKENESS = 0.02  # error without noise over value, both rms, of an explanation
 SAME_SCALE = 0.005  # a factor nearer to 1 is noise or a mesh
-
-
-def _srgb_decoded(image):
-    image = np.clip(image, 0.0, None)
-    return np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
 
 
 def _tone_mapped_back(image):
@@ -25,7 +21,7 @@ def _tone_mapped_back(image):
 # In words, and what undoes it.
 FAULTS = (
     ("", lambda image: image),
-    ("sRGB-encoded", _srgb_decoded),
+    ("sRGB-encoded", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
     ("encoded with a power of 1/2.2", lambda image: np.clip(image, 0.0, None) ** 2.2),
     ("tone-mapped by x / (1 + x)", _tone_mapped_back),
     ("upside down", lambda image: image[::-1]),

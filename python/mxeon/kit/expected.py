@@ -6,9 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.conformance.reference import VIEW, local_directions
 from mxeon.models.quadrature import albedo_dir_quadrature
-from mxeon.shaders.scene import sphere
+from mxeon.shaders.scene import VIEW, local_directions, sphere
 
 # Smallest cosine of either direction that is judged: nearer to rim and terminator a pixel's place
 # is uncertain. With 64 pixels or more, all of a pixel above it lies on the sphere.
@@ -37,7 +36,7 @@ class Expected:
     value : ndarray, shape (N, 3)
         Mean over each pixel.
     slack : ndarray, shape (N, 3)
-        Sum of what the value may change through the pixel's centre in place of its mean, through
+        Sum of what the value may change through the pixel's center in place of its mean, through
         the depth of the mesh, and through rounding to half.
     """
 
@@ -55,13 +54,13 @@ def judged(scene):
     return lit & points.mask
 
 
-def expected(row, shot, depth):
-    """What the model of a row of `mxeon.models.table` gives for a shot.
+def expected(row, view, depth):
+    """What the model of a row of `mxeon.models.table` gives for a view.
 
     Parameters
     ----------
     row : mxeon.models.table.Model
-    shot : mxeon.kit.shots.Shot
+    view : mxeon.kit.views.View
     depth : float
         How far the surface may lie below the unit sphere.
 
@@ -69,36 +68,36 @@ def expected(row, shot, depth):
     -------
     Expected
     """
-    place = sphere(shot.scene.size).normal[judged(shot.scene)][:, :2]
-    value = pixel_means(row, shot)
-    centre = _values(row, shot, place)
+    place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
+    value = pixel_means(row, view)
+    center = _values(row, view, place)
     # A point of a triangle has the normal of its direction: that of a point further out.
-    mesh = _values(row, shot, place / (1.0 - depth))
-    slack = np.abs(value - centre) + np.abs(mesh - centre) + HALF_ROUNDING * value + HALF_STEP
-    return Expected(value, slack + (INTERPOLATION if shot.scene.light is None else 0.0))
+    mesh = _values(row, view, place / (1.0 - depth))
+    slack = np.abs(value - center) + np.abs(mesh - center) + HALF_ROUNDING * value + HALF_STEP
+    return Expected(value, slack + (INTERPOLATION if view.scene.light is None else 0.0))
 
 
-def pixel_means(row, shot):
+def pixel_means(row, view):
     """Means over the judged pixels, (N, 3)."""
-    place = sphere(shot.scene.size).normal[judged(shot.scene)][:, :2]
-    step = GAUSS / shot.scene.size
+    place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
+    step = GAUSS / view.scene.size
     offsets = [(x, y) for x in (-step, step) for y in (-step, step)]
-    return np.mean([_values(row, shot, place + offset) for offset in offsets], axis=0)
+    return np.mean([_values(row, view, place + offset) for offset in offsets], axis=0)
 
 
-def _values(row, shot, place):
+def _values(row, view, place):
     """Values at points of the picture, (N, 3)."""
     x, y = place.T
     normal = np.stack([x, y, np.sqrt(1.0 - x * x - y * y)], axis=-1)
-    if shot.scene.light is None:
-        return shot.scene.environment * _albedo(row, shot.material, normal[:, 2])
+    if view.scene.light is None:
+        return view.scene.environment * _albedo(row, view.material, normal[:, 2])
     wo = local_directions(normal, VIEW)
-    wi = local_directions(normal, shot.scene.light)
-    return np.pi * row.brdf(wo, wi, shot.material.color, *_parameter(row, shot)) * wi[:, 2:]
+    wi = local_directions(normal, view.scene.light)
+    return np.pi * row.brdf(wo, wi, view.material.color, *_parameter(row, view)) * wi[:, 2:]
 
 
-def _parameter(row, shot):
-    return [shot.material.roughness] if row.parameter else []
+def _parameter(row, view):
+    return [view.material.roughness] if row.parameter else []
 
 
 def _albedo(row, material, mu):

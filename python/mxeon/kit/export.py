@@ -10,28 +10,13 @@ from string import Template
 import mxeon
 from mxeon.io.files import write_text
 from mxeon.kit.mesh import to_obj, unit_sphere
-from mxeon.kit.shots import MATERIALS, NODE, USUAL, shots
 from mxeon.kit.usd import mesh_layer, scene_layer
+from mxeon.kit.views import MATERIALS, USUAL, views
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 KIT_FORMAT = 1
 DESCRIPTION = "kit.json"
 RENDERS = "renders"
-
-MATERIAL = """<?xml version="1.0"?>
-<materialx version="1.39">
-  <{node} name="lobe" type="BSDF">
-    <input name="color" type="color3" value="{color}" />
-    <input name="roughness" type="float" value="{roughness!r}" />
-    <input name="energy_compensation" type="boolean" value="{flag}" />
-  </{node}>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-  <surfacematerial name="{name}" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>
-"""
 
 
 def export_kit(folder, size=USUAL):
@@ -56,11 +41,11 @@ def export_kit(folder, size=USUAL):
     OSError
         If something cannot be written.
     """
-    folder, pictures, mesh = Path(folder), shots(size), unit_sphere()
+    folder, pictures, mesh = Path(folder), views(size), unit_sphere()
     for material in MATERIALS:
         write_text(folder / "materials" / f"{material.name}.mtlx", material_document(material))
-    for shot in pictures:
-        write_text(folder / "scenes" / f"{shot.name}.usda", scene_layer(shot))
+    for view in pictures:
+        write_text(folder / "scenes" / f"{view.name}.usda", scene_layer(view))
     write_text(folder / "sphere.obj", to_obj(mesh))
     write_text(folder / "sphere.usda", mesh_layer(mesh))
     write_text(folder / DESCRIPTION, json.dumps(description(pictures, size), indent=1) + "\n")
@@ -71,13 +56,12 @@ def export_kit(folder, size=USUAL):
 
 def material_document(material):
     """A material of the kit as MaterialX text."""
-    return MATERIAL.format(
-        node=NODE,
-        name=material.name,
-        color=", ".join(map(str, material.color)),
-        roughness=material.roughness,
-        flag=str(material.energy_compensation).lower(),
-    )
+    inputs = {
+        "color": material.color,
+        "roughness": material.roughness,
+        FLAG: material.energy_compensation,
+    }
+    return material_text(OREN_NAYAR, inputs, material.name)
 
 
 def description(pictures, size):
@@ -92,7 +76,7 @@ def description(pictures, size):
           `direction`, the unit vector towards it, and `irradiance`, an environment its `radiance`.
         - pictures: the material, the scene and the file of each.
     """
-    scenes = {shot.scene.name: shot.scene for shot in pictures}
+    scenes = {view.scene.name: view.scene for view in pictures}
     return {
         "format": KIT_FORMAT,
         "mxeon": mxeon.__version__,
@@ -108,11 +92,11 @@ def description(pictures, size):
         "scenes": {name: _light(scene) for name, scene in scenes.items()},
         "pictures": [
             {
-                "material": shot.material.name,
-                "scene": shot.scene.name,
-                "file": f"{RENDERS}/{shot.name}.exr",
+                "material": view.material.name,
+                "scene": view.scene.name,
+                "file": f"{RENDERS}/{view.name}.exr",
             }
-            for shot in pictures
+            for view in pictures
         ],
     }
 
@@ -120,7 +104,7 @@ def description(pictures, size):
 def _material(material):
     return {
         "file": f"materials/{material.name}.mtlx",
-        "node": NODE,
+        "node": OREN_NAYAR,
         "color": material.color,
         "roughness": material.roughness,
         "energy_compensation": material.energy_compensation,
@@ -137,15 +121,15 @@ def _page(pictures, size, mesh):
     """README.md of the kit."""
     text = files("mxeon.kit").joinpath("templates", "kit.md").read_text(encoding="utf-8")
     rows = [
-        f"| `{RENDERS}/{shot.name}.exr` | {shot.material.name} | {shot.scene.name} |"
-        for shot in pictures
+        f"| `{RENDERS}/{view.name}.exr` | {view.material.name} | {view.scene.name} |"
+        for view in pictures
     ]
     materials = [
         f"| {each.name} | {', '.join(map(str, each.color))} | {each.roughness} "
         f"| {str(each.energy_compensation).lower()} |"
         for each in MATERIALS
     ]
-    scenes = {shot.scene.name: shot.scene for shot in pictures}
+    scenes = {view.scene.name: view.scene for view in pictures}
     return Template(text).substitute(
         version=mxeon.__version__,
         size=size,

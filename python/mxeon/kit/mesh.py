@@ -54,7 +54,7 @@ def unit_sphere(subdivisions=SUBDIVISIONS):
 
 
 def _faces(vertices):
-    """Triangles of neighbours, which are 2 apart, turned outwards."""
+    """Triangles of neighbors, which are 2 apart, turned outwards."""
     near = np.isclose(np.linalg.norm(vertices[:, None] - vertices, axis=-1), 2.0)
     count = range(len(vertices))
     faces = [

@@ -15,7 +15,7 @@ from mxeon.kit.diagnosis import candidates, named
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import expected, judged, pixel_means
 from mxeon.kit.noise import CONFIDENCE, ratio, tiles
-from mxeon.kit.shots import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE
+from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE
 from mxeon.models import table as reference
 
 FLAG = "energy_compensation"
@@ -23,7 +23,7 @@ UNIT = "allowances for noise, pixel and mesh"
 DERIVATION = (
     "Student's t of each tile's mean error over its noise, Bonferroni over all tiles, channels and "
     f"questions: {1.0 - CONFIDENCE:.1g} is the false rate of a whole kit; added are a pixel's mean "
-    "against its centre, the depth of the mesh, and rounding to half"
+    "against its center, the depth of the mesh, and rounding to half"
 )
 
 
@@ -37,10 +37,10 @@ class Question:
         One word, and the sentence that is tested.
     materials : tuple of Material
     lit : bool
-        By a distant light, else by a surrounding: a rasteriser has a formula for each.
+        By a distant light, else by an environment: a rasterizer has a formula for each.
     variant : str
         What the control does wrong.
-    wrong : callable (Shot) -> ndarray, shape (N, 3)
+    wrong : callable (View) -> ndarray, shape (N, 3)
         What the variant gives for the judged pixels.
     """
 
@@ -57,11 +57,11 @@ class Question:
         material = self.materials[0]
         flagged = f"{FLAG} {str(material.energy_compensation).lower()}"
         name = flagged if self.key == "model" else material.name
-        return f"{name}, {'distant light' if self.lit else 'surrounding'}"
+        return f"{name}, {'distant light' if self.lit else 'environment'}"
 
-    def asks_for(self, shot):
-        """Whether a shot belongs to the question."""
-        return shot.material in self.materials and (shot.scene.light is not None) == self.lit
+    def includes(self, view):
+        """Whether a view belongs to the question."""
+        return view.material in self.materials and (view.scene.light is not None) == self.lit
 
 
 @dataclass(frozen=True)
@@ -70,28 +70,28 @@ class Case:
 
     Attributes
     ----------
-    shot : Shot
+    view : View
     mask : ndarray of bool, shape (size, size)
     values : ndarray, shape (N, 3)
     """
 
-    shot: object
+    view: object
     mask: np.ndarray
     values: np.ndarray
 
 
 def _of(name, factor=1.0):
     """A variant: values of a model, times a factor."""
-    return lambda shot: factor * pixel_means(reference.model(name), shot)
+    return lambda view: factor * pixel_means(reference.model(name), view)
 
 
-LEVEL_RIGHT = "Lambert under a distant light is right: light, orientation and encoding."
+SETUP_RIGHT = "Lambert under a distant light is right: light, orientation and encoding."
 IS_MODEL = "The pictures are the model's, but for noise and the depth of a mesh."
 BLACK_IS = "A black surface reflects nothing."
-WHITE_IS = "A white surface in a white surrounding cannot be seen."
+WHITE_IS = "A white surface in a white environment cannot be seen."
 DROPPED, STUCK = "the flag is dropped", "the flag is stuck"
 QUESTIONS = (
-    Question("level", LEVEL_RIGHT, (LAMBERT,), True, "5 % more light", _of("lambert", 1.05)),
+    Question("setup", SETUP_RIGHT, (LAMBERT,), True, "5 % more light", _of("lambert", 1.05)),
     Question("model", IS_MODEL, (TRUE, HALF), True, DROPPED, _of("qon")),
     Question("model", IS_MODEL, (TRUE,), False, DROPPED, _of("qon")),
     Question("model", IS_MODEL, (FALSE,), True, STUCK, _of("eon")),
@@ -101,13 +101,13 @@ QUESTIONS = (
 )
 
 
-def answer(question, shots, images, depth, place, obstacle=""):
+def answer(question, views, images, depth, place, obstacle=""):
     """The result of a question.
 
     Parameters
     ----------
     question : Question
-    shots : sequence of Shot
+    views : sequence of View
         Of the whole kit.
     images : mapping of str to ndarray
         The usable pictures by name.
@@ -124,27 +124,27 @@ def answer(question, shots, images, depth, place, obstacle=""):
     str
         What the pictures show, in words; "" if that is not asked or not known.
     """
-    asked = [shot for shot in shots if question.asks_for(shot)]
+    asked = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
-    missing = [shot.name for shot in asked if shot.name not in images]
+    missing = [view.name for view in asked if view.name not in images]
     if obstacle or missing:
         reason = obstacle or f"no usable picture: {', '.join(missing)}"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
-    masks = [judged(shot.scene) for shot in asked]
+    masks = [judged(view.scene) for view in asked]
     cases = [
-        Case(shot, mask, images[shot.name][mask]) for shot, mask in zip(asked, masks, strict=True)
+        Case(view, mask, images[view.name][mask]) for view, mask in zip(asked, masks, strict=True)
     ]
-    models = [expected(reference.model(shot.material.model), shot, depth) for shot in asked]
+    models = [expected(reference.model(view.material.model), view, depth) for view in asked]
     found = _tiles(cases, models)
     figure = _ratio(found)
-    wrong = _ratio(_tiles(cases, models, [question.wrong(shot) for shot in asked]))
+    wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in asked]))
     noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in found])))
     if max(figure, wrong) <= 1.0:
         reason = f"too noisy to notice if {question.variant}: {noise:.2g} rms a pixel; more samples"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
     ranking = candidates(cases, depth) if question.key == "model" else []
     words = named(ranking) if ranking else ""
-    if question.key == "level" and figure > 1.0:
+    if question.key == "setup" and figure > 1.0:
         words = _fault(cases[0], models[0], images)
     return Result(
         **place,
@@ -162,8 +162,8 @@ def answer(question, shots, images, depth, place, obstacle=""):
 
 def _fault(case, model, images):
     """What is wrong with the light, in words."""
-    words = fault(images[case.shot.name], model, case.mask)
-    return f"{case.shot.name} is {words}" if words else ""
+    words = fault(images[case.view.name], model, case.mask)
+    return f"{case.view.name} is {words}" if words else ""
 
 
 def _ratio(found):

@@ -112,16 +112,16 @@ def mesh_layer(mesh):
     )
 
 
-def scene_layer(shot):
+def scene_layer(view):
     """The scene of one picture."""
-    material, scene = shot.material, shot.scene
+    material, scene = view.material, view.scene
     if scene.light is None:
         light = DOME.format(radiance=scene.environment)
     else:
         rows = ", ".join(str((*row, 0.0)) for row in _frame(scene.light).tolist())
         light = DISTANT.format(irradiance=float(np.pi), rows=rows)
     return SCENE.format(
-        name=shot.name,
+        name=view.name,
         size=scene.size,
         light=light,
         color=material.color,

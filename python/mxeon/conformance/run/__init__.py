@@ -11,7 +11,7 @@ from pathlib import Path
 from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Findings, Run
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
-from mxeon.conformance.run.plan import JUDGED, Judge, not_run, plan
+from mxeon.conformance.run.plan import Judge, not_run, plan
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
@@ -19,7 +19,7 @@ from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library import untested
 
-__all__ = ["JUDGED", "check", "read_run", "to_run", "work"]
+__all__ = ["check", "read_run", "to_run", "work"]
 
 
 def check(
@@ -43,7 +43,7 @@ def check(
     files : sequence of path-like
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
-        Who is judged; `mxeon.conformance.JUDGED` has them.
+        Who is judged; `mxeon.shaders.hosts.host_names` has them.
     libraries : sequence of str
         "eonlib", and "stock" for MaterialX as it comes.
     workers : int

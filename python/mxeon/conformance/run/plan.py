@@ -18,22 +18,21 @@ import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance.checks.evaluate import applies, judge_curve, judge_subject, judge_twins
-from mxeon.conformance.checks.image import MATCH, SCENES, judge_document
+from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Surface
-from mxeon.conformance.checks.probes import PROBES, NativeProbe, PairProbe, SurfaceProbe
+from mxeon.conformance.checks.probes import NativeProbe, PairProbe, SurfaceProbe, probe_type
 from mxeon.conformance.checks.source import check_sources
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import referred
+from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import NOT_RUN, Findings, Item, Plan, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import DocumentError, ImageError, InputError, InterfaceError, NotRun
 from mxeon.shaders.document.policy import DEFAULT, LIMITS
-from mxeon.shaders.hosts import TEXT_ONLY, open_host
+from mxeon.shaders.hosts import host_names, host_row, open_host
 from mxeon.shaders.library import LIBRARIES, check_version, examples_folder
 
-JUDGED = (*PROBES, *TEXT_ONLY)  # hosts on the command line
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
-SURFACE_HOST = "gl"  # its pictures are exact, and made in no time
 TWINS, EVERY_NODE = "shader twins", "every node"
 ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
@@ -68,7 +67,7 @@ def plan(files, hosts, libraries, policy=DEFAULT, resumable=False):
         If this MaterialX is too old.
     """
     check_version()
-    _known("host", hosts, JUDGED)
+    _known("host", hosts, host_names())
     _known("library", libraries, LIBRARIES)
     items, documents = [], []
     for library in dict.fromkeys(libraries):
@@ -107,7 +106,7 @@ class Judge:
     def __init__(self, policy):
         self._permissions = policy
         self._hosts = {}
-        self._reference = open_host("reference")
+        self._reference = Reference()
         self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
 
     def work(self, item):
@@ -181,16 +180,17 @@ def _with_ledger(findings):
 
 def _probe(host, title, library):
     subject = next(each for each in SUBJECTS + NATIVE + SURFACES if each.title == title)
-    kind = SurfaceProbe if isinstance(subject, Surface) else PROBES[host.name]
+    kind = SurfaceProbe if isinstance(subject, Surface) else probe_type(host.name)
     return kind(host, subject, library)
 
 
 def _on_host(host, library, files):
-    if host in TEXT_ONLY:
+    probe = probe_type(host)
+    if not probe:
         yield Item(HOST, EVERY_NODE, host, library)
-    if host in TEXT_ONLY or PROBES[host] is NativeProbe:
+    if not probe or probe is NativeProbe:
         return
-    kind = PROBES[host].kind
+    kind = probe.kind
     for row in CHECKS:
         if not row.models and kind in row.tolerances:
             yield Item(row.key, TWINS, host, library)
@@ -198,20 +198,20 @@ def _on_host(host, library, files):
         for row in CHECKS:
             if applies(row, subject, kind, host):
                 yield Item(row.key, subject.title, host, library)
-        if PROBES[host] is PairProbe:
+        if probe is PairProbe:
             yield Item(CURVE, subject.title, host, library)
-    if host == SURFACE_HOST:
+    if host_row(host).surfaces:
         for subject in SURFACES:
             for row in CHECKS:
                 if library in subject.libraries and applies(row, subject, SurfaceProbe.kind, host):
                     yield Item(row.key, subject.title, host, library)
-    if host in SCENES:
+    if host_row(host).scenes:
         yield from (Item(PICTURE, str(file), host, library) for file in files)
 
 
 def _native(host):
     """Items of a renderer's own nodes, which no library of ours plays a part in."""
-    if PROBES.get(host) is NativeProbe:
+    if probe_type(host) is NativeProbe:
         for subject in NATIVE:
             for row in CHECKS:
                 if applies(row, subject, NativeProbe.kind, host):

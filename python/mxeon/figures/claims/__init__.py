@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a claim is, and the page "The paper, checked" with what was measured of each."""
+"""Claims as measurements with a bound, and the page "The paper, checked" that lists them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 HOLDS, IN_PART, FAILS = "holds", "holds in part", "**fails**"
+COLUMNS = ("where", "claim", "measured", "required", "verdict")
 
 HEAD = """# The paper, checked
 
@@ -12,49 +16,99 @@ HEAD = """# The paper, checked
 Equations, figures and listings are those of [Portsmouth2025], the JCGT 2025 edition; the bibliography
 is in the README. The figures are below the claims; their data are in the folder `figures`.
 
+A claim *holds* if all of its measured values lie within the bound in the column *required*, holds *in
+part* if some do, and *fails* if none does. A value that is not a number lies within no bound.
+
 {count} claims: {holds} hold, {part} hold in part, {fails} fail.
 """
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence or formula in print, and its test.
+    """A sentence or formula in print, its measurement, and the bound that it has to meet.
 
     Attributes
     ----------
     where, text : str
-        Place in the paper, and what it says, in our words.
+        Place in the paper, and the claim in our words.
     measure : callable
-        measure() -> (what was found, HOLDS or IN_PART or FAILS), both str.
+        measure() -> (a sentence with the numbers, the values that the bound is for).
+    required : str
+        The bounded quantity in words, such as "difference".
+    least, most : float
+        The bound: every value has to lie in [least, most].
     """
 
     where: str
     text: str
-    measure: Callable
+    measure: Callable[[], tuple[str, ArrayLike]]
+    required: str
+    least: float = -np.inf
+    most: float = np.inf
+
+    def row(self) -> tuple[str, ...]:
+        """Measure the claim; its row of the page, in the order of COLUMNS."""
+        sentence, values = self.measure()
+        decided = verdict(values, self.least, self.most)
+        return self.where, self.text, sentence, f"{self.required} {self._bound()}", decided
+
+    def _bound(self) -> str:
+        if not np.isfinite(self.most):
+            return f"≥ {self.least:.3g}"
+        if not np.isfinite(self.least):
+            return f"≤ {self.most:.3g}"
+        return f"in [{self.least:.3g}, {self.most:.3g}]"
 
 
-def verdict(holds):
-    """HOLDS or FAILS."""
-    return HOLDS if holds else FAILS
+@dataclass(frozen=True)
+class Section:
+    """Claims under one heading.
+
+    Attributes
+    ----------
+    heading : str
+    claims : sequence of Claim
+    remark : str
+        A paragraph below the table, for what cannot be measured.
+    """
+
+    heading: str
+    claims: Sequence[Claim]
+    remark: str = ""
 
 
-def page(sections):
-    """The page as Markdown, from titles and their claims."""
-    measured = {
-        heading: [(claim, *claim.measure()) for claim in claims]
-        for heading, claims in sections.items()
-    }
-    verdicts = [row[2] for rows in measured.values() for row in rows]
-    parts = [
-        HEAD.format(
-            count=len(verdicts),
-            holds=verdicts.count(HOLDS),
-            part=verdicts.count(IN_PART),
-            fails=verdicts.count(FAILS),
-        )
-    ]
-    for heading, rows in measured.items():
-        lines = [f"| {c.where} | {c.text} | {found} | {result} |" for c, found, result in rows]
-        head = ["| where | claim | measured | verdict |", "|---|---|---|---|"]
-        parts.append("\n".join([f"## {heading}", "", *head, *lines, ""]))
+def verdict(values: ArrayLike, least: float, most: float) -> str:
+    """HOLDS if all values lie in [least, most], IN_PART if some do, FAILS if none does.
+
+    Examples
+    --------
+    >>> verdict([1.0, 3.0], 0.0, 2.0), verdict(float("nan"), 0.0, 2.0)
+    ('holds in part', '**fails**')
+    """
+    values = np.asarray(values, dtype=np.float64)
+    within = (least <= values) & (values <= most)
+    if within.all():
+        return HOLDS
+    return IN_PART if within.any() else FAILS
+
+
+def page(sections: Sequence[Section]) -> str:
+    """The page as Markdown; measures every claim."""
+    tables = [[claim.row() for claim in section.claims] for section in sections]
+    verdicts = [row[-1] for rows in tables for row in rows]
+    head = HEAD.format(
+        count=len(verdicts),
+        holds=verdicts.count(HOLDS),
+        part=verdicts.count(IN_PART),
+        fails=verdicts.count(FAILS),
+    )
+    parts = [head]
+    for section, rows in zip(sections, tables, strict=True):
+        lines = [_line(COLUMNS), "|---" * len(COLUMNS) + "|", *map(_line, rows), ""]
+        remark = [section.remark, ""] if section.remark else []
+        parts.append("\n".join([f"## {section.heading}", "", *lines, *remark]))
     return "\n".join(parts)
+
+
+def _line(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"

@@ -26,14 +26,14 @@ class Unusable(ValueError):
     """A picture that cannot be judged; names the file, the rule and what was found."""
 
 
-def read_render(folder, shot):
-    """The picture of a shot.
+def read_render(folder, view):
+    """The picture of a view.
 
     Parameters
     ----------
     folder : path-like
         Where the renderer's files lie.
-    shot : mxeon.kit.shots.Shot
+    view : mxeon.kit.views.View
 
     Returns
     -------
@@ -49,12 +49,12 @@ def read_render(folder, shot):
         and blue, eight bits (also in a float file), or a pixel on the sphere that is missing or not
         finite.
     """
-    found = sorted(Path(folder).glob(f"{shot.name}.*"))
+    found = sorted(Path(folder).glob(f"{view.name}.*"))
     if not found:
-        raise Missing(f"{shot.name}.exr: must be in {folder}; got no such file")
-    file, size = found[0], shot.scene.size
+        raise Missing(f"{view.name}.exr: must be in {folder}; got no such file")
+    file, size = found[0], view.scene.size
     if len(found) > 1:
-        raise Unusable(f"{shot.name}: must be one file; got {', '.join(f.name for f in found)}")
+        raise Unusable(f"{view.name}: must be one file; got {', '.join(f.name for f in found)}")
     image = _read_csv(file, size) if file.suffix.lower() == ".csv" else _read_image(file, size)
     mask = sphere(size).mask
     bad = ~np.isfinite(image).all(axis=-1) & mask

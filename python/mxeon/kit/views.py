@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from mxeon.errors import InputError
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
-NODE = "oren_nayar_diffuse_bsdf"
-COLOR = (0.2, 0.5, 0.8)  # any power of the colour too many or too few shows in each channel
+COLOR = (0.2, 0.5, 0.8)  # any power of the color too many or too few shows in each channel
 
 # Below, the points that bound a pixel may miss the sphere; above, nothing is gained.
 SMALLEST, LARGEST = 64, 2048
@@ -48,7 +47,7 @@ MATERIALS = (LAMBERT, TRUE, HALF, FALSE, BLACK, WHITE)
 
 
 @dataclass(frozen=True)
-class Shot:
+class View:
     """One picture: a material under a light.
 
     Attributes
@@ -67,24 +66,24 @@ class Shot:
 
 
 # Lambert under a distant light: the picture that shows light, place and encoding, not the model.
-LEVEL = Shot(LAMBERT, SIDE)
+SETUP = View(LAMBERT, SIDE)
 PICTURES = (
-    LEVEL,
-    Shot(TRUE, FRONT),
-    Shot(TRUE, SIDE),
-    Shot(TRUE, BACK),
-    Shot(TRUE, FURNACE),
-    Shot(HALF, SIDE),
-    Shot(FALSE, FRONT),
-    Shot(FALSE, SIDE),
-    Shot(FALSE, BACK),
-    Shot(FALSE, FURNACE),
-    Shot(BLACK, SIDE),
-    Shot(WHITE, FURNACE),
+    SETUP,
+    View(TRUE, FRONT),
+    View(TRUE, SIDE),
+    View(TRUE, BACK),
+    View(TRUE, FURNACE),
+    View(HALF, SIDE),
+    View(FALSE, FRONT),
+    View(FALSE, SIDE),
+    View(FALSE, BACK),
+    View(FALSE, FURNACE),
+    View(BLACK, SIDE),
+    View(WHITE, FURNACE),
 )
 
 
-def shots(size):
+def views(size):
     """The pictures of the kit, `size` pixels wide and high.
 
     Raises
@@ -94,4 +93,4 @@ def shots(size):
     """
     if not SMALLEST <= size <= LARGEST:
         raise InputError(f"size must lie in [{SMALLEST}, {LARGEST}]; got {size}")
-    return tuple(replace(shot, scene=replace(shot.scene, size=size)) for shot in PICTURES)
+    return tuple(replace(view, scene=replace(view.scene, size=size)) for view in PICTURES)
