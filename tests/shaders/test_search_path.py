@@ -7,8 +7,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.cli import batch as making
-from mxeon.cli import main
+from mxeon.cli import batch, main
 from mxeon.conformance.checks.image import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError, ImageError
@@ -146,7 +145,7 @@ def test_a_missing_image_is_an_error_to_render_and_check(home, capfd):
 def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
     rest = ("front", None, 16, None, "eonlib", searched(home))
     shown, expected = (
-        making.picture(str(written(home, textured(each))), host, *rest)[0]
+        batch.picture(str(written(home, textured(each))), host, *rest)[0]
         for each in (name, "maps/a.exr")
     )
     assert expected.any() and np.array_equal(shown, expected)
@@ -163,7 +162,7 @@ def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
     picture(home / "five.exr", (0.1, 0.2, 0.3, 0.4, 0.5))
     path = str(written(home, textured("five.exr")))
     with pytest.raises(ImageError, match="five.exr: must have at most 4 channels; got 5"):
-        making.picture(path, host, "front", None, 16, None, "eonlib", Policy())
+        batch.picture(path, host, "front", None, 16, None, "eonlib", Policy())
 
 
 def test_a_texture_of_two_channels_is_not_the_references(home):

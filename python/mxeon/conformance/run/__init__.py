@@ -15,12 +15,11 @@ from mxeon.conformance.run.plan import Findings, Plan, Task, make_plan
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
+from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.library import untested
 
 __all__ = ["check", "read_run", "to_run", "work"]
-
-LIMIT = 300.0  # seconds for one task
 
 Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
 Note = tuple[str, str]  # a text, and the place that it is about
@@ -32,11 +31,11 @@ def check(
     libraries: Sequence[str] = ("eonlib",),
     *,
     workers: int = 0,
-    limit: float = LIMIT,
+    timeout: float = TIMEOUT,
     folder: str | os.PathLike[str] | None = None,
     resume: bool = False,
     scheduler: str | None = None,
-    wait: float = cluster.WAIT,
+    wait: float = WAIT,
     policy: Policy = DEFAULT,
     progress: Callable[[Iterable, int], Iterable] = lambda tasks, total: tasks,
 ) -> Run:
@@ -52,7 +51,7 @@ def check(
         "eonlib", and "stock" for MaterialX as it comes.
     workers : int
         Processes that share the work, each of which may crash or hang; 0 to work in this one.
-    limit : float
+    timeout : float
         Seconds that one task may take in a worker.
     folder : path-like or None
         Folder of the journal, pictures included, from which an interrupted run can be resumed;
@@ -77,7 +76,7 @@ def check(
     ------
     ValueError
         If a host or a library is unknown, `folder` holds another run than the one to resume or
-        one of other drivers, `workers`, `limit` or `wait` leave their ranges, or no scheduler
+        one of other drivers, `workers`, `timeout` or `wait` leave their ranges, or no scheduler
         answers or has workers that fit.
     NotRun
         If no process can start, or the cluster has no workers for too long.
@@ -85,7 +84,7 @@ def check(
     planned = make_plan(files, hosts, libraries, policy, resumable=folder is not None)
     # An executor that cannot work must not touch the folder.
     with (
-        _executor(policy, workers, limit, scheduler, wait) as executor,
+        _executor(policy, workers, timeout, scheduler, wait) as executor,
         _open_journal(folder, planned, resume) as journal,
     ):
         numbers = [n for n in range(len(planned.tasks)) if n not in journal.findings]
@@ -184,18 +183,18 @@ def _open_journal(
 
 @contextmanager
 def _executor(
-    policy: Policy, workers: int, limit: float, scheduler: str | None, wait: float
+    policy: Policy, workers: int, timeout: float, scheduler: str | None, wait: float
 ) -> Iterator[Executor]:
     """The executor: maps tasks to their outcomes."""
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
-    pool.check_limit(limit)
+    check_timeout(timeout)
     if scheduler:
-        with cluster.connected(scheduler, wait) as remote:
+        with cluster.connect(scheduler, wait) as remote:
             job = partial(work, policy)
-            yield partial(cluster.run, job, workers=remote, limit=limit, elsewhere=NotRun)
+            yield partial(cluster.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:
-        yield partial(pool.run, partial(work_or_not_run, policy), workers=workers, limit=limit)
+        yield partial(pool.run, partial(work_or_not_run, policy), workers=workers, timeout=timeout)
     else:
         yield partial(_run_inline, policy)
 
