@@ -8,12 +8,11 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.run import check, read_run
-from mxeon.conformance.run import plan
+from mxeon.conformance.run import check, plan, read_run
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.journal_lines import NAME
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.hosts.gl import Host
 from mxeon.shaders.library import examples_folder
 

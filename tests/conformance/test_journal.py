@@ -21,7 +21,7 @@ from mxeon.conformance.run import check, read_run, to_run
 from mxeon.conformance.run.journal import LOCK, PREVIOUS, Journal, read_journal
 from mxeon.conformance.run.journal_lines import NAME, to_line
 from mxeon.conformance.run.plan import Findings, Plan, Task
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.library import examples_folder
 
 EXAMPLE = examples_folder() / "plaster.mtlx"

@@ -13,7 +13,7 @@ from mxeon.conformance.records import read_record
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Picture, Result, Run
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 PLACE = "gl, eonlib, value, clay"
 

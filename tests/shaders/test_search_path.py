@@ -10,6 +10,7 @@ import pytest
 from mxeon.cli import batch as making
 from mxeon.cli import main
 from mxeon.conformance.checks.image import judge_document
+from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError, ImageError
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
@@ -135,7 +136,7 @@ def test_a_missing_image_is_an_error_to_render_and_check(home, capfd):
     options = ["--host", "reference", "--output", str(home / "a.exr"), "--workers", "0"]
     assert main(["render", str(path), *options]) == 2
     assert error in capfd.readouterr().err
-    reference = open_host("reference")
+    reference = Reference()
     with pytest.raises(DocumentError, match="must name a file that exists"):
         judge_document(path, open_host("gl"), reference, "eonlib")
 
@@ -168,7 +169,7 @@ def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
 def test_a_texture_of_two_channels_is_not_the_references(home):
     picture(home / "two.exr", (0.1, 0.2))
     path = written(home, textured("two.exr"))
-    [result], _, _ = judge_document(path, open_host("gl"), open_host("reference"), "eonlib")
+    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
     assert (result.check, result.verdict) == ("finite", "passed")
     assert "two.exr: must be read as float, or as color3 from an image of 3" in result.diagnosis
 
@@ -176,5 +177,5 @@ def test_a_texture_of_two_channels_is_not_the_references(home):
 def test_a_texture_of_one_channel_is_gray(home):
     picture(home / "one.exr", (0.5,))
     path = written(home, textured("one.exr"))
-    [result], _, _ = judge_document(path, open_host("gl"), open_host("reference"), "eonlib")
+    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
     assert (result.check, result.verdict) == ("picture", "passed")

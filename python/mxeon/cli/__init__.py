@@ -137,7 +137,8 @@ def _discard(stream):
 
 
 def _check(options):
-    from mxeon.conformance.run import JUDGED, check
+    from mxeon.conformance.run import check
+    from mxeon.shaders.hosts import host_names
 
     if options.resume and not options.report:
         raise InputError(
@@ -146,7 +147,7 @@ def _check(options):
     hosts = options.host or ("gl",)
     run = check(
         options.files,
-        JUDGED if "all" in hosts else hosts,
+        host_names() if "all" in hosts else hosts,
         options.library or ("eonlib",),
         workers=options.workers,
         limit=options.limit,

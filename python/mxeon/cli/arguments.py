@@ -7,15 +7,13 @@ import os
 import mxeon
 from mxeon.errors import MISUSE, one_line
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
+from mxeon.shaders.hosts import HOSTS, host_names
 
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
 DESCRIPTION = (
     "Rough diffuse reflection made right in every MaterialX target, and proved by running it."
 )
 STATUS = "Exit status: 0 all passed, 1 a check failed, 2 misuse, 3 something did not run."
-HOSTS = (
-    "gl (the default), webgl, vulkan, slang, cycles, cycles-native, testrender, msl, mdl, wgsl, all"
-)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -33,7 +31,7 @@ def parser():
 
     check = _command(commands, "check", "run the checks and compare pictures")
     check.add_argument("files", nargs="*", metavar="FILE", help="documents; none: the examples")
-    check.add_argument("--host", action="append", help=f"{HOSTS}; may be repeated")
+    check.add_argument("--host", action="append", help=f"{_hosts()}; may be repeated")
     check.add_argument(
         "--library", action="append", help="eonlib (the default), stock; may be repeated"
     )
@@ -68,7 +66,7 @@ def parser():
 
     render = _command(commands, "render", "make a picture of a material on a sphere")
     render.add_argument("file", metavar="FILE", help="a MaterialX document")
-    render.add_argument("--host", default="gl", help="gl, webgl, cycles, reference")
+    render.add_argument("--host", default="gl", help=_picture_hosts())
     render.add_argument("--element", metavar="NAME", help="needed where there are several")
     render.add_argument("--output", metavar="OUT", required=True, help="linear .exr or sRGB .png")
     render.add_argument("--scene", default="side", help="front, side, back, furnace")
@@ -122,6 +120,17 @@ def _command(commands, name, summary):
     )
     command.set_defaults(command=name)
     return command
+
+
+def _hosts():
+    """Hosts that check takes, the default one first."""
+    default, *others = host_names()
+    return ", ".join((f"{default} (the default)", *others, "all"))
+
+
+def _picture_hosts():
+    """Hosts that show a document."""
+    return ", ".join((*(row.name for row in HOSTS if row.scenes), "reference"))
 
 
 def _library(command):

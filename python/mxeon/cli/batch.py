@@ -127,6 +127,7 @@ def picture(file, host, scene, environment, size, element, library, policy):
     -------
     ndarray, dict
     """
+    from mxeon.conformance import reference
     from mxeon.shaders import scene as scenes
     from mxeon.shaders.document.notes import MissingFileWarning
     from mxeon.shaders.generation import generate
@@ -135,7 +136,7 @@ def picture(file, host, scene, environment, size, element, library, policy):
     shown = scenes.scene(scene)
     if environment:
         shown = scenes.Scene("environment", environment=Path(environment))
-    with closing(open_host(host)) as engine:
+    with closing(open_host(host, reference.ROW)) as engine:
         options = {"library": library, "profile": engine.profile, "lights": True}
         with warnings.catch_warnings():
             warnings.simplefilter("error", MissingFileWarning)

@@ -16,7 +16,7 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import PASSED, Run
 from mxeon.errors import InputError
 from mxeon.models import table as reference
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 # What can be asked of values alone: there is no environment branch and no flag.
 KEYS = ("value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite")

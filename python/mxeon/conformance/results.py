@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import InputError
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 PASSED, FAILED, NOT_RUN = "passed", "failed", "not run"
 VERDICTS = (PASSED, FAILED, NOT_RUN)

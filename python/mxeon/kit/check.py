@@ -19,7 +19,7 @@ from mxeon.kit.questions import QUESTIONS, answer
 from mxeon.kit.renders import Missing, Unusable, read_render
 from mxeon.kit.shots import MATERIALS, shots
 from mxeon.models import table as reference
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import sphere
 
 RENDERER = "renderer"

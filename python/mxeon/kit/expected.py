@@ -6,9 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.conformance.reference import VIEW, local_directions
 from mxeon.models.quadrature import albedo_dir_quadrature
-from mxeon.shaders.scene import sphere
+from mxeon.shaders.scene import VIEW, local_directions, sphere
 
 # Smallest cosine of either direction that is judged: nearer to rim and terminator a pixel's place
 # is uncertain. With 64 pixels or more, all of a pixel above it lies on the sphere.

@@ -13,7 +13,7 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, VERDICTS, Result
 from mxeon.errors import InputError
 from mxeon.io.files import regular
 from mxeon.report import JSON_FORMAT
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 FACTOR = 2.0  # by which a figure has to change to be told
 ORDER = (PASSED, NOT_RUN, FAILED)

@@ -14,14 +14,8 @@ from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, generate
-from mxeon.shaders.scene import BACK, FURNACE, SIDE, sphere
-
-# Lights under which a host shows a material. Cycles has noise in a surrounding.
-SCENES = {
-    "gl": (SIDE, BACK, FURNACE),
-    "webgl": (SIDE, BACK, FURNACE),
-    "cycles": (SIDE, BACK),
-}
+from mxeon.shaders.hosts import host_row
+from mxeon.shaders.scene import sphere
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 UNIT = "pi f cos, times cos(theta_o)"
@@ -85,7 +79,7 @@ def judge_document(file, host, judge, library, policy=DEFAULT):
 
 def _judge_material(file, shader, host, judge, library, front_lit):
     """One material; `front_lit` where the host has its model for s >= 0 only."""
-    scenes = SCENES[host.name]
+    scenes = host_row(host.name).scenes
     subject = f"{file.name}: {shader.element}"
     place = {"subject": subject, "host": host.name, "library": library}
     try:

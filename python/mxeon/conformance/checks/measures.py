@@ -8,7 +8,6 @@ import numpy as np
 
 from mxeon.conformance.checks.nodes import FLAG
 from mxeon.conformance.checks.probes import (
-    FRONT_LIT_ONLY,
     GRAZING,
     SEED,
     Batch,
@@ -18,6 +17,7 @@ from mxeon.conformance.checks.probes import (
 from mxeon.models import albedo
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.shaders.hosts import front_lit_only
 
 CHANGES = {
     "weight": 0.5,
@@ -150,7 +150,7 @@ def flag(probe, _):
     for batch in probe.few:
         batch = batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
         judged = slice(None)
-        if (probe.host.name, "qon") in FRONT_LIT_ONLY:
+        if front_lit_only(probe.host.name, "qon"):
             judged = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
         on, off = (probe.direct(batch.altered(**{FLAG: state})) for state in (True, False))
         models = batch.expected("eon") - batch.expected("qon")

@@ -11,14 +11,14 @@ from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Run
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run
-from mxeon.conformance.run.plan import JUDGED, Findings, Plan, Task, make_plan
+from mxeon.conformance.run.plan import Findings, Plan, Task, make_plan
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.library import untested
 
-__all__ = ["JUDGED", "check", "read_run", "to_run", "work"]
+__all__ = ["check", "read_run", "to_run", "work"]
 
 LIMIT = 300.0  # seconds for one task
 
@@ -47,7 +47,7 @@ def check(
     files : sequence of path-like
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
-        Hosts to judge; `mxeon.conformance.run.JUDGED` lists them.
+        Hosts to judge; `mxeon.shaders.hosts.host_names` lists them.
     libraries : sequence of str
         "eonlib", and "stock" for MaterialX as it comes.
     workers : int

@@ -9,10 +9,11 @@ from typing import Any
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject, judge_twins
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Surface
-from mxeon.conformance.checks.probes import PROBES, SurfaceProbe
+from mxeon.conformance.checks.probes import SurfaceProbe, probe_type
 from mxeon.conformance.checks.source import check_sources
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import NOT_RUN, Result
 from mxeon.conformance.run.plan import (
     CURVE,
@@ -58,7 +59,7 @@ class Judge:
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
         self._hosts: dict[str, Any] = {}  # a host, or the NotRun that tells why there is none
-        self._reference = open_host("reference")
+        self._reference = Reference()
         self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
 
     def work(self, task: Task) -> Findings:
@@ -133,5 +134,5 @@ def _with_pages(findings: Findings) -> Findings:
 def _probe(host: Any, title: str, library: str) -> Any:
     """The probe of a subject on a host."""
     subject = next(row for row in SUBJECTS + NATIVE + SURFACES if row.title == title)
-    kind = SurfaceProbe if isinstance(subject, Surface) else PROBES[host.name]
+    kind = SurfaceProbe if isinstance(subject, Surface) else probe_type(host.name)
     return kind(host, subject, library)
