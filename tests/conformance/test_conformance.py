@@ -19,7 +19,7 @@ from mxeon.conformance.run import check, judge, plan
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
-from mxeon.shaders.hosts import HOSTS, open_host
+from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.library import examples_folder
 
 EON, QON, NODE = SUBJECTS
@@ -210,8 +210,6 @@ def test_a_document_that_cannot_be_read_is_an_error_and_the_others_are_judged(tm
 
 def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
     def missing(name):
-        if name == "reference":
-            return open_host(name)
         raise NotRun(f"{name}: nowhere")
 
     monkeypatch.setattr(judge, "open_host", missing)

@@ -117,7 +117,10 @@ def _attribute_case(rng, row):
 
 def _coding_case(rng, row):
     declared, used = row
-    text = f'<?xml version="1.0" encoding="{declared}"?>' + material(LOBE.format(""))
+    text = (
+        f'<?xml version="1.0" encoding="{declared}"?>'
+        + material(LOBE.format("")).partition("?>")[2]
+    )
     try:
         data = text.encode(used)
     except (LookupError, UnicodeError):

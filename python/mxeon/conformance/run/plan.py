@@ -18,7 +18,7 @@ import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance.checks.evaluate import applies
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject
+from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
 from mxeon.conformance.checks.probes import NativeProbe, PairProbe, SurfaceProbe, probe_type
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import Curve, Picture, Result
@@ -163,27 +163,23 @@ def subjects(library: str) -> list[Subject]:
 
 def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
     """Tasks of one host with one library."""
-    probe = probe_type(host)
-    if not probe:
+    probe, row = probe_type(host), host_row(host)
+    if probe is None:
         yield Task(HOST, EVERY_NODE, host, library)
-    if not probe or probe is NativeProbe:
+    if probe is None or probe is NativeProbe:
         return
-    kind = probe.kind
-    for row in CHECKS:
-        if not row.models and kind in row.tolerances:
-            yield Task(row.key, TWINS, host, library)
+    for check in CHECKS:
+        if not check.models and probe.kind in check.tolerances:
+            yield Task(check.key, TWINS, host, library)
     for subject in subjects(library):
-        for row in CHECKS:
-            if applies(row, subject, kind, host):
-                yield Task(row.key, subject.title, host, library)
+        yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
-    if host_row(host).surfaces:
-        for subject in SURFACES:
-            for row in CHECKS:
-                if library in subject.libraries and applies(row, subject, SurfaceProbe.kind, host):
-                    yield Task(row.key, subject.title, host, library)
-    if host_row(host).scenes:
+    if row.surfaces:
+        for surface in SURFACES:
+            if library in surface.libraries:
+                yield from _checks_of(surface, SurfaceProbe.kind, host, library)
+    if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
 
 
@@ -191,9 +187,14 @@ def _native(host: str) -> Iterator[Task]:
     """Tasks of a renderer's own nodes, which use no library of ours."""
     if probe_type(host) is NativeProbe:
         for subject in NATIVE:
-            for row in CHECKS:
-                if applies(row, subject, NativeProbe.kind, host):
-                    yield Task(row.key, subject.title, host, "its own nodes")
+            yield from _checks_of(subject, NativeProbe.kind, host, "its own nodes")
+
+
+def _checks_of(subject: Subject | Surface, kind: str, host: str, library: str) -> Iterator[Task]:
+    """Tasks of one subject: the checks that apply to it."""
+    for check in CHECKS:
+        if applies(check, subject, kind, host):
+            yield Task(check.key, subject.title, host, library)
 
 
 def _software() -> dict[str, str]:
