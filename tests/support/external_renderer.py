@@ -11,8 +11,9 @@ import os
 import sys
 from pathlib import Path
 
-import _cycles
-import bpy
+# bpy comes first: only then can Blender's other modules be found.
+import bpy  # isort: skip
+import _cycles  # isort: skip
 from mathutils import Vector
 
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
