@@ -86,6 +86,12 @@ def test_twin_samples_agree_with_float64(host, sampler):
 
 
 @every_sampler
+def test_twin_samples_are_unit_directions(host, sampler):
+    wi = call(host, f"{sampler.name}_sample", **drawn(100_000, 6))
+    assert np.abs(np.sum(np.float64(wi) ** 2, axis=-1) - 1.0).max() <= TWIN_LENGTH
+
+
+@every_sampler
 def test_twin_densities_agree_with_float64(host, sampler):
     given = drawn(20_000, 2)
     wi = directions_32(np.random.default_rng(3), 20_000)
