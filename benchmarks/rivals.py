@@ -152,7 +152,14 @@ VALUES = (
     _value("EON, stock", STOCK, models.eon_brdf, EXACT),
     _value("EON, eonlib", OURS, models.eon_brdf),
     _value("EON, quartic (hoisted)", PAPER_OF, models.eon_brdf, QUARTIC, "hoisted", MATERIAL_PAPER),
-    _value("EON, eonlib (hoisted, not shipped)", OURS_OF, models.eon_brdf, VALUE, "hoisted", MATERIAL_OURS),
+    _value(
+        "EON, eonlib (hoisted, not shipped)",
+        OURS_OF,
+        models.eon_brdf,
+        VALUE,
+        "hoisted",
+        MATERIAL_OURS,
+    ),
     Rival(
         "environment, quartic",
         "sum += printed_environment(mu_o, rho, roughness);",

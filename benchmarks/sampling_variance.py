@@ -100,7 +100,7 @@ def print_throughput():
 
 def worst_of(sampler, roughness):
     """Largest variance, largest weight and largest distance of the mean from 1."""
-    mean, variance, weight = zip(*(moments(sampler, mu, roughness) for mu in COSINES), strict=False)
+    mean, variance, weight = zip(*(moments(sampler, mu, roughness) for mu in COSINES), strict=True)
     return max(variance), max(weight), max(abs(1.0 - value) for value in mean)
 
 
