@@ -37,7 +37,7 @@ TEXT = """<materialx version="1.39">
   </surfacematerial>
 </materialx>"""
 
-# What each should show: stock's multiple-scattering lobe carries one factor of rho too many.
+# Expected values: stock's multiple-scattering lobe carries one factor of rho too many.
 ALBEDOS = {"eonlib": eon_albedo_dir, "stock": eon_rho_cubed_albedo_dir}
 
 # The rim is left out, where a pixel's point is least certain.

@@ -38,7 +38,7 @@ CLOSED = [row for row in MODELS if row.albedo_dir]
 
 
 def named(rows):
-    """Parametrise a test over rows of the reference."""
+    """Parametrize a test over rows of the reference."""
     return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
