@@ -24,7 +24,7 @@ from mxeon.shaders.scene import FURNACE, sphere
 SIZE = 128
 SAMPLES = (64, 512)
 COLOR, ROUGHNESS = (0.8, 0.4, 0.1), 1.0
-# What each should show: stock's multiple-scattering lobe carries one factor of rho too many.
+# Expected values: stock's multiple-scattering lobe carries one factor of rho too many.
 ALBEDOS = {"eonlib": eon_albedo_dir, "stock": eon_rho_cubed_albedo_dir}
 
 # The rim is left out, where a pixel's point is least certain.

@@ -52,7 +52,7 @@ def shader(node, library):
 class Frame:
     """A material on the sphere, drawn again and again with its uniforms and buffers in place.
 
-    What `mxeon.shaders.hosts.gl` does for one picture, by its own functions, with the set-up kept apart.
+    One picture as by `mxeon.shaders.hosts.gl`, with its functions, and the set-up kept apart.
     """
 
     def __init__(self, host, generated, size):
@@ -81,7 +81,7 @@ class Frame:
         self._context.finish()
 
     def image(self):
-        """What was drawn last."""
+        """Pixels of the last picture."""
         width, height = self._target.size
         pixels = np.frombuffer(self._target.read(components=3, dtype="f4"), np.float32)
         return pixels.reshape(height, width, 3)[::-1]

@@ -66,15 +66,15 @@ def on_threads(count, *arguments):
         return eon_brdf(*arguments)
 
 
-def rivals(given):
+def rivals(pairs):
     """Every way to the same values."""
-    found = {"naive": partial(naive_eon_brdf, *given)}
+    ways = {"naive": partial(naive_eon_brdf, *pairs)}
     for count in (1, 2):
-        found[f"blocks, {count} thread{'s'[: count - 1]}"] = partial(on_threads, count, *given)
-    return found | compiled(given)
+        ways[f"blocks, {count} thread{'s'[: count - 1]}"] = partial(on_threads, count, *pairs)
+    return ways | compiled(pairs)
 
 
-def compiled(given):
+def compiled(pairs):
     """Numba's rivals, where it is installed."""
     try:
         import numba
@@ -83,9 +83,9 @@ def compiled(given):
     except ImportError:
         return {}
 
-    def run(threads):
-        numba.set_num_threads(threads)
-        return module.eon_brdf(*given)
+    def run(count):
+        numba.set_num_threads(count)
+        return module.eon_brdf(*pairs)
 
     most = min(2, numba.config.NUMBA_NUM_THREADS)
     return {f"Numba, {n} thread{'s'[: n - 1]}": partial(run, n) for n in range(1, most + 1)}
@@ -93,24 +93,24 @@ def compiled(given):
 
 def compare(count, material, rounds):
     """Figures, checks and medians of one number of pairs."""
-    given = arguments(count, material)
-    ways = rivals(given)
+    ways = rivals(arguments(count, material))
     exact = ways["naive"]()
     checks, label = [], f"{count:.0e} pairs, {material} material"
     for name, way in ways.items():
         error = np.pi * float(np.abs(way() - exact).max())
         checks.append(Check(f"{name}, {label}", error, TOLERANCE))
     seconds = interleave(ways, rounds)
-    figures = [scaled(f"{n}, {label}", "ns", s, 1e9 / count) for n, s in seconds.items()]
+    times = {n: scaled(f"{n}, {label}", "ns", s, 1e9 / count) for n, s in seconds.items()}
     goals = {"blocks, 2 threads": GOALS.get(count)}
     if count == 1_000_000:
         goals |= {"Numba, 1 thread": 8.0, "Numba, 2 threads": 15.0}
-    figures += [
+    ratios = [
         ratio(f"naive / {n}, {label}", seconds["naive"], s, goals.get(n), at_least=True)
         for n, s in seconds.items()
         if n != "naive"
     ]
-    return figures, checks, {n: each.median for n, each in zip(seconds, figures, strict=False)}
+    medians = {name: time.median for name, time in times.items()}
+    return [*times.values(), *ratios], checks, medians
 
 
 def extra_memory(way, count):
@@ -123,9 +123,9 @@ def extra_memory(way, count):
 def peak(way, count):
     """Growth of this process's resident peak in one call, without the result; MiB."""
     rivals(arguments(8, "one"))[way]()
-    given = arguments(count, "one")
+    pairs = arguments(count, "one")
     before = reset_memory()
-    result = rivals(given)[way]()
+    result = rivals(pairs)[way]()
     return max(0.0, peak_memory() - before - result.nbytes / 2**20)
 
 
@@ -148,8 +148,8 @@ def measure(rounds=7, pairs=PAIRS):
     figures, checks, series = [], [], {}
     for material in ("one", "own"):
         for count in pairs:
-            found, checked, medians = compare(count, material, rounds if count < 1e7 else 3)
-            figures, checks = figures + found, checks + checked
+            *group, medians = compare(count, material, rounds if count < 1e7 else 3)
+            figures, checks = figures + group[0], checks + group[1]
             for name, value in medians.items():
                 series.setdefault(f"ns: {name}, {material} material", []).append((count, value))
     for way in rivals(arguments(8, "one")):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON compiled by Numba, for very many pairs; needs the extra `numba`.
+"""EON compiled by Numba, to time the package against; needs the extra `numba`, and is not shipped.
 
 Values and errors are those of `mxeon.models`. The formulas of `mxeon.models.formulas` stand here once
 more, written so that the compiler makes vector instructions of them: no calls and no branches.
@@ -31,7 +31,7 @@ ATAN = (
 
 
 def eon_brdf(wo, wi, rho, roughness):
-    """Reflection of EON, on as many threads as `numba.get_num_threads()`.
+    """BRDF of EON, on as many threads as `numba.get_num_threads()`.
 
     Parameters
     ----------
@@ -61,13 +61,13 @@ def eon_brdf(wo, wi, rho, roughness):
     [Portsmouth2025], Eqs. (16), (19).
     """
     rho, roughness = np.atleast_1d(checked("rho", rho)), checked("roughness", roughness)
-    given = [np.asarray(wo), np.asarray(wi), rho, roughness[..., np.newaxis]]
-    if given[0].shape[-1:] != (3,) or given[1].shape[-1:] != (3,):
+    arrays = [np.asarray(wo), np.asarray(wi), rho, roughness[..., np.newaxis]]
+    if arrays[0].shape[-1:] != (3,) or arrays[1].shape[-1:] != (3,):
         checked_directions("wo", wo)
         checked_directions("wi", wi)
-    shape = np.broadcast_shapes(*(each.shape[:-1] for each in given))
-    single = rho.size == rho.shape[-1] and roughness.size == 1
-    rows = [_row(each, shape, single and k > 1) for k, each in enumerate(given)]
+    shape = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
+    uniform = rho.size == rho.shape[-1] and roughness.size == 1
+    rows = [_row(array, shape, uniform and k > 1) for k, array in enumerate(arrays)]
     out = np.empty(shape + rho.shape[-1:])
     if not _fill(*rows, rho.shape[-1], out.reshape(-1)):
         checked_directions("wo", wo)
@@ -75,9 +75,9 @@ def eon_brdf(wo, wi, rho, roughness):
     return out
 
 
-def _row(array, shape, single):
-    """`array` broadcast to (*shape, last), and flat; of a single material its values once."""
-    shape = (1,) * len(shape) if single else shape
+def _row(array, shape, uniform):
+    """`array` broadcast to (*shape, last), and flat; values of a material for all pairs once."""
+    shape = (1,) * len(shape) if uniform else shape
     array = np.broadcast_to(np.asarray(array, dtype=np.float64), shape + array.shape[-1:])
     return np.ascontiguousarray(array).reshape(-1)
 
@@ -89,7 +89,7 @@ def _four(z, c):
 
 
 @FAST
-def _loss(mu):
+def _fon_loss(mu):
     """`mxeon.models.formulas.fon_loss`, with a polynomial for the arc tangent."""
     S = math.sqrt((1.0 - mu) * (1.0 + mu))
     t = mu / (1.0 + S)
@@ -122,9 +122,9 @@ def _terms(wo, wi, quotient, lost):
         s = wo[3 * k] * wi[3 * k] + wo[3 * k + 1] * wi[3 * k + 1]
         high = mu_o if mu_o > mu_i else mu_i
         ahead = s if s > 0.0 else 0.0
-        share = ahead / (high if high > TINY else TINY)
-        quotient[k] = (share if high >= TINY else 0.0) + (s - ahead)
-        lost[k] = _loss(mu_o) * _loss(mu_i)
+        ratio = ahead / (high if high > TINY else TINY)
+        quotient[k] = (ratio if high >= TINY else 0.0) + (s - ahead)
+        lost[k] = _fon_loss(mu_o) * _fon_loss(mu_i)
 
 
 @FAST

@@ -14,7 +14,7 @@ PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "numba")
 
 
 def machine():
-    """What the figures depend on, by name."""
+    """Hardware and versions that the figures depend on, by name."""
     found = {
         "processor": _processor(),
         "cores": os.cpu_count(),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the shader benchmark times: functions in GLSL, each with what it should give in float64.
+"""Functions in GLSL that the shader benchmark times, each with its value in float64.
 
 The names of rows of Table 1 are "<sampler> + <value>", and "EON, <form>" for a value alone.
 """

@@ -18,10 +18,10 @@ class Figure:
     Attributes
     ----------
     name, unit : str
-        What was measured; the unit is "x" for a ratio.
+        Name of the quantity; the unit is "x" for a ratio.
     median, low, high : float
     goal : float or None
-        What the median should reach, if anything: at most, or at least where `at_least`.
+        Bound of the median, or None: at most, or at least where `at_least`.
     at_least : bool
     """
 

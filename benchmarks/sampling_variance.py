@@ -100,7 +100,7 @@ def print_throughput():
 
 def worst_of(sampler, roughness):
     """Largest variance, largest weight and largest distance of the mean from 1."""
-    mean, variance, weight = zip(*(moments(sampler, mu, roughness) for mu in COSINES), strict=False)
+    mean, variance, weight = zip(*(moments(sampler, mu, roughness) for mu in COSINES), strict=True)
     return max(variance), max(weight), max(abs(1.0 - value) for value in mean)
 
 
@@ -117,19 +117,19 @@ def print_lighting(name):
 
 
 def relative_variance(mu, rho, roughness):
-    """Largest variance of a channel's weight over its mean squared, sampling rho = 1 and grey."""
+    """Largest variance of a channel's weight over its mean squared, sampling rho = 1 and gray."""
     wi, weights = hemisphere(mu)
     value = eon_brdf(view(mu), wi, rho, roughness) * wi[:, 2:]
     albedo = weights @ value
     found = []
-    for grey in (1.0, np.mean(rho)):
-        pdf = eon_pdf(view(mu), wi, roughness, rho=grey)[:, np.newaxis]
+    for gray in (1.0, np.mean(rho)):
+        pdf = eon_pdf(view(mu), wi, roughness, rho=gray)[:, np.newaxis]
         found.append(np.max(weights @ ((value / pdf / albedo - 1.0) ** 2 * pdf)))
     return found
 
 
 def print_color():
-    """What exact sampling for one reflectance leaves in channels of another."""
+    """Variance that exact sampling for one reflectance leaves in channels of another."""
     print_head("rho, r = 1", ["sampled for rho = 1", "sampled for the mean of rho"])
     for rho in ((1e-6, 1e-6, 1e-6), (0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (0.8, 0.2, 0.05)):
         worst = np.max([relative_variance(mu, rho, 1.0) for mu in COSINES], axis=0)

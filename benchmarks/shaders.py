@@ -95,7 +95,7 @@ class Device:
         self.context.finish()
 
     def values(self, kernel):
-        """What one call adds, (N, 3)."""
+        """Sum that one call adds, (N, 3)."""
         self.run(kernel, calls=1)
         return np.frombuffer(self._sums.read(), np.float32).reshape(-1, 3)
 

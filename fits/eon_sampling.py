@@ -97,7 +97,7 @@ def upper_root(m):
 
 
 def root_rows(points):
-    """What each coefficient of y / m in powers of m stands before, in relation to it."""
+    """Factors of the coefficients of y / m in powers of m, relative to y / m."""
     return [[m ** (k + 1) / upper_root(m) for k in range(6)] for m in points]
 
 

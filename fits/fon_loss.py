@@ -87,7 +87,7 @@ def _points():
 
 
 def _row(mu, degree_p, degree_q):
-    """What each coefficient stands before, in relation to H(mu)."""
+    """Factors of the coefficients, relative to H(mu)."""
     factor = mu / closed_form(mu)
     odd = factor * (1 - mp.sqrt(1 - mu**2)) * (1 - mu)
     even = [factor * mu**k for k in range(degree_p + 1)]

@@ -78,8 +78,8 @@ float qon_albedo_dir(float mu, float sigma)
 // [Portsmouth2025], Eq. (28), where all but a loss cancels: rho (1 - r H (1 - rho) / D).
 vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
 {
-    vec3 lost = roughness * fon_loss(mu) * (vec3(1.0) - rho) / eon_denominator(rho, roughness);
-    return rho * (vec3(1.0) - lost);
+    vec3 loss = roughness * fon_loss(mu) * (vec3(1.0) - rho) / eon_denominator(rho, roughness);
+    return rho * (vec3(1.0) - loss);
 }
 
 // A divisor at or below 1e-37, a cosine or sine, counts as 0, and the quotient as 0: there it might
@@ -121,6 +121,6 @@ vec3 eon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float roughness)
 {
     vec3 weight = eon_multiple_weight(rho, roughness);
     vec3 scale = fon_scale(rho, roughness);
-    float single = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
-    return scale * (vec3(single) + fon_loss(mu_o) * fon_loss(mu_i) * weight);
+    float single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
+    return scale * (vec3(single_scatter) + fon_loss(mu_o) * fon_loss(mu_i) * weight);
 }

@@ -122,12 +122,9 @@ vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughn
     if (v >= polar)
         return eon_flat_draw(min(v - polar, EON_BELOW_ONE), u2, q);
     float mu = v < towards ? eon_upper_cosine(root, mu_o, y_o) : eon_multiple_cosine(root);
-    float S = sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
     if (v < lower)
-    {
         mu = eon_lower_cosine(x, root);
-        S = root;
-    }
+    float S = sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
     return v < towards ? eon_towards(mu, S, u2) : eon_around(mu, S, u2);
 }
 

@@ -111,10 +111,10 @@ vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
                    * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i);
     float C3 = 0.125 / 0.45 * qon_b(sigma) * (alpha * beta) * (alpha * beta);
     float aside = (1.0 - abs(cos_phi)) * oren_nayar_quotient(S_o + S_i, mu_o + mu_i);
-    float single = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind);
+    float single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind);
     float k = sigma * sigma / (sigma * sigma + 0.13);
-    float interreflected = 0.17 * k * (1.0 - beta * beta * cos_phi);
-    return 1.0 / EON_PI * rho * (vec3(single + C3 * aside) + interreflected * rho);
+    float interreflection = 0.17 * k * (1.0 - beta * beta * cos_phi);
+    return 1.0 / EON_PI * rho * (vec3(single_scatter + C3 * aside) + interreflection * rho);
 }
 
 // [Portsmouth2025], Eqs. (1), (3), (4).
@@ -156,8 +156,8 @@ vec3 eon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 // below mu = 0.0014; there it counts as 0, where the listing of the paper raises 1 - E to 1e-7.
 vec3 eon_brdf_approx(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
-    float single = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
-    float lost = max(fon_loss_approx(wo.z), 0.0) * max(fon_loss_approx(wi.z), 0.0);
-    vec3 multiple = lost * eon_multiple_weight(rho, roughness);
-    return 1.0 / EON_PI * fon_a(roughness) * rho * (vec3(single) + multiple);
+    float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
+    float losses = max(fon_loss_approx(wo.z), 0.0) * max(fon_loss_approx(wi.z), 0.0);
+    vec3 multi_scatter = losses * eon_multiple_weight(rho, roughness);
+    return 1.0 / EON_PI * fon_a(roughness) * rho * (vec3(single_scatter) + multi_scatter);
 }

@@ -38,7 +38,7 @@ CLOSED = [row for row in MODELS if row.albedo_dir]
 
 
 def named(rows):
-    """Parametrise a test over rows of the reference."""
+    """Parametrize a test over rows of the reference."""
     return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 
@@ -186,8 +186,8 @@ def test_average_albedos_agree_with_fifty_digits_of_the_printed_equations():
         assert abs(mp.mpf(float(fon_albedo_avg(r))) / exact - 1) <= tolerances.LOSS
         exact = oracle.eon_albedo_avg(mp.mpf(0.4), mp.mpf(r))
         assert abs(mp.mpf(float(eon_albedo_avg(0.4, r)[0])) / exact - 1) <= tolerances.LOSS
-    share = oracle.share(mp.mpf(0.7), "0.45", "0.09")
-    exact = 1 - oracle.share(mp.mpf(0.7), "0.5", "0.33")
+    share = oracle.fraction(mp.mpf(0.7), "0.45", "0.09")
+    exact = 1 - oracle.fraction(mp.mpf(0.7), "0.5", "0.33")
     exact += (mp.mpf(2) / 3 - 64 / (45 * mp.pi)) * share
     assert abs(mp.mpf(float(qon_albedo_avg(0.7))) / exact - 1) <= tolerances.LOSS
 

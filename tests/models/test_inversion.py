@@ -74,10 +74,10 @@ def exact_average(color, r):
 
 @pytest.mark.parametrize("function, exact", [(NORMAL, exact_normal), (AVERAGE, exact_average)])
 def test_inversion_agrees_with_the_printed_equations_at_hundreds_of_digits(function, exact):
-    found = on_grid(function)[1:-1:4, 1:-1:4]
+    values = on_grid(function)[1:-1:4, 1:-1:4]
     with mp.workdps(700):
         grid = [[exact(mp.mpf(c), mp.mpf(r)) for c in EDGES[1:-1:4]] for r in EDGES[1:-1:4]]
-    np.testing.assert_allclose(found, np.array(grid, dtype=float), rtol=tolerances.RHO)
+    np.testing.assert_allclose(values, np.array(grid, dtype=float), rtol=tolerances.RHO)
 
 
 def test_equation_30_as_printed_loses_its_digits_at_low_roughness():

@@ -19,7 +19,7 @@ ALL = MODELS + KNOWN_DEFECTS
 
 
 def named(rows):
-    """Parametrise a test over rows of the reference."""
+    """Parametrize a test over rows of the reference."""
     return pytest.mark.parametrize("row", rows, ids=lambda row: row.name)
 
 

@@ -49,7 +49,7 @@ def test_eon_pdf_is_the_brdf_times_the_cosine(mu, roughness):
 
 @pytest.mark.parametrize("rho", [1e-9, 0.18, 0.8, 1.0])
 @every_scene
-def test_grey_eon_pdf_is_the_brdf_times_the_cosine_over_the_albedo(mu, roughness, rho):
+def test_gray_eon_pdf_is_the_brdf_times_the_cosine_over_the_albedo(mu, roughness, rho):
     wi, _ = hemisphere(mu, 8)
     value = eon_brdf(view(mu), wi, rho, roughness)[..., 0] * wi[..., 2]
     value = value / eon_albedo_dir(mu, rho, roughness)

@@ -26,16 +26,16 @@ from tests.support.hemispheres import (
 
 FALSE_ALARM = 1e-4
 
-# The exact sampler for grey surfaces.
-GREY = [
+# The exact sampler for gray surfaces.
+GRAY = [
     Sampler(f"eon_{rho}", partial(eon_sample, rho=rho), partial(eon_pdf, rho=rho), f"rho = {rho}")
     for rho in (0.0, 0.5)
 ]
-ALL = [*SAMPLERS, *GREY]
+ALL = [*SAMPLERS, *GRAY]
 
 # Half of it for the chi-square tests; the other half for three times as many means, each with two
 # sides.
-SHARE = 0.5 * FALSE_ALARM / (len(ALL) * len(SCENES))
+LEVEL = 0.5 * FALSE_ALARM / (len(ALL) * len(SCENES))
 
 every_sampler = pytest.mark.parametrize("sampler", ALL, ids=lambda sampler: sampler.name)
 
@@ -49,26 +49,29 @@ def chi_square(sampler, pdf_of, mu, roughness, samples=100_000, count=12):
     """Probability of a chi-square as large, for `sampler` against the density of `pdf_of`."""
     u = uniforms(samples, seed_of(sampler, mu, roughness))
     edges = np.unique(np.append(np.arccos(np.sqrt(np.linspace(0.0, 1.0, 9))), np.arccos(mu)))
-    seen = binned(sampler.sample(view(mu), u, roughness)[0], edges, count)
+    counts = binned(sampler.sample(view(mu), u, roughness)[0], edges, count)
     mean = samples * expected(pdf_of, mu, roughness, edges, count)
     # Pool the bins in which the statistic would not be chi-square.
     rare = mean < 10.0
-    seen, mean = np.append(seen[~rare], seen[rare].sum()), np.append(mean[~rare], mean[rare].sum())
+    counts, mean = (
+        np.append(counts[~rare], counts[rare].sum()),
+        np.append(mean[~rare], mean[rare].sum()),
+    )
     if mean[-1] < 10.0:
-        seen, mean = seen[:-1], mean[:-1]
-    return stats.chi2.sf(np.sum((seen - mean) ** 2 / mean), len(mean) - 1)
+        counts, mean = counts[:-1], mean[:-1]
+    return stats.chi2.sf(np.sum((counts - mean) ** 2 / mean), len(mean) - 1)
 
 
 @every_sampler
 @every_scene
 def test_samples_pass_the_chi_square_test_against_their_pdf(sampler, mu, roughness):
-    assert chi_square(sampler, sampler, mu, roughness) > SHARE
+    assert chi_square(sampler, sampler, mu, roughness) > LEVEL
 
 
 @pytest.mark.parametrize("mu", COSINES)
 def test_chi_square_tells_the_samplers_apart(mu):
     for name in ("uniform", "cosine", "ltc0", "ltc"):
-        assert chi_square(BY_NAME[name], BY_NAME["eon"], mu, 1.0) < SHARE
+        assert chi_square(BY_NAME[name], BY_NAME["eon"], mu, 1.0) < LEVEL
 
 
 @every_sampler
@@ -77,7 +80,7 @@ def test_mean_of_the_samples_is_that_of_the_pdf(sampler, mu, roughness):
     wi, weights = hemisphere(mu)
     mean = np.einsum("n,nk,n->k", sampler.pdf(view(mu), wi, roughness), wi, weights)
     u = uniforms(20_000, seed_of(sampler, mu, roughness))
-    drawn, _ = sampler.sample(view(mu), u, roughness)
-    drawn = drawn * (drawn[:, 2:] >= 0.0)
-    error = np.abs(drawn.mean(axis=0) - mean) / (drawn.std(axis=0) / np.sqrt(len(drawn)))
-    assert error.max() < stats.norm.isf(SHARE / 3.0 / 2.0)
+    samples, _ = sampler.sample(view(mu), u, roughness)
+    samples = samples * (samples[:, 2:] >= 0.0)
+    error = np.abs(samples.mean(axis=0) - mean) / (samples.std(axis=0) / np.sqrt(len(samples)))
+    assert error.max() < stats.norm.isf(LEVEL / 3.0 / 2.0)

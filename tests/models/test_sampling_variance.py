@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the samplers reach: the variance and the largest value of the throughput weight.
+"""The variance and the largest value of the samplers' throughput weights.
 
 At unit reflectance the weight is f cos(theta_i) / p. Its mean is 1. That of the exact sampler is 1
 everywhere by the density it returns; here it is taken over the density that its samples really
@@ -118,13 +118,13 @@ def test_exact_sampling_is_never_worse_than_cosine(mu, roughness):
 
 @pytest.mark.parametrize("roughness, figure", [(0.25, 0.0087), (0.5, 0.0156), (1.0, 0.0365)])
 def test_variance_of_the_mixture_is_that_of_the_paper(roughness, figure):
-    found = largest("eon_cltc", variance, roughness, np.linspace(0.0, 1.0, 51))
-    assert abs(found - figure) < tolerances.FIGURE * figure
+    measured = largest("eon_cltc", variance, roughness, np.linspace(0.0, 1.0, 51))
+    assert abs(measured - figure) < tolerances.FIGURE * figure
 
 
 def test_largest_weight_of_the_mixture_is_that_of_the_paper():
-    found = largest("eon_cltc", lambda weight, _: weight.max(), 1.0, np.linspace(0.0, 1.0, 51))
-    assert abs(found - 1.47) < tolerances.FIGURE * 1.47
+    measured = largest("eon_cltc", lambda weight, _: weight.max(), 1.0, np.linspace(0.0, 1.0, 51))
+    assert abs(measured - 1.47) < tolerances.FIGURE * 1.47
 
 
 def test_the_mixture_is_worse_than_cosine_where_the_roughness_is_low():

@@ -2,7 +2,7 @@
 """Sampling in the shader twins: float32 on OpenGL and in Cycles against float64 in NumPy.
 
 The seeds are fixed. FALSE_ALARM is the probability that a chi-square test of this file fails
-although all is right: each of them runs at its share of it.
+although all is right: each of them runs at its part of it.
 """
 
 import inspect
@@ -29,7 +29,7 @@ from tests.support.tolerances import (
 FALSE_ALARM = 1e-4
 DRAWS = [(sampler, mu, r) for sampler in SAMPLERS for mu, r in ((0.1, 1.0), (0.7, 0.3))]
 DRAWS += [(BY_NAME["eon"], mu, r) for mu, r in ((0.0, 1.0), (1e-3, 0.5), (0.97, 1.0), (1.0, 1.0))]
-SHARE = FALSE_ALARM / len(DRAWS)
+LEVEL = FALSE_ALARM / len(DRAWS)
 
 
 @pytest.fixture(scope="module", params=("gl", "cycles"))
@@ -37,11 +37,11 @@ def host(request, hosts):
     return hosts(request.param)
 
 
-def call(host, function, **drawn):
-    """Values of a twin's function, which takes from `drawn` what its parameters name."""
-    drawn |= {"u1": drawn["u"][:, 0], "u2": drawn["u"][:, 1], "rho": np.float32([1.0])}
+def call(host, function, **columns):
+    """Values of a twin's function for the columns that its parameters name."""
+    columns |= {"u1": columns["u"][:, 0], "u2": columns["u"][:, 1], "rho": np.float32([1.0])}
     names = [name for _, name in twins.signature("glsl", function)]
-    return host.call(function, *(drawn[name] for name in names))
+    return host.call(function, *(columns[name] for name in names))
 
 
 def uniforms_32(count, seed):
@@ -49,7 +49,7 @@ def uniforms_32(count, seed):
     return np.float32(np.random.default_rng(seed).integers(0, 2**24, (count, 2)) * 2.0**-24)
 
 
-def drawn(count, seed):
+def random_arguments(count, seed):
     """Views, random numbers and roughnesses in float32; the first two roughnesses are 0 and 1."""
     rng = np.random.default_rng(seed)
     roughness = np.append([0.0, 1.0], rng.random(count - 2)).astype("f4")
@@ -65,32 +65,38 @@ def unit(w):
 @every_sampler
 def test_sampling_twins_take_the_arguments_of_the_python_package(sampler, suffix):
     function = f"{sampler.name}_{suffix}"
-    known = ["wo", "wi", "u1", "u2", "rho", "roughness"]
-    given = inspect.signature(getattr(sampling, function)).parameters
-    wanted = [name for name in known if name in given or name[0] in given]
-    assert [name for _, name in twins.signature("glsl", function)] == wanted
+    order = ["wo", "wi", "u1", "u2", "rho", "roughness"]
+    parameters = inspect.signature(getattr(sampling, function)).parameters
+    names = [name for name in order if name in parameters or name[0] in parameters]
+    assert [name for _, name in twins.signature("glsl", function)] == names
 
 
 @pytest.mark.parametrize("name", ["MULTIPLE", "UPPER"])
 def test_sampling_twins_have_the_coefficients_of_the_python_package(name):
-    found = re.findall(rf"#define EON_{name}\d (\S+)", twins.source("glsl"))
-    assert tuple(map(float, found)) == getattr(eon_sampling, name)
+    coefficients = re.findall(rf"#define EON_{name}\d (\S+)", twins.source("glsl"))
+    assert tuple(map(float, coefficients)) == getattr(eon_sampling, name)
 
 
 @every_sampler
 def test_twin_samples_agree_with_float64(host, sampler):
-    given = drawn(20_000, 1)
-    wi = call(host, f"{sampler.name}_sample", **given)
-    exact, _ = sampler.sample(unit(given["wo"]), given["u"], given["roughness"])
+    arguments = random_arguments(20_000, 1)
+    wi = call(host, f"{sampler.name}_sample", **arguments)
+    exact, _ = sampler.sample(unit(arguments["wo"]), arguments["u"], arguments["roughness"])
     assert np.mean(np.abs(wi - exact).max(axis=-1) > TWIN_DIRECTION) <= TWIN_DIRECTION_SHARE
 
 
 @every_sampler
+def test_twin_samples_are_unit_directions(host, sampler):
+    wi = call(host, f"{sampler.name}_sample", **random_arguments(100_000, 6))
+    assert np.abs(np.sum(np.float64(wi) ** 2, axis=-1) - 1.0).max() <= TWIN_LENGTH
+
+
+@every_sampler
 def test_twin_densities_agree_with_float64(host, sampler):
-    given = drawn(20_000, 2)
+    arguments = random_arguments(20_000, 2)
     wi = directions_32(np.random.default_rng(3), 20_000)
-    pdf = call(host, f"{sampler.name}_pdf", wi=wi, **given)[:, 0]
-    exact = sampler.pdf(unit(given["wo"]), unit(wi), given["roughness"])
+    pdf = call(host, f"{sampler.name}_pdf", wi=wi, **arguments)[:, 0]
+    exact = sampler.pdf(unit(arguments["wo"]), unit(wi), arguments["roughness"])
     assert np.max(np.abs(np.pi * (pdf - exact))) <= TWIN_PDF
 
 
@@ -100,9 +106,9 @@ def test_twin_samples_on_the_edges_are_unit_directions_above_the_horizon(host, s
     mu = np.float32([0.0, 1e-30, 2.0**-24, 0.5, 1.0 - 2.0**-24, 1.0])
     u1, u2, mu, r = map(np.ravel, np.meshgrid(u, u, mu, np.float32([0.0, 1e-30, 1e-4, 1.0])))
     wo = np.moveaxis(view(np.float64(mu), azimuth=1.0), 0, -1).astype("f4")
-    given = {"wo": wo, "u": np.stack([u1, u2], axis=-1), "roughness": r}
-    wi = call(host, f"{sampler.name}_sample", **given)
-    pdf = call(host, f"{sampler.name}_pdf", wi=wi, **given)
+    arguments = {"wo": wo, "u": np.stack([u1, u2], axis=-1), "roughness": r}
+    wi = call(host, f"{sampler.name}_sample", **arguments)
+    pdf = call(host, f"{sampler.name}_pdf", wi=wi, **arguments)
     assert np.abs(np.sum(np.float64(wi) ** 2, axis=-1) - 1.0).max() <= TWIN_LENGTH
     assert sampler.name == "ltc" or wi[:, 2].min() >= 0.0
     assert np.isfinite(pdf).all() and pdf.min() >= 0.0
@@ -111,26 +117,28 @@ def test_twin_samples_on_the_edges_are_unit_directions_above_the_horizon(host, s
 
 def chi_square(gl, sampler, pdf_of, mu, roughness, count=1_000_000):
     """Probability of a chi-square as large, for the twin of `sampler` against a density."""
-    given = {"wo": np.float32([view(mu)]), "roughness": np.float32([roughness])}
-    wi = call(gl, f"{sampler.name}_sample", u=uniforms_32(count, 4), **given)
+    arguments = {"wo": np.float32([view(mu)]), "roughness": np.float32([roughness])}
+    wi = call(gl, f"{sampler.name}_sample", u=uniforms_32(count, 4), **arguments)
     edges = np.unique(np.append(np.arccos(np.sqrt(np.linspace(0.0, 1.0, 13))), np.arccos(mu)))
-    seen, mean = binned(wi, edges, 24), count * expected(pdf_of, mu, roughness, edges, 24)
-    seen, mean = seen[mean > 10.0], mean[mean > 10.0]
-    return stats.chi2.sf(np.sum((seen - mean) ** 2 / mean), len(mean) - 1)
+    counts, mean = binned(wi, edges, 24), count * expected(pdf_of, mu, roughness, edges, 24)
+    counts, mean = counts[mean > 10.0], mean[mean > 10.0]
+    return stats.chi2.sf(np.sum((counts - mean) ** 2 / mean), len(mean) - 1)
 
 
 @pytest.mark.parametrize(("sampler", "mu", "roughness"), DRAWS)
 def test_float32_samples_pass_the_chi_square_test_against_their_pdf(gl, sampler, mu, roughness):
-    assert chi_square(gl, sampler, sampler, mu, roughness) > SHARE
+    assert chi_square(gl, sampler, sampler, mu, roughness) > LEVEL
 
 
 def test_chi_square_tells_the_exact_sampler_from_the_mixture(gl):
-    assert chi_square(gl, BY_NAME["eon_cltc"], BY_NAME["eon"], 0.7, 0.3) < SHARE
+    assert chi_square(gl, BY_NAME["eon_cltc"], BY_NAME["eon"], 0.7, 0.3) < LEVEL
 
 
 def test_weights_of_exact_samples_are_one_in_float32(host):
-    given = drawn(100_000, 5)
-    wi = call(host, "eon_sample", **given)
-    value = host.call("eon_brdf", given["wo"], wi, np.float32([[1.0] * 3]), given["roughness"])
-    weight = value[:, 0] * wi[:, 2] / call(host, "eon_pdf", wi=wi, **given)[:, 0]
+    arguments = random_arguments(100_000, 5)
+    wi = call(host, "eon_sample", **arguments)
+    value = host.call(
+        "eon_brdf", arguments["wo"], wi, np.float32([[1.0] * 3]), arguments["roughness"]
+    )
+    weight = value[:, 0] * wi[:, 2] / call(host, "eon_pdf", wi=wi, **arguments)[:, 0]
     assert np.abs(weight - 1.0).max() <= TWIN_WEIGHT

@@ -60,9 +60,9 @@ def materials(rng, count):
     return {"rho": rho, "roughness": roughness, "sigma": np.float32(1.57) * roughness}
 
 
-def twin_error(gl, function, drawn):
-    """What the twin of a Python function returns, less what that returns, (N, C)."""
-    arguments = [drawn[name] for name in inspect.signature(function).parameters]
+def twin_error(gl, function, columns):
+    """Values of the twin of a Python function less those of the function, (N, C)."""
+    arguments = [columns[name] for name in inspect.signature(function).parameters]
     exact = function(*arguments)
     return gl.call(function.__name__, *arguments) - exact.reshape(len(exact), -1)
 
@@ -94,8 +94,8 @@ def test_twins_use_no_word_or_number_that_one_language_lacks(stem):
 
 @by_stem
 def test_twins_take_components_of_directions_only(stem):
-    found = set(re.findall(r"(\w+)\.[a-z]\w*", re.sub(r'".*"', "", code(stem))))
-    assert found <= {"wo", "wi", "wh", "back", "turn"}
+    names = set(re.findall(r"(\w+)\.[a-z]\w*", re.sub(r'".*"', "", code(stem))))
+    assert names <= {"wo", "wi", "wh", "back", "turn"}
 
 
 @pytest.mark.parametrize("function", VALUES + ALBEDOS, ids=name_of)
@@ -133,8 +133,8 @@ def test_the_formulas_of_python_have_the_names_of_the_shaders():
 
 
 def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():
-    found = re.findall(r"#define EON_G\d (\S+)", text("glsl", twins.FAMILY))
-    assert tuple(map(float, found)) == formulas.FON_G
+    coefficients = re.findall(r"#define EON_G\d (\S+)", text("glsl", twins.FAMILY))
+    assert tuple(map(float, coefficients)) == formulas.FON_G
 
 
 @pytest.mark.parametrize("function", VALUES, ids=name_of)
@@ -149,8 +149,8 @@ def test_twin_values_agree_with_float64_down_to_grazing(gl, function):
 def test_twin_values_agree_with_float64_on_the_edges_of_the_domain(gl, function):
     axes = np.float32([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, 0, 1], [0.6, 0, 0.8]])
     o, i, rho, parameter = map(np.ravel, np.meshgrid(range(5), range(5), [0.0, 1.0], [0.0, 1.0]))
-    drawn = {"wo": axes[np.intp(o)], "wi": axes[np.intp(i)], "rho": np.repeat(rho[:, None], 3, 1)}
-    error = twin_error(gl, function, drawn | {"sigma": parameter, "roughness": parameter})
+    columns = {"wo": axes[np.intp(o)], "wi": axes[np.intp(i)], "rho": np.repeat(rho[:, None], 3, 1)}
+    error = twin_error(gl, function, columns | {"sigma": parameter, "roughness": parameter})
     assert np.max(np.abs(np.pi * error)) <= TWIN_VALUE
 
 

@@ -32,7 +32,7 @@ def fon_quotient(wo, wi):
     return s / max(wo[2], wi[2]) if s > 0 else s
 
 
-def share(sigma, weight, constant):
+def fraction(sigma, weight, constant):
     """weight sigma^2 / (sigma^2 + constant)."""
     return decimal(weight) * sigma**2 / (sigma**2 + decimal(constant))
 
@@ -42,18 +42,18 @@ def lambert(wo, wi, rho):
 
 
 def qon(wo, wi, rho, sigma):
-    a, b = 1 - share(sigma, "0.5", "0.33"), share(sigma, "0.45", "0.09")
+    a, b = 1 - fraction(sigma, "0.5", "0.33"), fraction(sigma, "0.45", "0.09")
     return rho / mp.pi * (a + b * qon_quotient(wo, wi))
 
 
 def qon_footnote(wo, wi, rho, sigma):
-    a, b = 1 - share(sigma, "0.5", "0.57"), share(sigma, "0.45", "0.09")
+    a, b = 1 - fraction(sigma, "0.5", "0.57"), fraction(sigma, "0.45", "0.09")
     return rho / mp.pi * (a + b * qon_quotient(wo, wi))
 
 
 def qon_fujii(wo, wi, rho, sigma):
-    a = 1 - share(sigma, "0.5", "0.33") + rho * share(sigma, "0.17", "0.13")
-    return rho / mp.pi * (a + share(sigma, "0.45", "0.09") * fon_quotient(wo, wi))
+    a = 1 - fraction(sigma, "0.5", "0.33") + rho * fraction(sigma, "0.17", "0.13")
+    return rho / mp.pi * (a + fraction(sigma, "0.45", "0.09") * fon_quotient(wo, wi))
 
 
 def oren_nayar(wo, wi, rho, sigma):
@@ -61,12 +61,12 @@ def oren_nayar(wo, wi, rho, sigma):
     theta_o, theta_i = (mp.atan2(mp.hypot(w[0], w[1]), w[2]) for w in (wo, wi))
     alpha, beta = max(theta_o, theta_i), min(theta_o, theta_i)
     cosine = mp.cos(mp.atan2(wo[1], wo[0]) - mp.atan2(wi[1], wi[0]))
-    c1 = 1 - share(sigma, "0.5", "0.33")
-    c2 = share(sigma, "0.45", "0.09")
+    c1 = 1 - fraction(sigma, "0.5", "0.33")
+    c2 = fraction(sigma, "0.45", "0.09")
     c2 *= mp.sin(alpha) - (0 if cosine >= 0 else (2 * beta / mp.pi) ** 3)
-    c3 = share(sigma, "0.125", "0.09") * (4 * alpha * beta / mp.pi**2) ** 2
+    c3 = fraction(sigma, "0.125", "0.09") * (4 * alpha * beta / mp.pi**2) ** 2
     first = c1 + cosine * c2 * mp.tan(beta) + (1 - abs(cosine)) * c3 * mp.tan((alpha + beta) / 2)
-    second = share(sigma, "0.17", "0.13") * (1 - cosine * (2 * beta / mp.pi) ** 2)
+    second = fraction(sigma, "0.17", "0.13") * (1 - cosine * (2 * beta / mp.pi) ** 2)
     return (rho * first + rho**2 * second) / mp.pi
 
 
@@ -100,7 +100,9 @@ def g_f_approx(mu):
 
 def qon_albedo_dir(mu, rho, sigma):
     """[Portsmouth2025], Eq. (5)."""
-    return rho * (1 - share(sigma, "0.5", "0.33") + share(sigma, "0.45", "0.09") / mp.pi * g_q(mu))
+    return rho * (
+        1 - fraction(sigma, "0.5", "0.33") + fraction(sigma, "0.45", "0.09") / mp.pi * g_q(mu)
+    )
 
 
 def fon_albedo_dir(mu, rho, r, g=g_f):
@@ -127,8 +129,10 @@ def eon_albedo_avg(rho, r):
 def eon(wo, wi, rho, r, g=g_f):
     """[Portsmouth2025], Eqs. (16), (19); r > 0."""
     average = fon_albedo_avg(1, r)
-    lost = [max(mp.mpf(0), 1 - fon_albedo_dir(w[2], 1, r, g)) for w in (wo, wi)]
-    ms = rho**2 / mp.pi * average / (1 - rho * (1 - average)) * lost[0] * lost[1] / (1 - average)
+    losses = [max(mp.mpf(0), 1 - fon_albedo_dir(w[2], 1, r, g)) for w in (wo, wi)]
+    ms = (
+        rho**2 / mp.pi * average / (1 - rho * (1 - average)) * losses[0] * losses[1] / (1 - average)
+    )
     return fon(wo, wi, rho, r) + ms
 
 

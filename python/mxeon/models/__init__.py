@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Diffuse reflection models in NumPy: values, albedos, inversion and sampling.
 
-The models import NumPy alone. A call uses the caller's thread alone, unless `threads` asks for more.
+The models import NumPy alone. A call uses the caller's thread, unless `threads` asks for more.
 """
 
 from mxeon.models.brdf import (

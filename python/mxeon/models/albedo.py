@@ -355,9 +355,9 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
     return _eon_albedo(C1 - C2, *_colored(rho, roughness=roughness))
 
 
-def _eon_albedo(lost: Array | float, rho: Array, r: Array) -> Array:
-    """Albedo of EON where FON loses r A lost."""
-    return rho * (1.0 - (1.0 - rho) * r * lost / formulas.eon_denominator(rho, r))
+def _eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
+    """Albedo of EON where FON loses r A loss."""
+    return rho * (1.0 - (1.0 - rho) * r * loss / formulas.eon_denominator(rho, r))
 
 
 def _floats(**arguments: ArrayLike) -> list[Array]:

@@ -127,7 +127,7 @@ def refuse_direction(name: str, w: Numbers) -> NoReturn:
 
 
 def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
-    """Shape to which arguments broadcast, without the last axis of those that have one of their own.
+    """Shape to which arguments broadcast, the last axis of `vectors` apart.
 
     Parameters
     ----------

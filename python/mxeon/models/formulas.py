@@ -131,9 +131,9 @@ def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) ->
 
 def eon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
     """rho / pi A_F (1 + r s / t_F + weight H(mu_o) H(mu_i)): [Portsmouth2025], Eq. (16)."""
-    single = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
-    multiple = eon_multiple_weight(rho, roughness) * (fon_loss(mu_o) * fon_loss(mu_i))
-    return fon_scale(rho, roughness) * (single + multiple)
+    single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
+    multi_scatter = eon_multiple_weight(rho, roughness) * (fon_loss(mu_o) * fon_loss(mu_i))
+    return fon_scale(rho, roughness) * (single_scatter + multi_scatter)
 
 
 def lambert_brdf(wo: Array, wi: Array, rho: Array) -> Array:
@@ -188,9 +188,9 @@ def oren_nayar_brdf(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + np.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
     C3 = 0.125 / 0.45 * qon_b(sigma) * (alpha * beta) ** 2
-    single = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind) + C3 * aside
-    interreflected = oren_nayar_interreflection(rho, sigma) * (1.0 - beta**2 * cos_phi)
-    return rho / np.pi * (single + interreflected)
+    single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind)
+    interreflection = oren_nayar_interreflection(rho, sigma) * (1.0 - beta**2 * cos_phi)
+    return rho / np.pi * (single_scatter + C3 * aside + interreflection)
 
 
 def qon_brdf(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
@@ -222,7 +222,7 @@ def eon_brdf(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
 def eon_brdf_approx(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     """EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014."""
     mu_o, mu_i, s = cosines(wo, wi)
-    lost: Array = np.maximum(fon_loss_approx(mu_o), 0.0) * np.maximum(fon_loss_approx(mu_i), 0.0)
-    single = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
-    multiple = eon_multiple_weight(rho, roughness) * lost
-    return fon_scale(rho, roughness) * (single + multiple)
+    losses: Array = np.maximum(fon_loss_approx(mu_o), 0.0) * np.maximum(fon_loss_approx(mu_i), 0.0)
+    single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
+    multi_scatter = eon_multiple_weight(rho, roughness) * losses
+    return fon_scale(rho, roughness) * (single_scatter + multi_scatter)

@@ -254,14 +254,14 @@ def _eon_clamped(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
 
 def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     mu_o, mu_i, s = cosines(wo, wi)
-    single = 1.0 + roughness * formulas.fon_quotient(mu_o, mu_i, s)
+    single_scatter = 1.0 + roughness * formulas.fon_quotient(mu_o, mu_i, s)
     weight = rho * formulas.eon_multiple_weight(rho, roughness)
-    multiple = weight * (formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i))
-    return formulas.fon_scale(rho, roughness) * (single + multiple)
+    multi_scatter = weight * (formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i))
+    return formulas.fon_scale(rho, roughness) * (single_scatter + multi_scatter)
 
 
 def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     mu_o, mu_i, _ = cosines(wo, wi)
-    lost = formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i)
-    white = roughness * formulas.fon_a(roughness) / (np.pi * (C1 - C2)) * lost
+    losses = formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i)
+    white = roughness * formulas.fon_a(roughness) / (np.pi * (C1 - C2)) * losses
     return formulas.fon_brdf(wo, wi, rho, roughness) + white

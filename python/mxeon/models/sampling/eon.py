@@ -173,20 +173,16 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     ends = ends / ends[-1]
     starts = [np.zeros_like(ends[0]), *ends[:-1]]
     v = [_stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
-    # Draw from each part, and keep the draw from the one chosen.
+    # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
-    S_lower = np.cbrt(1.0 - x)
-    lower = eon_lower_cosine(x, S_lower)
+    lower = eon_lower_cosine(x, np.cbrt(1.0 - x))
     upper = eon_upper_cosine(v[1] ** 0.4, mu_o, eon_upper_limit(mu_o, S_o))
     multiple = eon_multiple_cosine(np.cbrt(v[2]))
-    draws = np.broadcast_arrays(
-        eon_towards(lower, S_lower, u2),
-        eon_towards(upper, np.sqrt((1.0 - upper) * (1.0 + upper)), u2),
-        around(multiple, np.sqrt((1.0 - multiple) * (1.0 + multiple)), u2),
-        eon_flat_draw(v[3], u2, roughness * S_o),
-    )
-    chosen = [(u1 < end)[..., np.newaxis] for end in ends[:3]]
-    return np.select(np.broadcast_arrays(*chosen), draws[:3], draws[3])
+    mu = np.where(u1 < ends[0], lower, np.where(u1 < ends[1], upper, multiple))
+    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
+    wi = np.where(is_towards, eon_towards(mu, S, u2), around(mu, S, u2))
+    return np.where(is_flat, eon_flat_draw(v[3], u2, roughness * S_o), wi)
 
 
 def eon_integrals(

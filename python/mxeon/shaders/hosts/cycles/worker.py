@@ -16,8 +16,9 @@ from pathlib import Path
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
 
+# bpy comes first: only then can Blender's other modules be found.
+import bpy  # noqa: E402, I001
 import _cycles  # noqa: E402
-import bpy  # noqa: E402
 from mathutils import Vector  # noqa: E402
 
 # Script nodes read their sockets with `oslquery`, which lies in Blender's own Python folder.
