@@ -33,7 +33,7 @@ def inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
     return any(real.is_relative_to(root) for root in roots)
 
 
-def check_inside(path: AnyPath, home: Path, policy: Policy, place: str) -> None:
+def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None:
     """Raise DocumentError unless a document in the folder `home` may name that file.
 
     Parameters
@@ -41,12 +41,12 @@ def check_inside(path: AnyPath, home: Path, policy: Policy, place: str) -> None:
     path : path-like
     home : Path
     policy : Policy
-    place : str
-        Where the document names it, as the message begins.
+    prefix : str
+        Beginning of the message: which part of the document names the file.
     """
     if not policy.outside and not inside(path, home, policy.path):
         raise DocumentError(
-            f"{place} must name a file in {home}, on the search path or in the libraries; got "
+            f"{prefix} must name a file in {home}, on the search path or in the libraries; got "
             f"{path}: pass --allowOutside to permit it"
         )
 
@@ -56,15 +56,15 @@ def check_file(element: mx.ValueElement, policy: Policy) -> None:
 
     Of a set of textures, each that exists is checked.
     """
-    text, home, place = element.getValueString(), folder(element.getDocument()), location(element)
+    text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
-        raise DocumentError(f"{place} must name a file without quotes and backslashes; got {text}")
+        raise DocumentError(f"{prefix} must name a file without quotes and backslashes; got {text}")
     path = home / text  # relative still if no file was found
-    check_inside(path, home, policy, place)
+    check_inside(path, home, policy, prefix)
     if "<" in str(path.parent):
-        raise DocumentError(f"{place} must name one folder; got {text}")
+        raise DocumentError(f"{prefix} must name one folder; got {text}")
     for file in files(path):
-        check_inside(file, home, policy, place)
+        check_inside(file, home, policy, prefix)
 
 
 def files(path: Path) -> list[Path]:
@@ -87,14 +87,14 @@ def check_code(document: mx.Document, policy: Policy) -> None:
     """Raise DocumentError unless a document may bring its code, from the files where it lies."""
     home = folder(document)
     for element in foreign_code(document):
-        place = location(element)
+        prefix = location(element)
         if not policy.code:
             raise DocumentError(
-                f"{place} must not bring code of its own; got {_code(element)}: "
+                f"{prefix} must not bring code of its own; got {_code(element)}: "
                 "pass --allowCode to permit it"
             )
         for path in _sources(element, home, policy.path):
-            check_inside(path, home, policy, place)
+            check_inside(path, home, policy, prefix)
 
 
 def _code(element: mx.Implementation) -> str:
