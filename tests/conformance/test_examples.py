@@ -29,7 +29,7 @@ def categories(document):
 
 @every_document
 def test_every_document_is_valid_materialx_1_39(path):
-    document = read_document(path)
+    document = read_document(path).content
     assert document.validate() == (True, "")
     assert document.getVersionString() == "1.39"
     assert document.getColorSpace() == "lin_rec709"
@@ -37,7 +37,7 @@ def test_every_document_is_valid_materialx_1_39(path):
 
 @every_document
 def test_every_document_renders_all_its_materials_and_nothing_else(path):
-    document = read_document(path)
+    document = read_document(path).content
     found = mx_gen.findRenderableElements(document)
     assert found
     assert found == document.getMaterialNodes()
@@ -53,19 +53,19 @@ def test_every_document_is_headed_by_its_licence_and_one_sentence(path):
 @every_document
 @pytest.mark.parametrize("target", ["glsl", "osl"])
 def test_every_material_becomes_a_shader(path, target):
-    materials = read_document(path).getMaterialNodes()
+    materials = read_document(path).content.getMaterialNodes()
     assert len(generate(path, target)) == len(materials)
 
 
 def test_materials_have_names_of_their_own():
     materials = functools.reduce(
-        operator.iadd, (read_document(path).getMaterialNodes() for path in DOCUMENTS), []
+        operator.iadd, (read_document(path).content.getMaterialNodes() for path in DOCUMENTS), []
     )
     assert len({node.getName() for node in materials}) == len(materials) == 23
 
 
 def test_the_wedge_has_the_same_roughnesses_with_and_without_compensation():
-    document = read_document(examples_folder() / "roughness_wedge.mtlx")
+    document = read_document(examples_folder() / "roughness_wedge.mtlx").content
     steps = {False: [], True: []}
     for lobe in document.getNodes("oren_nayar_diffuse_bsdf"):
         steps[lobe.getInputValue("energy_compensation")].append(lobe.getInputValue("roughness"))
@@ -73,7 +73,7 @@ def test_the_wedge_has_the_same_roughnesses_with_and_without_compensation():
 
 
 def test_the_examples_use_every_node_that_leads_to_rough_diffuse_reflection():
-    used = sum((categories(read_document(path)) for path in DOCUMENTS), Counter())
+    used = sum((categories(read_document(path).content) for path in DOCUMENTS), Counter())
     lobes = {"oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf", "LamaDiffuse"}
     shaders = {"open_pbr_surface", "standard_surface"}
     assert lobes | shaders | {"mix", "add", "multiply", "image"} <= set(used)
@@ -111,6 +111,6 @@ def test_textures_tile_without_a_seam(name, axis):
 
 
 def test_the_brick_reads_its_colour_as_srgb_and_its_roughness_as_numbers():
-    images = read_document(examples_folder() / "brick.mtlx").getNodes("image")
+    images = read_document(examples_folder() / "brick.mtlx").content.getNodes("image")
     spaces = {node.getName(): node.getInput("file").getColorSpace() for node in images}
     assert spaces == {"brick_color": "srgb_texture", "brick_roughness": ""}

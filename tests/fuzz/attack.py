@@ -117,10 +117,7 @@ def _attribute_case(rng, row):
 
 def _coding_case(rng, row):
     declared, used = row
-    text = (
-        f'<?xml version="1.0" encoding="{declared}"?>'
-        + material(LOBE.format("")).partition("?>")[2]
-    )
+    text = material(LOBE.format("")).replace('"1.0"?', f'"1.0" encoding="{declared}"?', 1)
     try:
         data = text.encode(used)
     except (LookupError, UnicodeError):

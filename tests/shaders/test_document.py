@@ -11,6 +11,7 @@ import pytest
 
 from mxeon.errors import LONGEST, DocumentError
 from mxeon.shaders.document.notes import MissingFileWarning
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import DocumentWarning, read_document
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import EON
@@ -28,6 +29,8 @@ CYCLE = (
 )
 IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
 A = '<a name="lobe" type="BSDF"/>'
+BROUGHT = '<implementation name="IM_a" nodedef="ND_a" target="genglsl" sourcecode="BSDF()"/>'
+BROUGHT = DEFINED.format("a") + BROUGHT
 
 # What a file holds, and what is said of it.
 FILES = {
@@ -290,7 +293,7 @@ def test_an_included_document_follows_the_rule_of_its_version(tmp_path, version)
 def test_a_file_whose_name_begins_as_xml_does_is_a_file(tmp_path, monkeypatch, kind):
     monkeypatch.chdir(tmp_path)
     Path("<look>.mtlx").write_text(material(lobe()))
-    assert read_document(kind("<look>.mtlx")).getNode("lobe")
+    assert read_document(kind("<look>.mtlx")).content.getNode("lobe")
     if kind is Path:
         assert refusal(Path("<none>.mtlx")).startswith("document must be a readable file")
 
@@ -300,21 +303,21 @@ def test_a_circle_that_no_material_uses_is_no_fault():
 
 
 def test_an_older_document_is_read_as_todays():
-    older = f'<materialx version="1.37">{lobe()}</materialx>'
-    assert read_document(older).getVersionString() == "1.39"
+    older = material(lobe()).replace('version="1.39"', 'version="1.37"')
+    assert read_document(older).content.getVersionString() == "1.39"
 
 
 def test_relative_names_start_at_the_file(tmp_path, monkeypatch):
     (tmp_path / "maps").mkdir()
     (tmp_path / "maps" / "albedo.png").touch()
     nodes = IMAGE.format("maps/albedo.png") + connected(color='nodename="image"')
-    (tmp_path / "nodes.mtlx").write_text(f'<materialx version="1.39">{nodes}</materialx>')
+    (tmp_path / "nodes.mtlx").write_text(material(nodes))
     file = tmp_path / "look.mtlx"
     file.write_text(INCLUDE.format('<xi:include href="nodes.mtlx"/>'))
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
-    image = read_document(file).getDescendant("image/file")
+    image = read_document(file).content.getDescendant("image/file")
     assert image.getValueString() == str(tmp_path / "maps" / "albedo.png")
 
 
@@ -325,7 +328,7 @@ def test_relative_names_of_a_text_start_at_the_working_folder(tmp_path, monkeypa
     (inside / "albedo.png").touch()
     monkeypatch.chdir(inside)
     nodes = IMAGE.format("albedo.png") + connected(color='nodename="image"')
-    image = read_document(material(nodes)).getDescendant("image/file")
+    image = read_document(material(nodes)).content.getDescendant("image/file")
     assert image.getValueString() == str(inside / "albedo.png")
 
 
@@ -333,7 +336,7 @@ def test_a_document_is_copied_and_stays_as_it_is():
     document = mx.createDocument()
     mx.readFromXmlString(document, material(lobe()))
     before = mx.writeToXmlString(document)
-    read = read_document(document)
+    read = read_document(document).content
     read.getNode("lobe").setName("other")
     assert mx.writeToXmlString(document) == before
     assert document.getDataLibrary() is None
@@ -346,3 +349,34 @@ def test_a_path_that_is_no_text_is_refused(tmp_path, name):
     path.write_text(material(lobe()))
     with pytest.raises(DocumentError, match="document must lie at a path in UTF-8; got"):
         read_document(path)
+
+
+def test_a_document_is_read_with_its_renderable_elements():
+    document = read_document(material(lobe()))
+    assert [each.getName() for each in document.renderables] == ["look"]
+    assert document.content.hasDataLibrary()
+
+
+@pytest.mark.parametrize(
+    "policy, text, rule",
+    [
+        (Policy(chain=1), material(lobe()), "at most 1 nodes in a row"),
+        (Policy(), material(lobe()).replace("look", "a b"), "must be a name of letters"),
+        (Policy(), material(BROUGHT + lobe()), "must not bring code of its own"),
+        (
+            Policy(),
+            f'<materialx version="1.39">{lobe()}</materialx>',
+            "contain a renderable element",
+        ),
+    ],
+)
+def test_all_checks_are_made_where_a_document_is_read(policy, text, rule):
+    with pytest.raises(DocumentError, match=rule):
+        read_document(text, policy=policy)
+
+
+def test_the_limits_hold_for_a_whole_document_also_where_one_element_is_named():
+    second = '<surfacematerial name="second" type="material"><input name="surfaceshader"'
+    second += ' type="surfaceshader" nodename="shading"/></surfacematerial>'
+    with pytest.raises(DocumentError, match="at most 1 renderable elements; got 2"):
+        generate(material(lobe() + second), "osl", "look", policy=Policy(shaders=1))

@@ -268,7 +268,7 @@ def test_a_file_a_text_and_a_document_give_the_same(tmp_path, monkeypatch):
     document = mx.createDocument()
     mx.readFromXmlString(document, text)
     monkeypatch.chdir(tmp_path)
-    sources = tmp_path / "look.mtlx", "look.mtlx", text, document, read_document(text)
+    sources = tmp_path / "look.mtlx", "look.mtlx", text, document, read_document(text).content
     assert len({pixel(source, "glsl") for source in sources}) == 1
 
 

@@ -26,7 +26,7 @@ from tests.support.documents import connected, lobe, material
 TRUSTED = Policy(outside=True, code=True)
 XI = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 INCLUDE = XI.format('<xi:include href="{}"/>')
-PART = f'<materialx version="1.39">{lobe()}</materialx>'
+PART = material(lobe())
 IMAGE = '<image name="image" type="color3"><input name="file" type="filename" value="{}"/></image>'
 NODEDEF = '<nodedef name="ND_a" node="a"><output name="out" type="BSDF"/></nodedef>'
 BROUGHT = NODEDEF + '<implementation name="IM_a" nodedef="ND_a" {}/><a name="lobe" type="BSDF"/>'
@@ -96,7 +96,7 @@ def test_a_texture_outside_needs_permission(home, name):
 def test_an_include_outside_needs_permission(home, name):
     path = written(home, INCLUDE.format(name.format(home.parent)))
     assert "pass --allowOutside to permit it" in refusal(path)
-    assert read_document(path, policy=TRUSTED).getNode("lobe")
+    assert read_document(path, policy=TRUSTED).content.getNode("lobe")
 
 
 @pytest.mark.parametrize("name", ["../secret.glsl", "link/secret.glsl"])
@@ -210,7 +210,7 @@ def test_includes_in_a_row_are_limited(tmp_path):
     for number in range(4):
         (tmp_path / f"{number}.mtlx").write_text(INCLUDE.format(f"{number + 1}.mtlx"))
     (tmp_path / "4.mtlx").write_text(PART)
-    assert read_document(tmp_path / "0.mtlx", policy=Policy(includes=4)).getNode("lobe")
+    assert read_document(tmp_path / "0.mtlx", policy=Policy(includes=4)).content.getNode("lobe")
     assert "--maxIncludes" in refusal(tmp_path / "0.mtlx", Policy(includes=3))
 
 

@@ -11,14 +11,14 @@ from mxeon.cli import main
 from mxeon.conformance.results import NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import InterfaceError, NotRun
-from mxeon.shaders import generation, library
+from mxeon.shaders import generation, generators, library
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import UntestedVersionWarning, check_closure_calls, load_library
 from tests.support.documents import lobe, material
 
 EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
 DEFINITION = "void eon_diffuse_bsdf(ClosureData closureData, float weight, inout BSDF bsdf)"
-CACHES = (load_library, generation._library_generator)
+CACHES = (load_library, generators._library_generator)
 
 
 @pytest.fixture

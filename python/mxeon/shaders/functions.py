@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shader twins as text: models and sampling in GLSL and in OSL, and the functions' signatures."""
+"""Shader functions as text, in GLSL and in OSL, and their signatures."""
 
 import re
 
@@ -8,13 +8,12 @@ from mxeon.shaders.library import data_folder
 
 LANGUAGES = ("glsl", "osl")
 FAMILY = "oren_nayar_family"
-# Includes all the others.
-ALL = "eon_sampling"
+ALL = "eon_sampling"  # includes all the others
 INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
 
 
-def source(language, stem=ALL):
-    """Text of a twin with its own includes put in place.
+def source(language: str, stem: str = ALL) -> str:
+    """Text of a file of shader functions, its includes expanded.
 
     Parameters
     ----------
@@ -29,11 +28,17 @@ def source(language, stem=ALL):
     """
     folder = data_folder() / f"gen{language}"
     text = (folder / f"{stem}.{language}").read_text(encoding="utf-8")
-    return INCLUDE.sub(lambda found: source(language, found[1].split(".")[0]), text)
+    return INCLUDE.sub(lambda include: source(language, include[1].split(".")[0]), text)
 
 
-def signature(language, function):
-    """Parameter types and names of a twin's function, in order.
+def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
+    """Parameter types and names of a shader function, in order.
+
+    Parameters
+    ----------
+    language : str
+        "glsl" or "osl".
+    function : str
 
     Returns
     -------
@@ -45,7 +50,8 @@ def signature(language, function):
     ValueError
         If there is no such function; lists the known ones.
     """
-    found = dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))
-    if function not in found:
-        raise InputError(f"function must be one of {', '.join(found)}; got {function!r}")
-    return tuple(tuple(each.split()) for each in found[function].split(", "))
+    functions = dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))
+    if function not in functions:
+        raise InputError(f"function must be one of {', '.join(functions)}; got {function!r}")
+    parameters = (each.rpartition(" ") for each in functions[function].split(", "))
+    return tuple((kind, name) for kind, _, name in parameters)

@@ -1,134 +1,37 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader source from a MaterialX document: `generate`, for every target MaterialX has."""
+"""Shader source from a MaterialX document, for every target that MaterialX has."""
 
 import re
 import warnings
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
-from importlib import import_module
 from types import MappingProxyType
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import DocumentError, InputError
-from mxeon.shaders.document.graph_size import check_expansion
-from mxeon.shaders.document.notes import warn_of_files
-from mxeon.shaders.document.policy import DEFAULT
-from mxeon.shaders.document.reading import label, read_document
-from mxeon.shaders.document.references import foreign_code
-from mxeon.shaders.document.values import plain
-from mxeon.shaders.library import check_closure_calls, load_library
-from mxeon.shaders.targets import CLASSES
+from mxeon.io.files import AnyPath
+from mxeon.shaders.document.labels import label
+from mxeon.shaders.document.notes import CodeWarning, warn_of_files
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.document.values import Plain, plain
+from mxeon.shaders.generators import GENERATORS, TARGETS, context_of, generator_of
+from mxeon.shaders.library import check_closure_calls
+from mxeon.shaders.names import shader_names
 
-GENERATORS = {}
-for _target, (_module, _name) in CLASSES.items():
-    with suppress(ModuleNotFoundError, AttributeError):
-        GENERATORS[_target] = getattr(import_module(f"MaterialX.PyMaterialX{_module}"), _name)
-TARGETS = tuple(GENERATORS)
+__all__ = [
+    "GENERATORS",
+    "TARGETS",
+    "ApproximationWarning",
+    "CodeWarning",
+    "Input",
+    "Shader",
+    "generate",
+]
+
 STAGES = ("pixel", "vertex")
-
-# What OSL or MDL does not take as the name of a shader.
-RESERVED = frozenset(
-    [
-        "and",
-        "auto",
-        "bool",
-        "break",
-        "bsdf",
-        "bsdf_measurement",
-        "case",
-        "cast",
-        "char",
-        "class",
-        "closure",
-        "color",
-        "const",
-        "continue",
-        "default",
-        "delete",
-        "displacement",
-        "do",
-        "double",
-        "edf",
-        "else",
-        "emit",
-        "enum",
-        "export",
-        "extern",
-        "false",
-        "float",
-        "float2",
-        "float3",
-        "float4",
-        "for",
-        "friend",
-        "goto",
-        "hair_bsdf",
-        "if",
-        "illuminance",
-        "illuminate",
-        "import",
-        "in",
-        "inline",
-        "int",
-        "int2",
-        "int3",
-        "int4",
-        "intensity_mode",
-        "let",
-        "light_profile",
-        "long",
-        "material",
-        "matrix",
-        "mdl",
-        "module",
-        "mutable",
-        "new",
-        "normal",
-        "not",
-        "operator",
-        "or",
-        "output",
-        "package",
-        "point",
-        "private",
-        "protected",
-        "public",
-        "return",
-        "shader",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "string",
-        "struct",
-        "surface",
-        "switch",
-        "template",
-        "texture_2d",
-        "this",
-        "throw",
-        "true",
-        "try",
-        "typedef",
-        "typename",
-        "uniform",
-        "union",
-        "unsigned",
-        "using",
-        "varying",
-        "vdf",
-        "vector",
-        "virtual",
-        "void",
-        "volatile",
-        "volume",
-        "while",
-    ]
-)
 
 CYCLES_APPROXIMATION = (
     "Cycles has no closure for qualitative Oren-Nayar; where energy_compensation is false, pairs "
@@ -140,24 +43,20 @@ CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\
 
 
 class ApproximationWarning(UserWarning):
-    """A shader that has to use the nearest thing its renderer offers.
+    """A shader whose renderer has only an approximation of a model.
 
     Attributes
     ----------
     element : str
         Name path of the renderable element.
     approximation : str
-        What is used in place of what.
+        The closure in use, and where it differs from the model.
     """
 
-    def __init__(self, element, approximation):
+    def __init__(self, element: str, approximation: str) -> None:
         super().__init__(f"{element}: {approximation}")
         self.element = element
         self.approximation = approximation
-
-
-class CodeWarning(UserWarning):
-    """Shaders that hold code which their document brings along."""
 
 
 @dataclass(frozen=True)
@@ -167,19 +66,19 @@ class Input:
     Attributes
     ----------
     name : str
-        The variable in the source.
+        Name of the variable in the source.
     type : str
-        MaterialX type word.
+        MaterialX's name of its type.
     value : float, int, bool, str, tuple or None
-        The default, as `mxeon.values.plain` has it: a matrix is the flat tuple of its numbers, row
-        after row, which GLSL takes as the columns of its own; a structure the tuple of its members.
+        The default: a color, a vector or an array is the tuple of its parts; a matrix that of its
+        numbers, row after row, which GLSL takes as its columns; a structure that of its members.
     path : str
-        The element of the document that it comes from.
+        Name path of the element of the document that it comes from.
     """
 
     name: str
     type: str
-    value: object
+    value: Plain
     path: str
 
 
@@ -196,10 +95,10 @@ class Shader:
     target : str
         One of TARGETS.
     stages : mapping of str to str
-        Source text under "pixel" and, for targets with rasterisation, "vertex".
+        Source text under "pixel" and, for targets with rasterization, "vertex".
     inputs : tuple of Input
     document : MaterialX.Document
-        What it was generated from, with its data library.
+        The checked document that it was generated from, with its data library.
     """
 
     name: str
@@ -211,21 +110,21 @@ class Shader:
 
 
 def generate(
-    document,
-    target,
-    element=None,
+    document: AnyPath | mx.Document,
+    target: str,
+    element: str | None = None,
     *,
-    library="eonlib",
-    profile=None,
-    lights=False,
-    policy=DEFAULT,
-):
-    """The shaders of a document, one for each renderable element.
+    library: str = "eonlib",
+    profile: str | None = None,
+    lights: bool = False,
+    policy: Policy = DEFAULT,
+) -> tuple[Shader, ...]:
+    """Shaders of a document, one for each renderable element.
 
     Parameters
     ----------
     document : path-like, str or MaterialX.Document
-        A file, XML text, or a document; see `mxeon.shaders.document.read_document`.
+        A file, XML text, or a document; see `mxeon.shaders.document.reading.read_document`.
     target : str
         glsl, essl, vulkan, wgsl, msl, slang, osl or mdl.
     element : str or None
@@ -233,11 +132,11 @@ def generate(
     library : str
         "eonlib", or "stock" for MaterialX as it comes.
     profile : str or None
-        "cycles" makes osl for Blender's Cycles.
+        "cycles" for osl that Blender's Cycles compiles.
     lights : bool
-        Whether a shader of a rasterised target gets MaterialX's directional light, as light type 1.
+        Whether a shader of a rasterized target gets MaterialX's directional light, as light type 1.
     policy : Policy
-        What the document may do, and how large it may be.
+        Permissions, limits and search path.
 
     Returns
     -------
@@ -248,7 +147,7 @@ def generate(
     ValueError
         If the target, the library, the profile or the element is unknown; lists the known ones.
     DocumentError
-        If no shader can be made from the document.
+        If no shader can be generated from the document.
     InterfaceError
         If this MaterialX calls closures in another way than eonlib's sources define them.
 
@@ -257,11 +156,11 @@ def generate(
     ApproximationWarning
         If the profile cannot express a model that the document asks for.
     CodeWarning
-        If the document brings shader code of its own, which has to be permitted.
+        If the document brings shader code of its own, which the policy has to permit.
     MissingFileWarning
-        If a file that a shader names is not there; the name stays as it is.
+        If a file that a shader names does not exist; the name stays as it is.
     DocumentWarning
-        As `mxeon.shaders.document.read_document` does.
+        As `mxeon.shaders.document.reading.read_document` does.
 
     Examples
     --------
@@ -279,118 +178,41 @@ def generate(
     """
     if target not in GENERATORS:
         raise InputError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
-    document = read_document(document, library, profile, policy)
-    found = renderable(document)
-    chosen = _chosen(found, element)
-    check_expansion(document, chosen, policy, label(document))
-    names = _names(found)
-    generator = _generator(document, target, library, profile)
-    context = _context(document, target, generator, lights, policy.path)
+    checked = read_document(document, library, profile, policy)
+    content, names = checked.content, shader_names(checked.renderables)
+    generator = generator_of(content, target, library, profile)
+    context = context_of(content, target, generator, lights, policy.path)
     shaders = tuple(
-        _generate(document, each, names[each.getNamePath()], target, generator, context)
-        for each in chosen
+        _generate(content, each, names[each.getNamePath()], target, context)
+        for each in _select(checked.renderables, element)
     )
-    _warn_of_code(document)
-    warn_of_files(shaders, document)
+    warn_of_files(_files(shaders), content)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
     return shaders
 
 
-def renderable(document, element=None):
-    """The renderable elements of a document, or the one that is called `element`.
-
-    Raises
-    ------
-    DocumentError
-        If there is none.
-    ValueError
-        If there is none of that name or name path; lists the known ones.
-    """
-    found = mx_gen.findRenderableElements(document)
-    if not found:
-        raise DocumentError(
-            f"{label(document)}: must contain a renderable element (a surfacematerial, a surface "
-            "shader or an output of one); there is none"
-        )
-    return _chosen(found, element)
+def _select(elements: Sequence[mx.TypedElement], name: str | None) -> Sequence[mx.TypedElement]:
+    """Elements of a name or name path; all for None."""
+    if name is None:
+        return elements
+    selection = [each for each in elements if name in (each.getName(), each.getNamePath())]
+    if not selection:
+        paths = ", ".join(each.getNamePath() for each in elements)
+        raise InputError(f"element must be one of {paths}; got {name!r}")
+    return selection
 
 
-def _chosen(found, element):
-    """Those of the renderable elements that are called `element`; None for all."""
-    if element is None:
-        return found
-    chosen = [each for each in found if element in (each.getName(), each.getNamePath())]
-    if not chosen:
-        known = ", ".join(each.getNamePath() for each in found)
-        raise InputError(f"element must be one of {known}; got {element!r}")
-    return chosen
-
-
-def _generator(document, target, library, profile):
-    """A generator that knows a document's types; the same for all that have none of their own."""
-    if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
-        return _library_generator(target, library, profile)
-    generator = _new_generator(target, library, profile)
-    generator.registerTypeDefs(document)
-    return generator
-
-
-def _new_generator(target, library, profile):
-    """A generator with the types, the colour system and the unit system of a data library."""
-    data, generator = load_library(library, profile), GENERATORS[target].create()
-    generator.registerTypeDefs(data)
-    colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
-    colors.loadLibrary(data)
-    generator.setColorManagementSystem(colors)
-    units = mx_gen.UnitSystem.create(generator.getTarget())
-    converters = mx.UnitConverterRegistry.create()
-    for name in ("distance", "angle"):
-        definition = data.getUnitTypeDef(name)
-        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
-    units.loadLibrary(data)
-    units.setUnitConverterRegistry(converters)
-    generator.setUnitSystem(units)
-    return generator
-
-
-_library_generator = lru_cache(maxsize=None)(_new_generator)
-
-
-def _context(document, target, generator, lights, path):
-    """A context for one document: it remembers implementations by name."""
-    context = mx_gen.GenContext(generator)
-    context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
-    for folder in path:
-        context.registerSourceCodeSearchPath(mx.FilePath(folder))
-    context.getOptions().targetDistanceUnit = "meter"
-    # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
-    context.getOptions().fileTextureVerticalFlip = target == "osl"
-    if lights and isinstance(generator, mx_gen.HwShaderGenerator):
-        light = document.getNodeDef("ND_directional_light")
-        mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
-    return context
-
-
-def _names(elements):
-    """Names for shaders by name path: identifiers in every language, no two alike."""
-    names, taken, last = {}, set(), {}
-    for element in elements:
-        stem = re.sub(r"\W", "_", element.getNamePath(), flags=re.ASCII)
-        if stem[0].isdigit() or stem in RESERVED:
-            stem = f"shader_{stem}"
-        name = last.get(stem, stem)  # all before it are taken
-        while name in taken:
-            name = mx.incrementName(name)
-        names[element.getNamePath()] = last[stem] = name
-        taken.add(name)
-    return names
-
-
-def _generate(document, element, name, target, generator, context):
+def _generate(
+    document: mx.Document,
+    element: mx.TypedElement,
+    name: str,
+    target: str,
+    context: mx_gen.GenContext,
+) -> Shader:
     path = element.getNamePath()
     try:
-        shader = generator.generate(name, element, context)
+        shader = context.getShaderGenerator().generate(name, element, context)
     except (mx.Exception, LookupError) as error:
         reason = str(error).strip().splitlines()[0]
         raise DocumentError(
@@ -401,7 +223,7 @@ def _generate(document, element, name, target, generator, context):
     return Shader(name, path, target, MappingProxyType(stages), _inputs(shader, document), document)
 
 
-def _inputs(shader, document):
+def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL has them as inputs
     return tuple(
@@ -413,15 +235,17 @@ def _inputs(shader, document):
     )
 
 
-def _warn_of_code(document):
-    names = ", ".join(each.getName() for each in foreign_code(document))
-    if names:
-        warnings.warn(
-            CodeWarning(f"{label(document)}: brings code of its own: {names}"), stacklevel=3
-        )
+def _files(shaders: Iterable[Shader]) -> list[tuple[str, str]]:
+    """Name paths of the inputs that are files, and the files' names."""
+    return [
+        (each.path, str(each.value))
+        for shader in shaders
+        for each in shader.inputs
+        if each.type == "filename" and each.value
+    ]
 
 
-def _warn_of_approximation(shaders):
+def _warn_of_approximation(shaders: Iterable[Shader]) -> None:
     for shader in shaders:
         values = {each.name: each.value for each in shader.inputs}
         flags = CYCLES_CALL.findall(shader.stages["pixel"])

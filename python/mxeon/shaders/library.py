@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The data libraries: where they lie and in which order MaterialX has to load them.
 
-MaterialX keeps the first definition of a name and says nothing of the others, so our folder is
-loaded before the standard one. What was found is then checked: see `implementations`.
+MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
+libraries. Which implementations MaterialX chooses is then checked: see `implementations`.
 
-No version of MaterialX is refused by its number: what mxeon needs of it is looked up in it, and what
-its generators write is checked against the closure interface of eonlib's sources.
+No version of MaterialX is refused by its number: the methods that mxeon needs are looked up in it,
+and generated code is checked against the closure interface of eonlib's sources.
 """
 
 import re
@@ -37,7 +37,7 @@ class UntestedVersionWarning(UserWarning):
 
 @dataclass(frozen=True)
 class Implementation:
-    """What MaterialX found for a node on a target.
+    """The implementation that MaterialX chooses for a node on a target.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Implementation:
     name : str
         Name of the implementation element, or "" if there is none.
     document : str
-        The file that holds it.
+        The file that it comes from.
     """
 
     node: str
@@ -55,19 +55,19 @@ class Implementation:
     document: str
 
     @property
-    def ours(self):
+    def ours(self) -> bool:
         """Whether it lies in one of eonlib's folders."""
         folders = {eonlib_folder(), data_folder() / "profiles"}
         return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
 
 
-def data_folder():
+def data_folder() -> Path:
     """Folder that holds eonlib and its sources: inside an installed package, else the checkout."""
     installed = Path(__file__).resolve().parents[1] / "data"
     return installed if installed.is_dir() else Path(__file__).resolve().parents[3]
 
 
-def eonlib_folder():
+def eonlib_folder() -> Path:
     """Folder of eonlib's MaterialX documents: what a C++ host, USD or generateshader loads first.
 
     It is called `eonlib` in an installed package and `libraries` in a checkout.
@@ -76,24 +76,24 @@ def eonlib_folder():
     return installed if installed.is_dir() else data_folder() / "libraries"
 
 
-def profile_folder(profile):
+def profile_folder(profile: str) -> Path:
     """Folder of a profile's MaterialX documents, to be loaded before eonlib's."""
     return data_folder() / "profiles" / profile
 
 
-def examples_folder():
+def examples_folder() -> Path:
     """Folder of the bundled example documents."""
     return data_folder() / "examples"
 
 
-def standard_folders():
+def standard_folders() -> list[Path]:
     """Folders of MaterialX's own data libraries."""
     paths = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
     return [Path(path, name) for path in paths for name in mx.getDefaultDataLibraryFolders()]
 
 
-def _folders(library, profile):
-    """Library folders in load order: the most particular first, MaterialX's own last."""
+def _folders(library: str, profile: str | None) -> list[str]:
+    """Library folders in load order: the profile's, eonlib's, MaterialX's own."""
     if library not in LIBRARIES:
         raise InputError(f"library must be one of {', '.join(LIBRARIES)}; got {library!r}")
     if profile is not None and profile not in PROFILES:
@@ -105,7 +105,7 @@ def _folders(library, profile):
 
 
 @cache
-def load_library(library="eonlib", profile=None):
+def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Document:
     """A MaterialX document holding the standard libraries, with eonlib in front.
 
     Loaded once per argument pair and shared: attach it with `Document.setDataLibrary`.
@@ -115,7 +115,7 @@ def load_library(library="eonlib", profile=None):
     library : str
         "eonlib", or "stock" for MaterialX as it comes.
     profile : str or None
-        "cycles" for the OSL implementations made for Blender's Cycles.
+        "cycles" for the OSL implementations for Blender's Cycles.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def load_library(library="eonlib", profile=None):
     ImportError
         If this MaterialX is too old; see `check_version`.
     LibraryError
-        If it finds another implementation than eonlib's.
+        If MaterialX chooses another implementation than eonlib's.
 
     Warns
     -----
@@ -185,7 +185,7 @@ def check_closure_calls(text: str, target: str) -> None:
                 )
 
 
-def _arguments(text, start):
+def _arguments(text: str, start: int) -> list[str]:
     """Arguments of a call, or parameters of a definition, whose parenthesis opens before `start`."""
     depth, commas, end = 1, [start - 1], start
     while depth:
@@ -197,40 +197,37 @@ def _arguments(text, start):
     return [" ".join(text[a + 1 : b].split()) for a, b in zip(commas, ends, strict=True)]
 
 
-def implementations(document):
-    """What a document, with its data library, finds for every node of eonlib on every target.
+def implementations(document: mx.Document) -> tuple[Implementation, ...]:
+    """Implementations in a document and its data library of eonlib's nodes on every target.
 
     Returns
     -------
     tuple of Implementation
-        One for each pair of NODEDEFS and those TARGETS that this MaterialX has.
+        One for each pair of NODEDEFS and the TARGETS that this MaterialX has.
     """
     data = document.getDataLibrary() or document
-    known = {each.getName() for each in data.getTargetDefs()} or TARGETS
-    targets = [target for target in TARGETS if target in known]
-    return tuple(_found(document, node, target) for node in NODEDEFS for target in targets)
+    defined = {each.getName() for each in data.getTargetDefs()} or TARGETS
+    targets = [target for target in TARGETS if target in defined]
+    return tuple(_implementation(document, node, target) for node in NODEDEFS for target in targets)
 
 
-def _found(document, node, target):
+def _implementation(document: mx.Document, node: str, target: str) -> Implementation:
     definition = document.getNodeDef(node)
-    found = definition and definition.getImplementation(target)
-    if not found:
+    element = definition and definition.getImplementation(target)
+    if not element:
         return Implementation(node, target, "", "")
-    return Implementation(node, target, found.getName(), found.getActiveSourceUri())
+    return Implementation(node, target, element.getName(), element.getActiveSourceUri())
 
 
-def assert_ours(document):
-    """Nothing, if every implementation that `document` finds for eonlib's nodes is eonlib's.
+def assert_ours(document: mx.Document) -> None:
+    """Raise LibraryError unless every implementation of eonlib's nodes in a document is eonlib's.
 
-    Raises
-    ------
-    LibraryError
-        Otherwise; names the node, the target and the file that was found instead.
+    The message names the node, the target and the file of the other implementation.
     """
-    for found in implementations(document):
-        if not found.ours:
-            where = found.document or "nothing"
+    for each in implementations(document):
+        if not each.ours:
+            where = each.document or "nothing"
             raise LibraryError(
-                f"implementation of {found.node} for {found.target} must be eonlib's; got {where}: "
+                f"implementation of {each.node} for {each.target} must be eonlib's; got {where}: "
                 f"load {eonlib_folder()} before the standard libraries"
             )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a picture shows: one unit sphere, seen orthographically along -z, and the light on it.
+"""Scenes of pictures: a unit sphere, seen orthographically along -z, and the light on it.
 
 World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
-[-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this page and nothing else.
+[-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this module and nothing else.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import InputError
+from mxeon.io.images import Floats
 
-LARGEST = 8192  # the width that every OpenGL 4 device draws; a picture of it takes some gigabytes
+LARGEST = 8192  # the width that every OpenGL 4 device draws; an image of it takes some gigabytes
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Scene:
         Unit vector towards a distant light whose irradiance is pi, so that a pixel holds
         pi f cos(theta_i), and a white Lambertian facing the light holds 1.
     environment : float, Path or None
-        Radiance of a uniform surrounding, or a latitude-longitude image.
+        Radiance of a uniform environment, or a latitude-longitude image.
     size : int
         Width and height in pixels, in [1, LARGEST].
 
@@ -44,18 +45,18 @@ class Scene:
     environment: float | Path | None = None
     size: int = 256
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not 1 <= self.size <= LARGEST:
             raise InputError(f"size must lie in [1, {LARGEST}]; got {self.size}")
 
 
-def _towards(azimuth, polar):
+def _towards(azimuth: float, polar: float) -> tuple[float, float, float]:
     """Unit vector at `polar` degrees from the viewer, `azimuth` degrees from x, as a tuple."""
-    polar, azimuth = np.radians(polar), np.radians(azimuth)
+    theta, phi = np.radians(polar), np.radians(azimuth)
     return (
-        float(np.sin(polar) * np.cos(azimuth)),
-        float(np.sin(polar) * np.sin(azimuth)),
-        float(np.cos(polar)),
+        float(np.sin(theta) * np.cos(phi)),
+        float(np.sin(theta) * np.sin(phi)),
+        float(np.cos(theta)),
     )
 
 
@@ -67,8 +68,8 @@ FURNACE = Scene("furnace", environment=1.0)
 SCENES = (FRONT, SIDE, BACK, FURNACE)
 
 
-def scene(name):
-    """The scene of SCENES that is called `name`.
+def scene(name: str) -> Scene:
+    """The scene of SCENES with that name.
 
     Raises
     ------
@@ -80,22 +81,22 @@ def scene(name):
     >>> scene("furnace").environment
     1.0
     """
-    known = {each.name: each for each in SCENES}
-    if name not in known:
-        raise InputError(f"scene must be one of {', '.join(known)}; got {name!r}")
-    return known[name]
+    scenes = {each.name: each for each in SCENES}
+    if name not in scenes:
+        raise InputError(f"scene must be one of {', '.join(scenes)}; got {name!r}")
+    return scenes[name]
 
 
 @dataclass(frozen=True)
 class Sphere:
-    """The visible points of the sphere, one per pixel centre.
+    """The visible points of the sphere, one per pixel center.
 
     Attributes
     ----------
     mask : ndarray of bool, shape (size, size)
-        Where the pixel centre lies on the sphere.
+        Where the pixel center lies on the sphere.
     position : ndarray, shape (size, size, 3)
-        Under the pixel centre; outside the mask in the plane of the rim.
+        Under the pixel center; outside the mask in the plane of the rim.
     normal : ndarray, shape (size, size, 3)
         Outward unit normal, the same as the position; that of the nearest point of the rim outside
         the mask.
@@ -103,17 +104,17 @@ class Sphere:
         Latitude-longitude coordinates in [0, 1], (0.5, 0.5) facing the viewer, v upwards.
     """
 
-    mask: np.ndarray
-    position: np.ndarray
-    normal: np.ndarray
-    texcoord: np.ndarray
+    mask: NDArray[np.bool_]
+    position: Floats
+    normal: Floats
+    texcoord: Floats
 
 
 @lru_cache(maxsize=8)
-def sphere(size, margin=0):
-    """The points of the unit sphere under the pixel centres of a `size` x `size` picture.
+def sphere(size: int, margin: int = 0) -> Sphere:
+    """Points of the unit sphere under the pixel centers of a `size` x `size` picture.
 
-    A `margin` adds as many rows and columns of pixel centres around the frame.
+    A `margin` adds as many rows and columns of pixel centers around the frame.
     """
     axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
@@ -127,7 +128,7 @@ def sphere(size, margin=0):
     v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
     points = Sphere(mask, position, normal, np.stack([u, v], axis=-1))
     for array in vars(points).values():
-        array.flags.writeable = False  # shared by all who ask for this size
+        array.flags.writeable = False  # shared by all callers
     return points
 
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material documents: reading them (`reading`), and refusing what they may not do (`policy`)."""
+"""Material documents: read by `reading`, and limited by `policy`."""

@@ -2,7 +2,7 @@
 """Text of a document from its bytes, as MaterialX reads it, and as XML that any parser reads alike.
 
 MaterialX takes more than XML allows: `<` and `&` in attributes, `--` in comments, a declaration
-after blank lines. That is written as XML here, once, so that what is judged is what is read.
+after blank lines. Here that becomes XML, once, so that the checked text is the text that is read.
 """
 
 import codecs
@@ -10,7 +10,7 @@ import re
 
 from mxeon.errors import DocumentError
 
-# How the bytes of a document begin, and their encoding: the order in which MaterialX compares.
+# First bytes of a document and their encoding, in the order in which MaterialX compares.
 STARTS = (
     (codecs.BOM_UTF32_BE, "utf-32-be"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -25,7 +25,7 @@ LONGEST_DECLARATION = 65_536  # bytes
 DECLARED = re.compile(r"\s*<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
 DECODED = re.compile(r"utf-?(8|16|32)([bl]e|-[bl]e)?", re.IGNORECASE)
 LATIN = ("iso-8859-1", "latin1")
-ASCII = rb'<x a="+AGE-\x41~{.xn--a">'  # each of whose signs means another thing somewhere
+ASCII = rb'<x a="+AGE-\x41~{.xn--a">'  # characters that some encodings read otherwise
 
 PIECE = re.compile(
     r"<!--.*?(?:-->|\Z)"
@@ -38,15 +38,15 @@ QUOTED = re.compile(r"\"[^\"]*\"|'[^']*'")
 AMPERSAND = re.compile(r"&(?!(?:lt|gt|amp|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
-def decode(data, place):
+def decode(data: bytes, location: str) -> str:
     """Text of a document from its bytes, as MaterialX decodes it.
 
     Parameters
     ----------
     data : bytes
         In UTF-8, UTF-16, UTF-32 or ISO-8859-1, or ASCII under any name of an encoding that has it.
-    place : str
-        What messages call the document.
+    location : str
+        Name of the document in messages.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def decode(data, place):
     Raises
     ------
     DocumentError
-        If it is in none of these.
+        If it is in another encoding.
     """
     encoding = next((name for start, name in STARTS if data.startswith(start)), "utf-8")
     if data.startswith(b"<?xml"):
@@ -66,21 +66,21 @@ def decode(data, place):
         text = data.decode(encoding).removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         raise DocumentError(
-            f"{place}: must be a MaterialX document in {encoding.upper()}; {error.reason} at byte "
+            f"{location}: must be a MaterialX document in {encoding.upper()}; {error.reason} at byte "
             f"{error.start}"
         ) from None
     if declared := DECLARED.match(text[:LONGEST_DECLARATION]):
-        _check_declared(declared[1], text, place)
+        _check_declared(declared[1], text, location)
     return text
 
 
-def strict(text):
+def strict(text: str) -> str:
     """A document's text as XML without comments and declaration; its lines keep their numbers."""
     return PIECE.sub(_strict_piece, text)
 
 
-def _check_declared(name, text, place):
-    """Raise DocumentError if a text would be another one in the encoding that it declares."""
+def _check_declared(name: str, text: str, location: str) -> None:
+    """Raise DocumentError if a text would differ in the encoding that it declares."""
     if DECODED.fullmatch(name) or name.lower() in LATIN:
         return
     try:
@@ -89,12 +89,12 @@ def _check_declared(name, text, place):
         same = False
     if not same:
         raise DocumentError(
-            f"{place}: must be in an encoding that MaterialX reads, UTF-8, UTF-16, UTF-32 or "
+            f"{location}: must be in an encoding that MaterialX reads, UTF-8, UTF-16, UTF-32 or "
             f"ISO-8859-1; got {name!r}"
         )
 
 
-def _strict_piece(piece):
+def _strict_piece(piece: re.Match[str]) -> str:
     text = piece[0]
     if (text.startswith("<!--") and text.endswith("-->")) or re.match(r"<\?xml\s", text):
         return "\n" * text.count("\n")

@@ -1,144 +1,132 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How many nodes the shaders of a document have, and how deep they are, before any is generated.
+"""Limits on the number of nodes in a document's shaders, and on their depth, before generation.
 
 MaterialX writes a nodegraph once, however often it is used; a compiler copies it to each place. So
 nodes are counted as often as they are used, by weights, without visiting them as often. Nothing
-here recurses: depth is what is to be found out.
+here recurses, as depth is not known before.
 """
 
+from collections.abc import Mapping, Sequence
 from graphlib import CycleError
 
 import MaterialX as mx
 
 from mxeon.errors import DocumentError
 from mxeon.shaders.document.graphs import heights, parts_first, reachable
-from mxeon.shaders.document.xml import check_limit
+from mxeon.shaders.document.labels import label, location
+from mxeon.shaders.document.policy import Policy
 
 
-def check_expansion(document, elements, policy, called):
-    """Nothing, if the shaders of renderable elements stay within the limits.
+def check_shaders(
+    document: mx.Document, elements: Sequence[mx.TypedElement], policy: Policy
+) -> None:
+    """Raise DocumentError unless the shaders of renderable elements stay within the limits.
 
-    Parameters
-    ----------
-    document : MaterialX.Document
-    elements : sequence of MaterialX.TypedElement
-    policy : Policy
-    called : str
-        What messages call the document.
-
-    Raises
-    ------
-    DocumentError
-        If nodes or nodegraphs lead back to themselves, or there are too many of them, or of their
-        inputs, in all, in a row or within each other.
+    Refused are nodes and nodegraphs that lead back to themselves, and too many of them, or of
+    their inputs: in all, in a row or within each other.
     """
-    rule, total, ports = f"{called}: must have", 0, 0
-    weights, weigh = {}, _Weights(document, policy, called)
-    check_limit(policy, "shaders", len(elements), rule, "renderable elements")
+    title, rule = label(document), f"{label(document)}: must have"
+    weights, total, ports = _Weights(document, policy), 0, 0
+    policy.check_limit("shaders", len(elements), rule, "renderable elements")
     for element in elements:
         graph = reachable([element.getNamePath()], lambda path: _upstream(document, path))
-        order = _ordered(graph, f"{called}: node", "be upstream of itself")
+        order = _ordered(graph, f"{title}: node", "be upstream of itself")
         longest = max(heights(graph, order).values())
-        check_limit(policy, "chain", longest, rule, "nodes in a row")
+        policy.check_limit("chain", longest, rule, "nodes in a row")
         for path in order:
             definition = _definition(document.getDescendant(path))
-            if definition not in weights:
-                weights[definition] = weigh(definition)
             total += weights[definition]
             ports += _inputs(document.getNodeDef(definition))
         ports += _inputs(element.getParent())
-        check_limit(policy, "ports", ports, rule, "inputs of nodes in all its shaders")
-        check_limit(policy, "nodes", total, rule, "nodes in all its shaders")
+        policy.check_limit("ports", ports, rule, "inputs of nodes in all its shaders")
+        policy.check_limit("nodes", total, rule, "nodes in all its shaders")
 
 
-def check_inheritance(document, policy, called):
-    """Nothing, if definitions inherit each other in rows short enough, and not themselves.
-
-    Raises
-    ------
-    DocumentError
-        Otherwise.
-    """
-    heirs = [each for each in document.getChildren() if each.hasAttribute("inherit")]
-    graph = reachable(
-        [each.getName() for each in heirs],
-        {each.getName(): [each.getAttribute("inherit")] for each in heirs}.get,
-    )
-    order = _ordered(graph, f"{called}: definition", "inherit itself")
+def check_inheritance(document: mx.Document, policy: Policy) -> None:
+    """Raise DocumentError for inheritance cycles and for chains longer than the limit."""
+    parents = {
+        each.getName(): (each.getAttribute("inherit"),)
+        for each in document.getChildren()
+        if each.hasAttribute("inherit")
+    }
+    graph = reachable(parents, parents.get)
+    order = _ordered(graph, f"{label(document)}: definition", "inherit itself")
     deepest = max(heights(graph, order).values(), default=0)
-    rule = f"{called}: must have"
-    check_limit(policy, "depth", deepest, rule, "definitions that inherit each other")
+    rule = f"{label(document)}: must have"
+    policy.check_limit("depth", deepest, rule, "definitions that inherit each other")
 
 
-def check_interfaces(document, policy, called):
+def check_interfaces(document: mx.Document, policy: Policy) -> None:
     """Raise DocumentError if an element has too many inputs, or there are too many tokens."""
     tokens = 0
     for element in document.traverseTree():
         tokens += element.isA(mx.Token)
-        rule = f'{called}: {element.getCategory()} "{element.getNamePath()}" must have'
-        check_limit(policy, "inputs", _inputs(element), rule, "inputs")
-    check_limit(policy, "tokens", tokens, f"{called}: must have", "tokens")
+        policy.check_limit("inputs", _inputs(element), f"{location(element)} must have", "inputs")
+    policy.check_limit("tokens", tokens, f"{label(document)}: must have", "tokens")
 
 
-class _Weights:
-    """How many nodes a node stands for, by the name of its nodedef."""
+class _Weights(dict[str, int]):
+    """Number of nodes that a node stands for, by the name of its nodedef."""
 
-    def __init__(self, document, policy, called):
-        self._document, self._permissions, self._called = document, policy, called
+    def __init__(self, document: mx.Document, policy: Policy) -> None:
+        self._document, self._policy = document, policy
 
-    def __call__(self, name):
+    def __missing__(self, name: str) -> int:
+        title = label(self._document)
         graph = reachable([name], self._parts)
-        order = _ordered(graph, f"{self._called}: nodedef", "contain itself")
-        deepest, rule = max(heights(graph, order).values()), f"{self._called}: must have"
-        check_limit(self._permissions, "depth", deepest, rule, "nodegraphs within each other")
-        weights = {}
-        for each in order:
-            weights[each] = 1 + sum(weights[part] for part in graph[each])
-        return weights[name]
+        order = _ordered(graph, f"{title}: nodedef", "contain itself")
+        deepest = max(heights(graph, order).values())
+        rule = f"{title}: must have"
+        self._policy.check_limit("depth", deepest, rule, "nodegraphs within each other")
+        for part in order:
+            self[part] = 1 + sum(self[each] for each in graph[part])
+        return self[name]
 
-    def _parts(self, name):
-        """The nodedefs of all nodes in the graphs that implement a nodedef."""
+    def _parts(self, name: str) -> list[str]:
+        """Nodedefs of all nodes in the graphs that implement a nodedef."""
         nodedef = self._document.getNodeDef(name)
         if not nodedef:
             return []
         names = dict.fromkeys((name, nodedef.getQualifiedName(name)))
-        found = [each for key in names for each in self._document.getMatchingImplementations(key)]
-        graphs = (self._graph(each) for each in found)
+        matching = [
+            each for key in names for each in self._document.getMatchingImplementations(key)
+        ]
+        graphs = (self._graph(each) for each in matching)
         return [_definition(node) for graph in graphs if graph for node in graph.getNodes()]
 
-    def _graph(self, implementation):
+    def _graph(self, implementation: mx.InterfaceElement) -> mx.NodeGraph | None:
         if implementation.isA(mx.NodeGraph):
             return implementation
         return self._document.getNodeGraph(implementation.getAttribute("nodegraph"))
 
 
-def _ordered(graph, kind, rule):
-    """Its keys, each after its parts."""
+def _ordered(graph: Mapping[str, tuple[str, ...]], kind: str, rule: str) -> tuple[str, ...]:
+    """Keys of a graph, each after its parts; a cycle is a DocumentError."""
     try:
         return parts_first(graph)
     except CycleError as error:
         raise DocumentError(f'{kind} "{min(error.args[1])}" must not {rule}') from None
 
 
-def _upstream(document, path):
+def _upstream(document: mx.Document, path: str) -> list[str]:
     """Name paths of the nodes that an element is connected to."""
     element = document.getDescendant(path)
     ports = [element] if element.isA(mx.Output) else element.getInputs()
-    connected = (_connected(port) for port in ports)
-    return [node.getNamePath() for node in connected if node]
+    nodes = map(_connected, ports)
+    return [node.getNamePath() for node in nodes if node]
 
 
-def _connected(port):
+def _connected(port: mx.PortElement) -> mx.Node | None:
     if port.isA(mx.Input) and port.hasInterfaceName():
         port = port.getInterfaceInput()
     return port.getConnectedNode() if port else None
 
 
-def _definition(element):
+def _definition(element: mx.Element) -> str:
     definition = element.getNodeDef() if element.isA(mx.Node) else None
     return definition.getName() if definition else ""
 
 
-def _inputs(element):
-    """How many inputs an element has, if it is one that can."""
+def _inputs(element: mx.Element | None) -> int:
+    """Number of an element's inputs; 0 for one that cannot have any."""
     return len(element.getInputs()) if element and element.isA(mx.InterfaceElement) else 0

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a material document may do and how large it may be: documents come from strangers."""
+"""Permissions and limits of material documents, which need not be trusted."""
 
 import os
 from dataclasses import dataclass, field
 
-from mxeon.errors import InputError
+from mxeon.errors import DocumentError, InputError
 
 SEARCH_PATH = "MATERIALX_SEARCH_PATH"  # environment variable, MaterialX's own
 
-# The limits, each of which the command has an option for, and what they count.
+# Limits, each of which is an option of the command, and what they count.
 LIMITS = {
     "size": "bytes of a document, with all that it includes",
     "length": "characters of one attribute",
@@ -25,7 +25,7 @@ LIMITS = {
 }
 
 
-def environment_path():
+def environment_path() -> tuple[str, ...]:
     """Folders that MATERIALX_SEARCH_PATH names, as absolute paths."""
     names = os.environ.get(SEARCH_PATH, "").split(os.pathsep)
     return tuple(os.path.abspath(name) for name in names if name)
@@ -33,7 +33,7 @@ def environment_path():
 
 @dataclass(frozen=True)
 class Policy:
-    """What a document may do, and how large it may be; plain data, so it can be pickled.
+    """Permissions and limits of a document; plain data, so it can be pickled.
 
     Attributes
     ----------
@@ -42,8 +42,7 @@ class Policy:
     code : bool
         Whether it may bring shader code of its own, in text or in files.
     path : tuple of str
-        Folders that are searched after its own for the files it names, which it may name therefore;
-        by default those of the environment variable MATERIALX_SEARCH_PATH.
+        Folders, searched after its own, in which it may name files too; by default those of the environment variable MATERIALX_SEARCH_PATH.
     size : int
         Bytes of the document and all that it includes.
     length : int
@@ -111,10 +110,28 @@ class Policy:
     shaders: int = 3_000
     ports: int = 200_000
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in LIMITS:
             if getattr(self, name) < 0:
                 raise InputError(f"{name} must be at least 0; got {getattr(self, name)}")
+
+    def check_limit(self, name: str, value: int, rule: str, unit: str) -> None:
+        """Raise DocumentError if a value exceeds a limit.
+
+        Parameters
+        ----------
+        name : str
+            One of LIMITS.
+        value : int
+        rule, unit : str
+            The message begins with the rule and says "at most", the limit and its unit.
+        """
+        limit = getattr(self, name)
+        if value > limit:
+            raise DocumentError(
+                f"{rule} at most {limit} {unit}; got {value}: "
+                f"raise it with --max{name.capitalize()}"
+            )
 
 
 DEFAULT = Policy()

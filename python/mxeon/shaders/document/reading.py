@@ -1,41 +1,60 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material documents from files and text: reading them, and what is wrong with them.
+"""Material documents from files and text, checked.
 
-MaterialX accepts much that no shader can be made from, reads every file that a document names, and
-copies its words into shaders. What should not be is refused here, in one line, before generation:
-the text before MaterialX reads it (`screening`), the document after.
+MaterialX accepts documents that no shader can be generated from, reads every file that a document
+names, and copies its words into shaders. Such documents are refused here, in one line, before
+generation: their text before MaterialX reads it (`xml`), their elements after.
 """
 
 import math
 import os
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeGuard
 
 import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import DocumentError
+from mxeon.io.files import AnyPath
 from mxeon.shaders.document.encoding import decode, strict
-from mxeon.shaders.document.graph_size import check_inheritance, check_interfaces
-from mxeon.shaders.document.notes import (
-    TEXT,
-    DocumentWarning,
-    label,
-    numbers,
-    place_of,
-    warn_of_elements,
-)
-from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.document.graph_size import check_inheritance, check_interfaces, check_shaders
+from mxeon.shaders.document.labels import TEXT, label, location
+from mxeon.shaders.document.notes import DocumentWarning, numbers, warn_of_elements
+from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import check_code, check_file, check_inside, files, folder
 from mxeon.shaders.document.values import NUMERIC
 from mxeon.shaders.document.words import check_words
-from mxeon.shaders.document.xml import Screening, check_limit
+from mxeon.shaders.document.xml import XmlChecker
 from mxeon.shaders.library import load_library
 
-__all__ = ["DocumentError", "DocumentWarning", "label", "read_document"]
+__all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
-ERRORS = (mx.Exception, LookupError)  # what MaterialX raises
+ERRORS = (mx.Exception, LookupError)  # raised by MaterialX
 
 
-def read_document(source, library="eonlib", profile=None, policy=DEFAULT):
+@dataclass(frozen=True)
+class Document:
+    """A checked document.
+
+    Attributes
+    ----------
+    content : MaterialX.Document
+        With its data library attached.
+    renderables : tuple of MaterialX.TypedElement
+        Its renderable elements; at least one.
+    """
+
+    content: mx.Document
+    renderables: tuple[mx.TypedElement, ...]
+
+
+def read_document(
+    source: AnyPath | mx.Document,
+    library: str = "eonlib",
+    profile: str | None = None,
+    policy: Policy = DEFAULT,
+) -> Document:
     """A checked MaterialX document with its data library attached.
 
     Parameters
@@ -43,54 +62,60 @@ def read_document(source, library="eonlib", profile=None, policy=DEFAULT):
     source : path-like, str or MaterialX.Document
         A file; or XML text, a str that begins with `<` and names no file; or a document, which is
         copied. XIncludes and relative file names are looked for in the folder of the file, or the
-        working folder, and then on the search path that the policy name.
+        working folder, and then on the policy's search path.
     library, profile : str
         See `mxeon.shaders.library.load_library`.
     policy : Policy
-        What the document may do, how large it may be, and where its files are looked for.
+        Permissions, limits and search path.
 
     Returns
     -------
-    MaterialX.Document
+    Document
 
     Raises
     ------
     DocumentError
         If it cannot be read, is not MaterialX or breaks its rules, comes from a later version,
-        contains a number that is none or not finite, includes itself, or does what it may not.
+        contains a number that is not finite, includes itself, exceeds a limit, needs a permission
+        that the policy does not give, or has no renderable element.
 
     Warns
     -----
     DocumentWarning
-        If a number is not what MaterialX reads, a value leaves the range of its model, or there is
-        no transform from a color space: once each, for the first place.
+        If MaterialX reads a number otherwise than written, a value leaves the range of its model, or
+        a color space has no transform: once each, for the first place.
+    CodeWarning
+        If it brings shader code of its own.
     """
     data = load_library(library, profile)
-    document = mx.createDocument()
+    content = mx.createDocument()
     if isinstance(source, mx.Document):
-        document.copyContentFrom(source)
-        document.setSourceUri(source.getSourceUri())
+        content.copyContentFrom(source)
+        content.setSourceUri(source.getSourceUri())
     elif _is_text(source):
-        _Reader(policy, Path.cwd()).text(document, source)
+        _Reader(policy, Path.cwd()).read_text(content, source)
     elif os.path.isfile(source):  # a pipe or a device may have no end
         _check_path(source)
-        _Reader(policy, Path(source).resolve().parent).file(document, str(source))
+        _Reader(policy, Path(source).resolve().parent).read_file(content, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
-    _find_files(document, [folder(document), *map(Path, policy.path)])
-    document.setDataLibrary(data)
-    _check(document, policy)
-    return document
+    _resolve_files(content, [folder(content), *map(Path, policy.path)])
+    content.setDataLibrary(data)
+    _check(content, policy)
+    elements = _renderables(content)
+    check_shaders(content, elements, policy)
+    warn_of_elements(content)
+    return Document(content, elements)
 
 
-def _is_text(source):
-    """Whether a source is XML text: a path is none, whatever the name of its file begins with."""
+def _is_text(source: AnyPath) -> TypeGuard[str]:
+    """Whether a source is XML text; the path of a file is not, even if it begins with `<`."""
     starts = isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<")
     return starts and not os.path.isfile(source)
 
 
-def _find_files(document, folders):
-    """Make names of files that are in one of the folders absolute, those of sets of files too."""
+def _resolve_files(document: mx.Document, folders: list[Path]) -> None:
+    """Make names of files that lie in one of the folders absolute, also of sets of files."""
     path = mx.FileSearchPath()
     for each in folders:
         path.append(mx.FilePath(str(each)))
@@ -102,7 +127,7 @@ def _find_files(document, folders):
             element.setValueString(str(next(sets, name)))
 
 
-def _check_path(source):
+def _check_path(source: AnyPath) -> None:
     """Raise DocumentError unless MaterialX can hold the path of a file."""
     try:
         str(Path(source).resolve()).encode()
@@ -111,7 +136,7 @@ def _check_path(source):
 
 
 class _Reader:
-    """Reads a document and what it includes, of which MaterialX sees only what was judged.
+    """Reader of a document and its includes, whose text is checked before MaterialX reads it.
 
     Parameters
     ----------
@@ -120,32 +145,32 @@ class _Reader:
         The folder of the document.
     """
 
-    def __init__(self, policy, home):
-        self._permissions, self._home = policy, home
-        self._screening = Screening(policy)
-        self._open = []  # files that are being read, each included by the one before
+    def __init__(self, policy: Policy, home: Path) -> None:
+        self._policy, self._home = policy, home
+        self._checker = XmlChecker(policy)
+        self._open: list[str] = []  # files that are being read, each included by the one before
 
-    def file(self, document, name):
+    def read_file(self, document: mx.Document, name: str) -> None:
         """Read a file into a document."""
-        data = self._screening.read(name)
-        self._screening.measure(data, name)
+        data = self._checker.read(name)
+        self._checker.check_size(data, name)
         self._open.append(os.path.realpath(name))
         self._parse(document, decode(data, name), name)
         self._open.pop()
         document.setSourceUri(name)
 
-    def text(self, document, text):
+    def read_text(self, document: mx.Document, text: str) -> None:
         """Read XML text into a document."""
         data = text.encode(errors="replace")  # halves of characters
-        self._screening.measure(data, TEXT)
+        self._checker.check_size(data, TEXT)
         self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
 
-    def _parse(self, document, text, place):
+    def _parse(self, document: mx.Document, text: str, title: str) -> None:
         text = strict(text)
-        self._screening.judge(text, place)
+        self._checker.check(text, title)
 
-        def include(part, name, *_):
-            self._include(part, name.asString(), place)
+        def include(part: mx.Document, name: mx.FilePath, *_: Any) -> None:
+            self._include(part, name.asString(), title)
 
         options = mx.XmlReadOptions()
         options.readXIncludeFunction = include
@@ -153,73 +178,72 @@ class _Reader:
             mx.readFromXmlString(document, text, mx.FileSearchPath(), options)
         except (*ERRORS, mx.ExceptionParseError) as error:
             reason = str(error).strip().splitlines()[0]
-            raise DocumentError(f"{place}: must be a MaterialX document; {reason}") from None
-        _check_version(document, place)
+            raise DocumentError(f"{title}: must be a MaterialX document; {reason}") from None
+        _check_version(document, title)
 
-    def _include(self, document, name, place):
-        """Read what the document at `place` includes, which is called by its real path."""
-        base = self._home if place == TEXT else Path(place).parent
-        folders = (base, self._home, *self._permissions.path)
-        paths = [os.path.realpath(Path(each, name)) for each in folders]
-        path, rule = next(filter(os.path.isfile, paths), paths[0]), f"{place}: include must"
-        check_inside(path, self._home, self._permissions, f"{place}: include")
+    def _include(self, document: mx.Document, name: str, title: str) -> None:
+        """Read a file that the document `title` includes, by its real path."""
+        base = self._home if title == TEXT else Path(title).parent
+        folders = [base, self._home, *map(Path, self._policy.path)]
+        paths = [os.path.realpath(each / name) for each in folders]
+        path, rule = next(filter(os.path.isfile, paths), paths[0]), f"{title}: include must"
+        check_inside(path, self._home, self._policy, f"{title}: include")
         if path in self._open:
             raise DocumentError(f"{rule} not lead back to the same document; got {name}")
-        check_limit(self._permissions, "includes", len(self._open), f"{rule} be", "in a row")
+        self._policy.check_limit("includes", len(self._open), f"{rule} be", "in a row")
         if not os.path.isfile(path):
             raise DocumentError(f"{rule} name a file that exists; got {name}")
-        self.file(document, path)
+        self.read_file(document, path)
 
 
-def _check(document, policy):
-    """Refuse what MaterialX lets through. The order matters: a later check relies on the former."""
+def _check(document: mx.Document, policy: Policy) -> None:
+    """Check a document that MaterialX has read. Later checks rely on earlier ones."""
     _check_version(document, label(document))
-    check_inheritance(document, policy, label(document))
-    check_interfaces(document, policy, label(document))
-    check_code(document, policy, label(document))
-    check_words(document, label(document))
+    check_inheritance(document, policy)
+    check_interfaces(document, policy)
+    check_code(document, policy)
+    check_words(document)
     _check_types(document)
     for element in document.traverseTree():
         if element.isA(mx.ValueElement) and element.getValueString():
             _check_value(element, policy)
     _check_validity(document)
-    warn_of_elements(document)
 
 
-def _check_version(document, place):
-    """Raise DocumentError for a version that MaterialX did not make its own while it was read."""
-    known = mx.getVersionIntegers()[:2]
-    if tuple(document.getVersionIntegers()) != tuple(known):
+def _check_version(document: mx.Document, title: str) -> None:
+    """Raise DocumentError for a version that MaterialX did not upgrade while reading."""
+    current = tuple(mx.getVersionIntegers()[:2])
+    if tuple(document.getVersionIntegers()) != current:
         raise DocumentError(
-            f"{place}: version must be one that MaterialX upgrades to {known[0]}.{known[1]}; "
+            f"{title}: version must be one that MaterialX upgrades to {current[0]}.{current[1]}; "
             f"got {document.getVersionString()!r}"
         )
 
 
-def _check_types(document):
-    """Refuse members of a type that the libraries define: generators would end the process."""
+def _check_types(document: mx.Document) -> None:
+    """Raise DocumentError for members of the libraries' types: generators would end the process."""
     for each in document.getChildren():
-        known = each.isA(mx.TypeDef) and document.getDataLibrary().getTypeDef(each.getName())
-        if known and (members := each.getChildren()):
+        standard = each.isA(mx.TypeDef) and document.getDataLibrary().getTypeDef(each.getName())
+        if standard and (members := each.getChildren()):
             raise DocumentError(
-                f"{place_of(each)} must have no members, as a type of the libraries; "
+                f"{location(each)} must have no members, as a type of the libraries; "
                 f"got {members[0].getName()}: rename the type"
             )
 
 
-def _check_value(element, policy):
+def _check_value(element: mx.ValueElement, policy: Policy) -> None:
     kind, text = element.getType(), element.getValueString()
     if kind in NUMERIC:
         read = numbers(element)
         if not read or not all(map(math.isfinite, read)):
             rule = f"a valid {kind} of finite numbers"
-            raise DocumentError(f"{place_of(element)} must be {rule}; got {text}")
+            raise DocumentError(f"{location(element)} must be {rule}; got {text}")
     elif kind == "filename":
-        check_file(element, place_of(element), policy)
+        check_file(element, policy)
 
 
-def _check_validity(document):
-    """Refuse what breaks MaterialX's own rules: it would fall back to a default in silence."""
+def _check_validity(document: mx.Document) -> None:
+    """Raise DocumentError if MaterialX's own rules are broken: it would take defaults silently."""
     try:
         valid, message = document.validate()
     except ERRORS as error:
@@ -227,3 +251,14 @@ def _check_validity(document):
     if not valid:
         reason = message.strip().splitlines()[0]
         raise DocumentError(f"{label(document)}: must be a valid MaterialX document; {reason}")
+
+
+def _renderables(document: mx.Document) -> tuple[mx.TypedElement, ...]:
+    """Renderable elements of a document; none is a DocumentError."""
+    elements = tuple(mx_gen.findRenderableElements(document))
+    if not elements:
+        raise DocumentError(
+            f"{label(document)}: must contain a renderable element (a surfacematerial, a surface "
+            "shader or an output of one); there is none"
+        )
+    return elements

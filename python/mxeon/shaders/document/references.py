@@ -1,79 +1,81 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files a document may name, and whether it brings code."""
+"""Checks of the files that a document names and of the shader code that it brings."""
 
 import glob
 import os
 import re
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
 import MaterialX as mx
 
 from mxeon.errors import DocumentError
+from mxeon.io.files import AnyPath
+from mxeon.shaders.document.labels import location
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.words import ENDS_A_STRING
 from mxeon.shaders.library import data_folder, eonlib_folder
 
 CODE = ("file", "sourcecode")
 
 
-def folder(document):
-    """Where relative file names start: at the document's file, or the working folder for text."""
+def folder(document: mx.Document) -> Path:
+    """Folder where relative file names start: the document's, or the working folder for text."""
     file = document.getSourceUri()
     return Path(file).resolve().parent if file else Path.cwd()
 
 
-def inside(path, home, others=()):
+def inside(path: AnyPath, home: Path, others: Iterable[str] = ()) -> bool:
     """Whether a path, its symbolic links resolved, lies in a folder, in others or the libraries."""
     real = Path(os.path.realpath(path))
-    roots = (home, *map(os.path.realpath, others), *_libraries())
+    roots = [home, *(Path(os.path.realpath(each)) for each in others), *_libraries()]
     return any(real.is_relative_to(root) for root in roots)
 
 
-def check_inside(path, home, policy, place):
-    """Nothing, if a document in the folder `home` may name that file.
+def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None:
+    """Raise DocumentError unless a document in the folder `home` may name that file.
 
-    Raises
-    ------
-    DocumentError
-        Otherwise.
+    Parameters
+    ----------
+    path : path-like
+    home : Path
+    policy : Policy
+    prefix : str
+        Beginning of the message: which part of the document names the file.
     """
     if not policy.outside and not inside(path, home, policy.path):
         raise DocumentError(
-            f"{place} must name a file in {home}, on the search path or in the libraries; got "
+            f"{prefix} must name a file in {home}, on the search path or in the libraries; got "
             f"{path}: pass --allowOutside to permit it"
         )
 
 
-def check_file(element, place, policy):
-    """Nothing, if the file that an input names may be read, should it be there.
+def check_file(element: mx.ValueElement, policy: Policy) -> None:
+    """Raise DocumentError unless the file that an input names may be read, if it exists.
 
-    Of a set of textures, any that is there has to be one that may be read.
-
-    Raises
-    ------
-    DocumentError
-        Otherwise.
+    Of a set of textures, each that exists is checked.
     """
-    text, home = element.getValueString(), folder(element.getDocument())
+    text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
-        raise DocumentError(f"{place} must name a file without quotes and backslashes; got {text}")
-    path = home / text  # what MaterialX did not find there is relative still
-    check_inside(path, home, policy, place)
+        raise DocumentError(f"{prefix} must name a file without quotes and backslashes; got {text}")
+    path = home / text  # relative still if no file was found
+    check_inside(path, home, policy, prefix)
     if "<" in str(path.parent):
-        raise DocumentError(f"{place} must name one folder; got {text}")
-    for each in files(path):
-        check_inside(each, home, policy, place)
+        raise DocumentError(f"{prefix} must name one folder; got {text}")
+    for file in files(path):
+        check_inside(file, home, policy, prefix)
 
 
-def files(path):
-    """The files that a name stands for: its own, or those of a set, which has `<UDIM>` in it."""
+def files(path: Path) -> list[Path]:
+    """Files that exist of a name: its own, or those of a set, which has `<UDIM>` in its name."""
     if "<" not in path.name:
         return [path] if os.path.isfile(path) else []
     return list(path.parent.glob(re.sub(r"(<\w*>)+", "*", glob.escape(path.name))))
 
 
-def foreign_code(document):
-    """The implementations by which a document brings shader code of its own."""
+def foreign_code(document: mx.Document) -> list[mx.Implementation]:
+    """Implementations by which a document brings shader code of its own."""
     return [
         each
         for each in document.getChildren()  # getImplementations has the data library's too
@@ -81,33 +83,27 @@ def foreign_code(document):
     ]
 
 
-def check_code(document, policy, called):
-    """Nothing, if the code that a document brings may be used.
-
-    Raises
-    ------
-    DocumentError
-        If it may not, or lies in a file that may not be read.
-    """
+def check_code(document: mx.Document, policy: Policy) -> None:
+    """Raise DocumentError unless a document may bring its code, from the files where it lies."""
     home = folder(document)
     for element in foreign_code(document):
-        place = f'{called}: implementation "{element.getName()}"'
+        prefix = location(element)
         if not policy.code:
             raise DocumentError(
-                f"{place} must not bring code of its own; got {_code(element)}: "
+                f"{prefix} must not bring code of its own; got {_code(element)}: "
                 "pass --allowCode to permit it"
             )
         for path in _sources(element, home, policy.path):
-            check_inside(path, home, policy, place)
+            check_inside(path, home, policy, prefix)
 
 
-def _code(element):
+def _code(element: mx.Implementation) -> str:
     name = next(filter(element.hasAttribute, CODE))
     return f'{name} "{element.getAttribute(name)}"'
 
 
-def _sources(element, home, path):
-    """The files that an implementation's `file` may mean to a generator."""
+def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> list[Path]:
+    """Files that a generator may find for an implementation's `file`."""
     name = element.getAttribute("file")
     origin = Path(element.getActiveSourceUri() or home / "document").parent
     bases = (origin, home, Path.cwd(), *map(Path, path), *_libraries())
@@ -115,8 +111,8 @@ def _sources(element, home, path):
 
 
 @cache
-def _libraries():
+def _libraries() -> tuple[Path, ...]:
     """Folders whose files any document may use: MaterialX's own and eonlib's."""
     standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
-    ours = (eonlib_folder(), *(data_folder() / each for each in ("profiles", "genglsl", "genosl")))
+    ours = (eonlib_folder(), *(data_folder() / name for name in ("profiles", "genglsl", "genosl")))
     return tuple(Path(each).resolve() for each in (*standard, *ours))

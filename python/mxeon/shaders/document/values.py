@@ -2,6 +2,7 @@
 """Values of MaterialX as plain Python values, and whether their text is what MaterialX reads."""
 
 import re
+from typing import Any, TypeAlias
 
 import MaterialX as mx
 
@@ -14,14 +15,17 @@ ARRAYS = {"floatarray": FLOAT, "integerarray": INTEGER}
 NUMERIC = (*SCALARS, *VECTORS, *ARRAYS)
 
 
-def plain(value, document):
-    """A value of any type of MaterialX without MaterialX.
+Plain: TypeAlias = "bool | int | float | str | tuple[Plain, ...] | None"
+
+
+def plain(value: Any, document: mx.Document) -> Plain:
+    """A value of any type of MaterialX as a plain Python value.
 
     Parameters
     ----------
-    value : MaterialX.Value, what is in one, or None
+    value : MaterialX.Value, its data, or None
     document : MaterialX.Document
-        Where the types of structures are defined, if not in its data library.
+        Defines the types of structures, itself or by its data library.
 
     Returns
     -------
@@ -39,15 +43,15 @@ def plain(value, document):
     return value if isinstance(value, (type(None), bool, int, float, str)) else tuple(value)
 
 
-def members(kind, document):
+def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
     """Names and types of a structure's members; none for a type that is no structure."""
     definition = document.getTypeDef(kind)
-    found = definition.getMembers() if definition else ()
-    return tuple((each.getName(), each.getType()) for each in found)
+    parts = definition.getMembers() if definition else ()
+    return tuple((each.getName(), each.getType()) for each in parts)
 
 
-def is_exact(text, kind):
-    """Whether MaterialX reads the whole of a text as a numeric value, not its first part alone."""
+def is_exact(text: str, kind: str) -> bool:
+    """Whether MaterialX reads a whole text as a value of a numeric type, not its start alone."""
     if kind in SCALARS:
         return bool(SCALARS[kind].fullmatch(text))
     if kind in ARRAYS:
@@ -55,7 +59,7 @@ def is_exact(text, kind):
     return all(map(FLOAT.fullmatch, filter(None, re.split("[, ]", text))))
 
 
-def _members(text, kind, document):
+def _members(text: str, kind: str, document: mx.Document) -> tuple[Plain, ...]:
     parts = _parts(text)
     return tuple(
         _members(part, kind, document)
@@ -65,8 +69,8 @@ def _members(text, kind, document):
     )
 
 
-def _parts(text):
-    """What stands between the semicolons of `{a;b;{c;d}}`, but for those of inner braces."""
+def _parts(text: str) -> list[str]:
+    """Texts between the outer semicolons of `{a;b;{c;d}}`: a, b and {c;d}."""
     parts, depth = [""], 0
     for sign in text[1:-1]:
         depth += (sign == "{") - (sign == "}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which words of a document may reach generated source.
+"""Checks of the words of a document that may reach generated source.
 
 Generators write the names, the values of text and some of the attributes of a document into
 shaders as they are, so a word that is more than a word is code. `tests.fuzz.reach` asks every target
@@ -8,12 +8,14 @@ which do; whatever else an attribute says (`doc`, `uiname`, an application's own
 
 import re
 from collections import defaultdict
+from collections.abc import Callable, Collection
 from functools import cache
 
 import MaterialX as mx
 
 from mxeon.errors import DocumentError
 from mxeon.shaders.document.graphs import reachable
+from mxeon.shaders.document.labels import location
 
 # Attributes that are names, or become part of one: identifiers, with `:` between namespaces.
 NAMES = frozenset(
@@ -64,31 +66,29 @@ WORD = re.compile(r"\w*", re.ASCII)
 # Lists of words and paths, and members of a structure.
 STRING = re.compile(r"[\w .,:/+<>\[\]-]*", re.ASCII)
 MEMBERS = re.compile(r"[\w .,:/+<>\[\]{};-]*", re.ASCII)
-COMMENT = "//"  # of which the others are no part of what these patterns let through
+COMMENT = "//"  # the patterns exclude other comments
 ENDS_A_STRING = re.compile(r'["\\\x00-\x1f\x7f]')
 
 
-def check_words(document, called):
-    """Raise DocumentError if text of a document could be more than words in generated source.
+Choices = Callable[[], Collection[str]]
 
-    Parameters
-    ----------
-    document : MaterialX.Document
-        With its data library, which is not judged.
-    called : str
-        What messages call the document.
+
+def check_words(document: mx.Document) -> None:
+    """Raise DocumentError unless names and text values of a document are plain words.
+
+    Of the value of an input that names a variable, one word is permitted. The data library of the
+    document is not checked.
     """
     choices = cache(lambda: _choices(document))  # of a whole library, which few documents need
     for element in document.traverseTree():
         for name in ("name", *element.getAttributeNames()):
             text = element.getName() if name == "name" else element.getAttribute(name)
             if text and (rule := _broken(element, name, text, choices)):
-                place = f'{called}: {element.getCategory()} "{element.getNamePath()}"'
-                raise DocumentError(f"{place}: {name!r} must be {rule}; got {text!r}")
+                raise DocumentError(f"{location(element)}: {name!r} must be {rule}; got {text!r}")
 
 
-def _broken(element, name, text, choices):
-    """The rule that an attribute breaks, or ""."""
+def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
+    """Rule that an attribute breaks, or ""."""
     if name == "value" and element.hasAttribute("type"):
         return _broken_value(element, text, choices)
     if (name in NAMES or name == "name") and not NAME.fullmatch(text):
@@ -98,8 +98,8 @@ def _broken(element, name, text, choices):
     return ""
 
 
-def _broken_value(element, text, choices):
-    """The rule that a value breaks, or ""; numbers and names of files have rules of their own."""
+def _broken_value(element: mx.Element, text: str, choices: Choices) -> str:
+    """Rule that a value breaks, or ""; numbers and names of files have rules of their own."""
     kind = element.getAttribute("type")
     if kind in NUMBERS or kind == "filename" or WORD.fullmatch(text):
         return ""
@@ -110,7 +110,7 @@ def _broken_value(element, text, choices):
     return ""
 
 
-def _choices(document):
+def _choices(document: mx.Document) -> Collection[str]:
     """Names of inputs whose text is written without quotes somewhere, and of all that feed them."""
     inputs = [
         each
@@ -118,8 +118,8 @@ def _choices(document):
         for each in tree.traverseTree()
         if each.isA(mx.Input) and each.getType() == "string"
     ]
-    sources = defaultdict(list)
+    sources: dict[str, list[str]] = defaultdict(list)
     for each in inputs:
         sources[each.getName()].append(each.getInterfaceName())
-    chosen = [each.getName() for each in inputs if each.hasAttribute("enum")]
-    return reachable(["geomprop", *chosen], sources.get)
+    enums = [each.getName() for each in inputs if each.hasAttribute("enum")]
+    return reachable(["geomprop", *enums], sources.get)

@@ -1,34 +1,38 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a document's text is judged by before MaterialX reads it.
+"""Checks of a document's text before MaterialX reads it.
 
 MaterialX keeps what it reads in memory and follows every include at once, so size, depth and
 number are counted here, by a parser that keeps nothing.
 """
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from typing import NoReturn
 from xml.parsers import expat
 
 from mxeon.errors import STEERING, DocumentError
+from mxeon.io.files import AnyPath
+from mxeon.shaders.document.policy import Policy
 
 LONGEST_NAME = 128  # characters; a file's name may have 255 and has three names in it
 
 
-class Screening:
-    """Counts over a document and all that it includes, held against the limits.
+class XmlChecker:
+    """Checks of the text of a document and of all that it includes, which counts as one.
 
     Parameters
     ----------
     policy : Policy
     """
 
-    def __init__(self, policy):
-        self._permissions = policy
+    def __init__(self, policy: Policy) -> None:
+        self._policy = policy
         self._size = self._elements = self._attributes = self._depth = 0
-        self._place = ""
+        self._location = ""
 
-    def read(self, file):
-        """Text of a file, as bytes; of a file that is too long, no more than shows it.
+    def read(self, file: AnyPath) -> bytes:
+        """Content of a file; of one that is too long, one byte more than the limit.
 
         Raises
         ------
@@ -36,27 +40,27 @@ class Screening:
             If it cannot be read.
         """
         try:
-            with Path(file).open("rb") as opened:
-                size = min(self._permissions.size - self._size, os.fstat(opened.fileno()).st_size)
-                return opened.read(size + 1)
+            with Path(file).open("rb") as stream:
+                size = min(self._policy.size - self._size, os.fstat(stream.fileno()).st_size)
+                return stream.read(size + 1)
         except OSError as error:
             raise DocumentError(f"{file}: must be readable; {error.strerror}") from None
 
-    def measure(self, data, place):
-        """Raise DocumentError if a document, as bytes, makes all that was read too long."""
-        self._place = place
+    def check_size(self, data: bytes, location: str) -> None:
+        """Raise DocumentError if a document makes all that was read longer than the limit."""
+        self._location = location
         self._size += len(data)
         self._limit("size", self._size, "bytes, with all that it includes")
 
-    def judge(self, text, place):
-        """Raise DocumentError unless a document's text may be read.
+    def check(self, text: str, location: str) -> None:
+        """Check the text of a document.
 
         Raises
         ------
         DocumentError
-            If it is no XML, has a document type or control characters, or breaks a limit.
+            If it is not XML, has a document type or control characters, or exceeds a limit.
         """
-        self._place, self._depth = place, 0
+        self._location, self._depth = location, 0
         parser = expat.ParserCreate()
         parser.StartDoctypeDeclHandler = self._refuse_type
         parser.StartElementHandler = self._start
@@ -66,7 +70,7 @@ class Screening:
         except expat.ExpatError as error:
             self._refuse(f"must be a MaterialX document; XML parse error: {error}")
 
-    def _start(self, name, attributes):
+    def _start(self, category: str, attributes: Mapping[str, str]) -> None:
         self._depth += 1
         self._elements += 1
         self._limit("depth", self._depth, "elements within each other")
@@ -74,36 +78,22 @@ class Screening:
         self._limit("elements", self._elements, "elements, with all that it includes")
         self._limit("attributes", self._attributes, "attributes, with all that it includes")
         for key, value in attributes.items():
-            self._limit("length", len(value), f"characters in {key!r} of {name!r}")
+            self._limit("length", len(value), f"characters in {key!r} of {category!r}")
             if STEERING.search(value):
-                self._refuse(f"{name} must have no control characters in {key!r}; got {value!r}")
-        if len(called := attributes.get("name", "")) > LONGEST_NAME:
+                rule = f"must have no control characters in {key!r}"
+                self._refuse(f"{category} {rule}; got {value!r}")
+        if len(name := attributes.get("name", "")) > LONGEST_NAME:
             rule = f"must have a name of at most {LONGEST_NAME} characters"
-            self._refuse(f"{name} {rule}; got {called}")
+            self._refuse(f"{category} {rule}; got {name}")
 
-    def _end(self, _):
+    def _end(self, _: str) -> None:
         self._depth -= 1
 
-    def _refuse_type(self, name, *_):
+    def _refuse_type(self, name: str, *_: object) -> None:
         self._refuse(f"must have no document type, which may define entities; got DOCTYPE {name}")
 
-    def _limit(self, name, value, what):
-        check_limit(self._permissions, name, value, f"{self._place}: must have", what)
+    def _limit(self, name: str, value: int, unit: str) -> None:
+        self._policy.check_limit(name, value, f"{self._location}: must have", unit)
 
-    def _refuse(self, reason):
-        raise DocumentError(f"{self._place}: {reason}")
-
-
-def check_limit(policy, name, value, rule, what):
-    """Nothing, if a value is within the limit of that name; the rule says what must have what.
-
-    Raises
-    ------
-    DocumentError
-        Otherwise; names the option that raises the limit.
-    """
-    limit = getattr(policy, name)
-    if value > limit:
-        raise DocumentError(
-            f"{rule} at most {limit} {what}; got {value}: raise it with --max{name.capitalize()}"
-        )
+    def _refuse(self, reason: str) -> NoReturn:
+        raise DocumentError(f"{self._location}: {reason}")

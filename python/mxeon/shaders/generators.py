@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MaterialX's shader generators, set up for a target, a data library and a document."""
+
+from collections.abc import Iterable
+from contextlib import suppress
+from functools import lru_cache
+from importlib import import_module
+from typing import Any
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
+
+from mxeon.shaders.library import load_library
+from mxeon.shaders.targets import CLASSES
+
+GENERATORS: dict[str, Any] = {}
+for _target, (_module, _name) in CLASSES.items():
+    with suppress(ModuleNotFoundError, AttributeError):
+        GENERATORS[_target] = getattr(import_module(f"MaterialX.PyMaterialX{_module}"), _name)
+TARGETS = tuple(GENERATORS)
+
+
+def generator_of(
+    document: mx.Document, target: str, library: str, profile: str | None
+) -> mx_gen.ShaderGenerator:
+    """A generator that knows a document's types, shared by all documents without their own.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+    target : str
+        One of TARGETS.
+    library, profile : str
+        See `mxeon.shaders.library.load_library`.
+    """
+    if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
+        return _library_generator(target, library, profile)
+    generator = _new_generator(target, library, profile)
+    generator.registerTypeDefs(document)
+    return generator
+
+
+def _new_generator(target: str, library: str, profile: str | None) -> mx_gen.ShaderGenerator:
+    """A generator with the types, the color system and the unit system of a data library."""
+    data, generator = load_library(library, profile), GENERATORS[target].create()
+    generator.registerTypeDefs(data)
+    colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
+    colors.loadLibrary(data)
+    generator.setColorManagementSystem(colors)
+    units = mx_gen.UnitSystem.create(generator.getTarget())
+    converters = mx.UnitConverterRegistry.create()
+    for name in ("distance", "angle"):
+        definition = data.getUnitTypeDef(name)
+        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
+    units.loadLibrary(data)
+    units.setUnitConverterRegistry(converters)
+    generator.setUnitSystem(units)
+    return generator
+
+
+_library_generator = lru_cache(maxsize=None)(_new_generator)
+
+
+def context_of(
+    document: mx.Document,
+    target: str,
+    generator: mx_gen.ShaderGenerator,
+    lights: bool,
+    path: Iterable[str],
+) -> mx_gen.GenContext:
+    """A context for one document only, as it keeps implementations by name.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+        With its data library.
+    target : str
+        One of TARGETS.
+    generator : MaterialX.PyMaterialXGenShader.ShaderGenerator
+    lights : bool
+        Whether MaterialX's directional light is bound, as light type 1, if the target has lights.
+    path : iterable of str
+        Folders of source files, after MaterialX's own.
+    """
+    context = mx_gen.GenContext(generator)
+    context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+    for folder in path:
+        context.registerSourceCodeSearchPath(mx.FilePath(folder))
+    context.getOptions().targetDistanceUnit = "meter"
+    # MaterialX has v = 0 at the bottom of an image, OSL's texture() at the top.
+    context.getOptions().fileTextureVerticalFlip = target == "osl"
+    if lights and isinstance(generator, mx_gen.HwShaderGenerator):
+        light = document.getNodeDef("ND_directional_light")
+        mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
+    return context

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Images as files: read the right way up, refused in one line; the curve of sRGB."""
+
+import os
+
+import numpy as np
+import pytest
+
+from mxeon.errors import ImageError
+from mxeon.io.images import read_image, srgb_decoded, srgb_encoded, write_image
+
+PIXELS = np.arange(24.0, dtype=np.float32).reshape(2, 4, 3)
+
+
+def test_row_0_is_at_the_top(tmp_path):
+    write_image(tmp_path / "a.exr", PIXELS, {})
+    assert read_image(tmp_path / "a.exr")[0, 0].tolist() == [0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize("name, data", [("text.exr", b"text"), ("a.txt", b"text")])
+def test_a_file_that_is_no_image_is_refused_with_its_name_in_one_line(tmp_path, name, data):
+    (tmp_path / name).write_bytes(data)
+    rule = f"{name}: must be an image that OpenImageIO reads; ."
+    with pytest.raises(ImageError, match=rule) as error:
+        read_image(tmp_path / name)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, None], ids=["pipe", "folder", "none"])
+def test_a_file_that_is_not_regular_is_refused_and_blocks_nobody(tmp_path, make):
+    path = tmp_path / "a.exr"
+    if make:
+        make(path)
+    reason = "not a regular file" if make else "No such file or directory"
+    with pytest.raises(ImageError, match=f"a.exr: must be an image file; {reason}$"):
+        read_image(path)
+
+
+def test_the_codes_of_srgb_are_decoded_to_what_was_encoded():
+    codes = np.arange(256).repeat(3).reshape(256, 3)
+    assert np.array_equal(srgb_encoded(srgb_decoded(codes / 255.0)), codes)
