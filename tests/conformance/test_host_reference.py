@@ -142,11 +142,11 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
             f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
             value="0.5, 0.5, 0.5" colorspace="acescg"/></{EON}>""",
             FRONT,
-            "no transform for colour space 'acescg'",
+            "no transform for color space 'acescg'",
         ),
         (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
     ],
-    ids=["layer", "normal map", "colour space", "image of a surrounding"],
+    ids=["layer", "normal map", "color space", "image of a surrounding"],
 )
 def test_what_the_models_do_not_cover_did_not_run(nodes, scene, words):
     shader = generate(material(nodes), "glsl")[0]

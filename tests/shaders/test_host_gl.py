@@ -162,7 +162,7 @@ def test_a_machine_without_egl_did_not_run(monkeypatch):
     def missing(**options):
         raise Exception("libEGL.so not loaded")
 
-    monkeypatch.setattr(moderngl, "create_standalone_context", missing)
+    monkeypatch.setattr(moderngl, "create_context", missing)
     with pytest.raises(NotRun, match="libEGL.so not loaded.*apt-get install libegl1"):
         open_host("gl")
 

@@ -2,7 +2,6 @@
 """What the commands make of documents, in processes that a document may bring down."""
 
 import warnings
-from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -130,17 +129,15 @@ def picture(file, host, scene, environment, size, element, library, policy):
     from mxeon.conformance import reference
     from mxeon.shaders import scene as scenes
     from mxeon.shaders.document.notes import MissingFileWarning
-    from mxeon.shaders.generation import generate
     from mxeon.shaders.hosts import open_host
 
     shown = scenes.scene(scene)
     if environment:
         shown = scenes.Scene("environment", environment=Path(environment))
-    with closing(open_host(host, reference.ROW)) as engine:
-        options = {"library": library, "profile": engine.profile, "lights": True}
+    with open_host(host, reference.ROW) as engine:
         with warnings.catch_warnings():
             warnings.simplefilter("error", MissingFileWarning)
-            found = generate(file, engine.target, element, policy=policy, **options)
+            found = engine.compile(file, element, library=library, policy=policy)
         if len(found) > 1:
             known = ", ".join(shader.element for shader in found)
             raise InputError(f"--element must name one of {known}; got none")
