@@ -25,12 +25,19 @@ T = TypeVar("T")
 
 
 def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Host, P], T]:
-    """Verb with the host's context current: other hosts of a process have contexts of their own."""
+    """Verb with the host's context current: other hosts of a process have contexts of their own.
+
+    An object of OpenGL is a number that each context counts for itself. What Python drops at any
+    time is therefore deleted here, where its own context is current, and nowhere else.
+    """
 
     @wraps(verb)
     def wrapped(self: Host, /, *arguments: P.args, **options: P.kwargs) -> T:
         with self._context:
-            return verb(self, *arguments, **options)
+            try:
+                return verb(self, *arguments, **options)
+            finally:
+                self._context.gc()
 
     return wrapped
 
@@ -59,7 +66,7 @@ class Host(base.Host):
                 f"gl: no OpenGL 4.3 through EGL ({str(error).strip()}); on Debian: "
                 "apt-get install libegl1 libgl1-mesa-dri"
             ) from None
-        self._context.gc_mode = "auto"
+        self._context.gc_mode = "context_gc"
         self._program = lru_cache(maxsize=PROGRAMS)(partial(_program, self._context))
 
     @_current
@@ -145,8 +152,7 @@ class Host(base.Host):
 
     def close(self) -> None:
         """Release the context, and all that is in it."""
-        with self._context:  # later, programs would be deleted in whatever context is current then
-            self._program.cache_clear()
+        self._program.cache_clear()
         self._context.release()
 
     def _evaluate(
