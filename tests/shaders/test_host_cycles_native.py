@@ -30,7 +30,7 @@ def test_every_node_is_judged_once_whatever_the_libraries(results):
 
 
 @pytest.mark.parametrize("subject", NATIVE, ids=lambda each: each.title)
-def test_blender_has_one_power_of_the_colour_too_many(results, subject):
+def test_blender_has_one_power_of_the_color_too_many(results, subject):
     found = {each.check: each for each in results if each.subject == subject.title}
     assert {key for key, each in found.items() if each.verdict == FAILED} == {
         "value",

@@ -100,7 +100,7 @@ def test_a_texture_stands_upright(gl, reference, tmp_path):
     assert np.abs(image - expected)[sphere(SIZE).mask].max() <= 2.0**-8  # filter weights
 
 
-def test_a_surrounding_image_lights_by_its_irradiance(gl, tmp_path):
+def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     sky = np.zeros((32, 64, 3), dtype=np.float32)
     sky[:16] = [0.2, 0.4, 1.0]  # blue from above, nothing from below
     oiio.ImageBuf(sky).write(str(tmp_path / "sky.exr"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a picture shows: one unit sphere, seen orthographically along -z, and the light on it.
+"""Scenes of pictures: one unit sphere, seen orthographically along -z, and the light on it.
 
 World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
 [-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this page and nothing else.
@@ -29,7 +29,7 @@ class Scene:
         Unit vector towards a distant light whose irradiance is pi, so that a pixel holds
         pi f cos(theta_i), and a white Lambertian facing the light holds 1.
     environment : float, Path or None
-        Radiance of a uniform surrounding, or a latitude-longitude image.
+        Radiance of a uniform environment, or a latitude-longitude image.
     size : int
         Width and height in pixels, in [1, LARGEST].
 
@@ -88,14 +88,14 @@ def scene(name):
 
 @dataclass(frozen=True)
 class Sphere:
-    """The visible points of the sphere, one per pixel centre.
+    """The visible points of the sphere, one per pixel center.
 
     Attributes
     ----------
     mask : ndarray of bool, shape (size, size)
-        Where the pixel centre lies on the sphere.
+        Where the pixel center lies on the sphere.
     position : ndarray, shape (size, size, 3)
-        Under the pixel centre; outside the mask in the plane of the rim.
+        Under the pixel center; outside the mask in the plane of the rim.
     normal : ndarray, shape (size, size, 3)
         Outward unit normal, the same as the position; that of the nearest point of the rim outside
         the mask.
@@ -111,9 +111,9 @@ class Sphere:
 
 @lru_cache(maxsize=8)
 def sphere(size, margin=0):
-    """The points of the unit sphere under the pixel centres of a `size` x `size` picture.
+    """The points of the unit sphere under the pixel centers of a `size` x `size` picture.
 
-    A `margin` adds as many rows and columns of pixel centres around the frame.
+    A `margin` adds as many rows and columns of pixel centers around the frame.
     """
     axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)

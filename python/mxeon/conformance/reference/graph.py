@@ -226,7 +226,7 @@ class Graph:
         return values
 
     def _image(self, node: Any) -> Any:
-        """Bilinear, periodic look-up; texel centres at half-integers, v = 0 at the bottom."""
+        """Bilinear, periodic look-up; texel centers at half-integers, v = 0 at the bottom."""
         if self._texcoord is None or node.getInput("texcoord") is not None:
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")

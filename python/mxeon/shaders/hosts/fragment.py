@@ -128,7 +128,7 @@ def bsdf_call(
     Parameters
     ----------
     shader : Shader
-        Of a rasterised target.
+        Of a rasterized target.
     wo, wi, inputs, branch
         As in `mxeon.shaders.hosts.base.Host.evaluate`.
 
@@ -193,9 +193,11 @@ def function_evaluation(
 ) -> tuple[str, Columns]:
     """Pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
     dialect = DIALECTS[target]
-    named = {name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)}
-    store = f"mxeon_out = vec4(vec3({function}({', '.join(named)})), 1.0);"
-    main, texels = _main(dialect, named, [store])
+    values = {
+        name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
+    }
+    store = f"mxeon_out = vec4(vec3({function}({', '.join(values)})), 1.0);"
+    main, texels = _main(dialect, values, [store])
     return dialect.version + dialect.prelude + dialect.output + source + main, texels
 
 

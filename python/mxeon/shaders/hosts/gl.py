@@ -102,8 +102,8 @@ class Host(base.Host):
         """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
         parameters = twins.signature("glsl", function)
         source = twins.source("glsl")
-        pixel, named = fragment.function_evaluation(source, function, parameters, arguments)
-        return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, named)
+        pixel, texels = fragment.function_evaluation(source, function, parameters, arguments)
+        return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, texels)
 
     @_current
     def accumulate(
@@ -124,7 +124,7 @@ class Host(base.Host):
         size : tuple of int
             Width and height.
         passes : iterable of int
-            Value of `tracer_pass` in each.
+            Value of `tracer_pass` in each pass.
 
         Returns
         -------

@@ -121,11 +121,11 @@ class Host(base.Host):
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a GLSL shader function compiled as Slang; see `mxeon.shaders.hosts.base.Host`."""
         parameters = twins.signature("glsl", function)
-        named = {
+        values = {
             name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
         }
-        body = [f"float3 mxeon_value = float3({function}({', '.join(named)}));"]
-        return self._evaluate(GLSL + twins.source("glsl"), named, body, {})
+        body = [f"float3 mxeon_value = float3({function}({', '.join(values)}));"]
+        return self._evaluate(GLSL + twins.source("glsl"), values, body, {})
 
     def close(self) -> None:
         """Release the device."""

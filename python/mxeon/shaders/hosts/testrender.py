@@ -36,7 +36,7 @@ TIMEOUT = 300.0  # seconds for one of them
 LINES = 4  # last ones of a program's output in a message
 
 PLANE = 100.0  # half the plane's side
-SAMPLES = {"light": 8, "environment": 16}  # squared: rays for each pixel
+SAMPLES = {"light": 8, "environment": 16}  # squared: rays of a pixel
 
 HELPERS = {
     "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",

@@ -106,10 +106,10 @@ class Host(base.Host):
         """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
         parameters = twins.signature("glsl", function)
         source = twins.source("glsl")
-        pixel, named = fragment.function_evaluation(
+        pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )
-        return self._evaluate(pixel, named)
+        return self._evaluate(pixel, texels)
 
     def close(self) -> None:
         """Release the device."""

@@ -119,10 +119,10 @@ class Host(base.Host):
         """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
         parameters = twins.signature("glsl", function)
         source = twins.source("glsl")
-        pixel, named = fragment.function_evaluation(
+        pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )
-        return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, named)
+        return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, texels)
 
     def close(self) -> None:
         """End the browser; the next request starts another."""

@@ -54,7 +54,7 @@ def set_output(scene: Any, path: str, size: int) -> None:
 
 
 def set_sampling(scene: Any, samples: int, osl: bool) -> None:
-    """Make `scene` render by Cycles, with or without OSL, every sample at its pixel's centre."""
+    """Make `scene` render with Cycles, with or without OSL, every sample at its pixel's center."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
