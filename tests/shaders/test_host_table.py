@@ -14,7 +14,7 @@ from mxeon.conformance.run import check
 from mxeon.errors import Unsupported
 from mxeon.models import table
 from mxeon.shaders import hosts
-from mxeon.shaders.generation import CLASSES
+from mxeon.shaders.generation import CLASSES, generate
 from mxeon.shaders.hosts import base
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import SIDE
@@ -76,6 +76,15 @@ def test_a_verb_that_a_host_lacks_is_unsupported(verb):
 
     with Silent() as host, pytest.raises(Unsupported, match="^silent: this host has no "):
         getattr(host, verb)(*VERBS[verb])
+
+
+def test_a_host_compiles_for_its_target_and_profile_and_with_lights():
+    class Profiled(Host):
+        target, profile = "osl", "cycles"
+
+    document = SUBJECTS[2].document()
+    assert Host().compile(document) == generate(document, "glsl", lights=True)
+    assert Profiled().compile(document) == generate(document, "osl", profile="cycles")
 
 
 @pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)

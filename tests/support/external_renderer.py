@@ -6,13 +6,13 @@
 The materials are OSL files OSL_FOLDER/NAME.osl, made from the kit's MaterialX documents.
 """
 
-import json
+import json  # noqa: I001, _cycles is there once bpy is
 import os
 import sys
 from pathlib import Path
 
-import _cycles
 import bpy
+import _cycles
 from mathutils import Vector
 
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
