@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders import functions as twins
+from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment, raster
 from mxeon.shaders.hosts.base import Identity
@@ -100,8 +100,8 @@ class Host(base.Host):
     @_current
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
-        parameters = twins.signature("glsl", function)
-        source = twins.source("glsl")
+        parameters = functions.signature("glsl", function)
+        source = functions.source("glsl")
         pixel, texels = fragment.function_evaluation(source, function, parameters, arguments)
         return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, texels)
 

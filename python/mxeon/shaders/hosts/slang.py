@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders import functions as twins
+from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment
 from mxeon.shaders.hosts.base import Identity
@@ -53,7 +53,7 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 }}
 """
 
-# GLSL's words for what the twins use, as far as Slang has other words.
+# GLSL's words for what the shader functions use, where Slang has other words.
 GLSL = """typealias vec3 = float3;
 #define mix lerp
 """
@@ -120,12 +120,12 @@ class Host(base.Host):
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a GLSL shader function compiled as Slang; see `mxeon.shaders.hosts.base.Host`."""
-        parameters = twins.signature("glsl", function)
+        parameters = functions.signature("glsl", function)
         values = {
             name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
         }
         body = [f"float3 mxeon_value = float3({function}({', '.join(values)}));"]
-        return self._evaluate(GLSL + twins.source("glsl"), values, body, {})
+        return self._evaluate(GLSL + functions.source("glsl"), values, body, {})
 
     def close(self) -> None:
         """Release the device."""
