@@ -8,7 +8,6 @@ from itertools import count
 import numpy as np
 
 from benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio, scaled
-from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import gl, raster
 from mxeon.shaders.library import LIBRARIES
 from mxeon.shaders.nodes import (
@@ -44,9 +43,9 @@ TOLERANCE = 3e-4
 FACING = 0.2
 
 
-def shader(node, library):
+def shader(host, node, library):
     """The generated shader of a material around one node."""
-    return generate(document_text(NODES[node]), "glsl", library=library, lights=True)[0]
+    return host.compile(document_text(NODES[node]), library=library)[0]
 
 
 class Frame:
@@ -58,7 +57,7 @@ class Frame:
     def __init__(self, host, generated, size):
         context = self._context = host._context
         self._target = context.framebuffer([context.renderbuffer((size, size), 4, dtype="f4")])
-        program = host._compile(generated.stages["vertex"], generated.stages["pixel"])
+        program = gl._program(context, generated.stages["vertex"], generated.stages["pixel"])
         gl._set(program, raster.light(SIDE))
         for unit, name in enumerate(("u_envRadiance", "u_envIrradiance")):
             if name in program:
@@ -108,7 +107,7 @@ def measure(rounds=7, size=SIZE):
 def _timed(host, rounds, size, clock):
     figures, checks, numbers = [], [], count()
     for node in NODES:
-        shaders = {library: shader(node, library) for library in LIBRARIES}
+        shaders = {library: shader(host, node, library) for library in LIBRARIES}
         made = {name: partial(first_frame, host, each, numbers) for name, each in shaders.items()}
         compiling = interleave(made, rounds, clock)
         frames = {name: Frame(host, each, size) for name, each in shaders.items()}

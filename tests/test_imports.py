@@ -77,6 +77,11 @@ def test_importing_a_model_loads_numpy_alone(module):
     assert loaded(f"mxeon.{module}") == ["mxeon", "numpy"]
 
 
+@pytest.mark.parametrize("module", ["shaders.hosts", "shaders.hosts.base", "conformance.results"])
+def test_importing_the_table_of_hosts_or_results_loads_numpy_alone(module):
+    assert loaded(f"mxeon.{module}") == ["mxeon", "numpy"]
+
+
 def test_asking_for_help_loads_no_engine():
     assert set(loaded("mxeon.cli")) <= {"mxeon", "numpy"}
 

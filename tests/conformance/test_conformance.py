@@ -20,6 +20,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.hosts import HOSTS
+from mxeon.shaders.hosts.base import Host, Identity
 from mxeon.shaders.library import examples_folder
 
 EON, QON, NODE = SUBJECTS
@@ -27,13 +28,16 @@ EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough
 VALUE_CHECKS = ("value", "albedo")
 
 
-class ModelHost:
+class ModelHost(Host):
     """A host that is one row of the reference, whatever shader it is given."""
 
-    name, target, profile = "gl", "glsl", None
+    name, target = "gl", "glsl"
 
     def __init__(self, row, change=lambda wo, wi, inputs: (wo, wi, inputs)):
         self._row, self._change = row, change
+
+    def identity(self):
+        return Identity(self.name, "1", "device")
 
     def evaluate(self, shader, wo, wi, inputs, branch):
         wo, wi, inputs = self._change(wo, wi, inputs)

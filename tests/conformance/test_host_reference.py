@@ -22,20 +22,20 @@ OUTSIDE = (
     ({"weight": "1.5"}, "weight must lie in [0, 1]; got 1.5"),
     ({"roughness": "1.6"}, "sigma must lie in [0, pi/2]; got 1.6"),
 )
-CENTRE = np.s_[15:17, 15:17]
+CENTER = np.s_[15:17, 15:17]
 SMALL = Scene("front", light=(0.0, 0.0, 1.0), size=32)
 
 
-def centre(text):
-    """The picture's middle, where a smooth lobe under frontal light shows nearly its colour."""
+def center(text):
+    """The picture's middle, where a smooth lobe under frontal light shows nearly its color."""
     image = Reference().picture(generate(text, "glsl")[0], SMALL)
-    return image[CENTRE].mean(axis=(0, 1))
+    return image[CENTER].mean(axis=(0, 1))
 
 
-def colour(*channels):
-    """What a Lambertian of this colour shows there."""
+def color(*channels):
+    """What a Lambertian of this color shows there."""
     node = f'<{EON} name="lobe" type="BSDF"><input name="color" type="color3" value="{channels}"/>'
-    return centre(material(f"{node}</{EON}>".replace("(", "").replace(")", "")))
+    return center(material(f"{node}</{EON}>".replace("(", "").replace(")", "")))
 
 
 @pytest.mark.parametrize(
@@ -70,10 +70,10 @@ def colour(*channels):
             (0.15, 0.1, 0.05),
         ),
     ],
-    ids=["mix", "add", "multiply by a colour", "multiply by a number", "constant and weight"],
+    ids=["mix", "add", "multiply by a color", "multiply by a number", "constant and weight"],
 )
 def test_lobes_combine_as_their_nodes_say(nodes, channels):
-    assert np.allclose(centre(material(nodes)), colour(*channels), rtol=1e-6, atol=1e-9)
+    assert np.allclose(center(material(nodes)), color(*channels), rtol=1e-6, atol=1e-9)
 
 
 def test_a_nodegraph_hands_its_inputs_down():
@@ -89,15 +89,15 @@ def test_a_nodegraph_hands_its_inputs_down():
       <surfacematerial name="look" type="material">
         <input name="surfaceshader" type="surfaceshader" nodename="shading"/></surfacematerial>
     </materialx>"""
-    assert np.allclose(centre(text), colour(0.6, 0.3, 0.2), rtol=1e-6)
+    assert np.allclose(center(text), color(0.6, 0.3, 0.2), rtol=1e-6)
 
 
-def test_a_colour_given_in_srgb_becomes_linear():
+def test_a_color_in_srgb_becomes_linear():
     node = f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
       value="0.5, 0.02, 1.0" colorspace="srgb_texture"/></{EON}>"""
     text = material(node).replace('version="1.39"', 'version="1.39" colorspace="lin_rec709"')
     linear = ((0.5 + 0.055) / 1.055) ** 2.4
-    assert np.allclose(centre(text), colour(linear, 0.02 / 12.92, 1.0), rtol=1e-6)
+    assert np.allclose(center(text), color(linear, 0.02 / 12.92, 1.0), rtol=1e-6)
 
 
 @pytest.mark.parametrize("compensation, brdf", [(0.0, qon_brdf), (1.0, eon_brdf)])
@@ -143,11 +143,11 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
             f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
             value="0.5, 0.5, 0.5" colorspace="acescg"/></{EON}>""",
             FRONT,
-            "no transform for colour space 'acescg'",
+            "no transform for color space 'acescg'",
         ),
         (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
     ],
-    ids=["layer", "normal map", "colour space", "image of a surrounding"],
+    ids=["layer", "normal map", "color space", "image of an environment"],
 )
 def test_what_the_models_do_not_cover_did_not_run(nodes, scene, words):
     shader = generate(material(nodes), "glsl")[0]
@@ -182,5 +182,5 @@ def test_an_ignored_connection_leaves_the_default():
     graph = """<nodegraph name="ng"><constant name="c" type="color3"/>
       <output name="out" type="color3" nodename="c"/></nodegraph>"""
     with pytest.warns(DocumentWarning, match="which MaterialX ignores"):
-        shown = centre(material(graph + connected(color='nodename="ng"')))
-    assert shown == pytest.approx(colour(0.18, 0.18, 0.18), abs=1e-3)
+        shown = center(material(graph + connected(color='nodename="ng"')))
+    assert shown == pytest.approx(color(0.18, 0.18, 0.18), abs=1e-3)

@@ -65,6 +65,19 @@ def test_a_closed_host_takes_no_program_from_the_next():
     assert np.array_equal(before, after)
 
 
+def test_a_host_that_is_never_closed_takes_no_program_from_another():
+    dropped, following = open_host("gl"), open_host("gl")
+    stages = shader(LOBES["qon"]).stages
+    for host in (dropped, following):  # both contexts give their first program the same number
+        with host._context:
+            host._program(stages["vertex"], stages["pixel"])
+    with following._context:
+        host = dropped = None
+        gc.collect()
+    assert picture(following, LOBES["qon"], FURNACE).any()
+    following.close()
+
+
 def test_light_from_the_right_lights_the_right_and_from_above_the_top(gl):
     right = picture(gl, LOBES["eon"], Scene("right", light=(1.0, 0.0, 0.0)))
     above = picture(gl, LOBES["eon"], Scene("above", light=(0.0, 1.0, 0.0)))
@@ -88,7 +101,7 @@ def test_a_texture_stands_upright(gl, reference, tmp_path):
     assert np.abs(image - expected)[sphere(SIZE).mask].max() <= 2.0**-8  # filter weights
 
 
-def test_a_surrounding_image_lights_by_its_irradiance(gl, tmp_path):
+def test_an_environment_image_lights_by_its_irradiance(gl, tmp_path):
     sky = np.zeros((32, 64, 3), dtype=np.float32)
     sky[:16] = [0.2, 0.4, 1.0]  # blue from above, nothing from below
     oiio.ImageBuf(sky).write(str(tmp_path / "sky.exr"))
@@ -163,7 +176,7 @@ def test_a_machine_without_egl_did_not_run(monkeypatch):
     def missing(**options):
         raise Exception("libEGL.so not loaded")
 
-    monkeypatch.setattr(moderngl, "create_standalone_context", missing)
+    monkeypatch.setattr(moderngl, "create_context", missing)
     with pytest.raises(NotRun, match="libEGL.so not loaded.*apt-get install libegl1"):
         open_host("gl")
 

@@ -10,7 +10,7 @@ from mxeon.errors import NotRun
 from mxeon.shaders.hosts import slang
 
 OPEN = """
-from mxeon.shaders.hosts import NotRun
+from mxeon.errors import NotRun
 from mxeon.shaders.hosts.slang import Host
 try:
     Host()
@@ -32,8 +32,3 @@ def test_a_missing_compiler_is_not_run_and_names_the_remedy(tmp_path):
     )
     assert done.stdout.startswith("slang: no kernel for the CPU; ")
     assert "apt-get install g++" in done.stdout
-
-
-def test_there_are_no_pictures(hosts):
-    with pytest.raises(NotRun, match="slang: there are no pictures here"):
-        hosts("slang").picture(None, None)

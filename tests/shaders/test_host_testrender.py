@@ -64,7 +64,10 @@ def test_a_missing_program_is_not_run_and_names_the_remedy(monkeypatch, tmp_path
 def test_a_program_that_fails_is_not_run_with_its_words(host, programs):
     (programs / "testrender").write_text("#!/bin/sh\necho no such option; exit 1\n")
     shader = generate(SUBJECTS[0].document(), "osl")[0]
-    with pytest.raises(NotRun, match="exit status 1; last output: no such option"):
+    with pytest.raises(
+        NotRun,
+        match="exit status 1, not verified against a real build; last output: no such option",
+    ):
         host.plane(shader, SIDE)
 
 
@@ -84,8 +87,8 @@ def test_a_program_may_be_named_from_here(monkeypatch, programs):
         assert host.plane(shader, replace(SIDE, size=4)).shape == (16, 3)
 
 
-def test_it_says_its_version(host):
-    assert host.identity().version == "OSL 1.14.8"
+def test_its_identity_says_that_no_real_build_has_run(host):
+    assert host.identity().version == "OSL 1.14.8, not verified against a real build"
 
 
 def test_the_plane_is_seen_at_all_angles():

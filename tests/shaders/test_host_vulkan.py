@@ -44,8 +44,3 @@ def test_members_of_a_block_lie_where_std140_has_them():
     np.testing.assert_array_equal(struct.unpack_from("<16f", data), np.eye(4).ravel())
     assert struct.unpack_from("<f", data, offset=64 + 16 + 12) == (1.0,)
     assert sum(data[64 + 16 + 16 :]) == 0
-
-
-def test_there_are_no_pictures(hosts):
-    with pytest.raises(NotRun, match="vulkan: there are no pictures here"):
-        hosts("vulkan").picture(None, None)

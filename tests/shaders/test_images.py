@@ -32,19 +32,19 @@ def test_row_0_is_at_the_top_of_an_image_and_at_the_bottom_of_a_texture(picture)
     assert read_texture(picture)[0, 0].tolist() == [12.0, 13.0, 14.0]
 
 
-def test_a_surrounding_without_colours_is_refused(tmp_path):
-    path = write(tmp_path / "grey.exr", np.ones((4, 8, 1)))
-    with pytest.raises(ValueError, match="grey.exr: must have red, green and blue; got 1 channels"):
+def test_an_environment_without_colors_is_refused(tmp_path):
+    path = write(tmp_path / "gray.exr", np.ones((4, 8, 1)))
+    with pytest.raises(ValueError, match="gray.exr: must have red, green and blue; got 1 channels"):
         read_latlong(path)
 
 
-def test_a_surrounding_is_an_image_or_uniform_or_nothing(picture):
+def test_an_environment_is_an_image_or_uniform_or_nothing(picture):
     assert read_latlong(picture).shape == (2, 4, 3)
     assert read_latlong(0.5).tolist() == [[[0.5, 0.5, 0.5]]]
     assert read_latlong(None).tolist() == [[[0.0, 0.0, 0.0]]]
 
 
-def test_the_irradiance_of_a_uniform_surrounding_is_its_radiance():
+def test_the_irradiance_of_a_uniform_environment_is_its_radiance():
     assert irradiance(read_latlong(0.7)).tolist() == read_latlong(0.7).tolist()
     spread = irradiance(np.full((100, 200, 3), 0.7, dtype=np.float32))
     np.testing.assert_allclose(spread, 0.7, rtol=1e-6)

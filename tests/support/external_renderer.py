@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A stranger to mxeon: renders a kit with Blender's Cycles from the kit's files alone.
+"""An external renderer: renders a kit with Blender's Cycles, from the kit's files alone.
 
-    PYTHON_WITH_BPY stranger.py KIT OSL_FOLDER SAMPLES
+    PYTHON_WITH_BPY external_renderer.py KIT OSL_FOLDER SAMPLES
 
 The materials are OSL files OSL_FOLDER/NAME.osl, made from the kit's MaterialX documents.
 """
@@ -20,7 +20,7 @@ sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
 
 
 def set_up(kit, folder):
-    """The camera, the sphere of the kit as a mesh, and how the pictures are written."""
+    """Scene with the camera, the sphere of the kit as a mesh, and the format of the pictures."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
@@ -44,7 +44,7 @@ def set_up(kit, folder):
 
 
 def set_cycles(scene, samples):
-    """Cycles with OSL and a box filter of one pixel."""
+    """Set Cycles with OSL and a box filter of one pixel."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
@@ -57,8 +57,8 @@ def set_cycles(scene, samples):
     cycles.max_bounces = 1
 
 
-def dress(sphere, source):
-    """The compiled OSL file on the sphere."""
+def set_material(sphere, source):
+    """Put the compiled OSL file on the sphere."""
     compiled = source.with_suffix(".oso")
     assert _cycles.osl_compile(str(source), str(compiled))
     material = bpy.data.materials.new("material")
@@ -73,34 +73,34 @@ def dress(sphere, source):
     sphere.data.materials.append(material)
 
 
-def light(scene, numbers):
-    """The light of a scene of the kit, and nothing else."""
-    for each in list(bpy.data.lights):
-        bpy.data.lights.remove(each)
+def set_light(scene, description):
+    """Light the scene as a scene of the kit, and by nothing else."""
+    for lamp in list(bpy.data.lights):
+        bpy.data.lights.remove(lamp)
     scene.world = bpy.data.worlds.new("world")
     background = scene.world.node_tree.nodes["Background"].inputs
     background["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    background["Strength"].default_value = numbers.get("environment", {}).get("radiance", 0.0)
-    if "distant" in numbers:
+    background["Strength"].default_value = description.get("environment", {}).get("radiance", 0.0)
+    if "distant" in description:
         sun = bpy.data.lights.new("sun", "SUN")
-        sun.angle, sun.energy = 0.0, numbers["distant"]["irradiance"]
+        sun.angle, sun.energy = 0.0, description["distant"]["irradiance"]
         lamp = bpy.data.objects.new("sun", sun)
         lamp.rotation_mode = "QUATERNION"
-        direction = Vector(numbers["distant"]["direction"])
+        direction = Vector(description["distant"]["direction"])
         lamp.rotation_quaternion = direction.to_track_quat("Z", "Y")
         scene.collection.objects.link(lamp)
 
 
 def main(folder, sources, samples):
-    """Every picture that the kit asks for."""
+    """Render every picture of the kit."""
     kit = json.loads((folder / "kit.json").read_text())
     scene, sphere = set_up(kit, folder)
     for number, picture in enumerate(kit["pictures"]):
-        numbers = kit["scenes"][picture["scene"]]
-        set_cycles(scene, samples if "environment" in numbers else 16)
+        description = kit["scenes"][picture["scene"]]
+        set_cycles(scene, samples if "environment" in description else 16)
         scene.cycles.seed = number
-        dress(sphere, sources / f"{picture['material']}.osl")
-        light(scene, numbers)
+        set_material(sphere, sources / f"{picture['material']}.osl")
+        set_light(scene, description)
         scene.render.filepath = str(folder / picture["file"])
         bpy.ops.render.render(write_still=True)
 

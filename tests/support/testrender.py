@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stands in for testrender: reads its files, and renders planes by the reference.
+"""An imitation of testrender: reads its files, and renders planes by the reference.
 
     python testrender.py -r WIDTH HEIGHT -aa N SCENE.xml PICTURE.exr
 
@@ -36,7 +36,7 @@ def testrender(arguments):
 
 
 def camera(given, width, height):
-    """Where the camera stands and a direction for each pixel centre, the top row first."""
+    """Position of the camera and a direction for each pixel center, the top row first."""
     eye, ahead, up = (vector(given[name]) for name in ("eye", "dir", "up"))
     ahead = ahead / np.linalg.norm(ahead)
     scale = np.tan(np.radians(float(given["fov"])) / 2.0)
@@ -88,7 +88,7 @@ class Surface:
         return self.weight * value
 
     def albedo(self, wo):
-        """Radiance towards wo in a surrounding of radiance 1."""
+        """Radiance towards wo in an environment of radiance 1."""
         return self.weight * self.model.albedo_dir(wo[:, 2], self.color, self.roughness)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -18,6 +17,7 @@ from mxeon.jobs.timeouts import check_timeout
 if TYPE_CHECKING:
     from mxeon.shaders.document.policy import Policy
     from mxeon.shaders.generation import Shader
+    from mxeon.shaders.hosts.base import Host
 
 
 class WorkerCrashed(NotRun):
@@ -157,7 +157,7 @@ def picture(
     setting = scenes.scene(scene)
     if environment:
         setting = scenes.Scene("environment", environment=Path(environment))
-    with closing(open_host(host, reference.ROW)) as engine:
+    with open_host(host, reference.ROW) as engine:
         shader = _one_shader(file, engine, element, library, policy)
         image = engine.picture(shader, replace(setting, size=size))
         identity = engine.identity()
@@ -173,18 +173,14 @@ def picture(
 
 
 def _one_shader(
-    file: str, engine: Any, element: str | None, library: str, policy: Policy
+    file: str, engine: Host, element: str | None, library: str, policy: Policy
 ) -> Shader:
     """The shader of a document's one material, or of its element of that name."""
     from mxeon.shaders.document.notes import MissingFileWarning
-    from mxeon.shaders.generation import generate
 
-    options = {"library": library, "profile": engine.profile, "lights": True}
     with warnings.catch_warnings():
         warnings.simplefilter("error", MissingFileWarning)
-        shaders: tuple[Shader, ...] = generate(
-            file, engine.target, element, policy=policy, **options
-        )
+        shaders = engine.compile(file, element, library=library, policy=policy)
     if len(shaders) > 1:
         names = ", ".join(shader.element for shader in shaders)
         raise InputError(f"--element must name one of {names}; got none")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes of pictures: a unit sphere, seen orthographically along -z, and the light on it.
+"""Scenes of pictures: one unit sphere, seen orthographically along -z, and the light on it.
 
 World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
 [-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this module and nothing else.

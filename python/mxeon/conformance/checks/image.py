@@ -13,7 +13,7 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture,
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT
-from mxeon.shaders.generation import ApproximationWarning, CodeWarning, generate
+from mxeon.shaders.generation import ApproximationWarning, CodeWarning
 from mxeon.shaders.hosts import host_row
 from mxeon.shaders.scene import sphere
 
@@ -57,11 +57,10 @@ def judge_document(file, host, judge, library, policy=DEFAULT):
     DocumentError
         If no shader can be made from the document.
     """
-    options = {"library": library, "profile": host.profile, "lights": True}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
-        shaders = generate(file, host.target, policy=policy, **options)
+        shaders = host.compile(file, library=library, policy=policy)
     said = [each.message for each in caught]
     approximations = [each for each in said if isinstance(each, ApproximationWarning)]
     approximated = {each.element: each.approximation for each in approximations}

@@ -14,7 +14,7 @@ import numpy as np
 
 from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.models import table as reference
-from mxeon.shaders.generation import ApproximationWarning, generate
+from mxeon.shaders.generation import ApproximationWarning
 from mxeon.shaders.hosts import front_lit_only, host_row
 from mxeon.shaders.plane import plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
@@ -82,9 +82,7 @@ class PairProbe:
 
     @cached_property
     def _shader(self):
-        profile = self.host.profile
-        document = self.subject.document()
-        return generate(document, self.host.target, library=self.library, profile=profile)[0]
+        return self.host.compile(self.subject.document(), library=self.library)[0]
 
     @cached_property
     def batches(self):
@@ -184,8 +182,7 @@ class PictureProbe:
         return values[self._points(batch.scene)[2]].astype(np.float64)
 
     def _shader(self, inputs):
-        text = self.subject.document(inputs)
-        return _generated(text, self.host.target, self.library, self.host.profile)
+        return _compiled(self.host, self.subject.document(inputs), self.library)
 
     def _shown(self, shader, scene):
         """What the host shows at all points."""
@@ -267,10 +264,10 @@ def probe_type(host):
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
-def _generated(text, target, library, profile):
+def _compiled(host, text, library):
     with warnings.catch_warnings():  # what is approximated is not judged: see _judged
         warnings.simplefilter("ignore", ApproximationWarning)
-        return generate(text, target, library=library, profile=profile, lights=True)[0]
+        return host.compile(text, library=library)[0]
 
 
 @lru_cache(maxsize=8)

@@ -1,15 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The NumPy models as a host like the others, in float64: what every other host is compared with."""
+"""The NumPy models as a host, in float64: the reference of every other host."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.reference.graph import Graph
+from mxeon.conformance.reference.graph import Graph, Lobe
 from mxeon.errors import NotRun
-from mxeon.models import table as reference
+from mxeon.models import table
 from mxeon.shaders import hosts
+from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.scene import VIEW, local_directions, sphere
+from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 # Any target will do: the document behind the shader is what is evaluated.
 ROW = hosts.Row("reference", target="glsl", module=__name__)
@@ -21,12 +28,12 @@ class Host(base.Host):
     name = ROW.name
     target = ROW.target
 
-    def identity(self):
-        """NumPy's version."""
+    def identity(self) -> Identity:
+        """Version of NumPy."""
         return Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
 
-    def picture(self, shader, scene):
-        """The document behind the shader, on the sphere; see `mxeon.shaders.hosts`.
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[np.float64]:
+        """Picture of the sphere with the shader's document on it; see `mxeon.shaders.hosts.base.Host`.
 
         Raises
         ------
@@ -41,36 +48,47 @@ class Host(base.Host):
         elif isinstance(scene.environment, float):
             lobe = _furnace(normal[:, 2], scene.environment)
         else:
-            raise NotRun("reference: the surrounding must be uniform, or the light distant")
+            raise NotRun("reference: environment must be uniform; got an image")
         image = np.zeros(points.normal.shape)
         image[points.mask] = Graph(shader.document, texcoord, lobe).element(shader.element)
         return image
 
-    def evaluate(self, shader, wo, wi, inputs, branch):
-        """The one lobe of the document for pairs of directions; see `mxeon.shaders.hosts`."""
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+    ) -> NDArray[np.float64]:
+        """Values of the document's one lobe; see `mxeon.shaders.hosts.base.Host`."""
         lobe = _furnace(wo[:, 2], 1.0) if branch == "environment" else _lit(wo, wi, 1.0)
-        return Graph(shader.document, None, lobe, inputs).element(shader.element)
+        values: NDArray[np.float64] = Graph(shader.document, None, lobe, inputs).element(
+            shader.element
+        )
+        return values
 
 
-def _lit(wo, wi, irradiance):
+def _lit(wo: NDArray[Any], wi: NDArray[Any], irradiance: float) -> Lobe:
     """Lobe under a distant light: its irradiance times f cos(theta_i), 0 below the horizon."""
     lit = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0)
 
-    def lobe(name, rho, parameter):
+    def lobe(name: str, rho: ArrayLike, parameter: ArrayLike) -> NDArray[np.float64]:
         value = np.zeros((len(wo), 3))
         rho = np.broadcast_to(rho, value.shape)[lit]
         parameter = np.broadcast_to(parameter, len(wo))[lit]
-        brdf = reference.model(name).brdf(wo[lit], wi[lit], rho, parameter)
+        brdf = table.model(name).brdf(wo[lit], wi[lit], rho, parameter)
         value[lit] = irradiance * brdf * wi[lit, 2:]
         return value
 
     return lobe
 
 
-def _furnace(mu, radiance):
-    """Lobe in a uniform surrounding: its directional albedo."""
+def _furnace(mu: NDArray[Any], radiance: float) -> Lobe:
+    """Lobe in a uniform environment: its directional albedo."""
 
-    def lobe(name, rho, parameter):
-        return radiance * reference.model(name).albedo_dir(mu, rho, parameter)
+    def lobe(name: str, rho: ArrayLike, parameter: ArrayLike) -> NDArray[np.float64]:
+        albedo: NDArray[np.float64] = table.model(name).albedo_dir(mu, rho, parameter)
+        return radiance * albedo
 
     return lobe

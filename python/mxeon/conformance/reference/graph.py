@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Material graphs of diffuse lobes evaluated in NumPy, over all the points of a picture at once.
 
-What a graph may contain: rough diffuse lobes; mix, add and multiply; values, arithmetic and images;
-nodes that are nodegraphs of these. Anything else is NotRun, with the node's name.
+A graph may contain rough diffuse lobes; mix, add and multiply; values, arithmetic and images; nodes
+that are nodegraphs of these. Any other node is NotRun, with its name.
 """
 
+from __future__ import annotations
+
 from collections import Counter
+from collections.abc import Callable, Mapping
 from functools import partial
 from operator import add, mul, pow, sub, truediv
+from typing import Any, TypeAlias
 
 import MaterialX as mx
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.io.images import srgb_decoded
@@ -18,8 +23,13 @@ from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.hosts.textures import read_texture
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON
 
-# Operations on values and on lobes alike: node category -> its inputs, and the result from them.
-OPERATIONS = {
+# Values of a lobe of weight one, (N, 3), from the name of its model, its color and its roughness.
+Lobe: TypeAlias = Callable[[str, ArrayLike, ArrayLike], NDArray[np.float64]]
+Path: TypeAlias = tuple[str, ...]  # see Graph
+Step: TypeAlias = tuple[Callable[..., Any], tuple[Path, ...]]
+
+# Operations on values and on lobes alike: node category -> its inputs, and the function of them.
+OPERATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Any]]] = {
     "constant": (("value",), lambda value: value),
     "add": (("in1", "in2"), add),
     "subtract": (("in1", "in2"), sub),
@@ -45,141 +55,160 @@ class Graph:
     document : MaterialX.Document
     texcoord : ndarray, shape (N, 2)
     lobe : callable (model name, color, roughness) -> ndarray, shape (N, 3)
-        What a diffuse lobe of weight one gives at these points.
+        Values of a diffuse lobe of weight one at these points.
     inputs : mapping of str to array
         Inputs of diffuse lobes that take the place of the document's.
 
     Notes
     -----
-    A place is a node as part of all the nodes and nodegraphs around it: a tuple of name paths, the
-    outermost first. Places are evaluated by a loop, each once, so that neither a long chain nor a
-    node with many uses does harm, and forgotten after their last use.
+    A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the
+    outermost first. A loop evaluates each path once, so that neither a long chain nor a node with
+    many uses does harm, and forgets its value after the last use.
     """
 
-    def __init__(self, document, texcoord, lobe, inputs=None):
+    def __init__(
+        self,
+        document: Any,
+        texcoord: NDArray[np.float64] | None,
+        lobe: Lobe,
+        inputs: Mapping[str, Any] | None = None,
+    ) -> None:
         self._document = document
         self._texcoord = texcoord
         self._lobe = lobe
         self._inputs = inputs or {}
-        self._elements = {}  # by their places
-        self._recipes = {}  # place -> a function and the places of its arguments
+        self._elements: dict[Path, Any] = {}
+        self._steps: dict[Path, Step] = {}
 
-    def element(self, path):
-        """What the renderable element at a name path gives.
+    def element(self, name_path: str) -> Any:
+        """Values of the renderable element at a name path, (N, 3).
 
         Raises
         ------
         NotRun
             If the graph holds a node that is none of the above.
         """
-        element = self._document.getDescendant(path)
+        element = self._document.getDescendant(name_path)
         root = element.getConnectedNode() if element.isA(mx.Output) else element
-        return self._evaluate(self._place((), root))
+        return self._evaluate(self._inner((), root))
 
-    def _evaluate(self, root):
-        parts = reachable([root], lambda place: self._recipe(place)[1])
-        uses = Counter(part for each in parts.values() for part in each)
-        values, waiting = {}, [root]
+    def _evaluate(self, root: Path) -> Any:
+        parts = reachable([root], lambda path: self._step(path)[1])
+        uses = Counter(part for inner in parts.values() for part in inner)
+        values: dict[Path, Any] = {}
+        waiting = [root]
         while waiting:
-            place = waiting[-1]
-            if place in values:
+            path = waiting[-1]
+            if path in values:
                 waiting.pop()
-            elif missing := [part for part in parts[place] if part not in values]:
+            elif missing := [part for part in parts[path] if part not in values]:
                 waiting.append(missing[0])
             else:
-                values[place] = self._recipes[place][0](*(values[part] for part in parts[place]))
-                for part in parts[place]:
+                values[path] = self._steps[path][0](*(values[part] for part in parts[path]))
+                for part in parts[path]:
                     uses[part] -= 1
                     if not uses[part]:
                         del values[part]
         return values[root]
 
-    def _recipe(self, place):
-        """How the value at a place is made."""
-        if place not in self._recipes:
-            self._recipes[place] = self._made(place)
-        return self._recipes[place]
+    def _step(self, path: Path) -> Step:
+        """Function that computes the value at a path, and the paths of its arguments."""
+        if path not in self._steps:
+            self._steps[path] = self._node_step(path)
+        return self._steps[path]
 
-    def _made(self, place):
-        node = self._elements[place]
+    def _node_step(self, path: Path) -> Step:
+        node = self._elements[path]
         category = node.getCategory()
         if category in DIFFUSE_NODES:
-            names = ("normal", "color", "roughness", "weight")
-            make = partial(self._diffuse, node.getNamePath())
+            names: tuple[str, ...] = ("normal", "color", "roughness", "weight")
+            diffuse = partial(self._diffuse, node.getNamePath())
             if category == EON:
-                return partial(make, True), self._sources(place, names)
-            return make, self._sources(place, ("energy_compensation", *names))
+                return partial(diffuse, True), self._sources(path, names)
+            return diffuse, self._sources(path, ("energy_compensation", *names))
         if category == "image":
             return partial(self._image, node), ()
         if category in OPERATIONS:
-            names, make = OPERATIONS[category]
-            return make, self._sources(place, names)
+            ports, operation = OPERATIONS[category]
+            return operation, self._sources(path, ports)
         inside = node.getImplementation()
-        outputs = inside.getOutputs() if inside and inside.isA(mx.NodeGraph) else ()
+        outputs: Any = inside.getOutputs() if inside and inside.isA(mx.NodeGraph) else ()
         if len(outputs) != 1 or not outputs[0].getConnectedNode():
             raise NotRun(f"reference: there is no model for node {category!r}")
-        return lambda value: value, (self._place(place, outputs[0].getConnectedNode()),)
+        return lambda value: value, (self._inner(path, outputs[0].getConnectedNode()),)
 
-    def _sources(self, place, names):
-        lobe = self._elements[place].getCategory() in DIFFUSE_NODES
-        given = self._inputs if lobe else {}
+    def _sources(self, path: Path, names: tuple[str, ...]) -> tuple[Path, ...]:
+        lobe = self._elements[path].getCategory() in DIFFUSE_NODES
+        values = self._inputs if lobe else {}
         return tuple(
-            self._constant(place, name, given[name]) if name in given else self._source(place, name)
+            self._constant(path, name, values[name]) if name in values else self._source(path, name)
             for name in names
         )
 
-    def _source(self, place, name):
-        """The place that an input's value comes from: connected, given, or the default."""
-        while (given := self._port(place, name)).hasInterfaceName():
-            place, name = place[:-1], given.getInterfaceName()
-        connected = given.getConnectedNode()
-        if connected:
-            graph, parent = connected.getParent(), self._elements[place].getParent()
+    def _source(self, path: Path, name: str) -> Path:
+        """Path of an input's value: of the node connected to it, or of a constant."""
+        while (port := self._port(path, name)).hasInterfaceName():
+            path, name = path[:-1], port.getInterfaceName()
+        if node := port.getConnectedNode():
+            graph, parent = node.getParent(), self._elements[path].getParent()
             if graph.getNamePath() == parent.getNamePath():
-                return self._place(place[:-1], connected)
-            return self._place(self._place((), graph), connected)
-        definition = self._elements[place].getNodeDef()
+                return self._inner(path[:-1], node)
+            return self._inner(self._inner((), graph), node)
+        return self._constant(path, name, self._value(path, name, port))
+
+    def _value(self, path: Path, name: str, port: Any) -> Any:
+        """Value of an input without a connection, in the document's color space."""
+        definition = self._elements[path].getNodeDef()
         declared = definition.getActiveInput(name) if definition else None
         if declared and declared.hasDefaultGeomPropString():
-            return self._constant(place, name, None)  # the surface's own: nothing sets it
-        written = given.getValue()
-        if written is None and declared:  # a connection that MaterialX ignores
-            written = declared.getValue()
-        value = 0.0 if given.getType() in CLOSURES else _plain(written)
-        linear = self._linear(given, value) if given.getType() == "color3" else value
-        return self._constant(place, name, linear)
+            return None  # the surface's own: nothing sets it
+        value = port.getValue()
+        if value is None and declared:  # a connection that MaterialX ignores
+            value = declared.getValue()
+        if port.getType() in CLOSURES:
+            return 0.0
+        return self._linear(port, _plain(value)) if port.getType() == "color3" else _plain(value)
 
-    def _port(self, place, name):
-        """An input as it is written, or else as its nodedef has it."""
-        element = self._elements.get(place)
+    def _port(self, path: Path, name: str) -> Any:
+        """Input of a node, or else of its nodedef."""
+        element = self._elements.get(path)
         definition = element.getNodeDef() if element else None
-        given = element and element.getInput(name)
-        given = given or (definition and definition.getActiveInput(name))
-        if not given:
-            raise NotRun(f"reference: there is nothing to give {name!r} to {place[-1:]}")
-        return given
+        port = element and element.getInput(name)
+        port = port or (definition and definition.getActiveInput(name))
+        if not port:
+            raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
+        return port
 
-    def _place(self, around, element):
-        place = (*around, element.getNamePath())
-        self._elements[place] = element
-        return place
+    def _inner(self, around: Path, element: Any) -> Path:
+        """Path of an element within another path."""
+        path = (*around, element.getNamePath())
+        self._elements[path] = element
+        return path
 
-    def _constant(self, place, name, value):
-        """A place that has no parts."""
-        constant = (*place, f":{name}")
-        self._recipes[constant] = (lambda: value), ()
+    def _constant(self, path: Path, name: str, value: Any) -> Path:
+        """Path of a value that has no parts."""
+        constant = (*path, f":{name}")
+        self._steps[constant] = (lambda: value), ()
         return constant
 
-    def _linear(self, element, value):
-        """A colour in the document's linear space, as the generators' colour management has it."""
+    def _linear(self, element: Any, value: Any) -> Any:
+        """Color in the document's linear space, as the generators' color management has it."""
         space = element.getActiveColorSpace()
         if space in ("", "none", self._document.getColorSpace()):
             return value
         if space != "srgb_texture":
-            raise NotRun(f"reference: there is no transform for colour space {space!r}")
+            raise NotRun(f"reference: there is no transform for color space {space!r}")
         return srgb_decoded(value)
 
-    def _diffuse(self, name, compensated, normal, color, roughness, weight):
+    def _diffuse(
+        self,
+        name: str,
+        compensated: Any,
+        normal: Any,
+        color: Any,
+        roughness: Any,
+        weight: Any,
+    ) -> NDArray[np.float64]:
         if normal is not None:
             raise NotRun("reference: there are no models for a normal other than the surface's")
         model = "eon" if compensated else "qon"
@@ -194,11 +223,12 @@ class Graph:
             lobe = self._lobe(model, color, np.reshape(roughness, -1))
         except ValueError as error:
             raise OutsideModel(f"reference: node {name!r}: {error}") from None
-        return lobe * weight
+        values: NDArray[np.float64] = lobe * weight
+        return values
 
-    def _image(self, node):
-        """Bilinear, periodic look-up; texel centres at half-integers, v = 0 at the bottom."""
-        if node.getInput("texcoord") is not None:
+    def _image(self, node: Any) -> Any:
+        """Bilinear, periodic look-up; texel centers at half-integers, v = 0 at the bottom."""
+        if self._texcoord is None or node.getInput("texcoord") is not None:
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")
         if not file or not file.getValueString():
@@ -211,12 +241,12 @@ class Graph:
                 f"image of 3 channels; got {node.getType()} from {texels.shape[-1]}"
             )
         height, width = texels.shape[:2]
-        place = self._texcoord * [width, height] - 0.5
-        corner = np.floor(place).astype(int)
-        u, v = (place - corner).T[..., None]
+        texel = self._texcoord * [width, height] - 0.5
+        corner = np.floor(texel).astype(int)
+        u, v = (texel - corner).T[..., None]
         x, y = corner.T
 
-        def at(dx, dy):
+        def at(dx: int, dy: int) -> Any:
             return texels[(y + dy) % height, (x + dx) % width, :channels]
 
         lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
@@ -225,8 +255,8 @@ class Graph:
         return self._linear(file, value) if channels == 3 else value
 
 
-def _plain(value):
-    """A MaterialX value as a bool, a string or an array; None stays None."""
+def _plain(value: Any) -> Any:
+    """A MaterialX value as a bool, a string, an array or None."""
     if value is None or isinstance(value, (bool, str)):
         return value
     return np.asarray(value if isinstance(value, (int, float)) else tuple(value), dtype=np.float64)

@@ -88,7 +88,7 @@ class Host(ABC):
         NotRun
             If the host cannot show the scene, or fails.
         """
-        raise self._unsupported("pictures of a sphere")
+        raise self._unsupported("pictures of a sphere", "gl")
 
     def evaluate(
         self,
@@ -124,7 +124,7 @@ class Host(ABC):
         ShaderError
             If the host's compiler refuses the shader.
         """
-        raise self._unsupported("values for pairs of directions")
+        raise self._unsupported("values for pairs of directions", "gl")
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a shader function of eonlib.
@@ -147,7 +147,7 @@ class Host(ABC):
         ValueError
             If there is no such function.
         """
-        raise self._unsupported("calls of a shader function")
+        raise self._unsupported("calls of a shader function", "gl")
 
     def plane(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         """Radiance of a plane with a shader on it.
@@ -162,13 +162,13 @@ class Host(ABC):
         Unsupported
             If the host has no such verb.
         """
-        raise self._unsupported("pictures of a plane")
+        raise self._unsupported("pictures of a plane", "testrender")
 
     def node(
         self, title: str, color: Sequence[float], roughness: float, scene: Scene
     ) -> NDArray[Any]:
         """Picture of the unit sphere with a node of the renderer's own on it; see `picture`."""
-        raise self._unsupported("nodes of its own")
+        raise self._unsupported("nodes of its own", "cycles-native")
 
     def close(self) -> None:  # noqa: B027, a host may hold nothing
         """Release what the host holds."""
@@ -179,5 +179,5 @@ class Host(ABC):
     def __exit__(self, *error: object) -> None:
         self.close()
 
-    def _unsupported(self, verb: str) -> Unsupported:
-        return Unsupported(f"{self.name}: this host has no {verb}")
+    def _unsupported(self, verb: str, other: str) -> Unsupported:
+        return Unsupported(f"{self.name}: this host has no {verb}; {other} has")

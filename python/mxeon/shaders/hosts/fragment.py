@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fragment shaders that evaluate a function once per pixel, made around text that stays as it is.
+"""Fragment shaders that evaluate a function once per pixel, around source text left unchanged.
 
 Arguments arrive in float textures, one texel per pixel. A generated shader keeps every character:
-its `main` is renamed by a macro, and a second `main` repeats the statements by which the first one
-calls its BSDF. Local variables of the same names hide the shader's uniforms there.
+a macro renames its `main`, and a second `main` repeats the statements by which the first one calls
+its BSDF. There, local variables of the same names hide the shader's uniforms.
 """
 
+from __future__ import annotations
+
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import InputError
+from mxeon.shaders.generation import Input, Shader
 
 CLOSURES = {"direct": "CLOSURE_TYPE_REFLECTION", "environment": "CLOSURE_TYPE_INDIRECT"}
 FETCH = {
@@ -21,19 +27,23 @@ FETCH = {
 }
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
 SCALARS = ("float", "boolean")
+NORMAL = (0.0, 0.0, 1.0)
 WIDTH = 1024  # pixels in a row of an evaluation
+
+Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
+Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 or 3 values by name
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """What a language of the GLSL family wants around the text.
+    """Text that a language of the GLSL family needs around a function.
 
     Attributes
     ----------
     version : str
         First line of a stage.
     prelude : str
-        Lines that go between the version and a generated text.
+        Lines between the version and a generated text.
     output : str
         Declaration of a pixel stage's output, for text that has none.
     sampler : str
@@ -52,8 +62,8 @@ class Dialect:
 RENAME = "#define main mxeon_generated_main\n"
 VERTEX = "in vec3 i_position;\nvoid main() { gl_Position = vec4(i_position, 1.0); }\n"
 
-# Vulkan as WebGPU has it keeps textures and samplers apart. The generated text joins them: to it a
-# sampler2D is a texture that is always read through one and the same sampler.
+# WebGPU's Vulkan has separate textures and samplers, the generated text has combined ones: here its
+# sampler2D is a texture that is always read through the same sampler.
 SEPARATE = """#extension GL_EXT_samplerless_texture_functions : require
 layout (set = 1, binding = 0) uniform sampler mxeon_sampler;
 vec4 mxeon_lookup(texture2D t, vec2 uv) { return texture(sampler2D(t, mxeon_sampler), uv); }
@@ -98,27 +108,29 @@ class Call:
     Attributes
     ----------
     statements : str
-        What the shader's main does to call it.
+        Statements of the shader's main up to the call.
     result : str
-        The variable that receives the result.
+        Variable that receives the result.
     arguments : dict of str to (str, array_like)
         Type and values of every variable that the statements read, but P and occlusion.
     """
 
     statements: str
     result: str
-    arguments: dict
+    arguments: Arguments
 
 
-def bsdf_call(shader, wo, wi, inputs, branch):
-    """How a shader calls its BSDF, with the values that its arguments are to have.
+def bsdf_call(
+    shader: Shader, wo: ArrayLike, wi: ArrayLike, inputs: Mapping[str, Any], branch: str
+) -> Call:
+    """Call of a shader's BSDF, with the values of its arguments.
 
     Parameters
     ----------
     shader : Shader
-        Of a rasterised target.
+        Of a rasterized target.
     wo, wi, inputs, branch
-        As in `mxeon.shaders.hosts`.
+        As in `mxeon.shaders.hosts.base.Host.evaluate`.
 
     Returns
     -------
@@ -132,14 +144,16 @@ def bsdf_call(shader, wo, wi, inputs, branch):
     if branch not in CLOSURES:
         raise InputError(f"branch must be one of {', '.join(CLOSURES)}; got {branch!r}")
     statements, result, names = _find_call(shader.stages["pixel"], CLOSURES[branch], shader.element)
-    arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", [0.0, 0.0, 1.0])}
-    defaults = {each.name: each for each in shader.inputs}
+    arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
+    ports = {port.name: port for port in shader.inputs}
     for name in names:
-        arguments[name] = _argument(defaults.get(name), inputs)
+        arguments[name] = _argument(ports.get(name), inputs)
     return Call(statements, result, arguments)
 
 
-def bsdf_evaluation(shader, wo, wi, inputs, branch):
+def bsdf_evaluation(
+    shader: Shader, wo: ArrayLike, wi: ArrayLike, inputs: Mapping[str, Any], branch: str
+) -> tuple[str, Columns]:
     """Pixel stage that evaluates the one BSDF of a generated shader, and its arguments.
 
     Parameters
@@ -147,7 +161,7 @@ def bsdf_evaluation(shader, wo, wi, inputs, branch):
     shader : Shader
         Of a target in DIALECTS.
     wo, wi, inputs, branch
-        As in `mxeon.shaders.hosts`.
+        As in `mxeon.shaders.hosts.base.Host.evaluate`.
 
     Returns
     -------
@@ -162,7 +176,7 @@ def bsdf_evaluation(shader, wo, wi, inputs, branch):
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch)
     version, text = shader.stages["pixel"].split("\n", 1)
-    output = re.search(r"\bout vec4 (\w+);", text)[1]
+    output = re.findall(r"\bout vec4 (\w+);", text)[0]
     body = ["vec3 P = vec3(0.0);", "float occlusion = 1.0;", call.statements]
     body.append(f"{output} = vec4({call.result}.response, 1.0);")
     head = f"{version}\n{dialect.prelude}{RENAME}"
@@ -170,30 +184,38 @@ def bsdf_evaluation(shader, wo, wi, inputs, branch):
     return f"{head}{text}#undef main\n{main}", texels
 
 
-def function_evaluation(source, function, parameters, arguments, target="glsl"):
-    """Pixel stage that evaluates a function of `source`, and its arguments; see above."""
+def function_evaluation(
+    source: str,
+    function: str,
+    parameters: Sequence[tuple[str, str]],
+    arguments: Sequence[ArrayLike],
+    target: str = "glsl",
+) -> tuple[str, Columns]:
+    """Pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
     dialect = DIALECTS[target]
-    named = {name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)}
-    store = f"mxeon_out = vec4(vec3({function}({', '.join(named)})), 1.0);"
-    main, texels = _main(dialect, named, [store])
+    values = {
+        name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
+    }
+    store = f"mxeon_out = vec4(vec3({function}({', '.join(values)})), 1.0);"
+    main, texels = _main(dialect, values, [store])
     return dialect.version + dialect.prelude + dialect.output + source + main, texels
 
 
-def frame(arguments):
-    """How many elements there are, as many as the longest argument has, and the frame for them."""
+def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
+    """Number of elements, that of the longest argument, and size of the frame for them."""
     count = max(map(len, arguments.values()))
     return count, (WIDTH, -(-count // WIDTH))
 
 
-def texels(values, size):
+def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
     """Values, one row per element or one for all, laid out over a frame of `size`."""
     width, height = size
-    laid = np.zeros((width * height, values.shape[1]), dtype=np.float32)
-    laid[: len(values) if len(values) > 1 else None] = values
-    return laid.reshape(height, width, -1)
+    rows = np.zeros((width * height, values.shape[1]), dtype=np.float32)
+    rows[: len(values) if len(values) > 1 else None] = values
+    return rows.reshape(height, width, -1)
 
 
-def columns(arguments):
+def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
     """Values of (type, values) as float32 rows of 1 or 3, by name."""
     return {
         name: np.asarray(value, dtype=np.float32).reshape(-1, 1 if kind in SCALARS else 3)
@@ -201,30 +223,33 @@ def columns(arguments):
     }
 
 
-def _find_call(text, closure, element):
-    """The statements that evaluate the BSDF for a closure type, its result and its arguments."""
+def _find_call(text: str, closure: str, element: str) -> tuple[str, str, list[str]]:
+    """Statements that evaluate the BSDF for a closure type, its result and its arguments."""
     # MaterialX before 1.39.5 calls the constructor itself.
     constructor = r"(?:makeClosureData|ClosureData)"
-    block = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
-    calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block[0]) if block else []
+    match = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
+    block = match[0] if match else ""
+    calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block)
     if len(calls) != 1:
         raise InputError(
             f"element {element!r} must call one BSDF and nothing else to be evaluated; "
             f"its shader calls {len(calls)}"
         )
     (arguments, result), end = calls[0], f", {calls[0][1]});"
-    return block[0][: block[0].index(end) + len(end)], result, arguments.split(", ")
+    return block[: block.index(end) + len(end)], result, arguments.split(", ")
 
 
-def _argument(default, inputs):
-    """Type and value of a BSDF's argument; what is no input of the shader is the normal."""
-    if default is None:
-        return "vector3", inputs.get("normal", [0.0, 0.0, 1.0])
-    return default.type, inputs.get(default.path.rsplit("/", 1)[-1], default.value)
+def _argument(port: Input | None, inputs: Mapping[str, Any]) -> tuple[str, ArrayLike]:
+    """Type and value of a BSDF's argument; one that is no input of the shader is the normal."""
+    if port is None:
+        return "vector3", inputs.get("normal", NORMAL)
+    return port.type, inputs.get(port.path.rsplit("/", 1)[-1], port.value)
 
 
-def _main(dialect, arguments, body):
-    """A main that reads the arguments and then does `body`, and the arguments' texels."""
+def _main(
+    dialect: Dialect, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str]
+) -> tuple[str, Columns]:
+    """A main that reads the arguments and then executes `body`, and the arguments' texels."""
     values = {f"mxeon_{name}": rows for name, rows in columns(arguments).items()}
     fetches = [FETCH[kind].format(name) for name, (kind, _) in arguments.items()]
     lines = ["ivec2 mxeon_pixel = ivec2(gl_FragCoord.xy);", *fetches, *body]

@@ -1,31 +1,48 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenGL without a window: generated GLSL on Mesa's software driver or a GPU, in float32."""
 
-from functools import lru_cache, wraps
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache, partial, wraps
+from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
 import moderngl
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders import functions as twins
-from mxeon.shaders.hosts import fragment, raster
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts import base, fragment, raster
 from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.scene import Scene
 
 PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
 
+P = ParamSpec("P")
+T = TypeVar("T")
 
-def _current(verb):
-    """A verb with the host's context current: other hosts of a process have contexts of their own."""
+
+def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Host, P], T]:
+    """Verb with the host's context current: other hosts of a process have contexts of their own.
+
+    An object of OpenGL is a number that each context counts for itself. What Python drops at any
+    time is therefore deleted here, where its own context is current, and nowhere else.
+    """
 
     @wraps(verb)
-    def wrapped(self, *arguments):
+    def wrapped(self: Host, /, *arguments: P.args, **options: P.kwargs) -> T:
         with self._context:
-            return verb(self, *arguments)
+            try:
+                return verb(self, *arguments, **options)
+            finally:
+                self._context.gc()
 
     return wrapped
 
 
-class Host:
+class Host(base.Host):
     """OpenGL through EGL.
 
     Raises
@@ -36,28 +53,31 @@ class Host:
 
     name = "gl"
     target = "glsl"
-    profile = None
 
-    def __init__(self):
+    def __init__(self) -> None:
         try:
-            self._context = moderngl.create_standalone_context(require=430, backend="egl")
+            self._context = moderngl.create_context(
+                require=430,
+                standalone=True,
+                backend="egl",  # type: ignore[arg-type]
+            )
         except Exception as error:  # moderngl and glcontext raise bare Exception
             raise NotRun(
                 f"gl: no OpenGL 4.3 through EGL ({str(error).strip()}); on Debian: "
                 "apt-get install libegl1 libgl1-mesa-dri"
             ) from None
-        self._context.gc_mode = "auto"
-        self._program = lru_cache(maxsize=PROGRAMS)(self._compile)
+        self._context.gc_mode = "context_gc"
+        self._program = lru_cache(maxsize=PROGRAMS)(partial(_program, self._context))
 
     @_current
-    def identity(self):
+    def identity(self) -> Identity:
         """Version and device as the driver names them."""
         info = self._context.info
         return Identity(self.name, info["GL_VERSION"], info["GL_RENDERER"])
 
     @_current
-    def picture(self, shader, scene):
-        """The shader on the sphere; see `mxeon.shaders.hosts`."""
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Picture of the sphere; see `mxeon.shaders.hosts.base.Host`."""
         program = self._program(shader.stages["vertex"], shader.stages["pixel"])
         _set(program, raster.inputs(shader) | raster.light(scene))
         size = scene.size
@@ -65,33 +85,46 @@ class Host:
         return raster.picture(image, size)
 
     @_current
-    def evaluate(self, shader, wo, wi, inputs, branch):
-        """The shader's own BSDF function for pairs of directions; see `mxeon.shaders.hosts`."""
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
         return self._evaluate(shader.stages["vertex"], pixel, arguments)
 
     @_current
-    def call(self, function, *arguments):
-        """A function of the GLSL twins; see `mxeon.shaders.hosts`."""
-        parameters = twins.signature("glsl", function)
-        source = twins.source("glsl")
-        pixel, named = fragment.function_evaluation(source, function, parameters, arguments)
-        return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, named)
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.signature("glsl", function)
+        source = functions.source("glsl")
+        pixel, texels = fragment.function_evaluation(source, function, parameters, arguments)
+        return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, texels)
 
     @_current
-    def accumulate(self, pixel, uniforms, size, passes):
-        """The sum over passes of what a fragment shader draws; the uniform `tracer_pass` counts them.
+    def accumulate(
+        self,
+        pixel: str,
+        uniforms: Mapping[str, Any],
+        size: tuple[int, int],
+        passes: Iterable[int],
+    ) -> NDArray[Any]:
+        """Sum over passes of what a fragment shader draws; the uniform `tracer_pass` counts them.
 
         Parameters
         ----------
         pixel : str
             Fragment shader.
         uniforms : mapping of str to value
-            Those that the shader does not use are left out.
+            Their values; those that the shader does not use are left out.
         size : tuple of int
             Width and height.
         passes : iterable of int
-            What `tracer_pass` is in each.
+            Value of `tracer_pass` in each pass.
 
         Returns
         -------
@@ -109,35 +142,36 @@ class Host:
         frame.clear()
         context.enable(context.BLEND)
         context.blend_func = context.ONE, context.ONE
-        for each in passes:
-            program["tracer_pass"].value = each
+        for index in passes:
+            _set(program, {"tracer_pass": index})
             triangle.render()
             context.finish()
         context.disable(context.BLEND)
         image = np.frombuffer(frame.read(components=4, dtype="f4"), dtype=np.float32)
         return image.reshape(size[1], size[0], 4)
 
-    def close(self):
-        """Give the context back; the host is of no use afterwards."""
-        with self._context:  # later, programs would be deleted in whatever context is current then
-            self._program.cache_clear()
+    def close(self) -> None:
+        """Release the context, and all that is in it."""
+        self._program.cache_clear()
         self._context.release()
 
-    def _evaluate(self, vertex, pixel, arguments):
-        """One pixel per element, as many as the longest argument has."""
+    def _evaluate(
+        self, vertex: str, pixel: str, arguments: Mapping[str, NDArray[Any]]
+    ) -> NDArray[Any]:
+        """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= raster.SURROUNDING
+        textures |= raster.ENVIRONMENT
         program = self._program(vertex, pixel)
         return self._draw(program, textures, raster.triangle(), size).reshape(-1, 3)[:count]
 
-    def _compile(self, vertex, pixel):
-        try:
-            return self._context.program(vertex_shader=vertex, fragment_shader=pixel)
-        except moderngl.Error as error:
-            raise ShaderError(f"gl: {str(error).strip()}") from None
-
-    def _draw(self, program, textures, mesh, size):
+    def _draw(
+        self,
+        program: moderngl.Program,
+        textures: Mapping[str, NDArray[Any]],
+        mesh: raster.Mesh,
+        size: tuple[int, int],
+    ) -> NDArray[Any]:
         """One frame as float32 (height, width, 3), row 0 at the bottom."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
@@ -147,7 +181,7 @@ class Host:
         bound = [self._texture(textures[name], name == "u_envRadiance") for name in used]
         for unit, (name, texture) in enumerate(zip(used, bound, strict=True)):
             texture.use(location=unit)
-            program[name].value = unit
+            _set(program, {name: unit})
         vertices, indices = mesh
         buffers = [
             (context.buffer(values), f"{values.shape[1]}f", name)
@@ -158,7 +192,7 @@ class Host:
         image = np.frombuffer(frame.read(components=3, dtype="f4"), dtype=np.float32)
         return image.reshape(size[1], size[0], 3)
 
-    def _texture(self, texels, mipmaps):
+    def _texture(self, texels: NDArray[Any], mipmaps: bool) -> moderngl.Texture:
         height, width, components = texels.shape
         data = np.ascontiguousarray(texels, dtype=np.float32)
         texture = self._context.texture((width, height), components, data, dtype="f4")
@@ -167,8 +201,15 @@ class Host:
         return texture
 
 
-def _set(program, values):
-    """Gives the uniforms that the program has their values."""
+def _program(context: moderngl.Context, vertex: str, pixel: str) -> moderngl.Program:
+    try:
+        return context.program(vertex_shader=vertex, fragment_shader=pixel)
+    except moderngl.Error as error:
+        raise ShaderError(f"gl: {str(error).strip()}") from None
+
+
+def _set(program: moderngl.Program, values: Mapping[str, Any]) -> None:
+    """Set the uniforms that the program has."""
     for name, value in values.items():
         if name in program:
-            program[name].value = value
+            cast(moderngl.Uniform, program[name]).value = value

@@ -1,54 +1,64 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a rasterising host draws: one vertex per pixel, placed at its centre.
+"""Frames that a rasterizing host draws: one vertex per pixel, at its center.
 
-Each pixel of a picture so holds the shader's value at an exact point of the sphere, with
-neighbours to take derivatives from.
+A pixel of a picture holds the shader's value at an exact point of the sphere, and has neighbors to
+take derivatives from.
 """
 
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.shaders.document.values import members
+from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts.textures import irradiance, read_latlong, read_texture
-from mxeon.shaders.scene import sphere
+from mxeon.shaders.scene import Scene, sphere
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
-SURROUNDING = {"u_envRadiance": WHITE, "u_envIrradiance": WHITE}
+# Vertices by attribute, and the indices of their triangles.
+Mesh: TypeAlias = tuple[dict[str, NDArray[np.float32]], NDArray[np.uint32]]
+ENVIRONMENT = {"u_envRadiance": WHITE, "u_envIrradiance": WHITE}
 
 
-def textures(shader, scene):
-    """Texels by sampler: the images of a shader's document and the surrounding, row 0 first in v."""
+def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
+    """Texels by sampler: images of a shader's document and the environment, row 0 first in v."""
     radiance = read_latlong(scene.environment)
     images = {
-        each.name: read_texture(each.value)
-        for each in shader.inputs
-        if each.type == "filename" and each.value
+        port.name: read_texture(str(port.value))
+        for port in shader.inputs
+        if port.type == "filename" and port.value
     }
     return images | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
 
 
-def inputs(shader):
+def inputs(shader: Shader) -> dict[str, Any]:
     """Values of the uniforms that carry a shader's inputs, but for its images.
 
     A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
     is a uniform of its own.
     """
-    found = [(each.name, each.type, each.value) for each in shader.inputs]
-    uniforms = {}
-    while found:
-        name, kind, value = found.pop()
+    ports: list[tuple[str, str, Any]] = [
+        (port.name, port.type, port.value) for port in shader.inputs
+    ]
+    uniforms: dict[str, Any] = {}
+    while ports:
+        name, kind, value = ports.pop()
         if parts := members(kind, shader.document):
-            named = zip(parts, value or (), strict=False)
-            found += [(f"{name}.{part}", each, inner) for (part, each), inner in named]
+            values = zip(parts, value or (), strict=False)
+            ports += [(f"{name}.{part}", inner, member) for (part, inner), member in values]
         elif value is not None and not isinstance(value, str):
             uniforms[name] = value
     return uniforms
 
 
-def light(scene):
-    """Values of the uniforms by which a shader knows the viewer and the distant light."""
-    values = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE), "u_envRadianceMips": 1}
-    values["u_numActiveLightSources"] = 0  # a program keeps what the last scene gave it
+def light(scene: Scene) -> dict[str, Any]:
+    """Values of the uniforms of the viewer and the distant light."""
+    values: dict[str, Any] = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE), "u_envRadianceMips": 1}
+    values["u_numActiveLightSources"] = 0  # or the program keeps the last scene's
     if scene.light is not None:
         values |= {
             "u_numActiveLightSources": 1,
@@ -60,11 +70,11 @@ def light(scene):
     return values
 
 
-def grid(size):
-    """Vertices at the pixel centres, one row more on each side, and triangles between them.
+def grid(size: int) -> Mesh:
+    """Vertices at the pixel centers, one row more on each side, and triangles between them.
 
     The triangles that meet in a pixel's vertex surround it, and one of them covers the pixel. A
-    centre beside the sphere has the normal of the nearest point of the rim.
+    center beside the sphere has the normal of the nearest point of the rim.
     """
     points = sphere(size, margin=1)
     size = len(points.mask)
@@ -81,13 +91,13 @@ def grid(size):
     return {name: values.astype("f4") for name, values in vertices.items()}, square.astype("u4")
 
 
-def triangle():
+def triangle() -> Mesh:
     """One triangle over the whole frame."""
     corners = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
     normals = np.tile(np.array([[0, 0, 1]], dtype="f4"), (3, 1))
     return {"i_position": corners, "i_normal": normals}, np.arange(3, dtype="u4")
 
 
-def picture(image, size):
-    """A frame, row 0 at the bottom, as a picture: 0 off the sphere, row 0 at the top."""
+def picture(image: NDArray[Any], size: int) -> NDArray[Any]:
+    """Picture of a frame whose row 0 is at the bottom: 0 off the sphere, row 0 at the top."""
     return np.where(sphere(size).mask[..., None], image[::-1], np.float32(0.0))

@@ -5,11 +5,18 @@ A compute kernel after the generated text, which stays as it is, repeats the sta
 the text calls its BSDF. Arguments arrive in buffers, one row per thread.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders import functions as twins
-from mxeon.shaders.hosts import fragment
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts import base, fragment
 from mxeon.shaders.hosts.base import Identity
 
 try:
@@ -46,7 +53,7 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 }}
 """
 
-# GLSL's words for what the twins use, as far as Slang has other words.
+# GLSL's words for what the shader functions use, where Slang has other words.
 GLSL = """typealias vec3 = float3;
 #define mix lerp
 """
@@ -66,7 +73,7 @@ void {ENTRY}()
 """
 
 
-class Host:
+class Host(base.Host):
     """The first of DEVICES on which slangpy runs a kernel.
 
     Raises
@@ -77,14 +84,13 @@ class Host:
 
     name = "slang"
     target = "slang"
-    profile = None
 
-    def __init__(self):
+    def __init__(self) -> None:
         if slangpy is None:
             raise NotRun("slang: slangpy is not installed; pip install 'mxeon[slang]'")
         slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
         for device in DEVICES:
-            self._kernels = {}
+            self._kernels: dict[str, Any] = {}
             try:
                 self._device = slangpy.Device(type=slangpy.DeviceType[device])
                 self._white = self._texture()
@@ -93,43 +99,46 @@ class Host:
                 reason = _reason(error)
         raise NotRun(f"slang: no kernel for the CPU; {reason}")
 
-    def identity(self):
+    def identity(self) -> Identity:
         """slangpy's version and device."""
         info = self._device.info
         return Identity(self.name, f"slangpy {slangpy.__version__}", info.adapter_name)
 
-    def picture(self, shader, scene):
-        """Nothing: free pairs tell more.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("slang: there are no pictures here; compare values instead")
-
-    def evaluate(self, shader, wo, wi, inputs, branch):
-        """The shader's own BSDF function for pairs of directions; see `mxeon.shaders.hosts`."""
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
         call = fragment.bsdf_call(shader, wo, wi, inputs, branch)
         body = ["float3 P = float3(0.0);", "float occlusion = 1.0;", call.statements]
         body.append(f"float3 mxeon_value = {call.result}.response;")
         return self._evaluate(shader.stages["pixel"], call.arguments, body, self._environment())
 
-    def call(self, function, *arguments):
-        """A function of the GLSL twins, compiled as Slang; see `mxeon.shaders.hosts`."""
-        parameters = twins.signature("glsl", function)
-        named = {
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL shader function compiled as Slang; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.signature("glsl", function)
+        values = {
             name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
         }
-        body = [f"float3 mxeon_value = float3({function}({', '.join(named)}));"]
-        return self._evaluate(GLSL + twins.source("glsl"), named, body, {})
+        body = [f"float3 mxeon_value = float3({function}({', '.join(values)}));"]
+        return self._evaluate(GLSL + functions.source("glsl"), values, body, {})
 
-    def close(self):
-        """Give the device back; the host is of no use afterwards."""
+    def close(self) -> None:
+        """Release the device."""
         self._device.close()
 
-    def _evaluate(self, text, arguments, body, uniforms):
-        """One thread per element, as many as the longest argument has."""
+    def _evaluate(
+        self,
+        text: str,
+        arguments: Mapping[str, tuple[str, Any]],
+        body: Sequence[str],
+        uniforms: Mapping[str, Any],
+    ) -> NDArray[Any]:
+        """Values, one thread per element, as many as the longest argument has."""
         rows = fragment.columns(arguments)
         count = max(map(len, rows.values()))
         reads = [
@@ -140,13 +149,14 @@ class Host:
         output = self._device.create_buffer(
             size=12 * count, struct_size=4, usage=slangpy.BufferUsage.unordered_access
         )
-        values = {f"mxeon_{name}": self._buffer(each, count) for name, each in rows.items()}
+        values = {f"mxeon_{name}": self._buffer(column, count) for name, column in rows.items()}
         values |= {"mxeon_out": output, "mxeon_count": count, **uniforms}
         kernel.dispatch(thread_count=[count, 1, 1], vars=values)
-        return output.to_numpy().view(np.float32).reshape(count, 3)
+        result: NDArray[np.float32] = output.to_numpy().view(np.float32).reshape(count, 3)
+        return result
 
-    def _kernel(self, text):
-        """A text's kernel, compiled once."""
+    def _kernel(self, text: str) -> Any:
+        """Kernel of a text, compiled once."""
         if text not in self._kernels:
             try:
                 name = f"mxeon_{len(self._kernels)}"
@@ -157,12 +167,12 @@ class Host:
                 raise ShaderError(f"slang: {str(error).strip()}") from None
         return self._kernels[text]
 
-    def _buffer(self, rows, count):
+    def _buffer(self, rows: NDArray[Any], count: int) -> Any:
         data = np.array(np.broadcast_to(rows, (count, rows.shape[1])), order="C")
         usage = slangpy.BufferUsage.shader_resource
         return self._device.create_buffer(data=data, struct_size=4, usage=usage)
 
-    def _texture(self):
+    def _texture(self) -> Any:
         """One white texel."""
         texture = self._device.create_texture(
             type=slangpy.TextureType.texture_2d,
@@ -173,15 +183,15 @@ class Host:
         self._kernel(WHITE).dispatch(thread_count=[1, 1, 1], vars=values)
         return texture
 
-    def _environment(self):
-        """The uniforms of a white surrounding."""
+    def _environment(self) -> dict[str, Any]:
+        """Uniforms of a white environment."""
         white = {"tex": self._white, "sampler": self._device.create_sampler()}
         values = {"u_envRadiance": white, "u_envIrradiance": white, "u_envLightIntensity": 1.0}
         return {"pixelCB": {**values, "u_envMatrix": slangpy.float4x4.identity()}}
 
 
-def _kernel_text(names, body):
-    """The kernel that evaluates `body`, with a buffer for each argument."""
+def _kernel_text(names: Iterable[str], body: Sequence[str]) -> str:
+    """Kernel that evaluates `body`, with a buffer for each argument."""
     return KERNEL.format(
         buffers="\n".join(f"StructuredBuffer<float> mxeon_{name};" for name in names),
         body="\n".join("    " + line for line in body),
@@ -190,9 +200,9 @@ def _kernel_text(names, body):
     )
 
 
-def _reason(error):
-    """What slangpy says, and the remedy where it misses the compiler that it hands C++ to."""
-    said = [line.strip() for line in str(error).splitlines() if "error" in line]
+def _reason(error: Exception) -> str:
+    """Message of slangpy, and the remedy where it misses a C++ compiler."""
+    lines = [line.strip() for line in str(error).splitlines() if "error" in line]
     return "; ".join(
-        [*said, "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"]
+        [*lines, "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"]
     )

@@ -3,28 +3,40 @@
 
 Its sphere is a mesh and its camera a perspective one, so the picture is of a plane, on which every
 pixel is a pair of directions that is known exactly.
+
+Not verified against a real build: OSL's programs are in no package registry, and only programs that
+imitate them have run here. Options and scene format are those of OSL 1.14's sources.
 """
+
+from __future__ import annotations
 
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import MaterialX as mx
 import numpy as np
+from numpy.typing import NDArray
 
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import MxeonError, NotRun, ShaderError
 from mxeon.io.images import read_image
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.plane import DISTANCE, FOV, TILT, falloff
+from mxeon.shaders.scene import Scene
 
-PROGRAMS = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER"}  # and what may name them
-LIMIT = 300.0  # seconds for one of them
-LINES = 4  # of what a program printed last, in a message
+PROGRAMS = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER"}  # program -> variable
+UNVERIFIED = "not verified against a real build"
+TIMEOUT = 300.0  # seconds for one of them
+LINES = 4  # last ones of a program's output in a message
 
 PLANE = 100.0  # half the plane's side
-SAMPLES = {"light": 8, "environment": 16}  # squared: rays for each pixel
+SAMPLES = {"light": 8, "environment": 16}  # squared: rays of a pixel
 
 HELPERS = {
     "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",
@@ -55,8 +67,8 @@ SKY = """  <ShaderGroup name="sky">
   <Background />"""
 
 
-class Host:
-    """oslc and testrender, found on PATH or where MXEON_OSLC and MXEON_TESTRENDER say.
+class Host(base.Host):
+    """oslc and testrender, on PATH or named by MXEON_OSLC and MXEON_TESTRENDER.
 
     Raises
     ------
@@ -66,37 +78,26 @@ class Host:
 
     name = "testrender"
     target = "osl"
-    profile = None
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._oslc, self._testrender = map(_program, PROGRAMS)
         self._version = _run([self._oslc, "--version"]).strip() or "unknown version"
         self._temporary = TemporaryDirectory(prefix="mxeon-testrender-")
         self._folder = Path(self._temporary.name)
-        self._compiled = {}
+        self._compiled: dict[str, str] = {}
 
-    def identity(self):
-        """oslc's version; the device is the CPU."""
-        return Identity(self.name, f"OSL {self._version}", "CPU")
+    def identity(self) -> Identity:
+        """Version of oslc; the device is the CPU."""
+        return Identity(self.name, f"OSL {self._version}, {UNVERIFIED}", "CPU")
 
-    def picture(self, shader, scene):
-        """Nothing: there is no exact sphere here; see `plane`.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("testrender: there are no pictures of a sphere here, but of a plane")
-
-    def plane(self, shader, scene):
-        """The shader on the plane, as seen at `plane_pairs`.
+    def plane(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Radiance of a plane with the shader on it, at `mxeon.shaders.plane.plane_pairs`.
 
         Parameters
         ----------
         shader : Shader
         scene : Scene
-            A distant light, in the plane's frame, or a uniform surrounding.
+            A distant light, in the plane's frame, or a uniform environment.
 
         Returns
         -------
@@ -112,21 +113,11 @@ class Host:
             else pixels / falloff(scene.light, scene.size)[:, np.newaxis]
         )
 
-    def call(self, function, *arguments):
-        """Nothing: testrender evaluates closures alone.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("testrender: it has no way to evaluate a function of the shader twins")
-
-    def close(self):
-        """Remove the host's files; it is of no use afterwards."""
+    def close(self) -> None:
+        """Remove the host's files."""
         self._temporary.cleanup()
 
-    def _compile(self, name, text):
+    def _compile(self, name: str, text: str) -> None:
         """Compile a shader, unless its text is that of the last one of its name."""
         if self._compiled.get(name) == text:
             return
@@ -136,7 +127,7 @@ class Host:
         _run([self._oslc, "-q", include, f"{name}.osl"], self._folder, ShaderError)
         self._compiled[name] = text
 
-    def _render(self, text, scene):
+    def _render(self, text: str, scene: Scene) -> NDArray[np.float64]:
         """Pixels of a scene, (size * size, 3)."""
         size, aa = str(scene.size), SAMPLES["environment" if scene.light is None else "light"]
         picture = self._folder / "plane.exr"
@@ -151,8 +142,8 @@ class Host:
         return pixels[..., :3].reshape(-1, 3).astype(np.float64)
 
 
-def _scene(shader, scene):
-    """The scene in testrender's XML."""
+def _scene(shader: Shader, scene: Scene) -> str:
+    """Scene in testrender's XML."""
     if scene.light is None:
         lit = SKY.format(radiance=scene.environment)
     else:
@@ -172,33 +163,36 @@ def _scene(shader, scene):
     )  # fmt: skip
 
 
-def _triple(vector):
-    return ",".join(f"{each:.9g}" for each in vector)
+def _triple(vector: NDArray[Any]) -> str:
+    return ",".join(f"{component:.9g}" for component in vector)
 
 
-def _program(name):
-    """Path of a program: what its variable names, else the one on PATH."""
+def _program(name: str) -> str:
+    """Path of a program, named by its variable or on PATH."""
     variable = PROGRAMS[name]
-    wanted = os.environ.get(variable) or name
-    found = shutil.which(wanted)
-    if found is None:
+    program = os.environ.get(variable) or name
+    path = shutil.which(program)
+    if path is None:
         raise NotRun(
-            f"testrender: no program {wanted!r}; build Open Shading Language and name it in {variable}"
+            f"testrender: no program {program!r}; build Open Shading Language and name it in {variable}"
         )
-    return os.path.abspath(found)
+    return os.path.abspath(path)
 
 
-def _run(command, folder=None, refused=NotRun):
-    """What a program prints; `refused` is raised with its words if it fails."""
+def _run(
+    command: Sequence[str], folder: Path | None = None, failure: type[MxeonError] = NotRun
+) -> str:
+    """Output of a program; `failure` is raised with its last lines if it fails."""
     try:
-        done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, timeout=LIMIT, errors="replace"
+        process = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise NotRun(f"testrender: {error}") from None
-    if done.returncode:
-        said = " | ".join((done.stdout + done.stderr).strip().splitlines()[-LINES:])
-        raise refused(
-            f"testrender: {Path(command[0]).name}: exit status {done.returncode}; last output: {said}"
+    if process.returncode:
+        lines = (process.stdout + process.stderr).strip().splitlines()[-LINES:]
+        raise failure(
+            f"testrender: {Path(command[0]).name}: exit status {process.returncode}, "
+            f"{UNVERIFIED}; last output: {' | '.join(lines)}"
         )
-    return done.stdout
+    return process.stdout

@@ -1,27 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images that go into shaders: textures, surroundings and what a surrounding sends to a surface.
+"""Images that shaders read: textures, environments and the irradiance of an environment.
 
-Read with OpenImageIO, as float32 arrays (height, width, channels), linear or as stored: colour
-transforms are the shader's business.
+Read with OpenImageIO, as float32 arrays (height, width, channels), linear or as stored: color
+transforms are the shader's.
 """
 
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.errors import ImageError
 from mxeon.io.images import read_image
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
-RADIANCE_SIZE = 64  # rows and columns, or little more, from which it is summed
+RADIANCE_SIZE = 64  # rows and columns, or a few more, of the radiance that is summed
 
 
-def read_texture(path):
+def read_texture(path: str | Path) -> NDArray[np.float32]:
     """Pixels of a texture, row 0 at the bottom, where MaterialX has v = 0.
 
-    Of a set of textures it is the one of [0, 1]^2, in which all coordinates of a sphere lie. One
-    channel is that of all colors, as MaterialX has it.
+    Of a set of textures it is that of [0, 1]^2, in which all coordinates of a sphere lie. One channel
+    is repeated for all colors, as in MaterialX.
 
     Raises
     ------
@@ -36,18 +37,18 @@ def read_texture(path):
     return (np.repeat(pixels, 3, axis=-1) if pixels.shape[-1] == 1 else pixels)[::-1]
 
 
-def read_latlong(environment):
-    """Radiance of a surrounding as a latitude-longitude map, row 0 upwards (+y).
+def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
+    """Radiance of an environment as a latitude-longitude map, row 0 upwards (+y).
 
     Parameters
     ----------
     environment : None, float or Path
-        Nothing, a uniform radiance, or an image file.
+        No environment, its uniform radiance, or an image file.
 
     Raises
     ------
     ImageError
-        If it is no image that can be read, or not one of colours.
+        If the image cannot be read, or has fewer than 3 channels.
     """
     if isinstance(environment, (str, Path)):
         pixels = read_image(environment)
@@ -60,12 +61,12 @@ def read_latlong(environment):
     return np.full((1, 1, 3), environment or 0.0, dtype=np.float32)
 
 
-def irradiance(radiance):
+def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
     """Irradiance over pi for every surface normal, as a latitude-longitude map.
 
         (1 / pi) integral of L(omega) max(0, n . omega) d omega
 
-    A uniform surrounding gives its own radiance, exactly.
+    That of a uniform environment is its radiance, exactly.
     """
     if radiance.shape[:2] == (1, 1):
         return radiance
@@ -77,10 +78,12 @@ def irradiance(radiance):
     normals, _ = _directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
     weights = np.maximum(0.0, normals @ incoming.T) * solid_angle
     weights /= weights.sum(axis=1, keepdims=True)
-    return (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1).astype(np.float32)
+    pixels = (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1)
+    irradiance: NDArray[np.float32] = pixels.astype(np.float32)
+    return irradiance
 
 
-def _directions(rows, columns):
+def _directions(rows: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Directions and solid angles of a latitude-longitude map's pixels, as MaterialX maps them."""
     polar = np.pi * (np.arange(rows) + 0.5) / rows
     azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5)

@@ -1,23 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
 
-glslang makes the SPIR-V, wgpu hands it to the driver. Since wgpu takes no interface block, the one
-that an evaluation leaves unused is removed from the SPIR-V, not from the text.
+glslang makes the SPIR-V, wgpu passes it to the driver. wgpu takes no interface block: the one that
+an evaluation leaves unused is removed from the SPIR-V, not from the text.
 """
+
+from __future__ import annotations
 
 import re
 import shutil
 import struct
 import subprocess
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders import functions as twins
-from mxeon.shaders.hosts import fragment
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts import base, fragment
 from mxeon.shaders.hosts.base import Identity
 
 try:
@@ -27,7 +33,7 @@ except ImportError:
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin")
 REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
-LIMIT = 60.0  # seconds for one of them
+TIMEOUT = 60.0  # seconds for one of them
 
 # Kinds of bindings, in wgpu's words.
 FILTERED = {"texture": {"sample_type": "float"}}
@@ -35,7 +41,7 @@ UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
 SAMPLER = {"sampler": {"type": "filtering"}}
 BLOCK = {"buffer": {"type": "uniform"}}
 
-# What a generated text binds.
+# Bindings of a generated text.
 DECLARATION = re.compile(
     r"^layout \((?:std140, )?binding=(?P<number>\d+)\) uniform "
     r"(?:sampler2D (?P<texture>\w+);|\w+\s*\{(?P<block>[^}]*)\})",
@@ -52,8 +58,10 @@ CORNERS = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
 FLOATS = {1: "r32float", 4: "rgba32float"}  # components -> format
 WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
 
+Bindings: TypeAlias = dict[int, tuple[dict[str, Any], Any]]  # kind and resource by number
 
-class Host:
+
+class Host(base.Host):
     """The first Vulkan adapter that wgpu finds.
 
     Raises
@@ -64,9 +72,8 @@ class Host:
 
     name = "vulkan"
     target = "vulkan"
-    profile = None
 
-    def __init__(self):
+    def __init__(self) -> None:
         if wgpu is None:
             raise NotRun("vulkan: wgpu is not installed; pip install 'mxeon[vulkan]'")
         for program in (COMPILER[0], REMOVER[0]):
@@ -77,54 +84,51 @@ class Host:
         self._adapter = _adapter()
         self._device = self._adapter.request_device_sync()
 
-    def identity(self):
+    def identity(self) -> Identity:
         """Version and device as the driver names them."""
         info = self._adapter.info
         version = f"Vulkan, {info['description']}; wgpu {wgpu.__version__}"
         return Identity(self.name, version, info["device"])
 
-    def picture(self, shader, scene):
-        """Nothing: free pairs tell more.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("vulkan: there are no pictures here; compare values instead")
-
-    def evaluate(self, shader, wo, wi, inputs, branch):
-        """The shader's own BSDF function for pairs of directions; see `mxeon.shaders.hosts`."""
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
         return self._evaluate(pixel, arguments)
 
-    def call(self, function, *arguments):
-        """A function of the GLSL twins; see `mxeon.shaders.hosts`."""
-        parameters = twins.signature("glsl", function)
-        source = twins.source("glsl")
-        pixel, named = fragment.function_evaluation(
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.signature("glsl", function)
+        source = functions.source("glsl")
+        pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )
-        return self._evaluate(pixel, named)
+        return self._evaluate(pixel, texels)
 
-    def close(self):
-        """Give the device back; the host is of no use afterwards."""
+    def close(self) -> None:
+        """Release the device."""
         self._device.destroy()
 
-    def _evaluate(self, pixel, arguments):
-        """One pixel per element, as many as the longest argument has."""
+    def _evaluate(self, pixel: str, arguments: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
+        """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         texels = [fragment.texels(rows, size) for rows in arguments.values()]
         sets = (
             self._generated(pixel),
             {0: (SAMPLER, self._device.create_sampler())},
-            {number: (UNFILTERED, self._texture(each)) for number, each in enumerate(texels)},
+            {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
         )
-        layouts, groups = zip(*(self._group(each) for each in sets), strict=True)
+        layouts, groups = zip(*(self._group(bindings) for bindings in sets), strict=True)
         pipeline = self._pipeline(pixel, layouts)
         return self._draw(pipeline, groups, size)[:count]
 
-    def _draw(self, pipeline, groups, size):
+    def _draw(self, pipeline: Any, groups: Iterable[Any], size: tuple[int, int]) -> NDArray[Any]:
         """One frame as float32 rows, pixel after pixel."""
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         target = self._device.create_texture(size=size, format=FLOATS[4], usage=usage)
@@ -144,7 +148,7 @@ class Host:
         frame = queue.read_texture({"texture": target}, layout, (*size, 1))
         return np.frombuffer(frame, dtype=np.float32).reshape(-1, 4)[:, :3]
 
-    def _pipeline(self, pixel, layouts):
+    def _pipeline(self, pixel: str, layouts: Sequence[Any]) -> Any:
         vertex = fragment.DIALECTS[self.target].vertex
         position = {"format": "float32x3", "offset": 0, "shader_location": 0}
         return self._device.create_render_pipeline(
@@ -157,7 +161,7 @@ class Host:
             primitive={"topology": "triangle-list"},
         )
 
-    def _stage(self, stage, text):
+    def _stage(self, stage: str, text: str) -> dict[str, Any]:
         """A stage, "vert" or "frag", of a pipeline."""
         code = _spirv(stage, text)
         try:
@@ -166,17 +170,17 @@ class Host:
             raise ShaderError(f"vulkan: {str(error).strip()}") from None
         return {"module": module, "entry_point": "main"}
 
-    def _generated(self, text):
-        """The bindings that generated text declares: white textures, and blocks of UNIFORMS."""
+    def _generated(self, text: str) -> Bindings:
+        """Bindings that generated text declares: white textures, and blocks of UNIFORMS."""
         return {
-            int(found["number"]): (FILTERED, self._texture(WHITE))
-            if found["texture"]
-            else (BLOCK, self._block(found["block"]))
-            for found in DECLARATION.finditer(text)
+            int(match["number"]): (FILTERED, self._texture(WHITE))
+            if match["texture"]
+            else (BLOCK, self._block(match["block"]))
+            for match in DECLARATION.finditer(text)
         }
 
-    def _group(self, bindings):
-        """Layout and group of one set of bindings: number -> kind, resource."""
+    def _group(self, bindings: Bindings) -> tuple[Any, Any]:
+        """Layout and group of one set of bindings."""
         kinds = [
             {"binding": number, "visibility": "FRAGMENT", **kind}
             for number, (kind, _) in bindings.items()
@@ -187,7 +191,7 @@ class Host:
         layout = self._device.create_bind_group_layout(entries=kinds)
         return layout, self._device.create_bind_group(layout=layout, entries=entries)
 
-    def _texture(self, texels):
+    def _texture(self, texels: NDArray[Any]) -> Any:
         """A texture of 8-bit or float32 texels, the latter of one component or of three."""
         height, width, components = texels.shape
         if components == 3:  # there are no textures of three
@@ -200,13 +204,13 @@ class Host:
         self._device.queue.write_texture({"texture": texture}, texels, layout, size)
         return texture.create_view()
 
-    def _block(self, members):
+    def _block(self, members: str) -> Any:
         """A uniform block with the values of UNIFORMS in it, and 0 elsewhere."""
         data = _std140(members)
         return self._device.create_buffer_with_data(data=data, usage="UNIFORM")
 
 
-def _adapter():
+def _adapter() -> Any:
     for adapter in wgpu.gpu.enumerate_adapters_sync():
         if adapter.info["backend_type"] == "Vulkan":
             return adapter
@@ -214,8 +218,8 @@ def _adapter():
 
 
 @lru_cache(maxsize=8)  # a check evaluates one shader many times
-def _spirv(stage, text):
-    """SPIR-V of a stage, as bytes."""
+def _spirv(stage: str, text: str) -> bytes:
+    """SPIR-V of a stage."""
     with TemporaryDirectory(prefix="mxeon-vulkan-") as folder:
         whole, used = str(Path(folder, "whole")), Path(folder, "used")
         _run([*COMPILER, "-S", stage, "-o", whole], text)
@@ -223,16 +227,18 @@ def _spirv(stage, text):
         return used.read_bytes()
 
 
-def _run(command, text=""):
+def _run(command: Sequence[str], text: str = "") -> None:
     try:
-        done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=LIMIT)
+        process = subprocess.run(
+            command, input=text, capture_output=True, text=True, timeout=TIMEOUT
+        )
     except subprocess.TimeoutExpired:
-        raise NotRun(f"vulkan: {command[0]} takes longer than {LIMIT:.0f} s") from None
-    if done.returncode:
-        raise ShaderError(f"vulkan: {(done.stdout + done.stderr).strip()}")
+        raise NotRun(f"vulkan: {command[0]} takes longer than {TIMEOUT:.0f} s") from None
+    if process.returncode:
+        raise ShaderError(f"vulkan: {(process.stdout + process.stderr).strip()}")
 
 
-def _std140(members):
+def _std140(members: str) -> bytes:
     """Bytes of a block: up to the first structure, after which none of UNIFORMS comes."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):

@@ -1,31 +1,38 @@
 # SPDX-License-Identifier: Apache-2.0
 """WebGL2 in a headless Chromium: generated ESSL as a browser runs it, in float32.
 
-Playwright drives the browser that is installed. The page, `webgl.js`, draws a frame per request;
-numbers go there in a file, bit for bit, and come back as text. No host name resolves in this
+Playwright drives the browser that is installed. The page, `webgl.js`, draws a frame per request. It
+reads arrays from a file, bit for bit, and returns pixels as text. No host name resolves in this
 browser: nothing leaves the machine.
 """
+
+from __future__ import annotations
 
 import base64
 import os
 import re
 import shutil
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders import functions as twins
-from mxeon.shaders.hosts import fragment, raster
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts import base, fragment, raster
 from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.scene import Scene
 
 try:
     from playwright import sync_api
 except ImportError:
-    sync_api = None
+    sync_api = None  # type: ignore[assignment]
 
 PROGRAM = "MXEON_CHROMIUM"  # environment variable that names the browser
 FLAGS = (
@@ -49,7 +56,7 @@ UNIFORMS = {
 IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
 
 
-class Host:
+class Host(base.Host):
     """A browser, started anew after it died.
 
     Playwright wants a thread without an event loop, and always the same: it gets one of its own.
@@ -67,14 +74,13 @@ class Host:
 
     name = "webgl"
     target = "essl"
-    profile = None
 
-    def __init__(self, limit=300.0):
+    def __init__(self, limit: float = 300.0) -> None:
         if sync_api is None:
             raise NotRun("webgl: Playwright is not installed; pip install 'mxeon[webgl]'")
         self._program = program()
         self._limit = 1000.0 * limit
-        self._page = None
+        self._page: Any = None
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
         try:
@@ -83,13 +89,13 @@ class Host:
             self.close()
             raise
 
-    def identity(self):
+    def identity(self) -> Identity:
         """Version and device as the browser names them."""
-        found = self._ask("identify")
-        return Identity(self.name, f"Chromium {found['version']}, WebGL2", found["device"])
+        answer = self._ask("identify")
+        return Identity(self.name, f"Chromium {answer['version']}, WebGL2", answer["device"])
 
-    def picture(self, shader, scene):
-        """The shader on the sphere; see `mxeon.shaders.hosts`."""
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Picture of the sphere; see `mxeon.shaders.hosts.base.Host`."""
         size = scene.size
         uniforms = UNIFORMS | _inputs(shader) | raster.light(scene)
         frame = self._draw(
@@ -97,65 +103,88 @@ class Host:
         )
         return raster.picture(frame, size)
 
-    def evaluate(self, shader, wo, wi, inputs, branch):
-        """The shader's own BSDF function for pairs of directions; see `mxeon.shaders.hosts`."""
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
         return self._evaluate(shader.stages["vertex"], pixel, arguments)
 
-    def call(self, function, *arguments):
-        """A function of the GLSL twins; see `mxeon.shaders.hosts`."""
-        parameters = twins.signature("glsl", function)
-        source = twins.source("glsl")
-        pixel, named = fragment.function_evaluation(
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.signature("glsl", function)
+        source = functions.source("glsl")
+        pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )
-        return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, named)
+        return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, texels)
 
-    def close(self):
+    def close(self) -> None:
         """End the browser; the next request starts another."""
         self._thread.submit(self._stop).result()
 
-    def _evaluate(self, vertex, pixel, arguments):
-        """One pixel per element, as many as the longest argument has."""
+    def _evaluate(
+        self, vertex: str, pixel: str, arguments: Mapping[str, NDArray[Any]]
+    ) -> NDArray[Any]:
+        """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= raster.SURROUNDING
+        textures |= raster.ENVIRONMENT
         stages = {"vertex": vertex, "pixel": pixel}
         frame = self._draw(stages, UNIFORMS, textures, raster.triangle(), size)
         return frame.reshape(-1, 3)[:count]
 
-    def _draw(self, stages, uniforms, textures, mesh, size):
+    def _draw(
+        self,
+        stages: Mapping[str, str],
+        uniforms: Mapping[str, Any],
+        textures: Mapping[str, NDArray[Any]],
+        mesh: raster.Mesh,
+        size: tuple[int, int],
+    ) -> NDArray[Any]:
         """One frame as float32 (height, width, 3), row 0 at the bottom."""
         arrays = {"textures": textures, "attributes": mesh[0], "mesh": {"indices": mesh[1]}}
         with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
-            numbers = Path(folder, "numbers")
-            job = {**stages, "size": size, "uniforms": uniforms, **_write(numbers, arrays)}
-            answer = self._ask("draw", job, numbers)
+            file = Path(folder, "arrays")
+            job = {**stages, "size": size, "uniforms": uniforms, **_write(file, arrays)}
+            answer = self._ask("draw", job, file)
         if "refused" in answer:
             raise ShaderError(f"webgl: {answer['refused'].strip()}")
         pixels = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
         return pixels.reshape(size[1], size[0], 4)[..., :3]
 
-    def _ask(self, function, job=None, numbers=None):
-        """What a function of the page returns; a browser that dies or hangs is ended."""
-        answer = self._thread.submit(self._answer, function, job, numbers).result()
+    def _ask(
+        self, function: str, job: dict[str, Any] | None = None, file: Path | None = None
+    ) -> dict[str, Any]:
+        """Answer of a function of the page; a browser that dies or hangs is ended."""
+        answer = self._thread.submit(self._answer, function, job, file).result()
         if "failed" in answer:
             raise NotRun(f"webgl: {answer['failed']}")
         return answer
 
-    def _answer(self, function, job, numbers):
+    def _answer(
+        self, function: str, job: dict[str, Any] | None, file: Path | None
+    ) -> dict[str, Any]:
         try:
             if self._page is None:
                 self._start()
-            if numbers is not None:
-                self._page.set_input_files("input", numbers)
+            if file is not None:
+                self._page.set_input_files("input", file)
             handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
-            return handle.json_value() | {"version": self._page.context.browser.version}
+            answer: dict[str, Any] = handle.json_value() | {
+                "version": self._page.context.browser.version
+            }
+            return answer
         except sync_api.Error as error:
             self._stop()
             return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
 
-    def _start(self):
+    def _start(self) -> None:
         playwright = self._stack.enter_context(sync_api.sync_playwright())
         browser = self._stack.enter_context(
             playwright.chromium.launch(
@@ -165,32 +194,33 @@ class Host:
         self._page = browser.new_page()
         self._page.set_content(PAGE.format(Path(__file__).with_suffix(".js").read_text("utf-8")))
 
-    def _stop(self):
+    def _stop(self) -> None:
         self._page = None
         self._stack.close()
 
 
-def program():
-    """The browser to drive."""
-    named = os.environ.get(PROGRAM)
-    found = shutil.which(named or "chromium")
-    if found is None:
+def program() -> str:
+    """Path of the browser."""
+    name = os.environ.get(PROGRAM) or "chromium"
+    path = shutil.which(name)
+    if path is None:
         raise NotRun(
-            f"webgl: no program {named or 'chromium'!r}; on Debian: apt-get install chromium, "
+            f"webgl: no program {name!r}; on Debian: apt-get install chromium, "
             f"or name another Chromium in {PROGRAM}"
         )
-    return found
+    return path
 
 
-def _inputs(shader):
+def _inputs(shader: Shader) -> dict[str, Any]:
     """Values of the uniforms that carry a shader's inputs."""
     names = re.findall(r"^uniform vec2 (\w+_(uv_scale|uv_offset));", shader.stages["pixel"], re.M)
     return {name: IMAGE[kind] for name, kind in names} | raster.inputs(shader)
 
 
-def _write(path, groups):
-    """Write arrays one after the other; shapes and places in the file, by group and name."""
-    layout, offset = {}, 0
+def _write(path: Path, groups: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict[str, Any]:
+    """Write arrays one after the other; return shapes and offsets in the file by group and name."""
+    layout: dict[str, Any] = {}
+    offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():
             layout[group] = {}

@@ -1,24 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's Cycles as a host: OSL on the CPU, in a process of its own.
+"""Blender's Cycles: OSL on the CPU, in a process of its own.
 
-Cycles lives in the Python module `bpy`, which needs an environment of its own. This half writes OSL
-files, has `worker.py` render them there and reads the float32 pictures back.
+Cycles is part of the Python module `bpy`, which needs an environment of its own. This half writes
+OSL files, `worker.py` renders them there, and this half reads the float32 pictures.
 """
+
+from __future__ import annotations
 
 import math
 import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import MaterialX as mx
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.io.images import read_image, write_image
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.hosts.cycles.process import Worker, interpreter
 from mxeon.shaders.library import data_folder
-from mxeon.shaders.scene import sphere
+from mxeon.shaders.scene import Scene, sphere
 
 # Samples per pixel under an environment, 1 being enough under a distant light.
 ENVIRONMENT_SAMPLES = 256
@@ -46,8 +52,8 @@ shader call(output closure color out = 0)
 READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
 
 
-class Host:
-    """Blender's Cycles; a context manager, since it holds a process and a temporary folder.
+class Host(base.Host):
+    """Blender's Cycles, with a process and a temporary folder.
 
     Parameters
     ----------
@@ -66,35 +72,29 @@ class Host:
     target = "osl"
     profile = "cycles"
 
-    def __init__(self, sources=None, limit=300.0):
+    def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
         python = interpreter()
         self._sources = Path(sources or data_folder() / "genosl").resolve()
         self._temporary = TemporaryDirectory(prefix="mxeon-cycles-")
         self.worker = Worker(python, Path(self._temporary.name, "log.txt"), limit)
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *error):
-        self.close()
-
-    def close(self):
+    def close(self) -> None:
         """End the process and remove the temporary files."""
         self.worker.close()
         self._temporary.cleanup()
 
-    def identity(self):
+    def identity(self) -> Identity:
         """Name and version; the device is always the CPU."""
         self.worker.start()
         return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
 
-    def picture(self, shader, scene):
-        """The unit sphere wearing a generated OSL shader.
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Picture of the unit sphere with a generated OSL shader on it.
 
         Parameters
         ----------
         shader : Shader
-            Made for the target "osl".
+            Of the target "osl".
         scene : Scene
             Its environment, if any, uniform.
 
@@ -118,13 +118,13 @@ class Host:
         the rim, and 2e-5 in the mean over the sphere.
         """
         if isinstance(scene.environment, (str, Path)):
-            raise NotRun("cycles: an environment must be uniform here; got an image")
+            raise NotRun("cycles: environment must be uniform; got an image")
         with self._folder() as folder:
             pixels = self._render(Path(folder), _on_sphere(shader.stages["pixel"]), **_frame(scene))
         return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
 
-    def node(self, kind, inputs, scene):
-        """The unit sphere wearing a node of Blender's, rendered without OSL.
+    def blender_node(self, kind: str, inputs: dict[str, Any], scene: Scene) -> NDArray[Any]:
+        """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
 
         Parameters
         ----------
@@ -151,17 +151,7 @@ class Host:
             )
         return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
 
-    def evaluate(self, shader, wo, wi, inputs, branch):
-        """Nothing: Cycles evaluates a closure only where a ray meets a surface.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("cycles: a closure has no value for free pairs; compare pictures instead")
-
-    def call(self, function, *arguments):
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a function of the OSL sources.
 
         Parameters
@@ -206,27 +196,27 @@ class Host:
             pixels = self._render(Path(folder), text, **frame)
         return pixels.reshape(-1, 3)[:count]
 
-    def _folder(self):
-        """A folder for the files of one request."""
+    def _folder(self) -> TemporaryDirectory[str]:
+        """Folder for the files of one request."""
         return TemporaryDirectory(dir=self._temporary.name)
 
-    def _signature(self, function):
-        """The file that defines a function, and the types of its parameters."""
+    def _signature(self, function: str) -> tuple[Path, list[str]]:
+        """File that defines a function, and the types of its parameters."""
         pattern = rf"^(?:color|vector|float)\s+{function}\s*\(([^)]*)\)\s*{{"
         for source in sorted(self._sources.glob("*.osl")):
-            found = re.search(pattern, source.read_text(), re.MULTILINE)
-            if found:
-                return source, [part.split()[0] for part in found[1].split(",")]
+            match = re.search(pattern, source.read_text(), re.MULTILINE)
+            if match:
+                return source, [part.split()[0] for part in match[1].split(",")]
         raise InputError(f"function must be defined in {self._sources}; got {function!r}")
 
-    def _render(self, folder, text, **frame):
-        """The picture that the worker makes of the OSL shader `text`."""
+    def _render(self, folder: Path, text: str, **frame: Any) -> NDArray[Any]:
+        """Picture that the worker renders of the OSL shader `text`."""
         shader = folder / "shader.osl"
         shader.write_text(text)
         return self._request(folder, shader=str(shader), **frame)
 
-    def _request(self, folder, **request):
-        """The picture that the worker makes."""
+    def _request(self, folder: Path, **request: Any) -> NDArray[Any]:
+        """Picture that the worker renders."""
         output = folder / "output.exr"
         reply = self.worker.ask(output=str(output), **request)
         if "error" in reply:
@@ -239,11 +229,11 @@ class Host:
         try:
             return read_image(output)
         except ImageError as error:
-            raise NotRun(f"cycles: Blender wrote no picture; {error}") from None
+            raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
 
 
-def _frame(scene):
-    """What the worker has to know of a scene."""
+def _frame(scene: Scene) -> dict[str, Any]:
+    """Parts of a scene that the worker needs."""
     return {
         "size": scene.size,
         "samples": 1 if scene.environment is None else ENVIRONMENT_SAMPLES,
@@ -253,20 +243,20 @@ def _frame(scene):
     }
 
 
-def _on_sphere(text):
-    """A generated shader whose includes are found and which knows the sphere's coordinates."""
+def _on_sphere(text: str) -> str:
+    """A generated shader with the path of its include and the sphere's texture coordinates."""
     header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
     text = text.replace('"mx_funcs.h"', f'"{header.asString()}"')
     head, brace, body = text.rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"
 
 
-def _columns(kind, values):
+def _columns(kind: str, values: ArrayLike) -> NDArray[np.float32]:
     """Values of an OSL type as rows of float32, one row for what is the same everywhere."""
     return np.asarray(values, np.float32).reshape(-1, 1 if kind == "float" else 3)
 
 
-def _write(path, rows, size):
+def _write(path: Path, rows: NDArray[np.float32], size: int) -> None:
     """Write rows as the first pixels of a float32 image of `size` x `size`."""
     channels = rows.shape[1]
     pixels = np.zeros((size * size, channels), np.float32)

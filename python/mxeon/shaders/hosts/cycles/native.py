@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's own nodes as a renderer to judge: Cycles without OSL, and without MaterialX."""
+"""Blender's own nodes: Cycles without OSL, and without MaterialX."""
 
-from mxeon.errors import NotRun
-from mxeon.shaders.hosts import cycles
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+from mxeon.shaders.hosts import base, cycles
 from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.scene import Scene
 
 # Title of a node -> Blender's type, its sockets for color and roughness, and what switches all
 # but its diffuse lobe off.
-NODES = {
+NODES: dict[str, tuple[str, str, str, dict[str, float]]] = {
     "Diffuse BSDF": ("ShaderNodeBsdfDiffuse", "Color", "Roughness", {}),
     "Principled BSDF": (
         "ShaderNodeBsdfPrincipled",
@@ -18,7 +25,7 @@ NODES = {
 }
 
 
-class Host:
+class Host(base.Host):
     """Blender's Cycles with its own shading nodes.
 
     Raises
@@ -29,31 +36,22 @@ class Host:
 
     name = "cycles-native"
     target = "osl"  # of its sibling: nothing is generated for this host
-    profile = None
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._cycles = cycles.Host()
 
-    def identity(self):
+    def identity(self) -> Identity:
         """Name and version; the device is always the CPU."""
         return Identity(self.name, self._cycles.identity().version, "CPU, SVM")
 
-    def node(self, title, color, roughness, scene):
-        """The unit sphere wearing one of NODES; see `mxeon.shaders.hosts.cycles.Host.node`."""
+    def node(
+        self, title: str, color: Sequence[float], roughness: float, scene: Scene
+    ) -> NDArray[Any]:
+        """Picture of the unit sphere with one of NODES on it; see `mxeon.shaders.hosts.cycles`."""
         kind, color_socket, roughness_socket, fixed = NODES[title]
         inputs = {color_socket: (*color, 1.0), roughness_socket: roughness, **fixed}
-        return self._cycles.node(kind, inputs, scene)
+        return self._cycles.blender_node(kind, inputs, scene)
 
-    def picture(self, shader, scene):
-        """Nothing: this host knows no generated shader.
-
-        Raises
-        ------
-        NotRun
-            Always.
-        """
-        raise NotRun("cycles-native: Blender's own nodes run no generated shader")
-
-    def close(self):
+    def close(self) -> None:
         """End the process."""
         self._cycles.close()

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The process in which Blender runs: finding it, talking to it, and outliving its end.
+"""The process in which Blender runs, which answers one request after the other.
 
-The other end of the conversation is `worker.py`.
+The other end of the pipe is `worker.py`.
 """
+
+from __future__ import annotations
 
 import json
 import os
@@ -12,6 +14,7 @@ from pathlib import Path
 from signal import Signals
 from subprocess import PIPE, Popen
 from threading import Timer
+from typing import Any
 
 from mxeon.errors import NotRun
 from mxeon.shaders.library import data_folder
@@ -19,21 +22,21 @@ from mxeon.shaders.library import data_folder
 CHECKOUT = data_folder()  # in an installed package, no folder that has an environment
 
 
-def interpreter():
-    """The Python that has `bpy`: MXEON_CYCLES_PYTHON, else that of `.venv-cycles` in the checkout.
+def interpreter() -> Path:
+    """Path of the Python that has `bpy`: MXEON_CYCLES_PYTHON, or in the checkout's `.venv-cycles`.
 
-    A `.venv-cycles` in the working folder does not count: it may be anyone's.
+    A `.venv-cycles` in the working folder is not used: anyone may have put it there.
 
     Raises
     ------
     NotRun
         If there is none; says how to get one.
     """
-    named = os.environ.get("MXEON_CYCLES_PYTHON")
-    python = Path(named or Path(CHECKOUT, ".venv-cycles", "bin", "python"))
+    path = os.environ.get("MXEON_CYCLES_PYTHON")
+    python = Path(path or Path(CHECKOUT, ".venv-cycles", "bin", "python"))
     if python.is_file() and os.access(python, os.X_OK):
         return python
-    missing = f"no interpreter {named}" if named else "no folder .venv-cycles"
+    missing = f"no interpreter {path}" if path else "no folder .venv-cycles"
     raise NotRun(
         f"cycles: {missing}; pip install bpy==5.0.1 in an environment of Python 3.11 "
         "and name its interpreter in MXEON_CYCLES_PYTHON"
@@ -48,9 +51,9 @@ class Worker:
     python : Path
         Interpreter that has `bpy`.
     log : Path
-        File that takes what Blender prints.
+        File for the output of Blender.
     limit : float
-        Seconds after which a request is given up and the process killed.
+        Seconds that a request may take; after them the process is killed.
 
     Attributes
     ----------
@@ -58,20 +61,20 @@ class Worker:
         Blender's, once it has been started.
     """
 
-    def __init__(self, python, log, limit):
+    def __init__(self, python: Path, log: Path, limit: float) -> None:
         self._python = python
         self.log = log
         self.limit = limit
-        self._process = None
-        self.version = None
+        self._process: Popen[str] | None = None
+        self.version: str | None = None
 
     @property
-    def pid(self):
+    def pid(self) -> int | None:
         """Number of the running process, or None."""
         return self._process.pid if self._process and self._process.poll() is None else None
 
-    def start(self):
-        """Start the process unless it runs; wait until it says its version."""
+    def start(self) -> None:
+        """Start the process unless it runs; wait for its version."""
         if self.pid is not None:
             return
         self.close()
@@ -88,7 +91,7 @@ class Worker:
             )
         self.version = self._reply()["version"]
 
-    def ask(self, **request):
+    def ask(self, **request: Any) -> dict[str, Any]:
         """The reply to a request.
 
         Raises
@@ -98,18 +101,21 @@ class Worker:
         """
         self.start()
         self._read = self.log.stat().st_size
+        assert self._process
         with suppress(BrokenPipeError):
             print(json.dumps(request), file=self._process.stdin, flush=True)
         return self._reply()
 
-    def _reply(self):
+    def _reply(self) -> dict[str, Any]:
+        assert self._process and self._process.stdout
         begin = time.monotonic()
         killer = Timer(self.limit, self._process.kill)
         killer.start()
         line = self._process.stdout.readline()
         killer.cancel()
         if line.endswith("}\n"):
-            return json.loads(line)
+            reply: dict[str, Any] = json.loads(line)
+            return reply
         if line:  # an answer cut short: the process is on its way out
             self._process.kill()
         status = self._process.wait()
@@ -121,13 +127,13 @@ class Worker:
         self.close()
         raise NotRun(f"cycles: {end}; last output: {last}")
 
-    def printed(self):
+    def printed(self) -> list[str]:
         """The lines printed since the last request."""
         text = self.log.read_bytes()[self._read :].decode(errors="replace")
         return [line.strip() for line in text.splitlines() if line.strip()]
 
-    def close(self):
-        """End the process, if there is one."""
+    def close(self) -> None:
+        """End the process if it runs."""
         if self._process:
             self._process.kill()
             self._process.communicate()

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `cycles` host that runs inside Blender's own Python, started by its path.
+"""The half of the `cycles` host that runs in Blender's Python, started by its path.
 
 It reads one JSON object per line on standard input and answers each with one on standard output:
-first, unasked, `{"version": ...}`, then per request `{}` or `{"error": ...}`. Whatever Blender and
-the OSL compiler print goes to standard error. It ends when standard input does.
+first `{"version": ...}`, then `{}` or `{"error": ...}` per request. Output of Blender and of the OSL
+compiler goes to standard error. The process ends when standard input does.
 """
+
+from __future__ import annotations
 
 import json
 import math
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 # Blender prints on standard output as soon as it is imported: that goes to standard error.
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
@@ -26,7 +29,7 @@ BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
 sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
 
 
-def unit_scene(distance):
+def unit_scene(distance: float) -> Any:
     """A new scene without light, the square [-1, 1]^2 seen orthographically from z = `distance`."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
@@ -39,7 +42,7 @@ def unit_scene(distance):
     return scene
 
 
-def set_output(scene, path, size):
+def set_output(scene: Any, path: str, size: int) -> None:
     """Make `scene` render to a linear float32 RGB file, black where nothing is hit."""
     render = scene.render
     render.filepath = path
@@ -51,8 +54,8 @@ def set_output(scene, path, size):
     render.image_settings.exr_codec = "NONE"
 
 
-def set_sampling(scene, samples, osl):
-    """Make `scene` render by Cycles, with or without OSL, every sample at its pixel's centre."""
+def set_sampling(scene: Any, samples: int, osl: bool) -> None:
+    """Make `scene` render with Cycles, with or without OSL, every sample at its pixel's center."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
@@ -66,8 +69,8 @@ def set_sampling(scene, samples, osl):
     cycles.filter_width = 0.01
 
 
-def add_sphere(scene, radius, material):
-    """Add an exact sphere around the origin, a point cloud of one point, wearing `material`."""
+def add_sphere(scene: Any, radius: float, material: Any) -> None:
+    """Add an exact sphere around the origin, a point cloud of one point, with `material` on it."""
     mesh = bpy.data.meshes.new("sphere")
     mesh.from_pydata([(0.0, 0.0, 0.0)], [], [])
     sphere = bpy.data.objects.new("sphere", mesh)
@@ -80,7 +83,7 @@ def add_sphere(scene, radius, material):
     points.materials.append(material)
 
 
-def script_material(shader):
+def script_material(shader: str) -> Any:
     """A material whose surface is the output of the compiled OSL file `shader`."""
     material, script = surface_material("ShaderNodeScript")
     script.mode = "EXTERNAL"
@@ -89,7 +92,7 @@ def script_material(shader):
     return material
 
 
-def native_material(kind, inputs):
+def native_material(kind: str, inputs: dict[str, Any]) -> Any:
     """A material whose surface is a node of Blender's, with some of its inputs set."""
     material, node = surface_material(kind)
     for name, value in inputs.items():
@@ -98,7 +101,7 @@ def native_material(kind, inputs):
     return material
 
 
-def surface_material(kind):
+def surface_material(kind: str) -> tuple[Any, Any]:
     """A new material that holds one node of a kind, and that node."""
     material = bpy.data.materials.new("material")
     nodes = material.node_tree.nodes
@@ -106,13 +109,13 @@ def surface_material(kind):
     return material, nodes.new(kind)
 
 
-def connect(material, node):
+def connect(material: Any, node: Any) -> None:
     """Make the first output of a node the surface of its material."""
     surface = material.node_tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
     material.node_tree.links.new(node.outputs[0], surface)
 
 
-def add_light(scene, direction):
+def add_light(scene: Any, direction: tuple[float, float, float]) -> None:
     """Add a distant light of irradiance pi that shines from `direction`."""
     sun = bpy.data.lights.new("light", "SUN")
     sun.angle = 0.0
@@ -123,7 +126,7 @@ def add_light(scene, direction):
     scene.collection.objects.link(light)
 
 
-def add_environment(scene, radiance):
+def add_environment(scene: Any, radiance: float) -> None:
     """Surround the scene by a uniform `radiance`."""
     world = bpy.data.worlds.new("environment")
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
@@ -131,8 +134,17 @@ def add_environment(scene, radiance):
     scene.world = world
 
 
-def render(output, size, samples, radius, light, environment, shader=None, native=None):
-    """Render the OSL file `shader`, or a node of Blender's, on a sphere; the reply."""
+def render(
+    output: str,
+    size: int,
+    samples: int,
+    radius: float,
+    light: tuple[float, float, float] | None,
+    environment: float | None,
+    shader: str | None = None,
+    native: dict[str, Any] | None = None,
+) -> dict[str, str]:
+    """Render the OSL file `shader`, or a node of Blender's, on a sphere; return the reply."""
     if shader:
         compiled = os.path.splitext(shader)[0] + ".oso"
         if not _cycles.osl_compile(shader, compiled):
@@ -149,7 +161,7 @@ def render(output, size, samples, radius, light, environment, shader=None, nativ
     return {}
 
 
-def main():
+def main() -> None:
     """Serve requests until standard input ends."""
     print(json.dumps({"version": bpy.app.version_string}), file=REPLIES)
     for line in sys.stdin:
