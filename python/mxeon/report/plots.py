@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images and plots that travel inside a page. Needs matplotlib, of the `report` extra."""
+"""Images and plots inside a page. Needs matplotlib, of the `report` extra."""
 
 import base64
 import io
 import re
-from functools import cache
 
 import matplotlib
 import numpy as np
@@ -13,15 +12,14 @@ from matplotlib.figure import Figure
 from matplotlib.image import imsave
 
 from mxeon.io.images import NOT_FINITE
-from mxeon.shaders.scene import sphere
 
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
 SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
-# Stands for the page's text colour until the plot is part of the page.
+# Stands for the page's text color until the plot is part of the page.
 TEXT_COLOR = "#010203"
-# Else matplotlib adds a description of itself, with addresses, to each plot.
+# Without these, matplotlib adds a description of itself, with addresses, to each plot.
 NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 STYLE = {
     "svg.fonttype": "none",
@@ -42,7 +40,7 @@ STYLE = {
 
 
 def picture_uri(pixels):
-    """Address of a square picture of the sphere inside the page, transparent around it.
+    """A picture as a data URI.
 
     Parameters
     ----------
@@ -51,18 +49,12 @@ def picture_uri(pixels):
     Returns
     -------
     str
-        A data URI holding a PNG of at most SHOWN_SIZE pixels on a side.
+        Holds a PNG of at most SHOWN_SIZE pixels on a side.
     """
     step = -(-len(pixels) // SHOWN_SIZE)
-    shown = np.dstack([pixels, _opacity(len(pixels))])[::step, ::step]
     buffer = io.BytesIO()
-    imsave(buffer, shown, format="png", metadata={"Software": None})
+    imsave(buffer, pixels[::step, ::step], format="png", metadata={"Software": None})
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
-
-
-@cache
-def _opacity(size):
-    return np.where(sphere(size).mask, 255, 0).astype(np.uint8)
 
 
 def difference_pixels(difference_map, scale):
@@ -105,15 +97,15 @@ def albedo_plot(curves, markers, prefix):
     Returns
     -------
     str
-        An <svg> element that takes over the text colour around it and holds numbers only.
+        An <svg> element in the text color of the page; its text is numbers and axis labels only.
     """
-    grey = len(set(curves[0].rho)) == 1
+    gray = len(set(curves[0].rho)) == 1
     buffer = io.StringIO()
     # Not what a file matplotlibrc in the working folder says: it could start LaTeX.
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(3.6, 2.4), layout="constrained")
         axes = figure.subplots()
-        for channel, color in enumerate((TEXT_COLOR,) if grey else CHANNEL_COLORS):
+        for channel, color in enumerate((TEXT_COLOR,) if gray else CHANNEL_COLORS):
             _draw_channel(axes, curves, markers, channel, color)
         axes.set(xlim=(-0.03, 1.03), xlabel="cosine of the polar angle", ylabel="albedo")
         axes.margins(y=0.15)
