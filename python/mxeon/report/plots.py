@@ -4,13 +4,17 @@
 import base64
 import io
 import re
+from collections.abc import Sequence
 
 import matplotlib
 import numpy as np
 from matplotlib import style
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
+from numpy.typing import NDArray
 
+from mxeon.conformance.results import Curve
 from mxeon.io.images import NOT_FINITE
 
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
@@ -39,7 +43,7 @@ STYLE = {
 }
 
 
-def picture_uri(pixels):
+def picture_uri(pixels: NDArray[np.uint8]) -> str:
     """A picture as a data URI.
 
     Parameters
@@ -57,7 +61,7 @@ def picture_uri(pixels):
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
-def difference_pixels(difference_map, scale):
+def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDArray[np.uint8]:
     """A difference in DIFFERENCE_COLORS, which span 0 to `scale`; magenta if not finite.
 
     Parameters
@@ -76,13 +80,13 @@ def difference_pixels(difference_map, scale):
     return np.where(finite[..., None], colors, np.array(NOT_FINITE, dtype=np.uint8))
 
 
-def difference_gradient(stops=9):
+def difference_gradient(stops: int = 9) -> str:
     """DIFFERENCE_COLORS from left to right, as a CSS gradient."""
     colors = (matplotlib.colors.to_hex(DIFFERENCE_COLORS(at)) for at in np.linspace(0, 1, stops))
     return f"linear-gradient(to right, {', '.join(colors)})"
 
 
-def albedo_plot(curves, markers, prefix):
+def albedo_plot(curves: Sequence[Curve], markers: Sequence[str], prefix: str) -> str:
     """Directional albedo over the cosine, as SVG text: lines expected, markers measured.
 
     Parameters
@@ -101,7 +105,7 @@ def albedo_plot(curves, markers, prefix):
     """
     gray = len(set(curves[0].rho)) == 1
     buffer = io.StringIO()
-    # Not what a file matplotlibrc in the working folder says: it could start LaTeX.
+    # The defaults, not a matplotlibrc of the working folder, which could start LaTeX.
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(3.6, 2.4), layout="constrained")
         axes = figure.subplots()
@@ -115,7 +119,9 @@ def albedo_plot(curves, markers, prefix):
     return re.sub(r'((?:\bid="|href="#|url\(#))', rf"\g<1>{prefix}", svg)
 
 
-def _draw_channel(axes, curves, markers, channel, color):
+def _draw_channel(
+    axes: Axes, curves: Sequence[Curve], markers: Sequence[str], channel: int, color: str
+) -> None:
     axes.plot(curves[0].mu, curves[0].expected[:, channel], color=color, linewidth=1.2)
     for curve, marker in zip(curves, markers, strict=True):
         axes.plot(
