@@ -92,9 +92,9 @@ def test_a_figure_twice_as_large_is_seen():
     assert ledger.figures(text.replace("0.39", "0.78"))[0] > (1.0 + PRINTED) * 0.39
 
 
-@pytest.mark.parametrize("page, made", ledger.OF_QUANTITIES.items())
-def test_the_quantities_of_each_page_are_those_computed(page, made):
-    assert ledger.written(page) == made()
+@pytest.mark.parametrize("page, measure", ledger.OF_QUANTITIES.items())
+def test_the_quantities_of_each_page_are_those_computed(page, measure):
+    assert ledger.written(page) == measure()
 
 
 @pytest.mark.parametrize("cause", ledger.CAUSES.values(), ids=lambda cause: cause.file)
