@@ -18,25 +18,12 @@ from mxeon.models.albedo import eon_albedo_dir
 from mxeon.models.known_defects import eon_rho_cubed_albedo_dir
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import cycles
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import FURNACE, sphere
 
 SIZE = 128
 SAMPLES = (64, 512)
 COLOR, ROUGHNESS = (0.8, 0.4, 0.1), 1.0
-TEXT = """<materialx version="1.39">
-  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
-    <input name="color" type="color3" value="{}, {}, {}"/>
-    <input name="roughness" type="float" value="{}"/>
-    <input name="energy_compensation" type="boolean" value="true"/>
-  </oren_nayar_diffuse_bsdf>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe"/>
-  </surface>
-  <surfacematerial name="look" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-  </surfacematerial>
-</materialx>"""
-
 # What each should show: stock's multiple-scattering lobe carries one factor of rho too many.
 ALBEDOS = {"eonlib": eon_albedo_dir, "stock": eon_rho_cubed_albedo_dir}
 
@@ -49,7 +36,8 @@ MEAN = 3e-4
 
 def shader(library):
     """The generated OSL of the material."""
-    text = TEXT.format(*COLOR, ROUGHNESS)
+    inputs = {"color": COLOR, "roughness": ROUGHNESS, FLAG: True}
+    text = material_text(OREN_NAYAR, inputs)
     profile = "cycles" if library == "eonlib" else None
     return generate(text, "osl", library=library, profile=profile)[0]
 

@@ -11,26 +11,28 @@ from benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio,
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import gl, raster
 from mxeon.shaders.library import LIBRARIES
+from mxeon.shaders.nodes import (
+    FLAG,
+    OREN_NAYAR,
+    SURFACE,
+    document_text,
+    input_text,
+    lobe_text,
+    node_text,
+)
 from mxeon.shaders.scene import SIDE, sphere
 
 SIZE = 1024
 FRAMES = 2
 MESH = 128  # squares along a side of the mesh, few enough to cost nothing beside the pixels
-LOBE = """<input name="roughness" type="float" value="0.6"/>
-    <input name="energy_compensation" type="boolean" value="true"/>
-  </oren_nayar_diffuse_bsdf>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe"/>"""
-NODES = {
-    "oren_nayar": '<oren_nayar_diffuse_bsdf name="lobe" type="BSDF">' + LOBE + "</surface>",
-    "open_pbr_surface": """<open_pbr_surface name="shading" type="surfaceshader">
-    <input name="base_diffuse_roughness" type="float" value="0.6"/></open_pbr_surface>""",
-    "standard_surface": """<standard_surface name="shading" type="surfaceshader">
-    <input name="diffuse_roughness" type="float" value="0.6"/></standard_surface>""",
+ROUGHNESS = {
+    "open_pbr_surface": "base_diffuse_roughness",
+    "standard_surface": "diffuse_roughness",
 }
-MATERIAL = """<surfacematerial name="look" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-  </surfacematerial>"""
+NODES = {"oren_nayar": lobe_text(OREN_NAYAR, {"roughness": 0.6, FLAG: True}) + SURFACE} | {
+    category: node_text(category, "surfaceshader", "shading", input_text(name, "float", 0.6))
+    for category, name in ROUGHNESS.items()
+}
 SHORTER = {"oren_nayar": 1.0}
 GOALS = {"oren_nayar": 1.0, "open_pbr_surface": 1.0}
 
@@ -44,8 +46,7 @@ FACING = 0.2
 
 def shader(node, library):
     """The generated shader of a material around one node."""
-    text = f'<materialx version="1.39">{NODES[node]}{MATERIAL}</materialx>'
-    return generate(text, "glsl", library=library, lights=True)[0]
+    return generate(document_text(NODES[node]), "glsl", library=library, lights=True)[0]
 
 
 class Frame:

@@ -11,8 +11,7 @@ from functools import partial
 import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, interleave, ratio, scaled
-from mxeon.models import geometry
-from mxeon.models.brdf import eon_brdf
+from mxeon.models import eon_brdf, threads
 
 C1 = 0.5 - 2.0 / (3.0 * np.pi)
 C2 = 2.0 / 3.0 - 28.0 / (15.0 * np.pi)
@@ -61,22 +60,17 @@ def arguments(count, material):
     return wo, wi, rng.random((count, 3)), rng.random(count)
 
 
-def with_workers(workers, *given):
-    """`eon_brdf` with so many blocks at a time."""
-    usual, geometry.WORKERS = geometry.WORKERS, workers
-    try:
-        return eon_brdf(*given)
-    finally:
-        geometry.WORKERS = usual
+def on_threads(count, *arguments):
+    """`eon_brdf` on so many threads."""
+    with threads(count):
+        return eon_brdf(*arguments)
 
 
 def rivals(given):
     """Every way to the same values."""
     found = {"naive": partial(naive_eon_brdf, *given)}
-    for workers in (1, 2):
-        found[f"blocks, {workers} thread{'s'[: workers - 1]}"] = partial(
-            with_workers, workers, *given
-        )
+    for count in (1, 2):
+        found[f"blocks, {count} thread{'s'[: count - 1]}"] = partial(on_threads, count, *given)
     return found | compiled(given)
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// EON and its sampling with the operations of the paper's listings, to be timed against.
+// Functions to time the shaders against, none of which is shipped: EON and its sampling with the
+// operations of the paper's listings, and forms whose terms of the material are hoisted.
 //
 // Included after eon_sampling.glsl, whose constants and matrix it uses. H stands for albedos there:
 // printed_* keep the divisions, bounds and shared terms of [Portsmouth2025], Listings 1, 3 and 4.
@@ -72,6 +73,14 @@ vec3 printed_quartic_of(float mu_o, float mu_i, float s, vec3 scale, vec3 tint, 
     return scale * (1.0 + roughness * quotient) + tint * lost_o * lost_i;
 }
 
+// Not shipped: eon_brdf_mu from the colors of its two lobes, which depend on the material alone and are
+// computed once for many directions: fon_scale, and fon_scale times eon_multiple_weight.
+vec3 hoisted_eon(float mu_o, float mu_i, float s, vec3 single, vec3 multiple, float roughness)
+{
+    float quotient = fon_quotient(mu_o, mu_i, s);
+    return (1.0 + roughness * quotient) * single + fon_loss(mu_o) * fon_loss(mu_i) * multiple;
+}
+
 // [Portsmouth2025], Eq. (28).
 vec3 printed_environment(float mu, vec3 rho, float roughness)
 {
@@ -88,19 +97,19 @@ vec4 printed_cltc(vec3 wo, float u1, float u2, float roughness)
     float b = ltc_b(wo.z, roughness);
     float c = ltc_c(wo.z, roughness);
     float d = ltc_d(wo.z, roughness);
-    float kept = cltc_kept(d);
+    float kept = cltc_kept_fraction(d);
     vec3 wh = cltc_clipped(u1, u2, d);
     vec3 wi = vec3(a * wh.x + b * wh.z, c * wh.y, d * wh.x + wh.z);
     float size = length(wi);
     float pdf = wh.z / (EON_PI * kept) * size * size * size / (c * (a - b * d));
-    vec3 turn = eon_azimuth(wo);
-    return vec4(eon_turned(wi / size, turn.x, turn.y), pdf);
+    vec3 turn = eon_azimuth_frame(wo);
+    return vec4(eon_rotate_z(wi / size, turn.x, turn.y), pdf);
 }
 
 // [Portsmouth2025], Listing 4.
 vec4 printed_sample(vec3 wo, float u1, float u2, float roughness)
 {
-    float P_u = eon_cltc_share(wo.z, roughness);
+    float P_u = eon_cltc_probability(wo.z, roughness);
     vec4 drawn;
     if (u1 <= P_u)
     {

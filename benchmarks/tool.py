@@ -19,21 +19,10 @@ from mxeon.errors import NotRun
 from mxeon.shaders.generation import GENERATORS, TARGETS, generate
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import examples_folder, load_library
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 DOCUMENTS = (1, 10, 100, 1000)
 WHOLE = ("gl", "webgl", "vulkan", "slang", "cycles")
-TEXT = """<materialx version="1.39">
-  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
-    <input name="roughness" type="float" value="{}"/>
-    <input name="energy_compensation" type="boolean" value="true"/>
-  </oren_nayar_diffuse_bsdf>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe"/>
-  </surface>
-  <surfacematerial name="look" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-  </surfacematerial>
-</materialx>"""
 
 
 def _process(*arguments):
@@ -106,7 +95,10 @@ def unwarned():
 def generating(rounds, documents=100):
     """Figures of generation over documents of one lobe, against the raw calls, by target."""
     library, figures, checks = load_library(), [], []
-    texts = [TEXT.format(0.5 + 0.004 * k) for k in range(documents)]
+    texts = [
+        material_text(OREN_NAYAR, {"roughness": 0.5 + 0.004 * k, FLAG: True})
+        for k in range(documents)
+    ]
     for target in TARGETS:
         rivals = {
             "ours": lambda target=target: [generate(text, target) for text in texts],

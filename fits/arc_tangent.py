@@ -3,7 +3,7 @@
 
     python -m fits.arc_tangent
 
-For `mxeon.compiled` on [0, 1] in float64, and for `oren_nayar_angle` of the shader twins on
+For `benchmarks.numba_eon` on [0, 1] in float64, and for `oren_nayar_angle` of the shader twins on
 [0, tan(pi / 8)] in float32.
 
 The polynomial that meets atan(t) / t at the roots of a Chebyshev polynomial in t^2, solved with 40

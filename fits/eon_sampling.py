@@ -3,9 +3,9 @@
 
     python -m fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine without any parameter. Written x = p + sum(a_k B_k(p)), with p
-the root of the random number that makes x analytic in it, they keep both ends whatever the
-coefficients are. What counts is the density that results, so that is what the fit makes as nearly
+Two inverse distributions map a random number to a cosine without any parameter. Written
+x = p + sum(a_k B_k(p)), with p the root of the random number that makes x analytic in it, they keep
+both ends whatever the coefficients are. What counts is the density that results, so that is what the fit makes as nearly
 right as it can: the largest relative error of the density is least (minimax fits on Newton steps,
 which need the exact density but not the exact inverse).
 
@@ -17,7 +17,7 @@ from fits.fon_loss import closed_form
 from fits.minimax import least_largest, mp
 
 COUNT = 400  # points of a fit
-STEPS = 5  # after which Newton's last changes no digit that is printed
+STEPS = 4  # after which Newton's last changes no digit that is printed
 
 # Average of H over the projected hemisphere: c1 - c2 of [Portsmouth2025].
 LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6
@@ -42,9 +42,8 @@ def upper_density(m):
 def multiple_basis(t):
     """t w^k with w^2 = 1 - t, and the derivatives by t."""
     w = mp.sqrt(1 - t)
-    return [t * w**k for k in MULTIPLE_POWERS], [
-        w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS
-    ]
+    values = [t * w**k for k in MULTIPLE_POWERS]
+    return values, [w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS]
 
 
 def upper_basis(y):

@@ -62,7 +62,7 @@ def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
 
 def largest_errors(p, q):
     """Largest relative error of H over `CHECKED` in float64, and in simulated float32."""
-    exact = formulas.loss(np.float64(CHECKED))
+    exact = formulas.fon_loss(np.float64(CHECKED))
     double = fitted(np.float64(CHECKED), p, q)
     single = fitted(CHECKED, np.float32(p), np.float32(q))
     return tuple(float(np.max(np.abs(each / exact - 1.0))) for each in (double, single))

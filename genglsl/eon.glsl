@@ -62,7 +62,7 @@ float qon_b(float sigma)
 }
 
 // D = (1 + c1 r)(1 - rho (1 - <E>)), at least 1; the denominator of [Portsmouth2025], Eq. (18).
-vec3 eon_recaptured(vec3 rho, float roughness)
+vec3 eon_denominator(vec3 rho, float roughness)
 {
     return vec3(1.0 + EON_C1 * roughness) - roughness * EON_LOSS_AVG * rho;
 }
@@ -78,7 +78,7 @@ float qon_albedo_dir(float mu, float sigma)
 // [Portsmouth2025], Eq. (28), where all but a loss cancels: rho (1 - r H (1 - rho) / D).
 vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
 {
-    vec3 lost = roughness * fon_loss(mu) * (vec3(1.0) - rho) / eon_recaptured(rho, roughness);
+    vec3 lost = roughness * fon_loss(mu) * (vec3(1.0) - rho) / eon_denominator(rho, roughness);
     return rho * (vec3(1.0) - lost);
 }
 
@@ -106,7 +106,7 @@ float fon_quotient(float mu_o, float mu_i, float s)
 vec3 eon_multiple_weight(vec3 rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);
-    return weight * rho / eon_recaptured(rho, roughness);
+    return weight * rho / eon_denominator(rho, roughness);
 }
 
 // [Portsmouth2025], Eqs. (1), (3).
@@ -123,12 +123,4 @@ vec3 eon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float roughness)
     vec3 scale = fon_scale(rho, roughness);
     float single = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
     return scale * (vec3(single) + fon_loss(mu_o) * fon_loss(mu_i) * weight);
-}
-
-// eon_brdf_mu from the colors of its two lobes, which depend on the material alone and are computed
-// once for many directions: fon_scale, and fon_scale times eon_multiple_weight.
-vec3 eon_brdf_of(float mu_o, float mu_i, float s, vec3 single, vec3 multiple, float roughness)
-{
-    float quotient = fon_quotient(mu_o, mu_i, s);
-    return (1.0 + roughness * quotient) * single + fon_loss(mu_o) * fon_loss(mu_i) * multiple;
 }

@@ -4,7 +4,7 @@
 // Pairs x_sample -> wi and x_pdf, the density of wi in 1/sr. wo and wi are unit vectors that leave
 // the surface, in a local frame with the normal +z, neither below the horizon. u1 and u2 are
 // independent uniform random numbers in [0, 1); d is an entry of the lobe's matrix M, and turn
-// holds what eon_azimuth returns.
+// holds what eon_azimuth_frame returns.
 
 #include "oren_nayar_family.glsl"
 
@@ -12,15 +12,15 @@
 #define EON_BELOW_ONE (1.0 - 1.0 / 16777216.0)
 
 // Cosine and sine of the azimuth of wo, and the sine of its polar angle. Below 1e-18, where squares
-// underflow, wo counts as the normal, whose azimuth is given 0.
-vec3 eon_azimuth(vec3 wo)
+// underflow, wo counts as the normal, whose azimuth counts as 0.
+vec3 eon_azimuth_frame(vec3 wo)
 {
     float S_o = min(sqrt(wo.x * wo.x + wo.y * wo.y), 1.0);
     return S_o > 1.0e-18 ? vec3(wo.x / S_o, wo.y / S_o, S_o) : vec3(1.0, 0.0, 0.0);
 }
 
-// wi turned about the normal by the angle that has this cosine and sine.
-vec3 eon_turned(vec3 wi, float cosine, float sine)
+// wi rotated about the normal by the angle that has this cosine and sine.
+vec3 eon_rotate_z(vec3 wi, float cosine, float sine)
 {
     return vec3(cosine * wi.x - sine * wi.y, sine * wi.x + cosine * wi.y, wi.z);
 }
@@ -81,15 +81,15 @@ float ltc_d(float mu, float roughness)
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu);
 }
 
-// Unit M wh, turned to the azimuth of wo: [Portsmouth2025], Eqs. (22), (25).
+// Unit M wh, rotated to the azimuth of wo: [Portsmouth2025], Eqs. (22), (25).
 vec3 ltc_transformed(vec3 wo, vec3 wh, float roughness, float d)
 {
     float a = ltc_a(wo.z, roughness);
     float b = ltc_b(wo.z, roughness);
     float c = ltc_c(wo.z, roughness);
     vec3 wi = normalize(vec3(a * wh.x + b * wh.z, c * wh.y, d * wh.x + wh.z));
-    vec3 turn = eon_azimuth(wo);
-    return eon_turned(wi, turn.x, turn.y);
+    vec3 turn = eon_azimuth_frame(wo);
+    return eon_rotate_z(wi, turn.x, turn.y);
 }
 
 // Density of that for wh under the clamped cosine: [Portsmouth2025], Eqs. (23), (24). wh below is
@@ -100,12 +100,12 @@ float ltc_density(vec3 wo, vec3 wi, float roughness, float d)
     float b = ltc_b(wo.z, roughness);
     float c = ltc_c(wo.z, roughness);
     float det = c * (a - b * d);
-    vec3 turn = eon_azimuth(wo);
-    vec3 back = eon_turned(wi, turn.x, -turn.y);
+    vec3 turn = eon_azimuth_frame(wo);
+    vec3 back = eon_rotate_z(wi, turn.x, -turn.y);
     float wh_z = c * (a * back.z - d * back.x);
     vec3 wh = vec3(c * (back.x - b * back.z), (a - b * d) * back.y, wh_z);
-    float share = det / dot(wh, wh);
-    return share * share * max(wh_z, 0.0) / EON_PI;
+    float ratio = det / dot(wh, wh);
+    return ratio * ratio * max(wh_z, 0.0) / EON_PI;
 }
 
 // The transformed cosine without the coefficient d.
@@ -130,8 +130,8 @@ float ltc_pdf(vec3 wo, vec3 wi, float roughness)
     return ltc_density(wo, wi, roughness, ltc_d(wo.z, roughness));
 }
 
-// Part of the clamped cosine that is left above d x + z = 0: [Portsmouth2025], below Eq. (26).
-float cltc_kept(float d)
+// Fraction of the clamped cosine above d x + z = 0: [Portsmouth2025], below Eq. (26).
+float cltc_kept_fraction(float d)
 {
     return 0.5 + 0.5 / sqrt(1.0 + d * d);
 }
@@ -141,7 +141,7 @@ float cltc_kept(float d)
 vec3 cltc_clipped(float u1, float u2, float d)
 {
     vec3 wh = cosine_sample(u1, u2);
-    float x = mix(sqrt(max(1.0 - wh.y * wh.y, 0.0)), wh.x, cltc_kept(d));
+    float x = mix(sqrt(max(1.0 - wh.y * wh.y, 0.0)), wh.x, cltc_kept_fraction(d));
     return vec3(d > 0.0 ? x : -x, wh.y, sqrt(max(1.0 - (x * x + wh.y * wh.y), 0.0)));
 }
 
@@ -157,11 +157,11 @@ vec3 cltc_sample(vec3 wo, float u1, float u2, float roughness)
 float cltc_pdf(vec3 wo, vec3 wi, float roughness)
 {
     float d = ltc_d(wo.z, roughness);
-    return ltc_density(wo, wi, roughness, d) / cltc_kept(d);
+    return ltc_density(wo, wi, roughness, d) / cltc_kept_fraction(d);
 }
 
 // Probability P_u of the uniform lobe: [Portsmouth2025], Listing 4; mu and roughness in [0, 1].
-float eon_cltc_share(float mu, float roughness)
+float eon_cltc_probability(float mu, float roughness)
 {
     float P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu;
     return pow(roughness, 0.1) * P_u;
@@ -170,7 +170,7 @@ float eon_cltc_share(float mu, float roughness)
 // [Portsmouth2025], Listing 4, but with u1 < P_u, which a P_u of 0 never meets, for u1 <= P_u.
 vec3 eon_cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
-    float P_u = eon_cltc_share(wo.z, roughness);
+    float P_u = eon_cltc_probability(wo.z, roughness);
     if (u1 < P_u)
         return uniform_sample(min(u1 / P_u, EON_BELOW_ONE), u2);
     return cltc_sample(wo, min((u1 - P_u) / (1.0 - P_u), EON_BELOW_ONE), u2, roughness);
@@ -178,6 +178,6 @@ vec3 eon_cltc_sample(vec3 wo, float u1, float u2, float roughness)
 
 float eon_cltc_pdf(vec3 wo, vec3 wi, float roughness)
 {
-    float P_u = eon_cltc_share(wo.z, roughness);
+    float P_u = eon_cltc_probability(wo.z, roughness);
     return P_u * uniform_pdf(wi) + (1.0 - P_u) * cltc_pdf(wo, wi, roughness);
 }

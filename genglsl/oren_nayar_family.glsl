@@ -46,14 +46,14 @@ float fon_albedo_dir_approx(float mu, float roughness)
 // [Portsmouth2025], Eq. (28) with the albedo of Eq. (14), in the form of eon_albedo_dir.
 vec3 eon_albedo_dir_approx(float mu, vec3 rho, float roughness)
 {
-    vec3 D = eon_recaptured(rho, roughness);
+    vec3 D = eon_denominator(rho, roughness);
     return rho * (vec3(1.0) - roughness * fon_loss_approx(mu) * (vec3(1.0) - rho) / D);
 }
 
 // The average of eon_albedo_dir, in which H enters linearly.
 vec3 eon_albedo_avg(vec3 rho, float roughness)
 {
-    vec3 D = eon_recaptured(rho, roughness);
+    vec3 D = eon_denominator(rho, roughness);
     return rho * (vec3(1.0) - roughness * EON_LOSS_AVG * (vec3(1.0) - rho) / D);
 }
 

@@ -3,6 +3,7 @@
 
 import pytest
 
+from mxeon.conformance import reference as reference_host
 from mxeon.shaders.hosts import open_host
 from tests.support.availability import available, required
 
@@ -23,7 +24,7 @@ def hosts():
     def host(name):
         if name not in opened:
             with available(name):
-                opened[name] = open_host(name)
+                opened[name] = open_host(name, reference_host.ROW)
                 opened[name].identity()
         return opened[name]
 

@@ -82,7 +82,9 @@ def test_the_script_gives_the_series_of_the_angle(language):
 
 
 def test_the_script_gives_the_arc_tangent_of_the_compiled_models():
-    compiled = pytest.importorskip("mxeon.compiled")
+    pytest.importorskip("numba")
+    from benchmarks import numba_eon as compiled
+
     series = arc_tangent.coefficients(**arc_tangent.COMPILED)
     assert np.ravel(compiled.ATAN).tolist() == series
     assert arc_tangent.largest_error(series, mp.one, 101) <= tolerances.ROUNDING

@@ -12,7 +12,8 @@ import MaterialX as mx
 import pytest
 
 import mxeon
-from tests.support.documents import EON, lobe, material
+from mxeon.shaders.nodes import EON
+from tests.support.documents import lobe, material
 
 CHECKOUT = Path(__file__).parents[1]
 DATA = ("eonlib", "genglsl", "genosl", "profiles", "examples")
@@ -83,6 +84,10 @@ def test_the_wheel_holds_the_data_of_the_checkout(wheel):
         sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
         names = {f"mxeon/data/{folder}/{path.relative_to(source).as_posix()}" for path in sources}
         assert names and names <= files
+
+
+def test_the_wheel_says_that_it_has_types(wheel):
+    assert "mxeon/py.typed" in contents(wheel)
 
 
 def test_no_folder_of_the_wheel_hides_materialxs_libraries(wheel):

@@ -12,13 +12,15 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.known_issues import DEFECTS, STOCK
-from mxeon.conformance.run.plan import SOURCE, Judge, plan
+from mxeon.conformance.known_issues import ISSUES, STOCK
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import SOURCE, make_plan
 from mxeon.io.files import write_text
 from mxeon.models import albedo, formulas
 from mxeon.models import brdf as models
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import OREN_NAYAR, SURFACE, document_text, input_text, node_text
 
 FOLDER = Path(__file__).parent
 BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
@@ -62,18 +64,6 @@ CAUSES = {
     "openpbr_thin_walled_tint": Cause(OPENPBR, 149, "subsurface_thin_walled_brdf_factor"),
 }
 
-GIVEN_NORMAL = """<materialx version="1.39">
-  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
-    <input name="normal" type="vector3" value="0.25, 0.5, 0.75" />
-  </oren_nayar_diffuse_bsdf>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-  <surfacematerial name="material" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>"""
-
 
 def stock_path(cause):
     """The file of a cause in the MaterialX that is installed."""
@@ -94,15 +84,15 @@ def judged(host):
     NotRun
         If the host cannot run here.
     """
-    rows = {row for defect in DEFECTS for row in defect.rows}
-    items = plan((), () if host == SOURCE else (host,), (STOCK,)).items
+    rows = {row for issue in ISSUES for row in issue.rows}
+    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,)).tasks
     chosen = [
         each
-        for each in items
+        for each in tasks
         if each.host == host and (host == SOURCE or (each.check, each.subject) in rows)
     ]
     with closing(Judge(DEFAULT)) as judge:
-        findings = [judge.work(item) for item in chosen]
+        findings = [judge.work(task) for task in chosen]
     devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
     place = ", ".join([*devices, f"MaterialX {mx.__version__}"])
     return [result for each in findings for result in each.results], place
@@ -117,8 +107,7 @@ def shown(defect, results):
 def block(results, place):
     """The block of a page: a table of results, device and versions, and the first diagnosis."""
     rows = [
-        f"| {each.check} | {each.subject} "
-        f"| {each.figure:.2g} | {each.tolerance:.2g} | {each.unit} |"
+        f"| {each.check} | {each.subject} | {each.error:.2g} | {each.tolerance:.2g} | {each.unit} |"
         for each in results
     ]
     text = f"Measured with {place}.\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
@@ -172,7 +161,9 @@ def printed_pi_block():
 
 def dropped_normal_block():
     """Whether generated GLSL holds a normal that is a literal value of the document."""
-    [shader] = generate(GIVEN_NORMAL, "glsl", library=STOCK)
+    normal = input_text("normal", "vector3", (0.25, 0.5, 0.75))
+    lobe = node_text(OREN_NAYAR, "BSDF", "lobe", normal)
+    [shader] = generate(document_text(lobe + SURFACE), "glsl", library=STOCK)
     return _quantities(
         "shaders, of 1, that hold the value", [float("0.25" in shader.stages["pixel"])], [1.0]
     )
@@ -200,9 +191,9 @@ def written(page):
 
 def main():
     """Write the blocks of all pages."""
-    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in DEFECTS)}
+    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in ISSUES)}
     blocks = {}
-    for each in DEFECTS:
+    for each in ISSUES:
         results, place = measured[each.host]
         blocks[each.page] = block(shown(each, results), place)
     blocks |= {page: measure() for page, measure in OF_QUANTITIES.items()}

@@ -5,7 +5,7 @@ Importing this loads nothing but the standard library; the names below load what
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
     from mxeon.conformance.callables import brdf_test, check_brdf
@@ -35,7 +35,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'mxeon' has no attribute {name!r}")
     return getattr(import_module(_HOMES[name]), name)

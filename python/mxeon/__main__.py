@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The process of the command `mxeon`, which is `python -m mxeon` too."""
+"""Entry point of the command `mxeon` and of `python -m mxeon`."""
 
 import signal
 import sys
 
 
-def main():
+def main() -> int:
     """Run the command; return its exit status."""
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback of the imports at Ctrl-C
-    from mxeon.cli import main
+    from mxeon import cli
 
-    return main()
+    return cli.main()
 
 
 if __name__ == "__main__":

@@ -12,10 +12,9 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.cli import COMMANDS, FAILED, MISUSE, NOT_RUN, PASSED, main
-from mxeon.cli import batch as making
-from mxeon.cli.batch import Ended, Made
-from mxeon.errors import NotRun, ShaderError
+from mxeon.cli import generate, library, main
+from mxeon.cli.batch import BatchResult, WorkerCrashed
+from mxeon.errors import FAILED, MISUSE, NOT_RUN, PASSED, InputError, NotRun, ShaderError
 from mxeon.models.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.library import eonlib_folder, examples_folder
 from tests.support.documents import material
@@ -176,10 +175,11 @@ def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
 
 
 def test_a_document_that_ends_its_process_did_not_run(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(making, "make", lambda *_: iter([Made(None, error=Ended("a: must end"))]))
+    error = WorkerCrashed("a: worker process crashed (SIGSEGV)")
+    monkeypatch.setattr(generate, "run_batch", lambda *_: iter([BatchResult(None, error=error)]))
     arguments = ["generate", CLAY, "--target", "osl", "--outputPath", str(tmp_path)]
     assert main(arguments) == NOT_RUN
-    assert one_line(capsys.readouterr().err) == "mxeon: a: must end"
+    assert one_line(capsys.readouterr().err) == f"mxeon: {error}"
 
 
 # --- failures that have no words of their own ---------------------------------------------------
@@ -189,19 +189,19 @@ def failing(monkeypatch, error):
     def fail(_):
         raise error
 
-    monkeypatch.setitem(COMMANDS, "library", fail)
+    monkeypatch.setattr(library, "run", fail)
     return main(["library"])
 
 
 @pytest.mark.parametrize(
     "error, status, words",
     [
-        (ValueError(), MISUSE, "ValueError"),
+        (InputError(), MISUSE, "InputError"),
         (OSError(), MISUSE, "file: must be accessible; OSError"),
         (NotRun("gl: none"), NOT_RUN, "gl: none"),
         (ShaderError("gl: no shader"), FAILED, "gl: no shader"),
         (MemoryError(), NOT_RUN, "memory must suffice for the work; there is no more"),
-        (ValueError("x" * 2000), MISUSE, "x" * 994 + " [...]"),
+        (InputError("x" * 2000), MISUSE, "x" * 994 + " [...]"),
     ],
     ids=lambda value: type(value).__name__,
 )
@@ -210,7 +210,9 @@ def test_every_failure_says_what_is_wrong(monkeypatch, capsys, error, status, wo
     assert capsys.readouterr().err == f"mxeon: {words}\n"
 
 
-@pytest.mark.parametrize("error", [TypeError("no number"), RuntimeError("of a library")])
+@pytest.mark.parametrize(
+    "error", [TypeError("no number"), RuntimeError("of a library"), ValueError("of NumPy")]
+)
 def test_a_bug_shows_its_traceback_and_is_no_failed_check(monkeypatch, capsys, error):
     assert failing(monkeypatch, error) == NOT_RUN
     printed = capsys.readouterr().err
@@ -350,9 +352,7 @@ def test_a_reader_who_has_enough_is_no_error():
 
 
 def test_help_loads_no_shader_generator():
-    code = (
-        "import sys, mxeon.cli; mxeon.cli.arguments.parser(); sys.exit('MaterialX' in sys.modules)"
-    )
+    code = "import sys, mxeon.cli; mxeon.cli.parser(); sys.exit('MaterialX' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
@@ -361,7 +361,7 @@ def test_a_reader_who_has_had_enough_is_no_success():
 from mxeon import cli
 def show(options):
     raise BrokenPipeError
-cli.COMMANDS["library"] = show
+cli.library.run = show
 sys.exit(cli.main(["library"]))"""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (141, "")

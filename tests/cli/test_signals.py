@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from mxeon.jobs.signals import ENDING, Ended, blocked, raised
+from mxeon.jobs.signals import ENDING, SignalExit, block_signals, raise_signals
 from mxeon.shaders.library import examples_folder
 
 PLASTER = str(examples_folder() / "plaster.mtlx")
@@ -70,7 +70,7 @@ def test_a_signal_before_the_workers_work_ends_them_too(tmp_path):
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
     try:
-        with raised():
+        with raise_signals():
             os.kill(os.getpid(), signal.SIGHUP)
     finally:
         signal.signal(signal.SIGHUP, before)
@@ -79,8 +79,8 @@ def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
 @of_each_signal
 def test_a_blocked_signal_comes_afterwards(number):
     steps = []
-    with pytest.raises(Ended) as ended, raised():
-        with blocked():
+    with pytest.raises(SignalExit) as ended, raise_signals():
+        with block_signals():
             os.kill(os.getpid(), number)
             steps.append("whole")
         steps.append("never")
@@ -89,7 +89,7 @@ def test_a_blocked_signal_comes_afterwards(number):
 
 def test_handlers_are_as_before_afterwards():
     before = [signal.getsignal(each) for each in ENDING]
-    with raised():
+    with raise_signals():
         pass
     assert [signal.getsignal(each) for each in ENDING] == before
 

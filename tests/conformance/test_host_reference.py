@@ -5,13 +5,15 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.checks.image import judge_document
+from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun
 from mxeon.models.brdf import eon_brdf, qon_brdf
 from mxeon.shaders.document.reading import DocumentWarning
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import open_host
+from mxeon.shaders.nodes import EON, OREN_NAYAR
 from mxeon.shaders.scene import FRONT, FURNACE, Scene
-from tests.support.documents import EON, OREN_NAYAR, connected, lobe, material
+from tests.support.documents import connected, lobe, material
 
 A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
 B = f'<{EON} name="b" type="BSDF"><input name="color" type="color3" value="0.1, 0.2, 0.6"/></{EON}>'
@@ -26,7 +28,7 @@ SMALL = Scene("front", light=(0.0, 0.0, 1.0), size=32)
 
 def centre(text):
     """The picture's middle, where a smooth lobe under frontal light shows nearly its colour."""
-    image = open_host("reference").picture(generate(text, "glsl")[0], SMALL)
+    image = Reference().picture(generate(text, "glsl")[0], SMALL)
     return image[CENTRE].mean(axis=(0, 1))
 
 
@@ -105,7 +107,7 @@ def test_lama_diffuse_mixes_the_two_models_at_half_its_squared_roughness(compens
       <input name="roughness" type="float" value="0.9"/>
       <input name="energyCompensation" type="float" value="{compensation}"/></LamaDiffuse>"""
     shader = generate(material(node), "glsl")[0]
-    image = open_host("reference").picture(shader, Scene("front", light=(0.0, 0.0, 1.0), size=1))
+    image = Reference().picture(shader, Scene("front", light=(0.0, 0.0, 1.0), size=1))
     up = np.array([0.0, 0.0, 1.0])
     assert np.allclose(image[0, 0], np.pi * brdf(up, up, [0.8, 0.4, 0.1], 0.405), rtol=1e-6)
 
@@ -117,7 +119,7 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
     wo, wi = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, -0.8, 0.6]])
     shader = generate(material(node), "glsl")[0]
     inputs = {"color": np.array([[0.8, 0.4, 0.1]]), "roughness": np.array([0.5])}
-    values = open_host("reference").evaluate(shader, wo, wi, inputs, "direct")
+    values = Reference().evaluate(shader, wo, wi, inputs, "direct")
     assert np.allclose(values, 0.6 * brdf(wo, wi, inputs["color"], 0.5), rtol=1e-12)
 
 
@@ -150,13 +152,13 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
 def test_what_the_models_do_not_cover_did_not_run(nodes, scene, words):
     shader = generate(material(nodes), "glsl")[0]
     with pytest.raises(NotRun, match=words):
-        open_host("reference").picture(shader, scene)
+        Reference().picture(shader, scene)
 
 
 def test_a_white_furnace_of_eon_is_white():
     node = f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3" value="1, 1, 1"/>
       <input name="roughness" type="float" value="1"/></{EON}>"""
-    image = open_host("reference").picture(generate(material(node), "glsl")[0], FURNACE)
+    image = Reference().picture(generate(material(node), "glsl")[0], FURNACE)
     assert set(np.unique(image)) == {0.0, 1.0}
 
 
@@ -164,7 +166,7 @@ def test_a_white_furnace_of_eon_is_white():
 def test_a_value_outside_its_model_is_not_judged(tmp_path, inputs, rule):
     path = tmp_path / "look.mtlx"
     path.write_text(material(lobe(**inputs)))
-    hosts = open_host("gl"), open_host("reference")
+    hosts = open_host("gl"), Reference()
     [result], pictures, notes = judge_document(path, *hosts, "eonlib")
     assert result.verdict == "not run" and not pictures
     assert f"reference: node 'lobe': {rule}" in result.reason
@@ -173,7 +175,7 @@ def test_a_value_outside_its_model_is_not_judged(tmp_path, inputs, rule):
 
 def test_the_largest_sigma_of_float32_is_a_quarter_turn():
     text = material(lobe(roughness="1.5707963267948966"))
-    assert open_host("reference").picture(generate(text, "glsl")[0], SMALL).any()
+    assert Reference().picture(generate(text, "glsl")[0], SMALL).any()
 
 
 def test_an_ignored_connection_leaves_the_default():

@@ -5,7 +5,7 @@
 
 Where `python -m tests.fuzz` mutates at random, a family covers its tables evenly: every element kind with
 every type, every attribute with every odd value, every spelling of a number, every encoding, every
-option. The figures go to docs/reliability.json under "attack".
+option, every value of a journal, signals at any time. The figures go to docs/reliability.json under "attack".
 """
 
 import argparse
@@ -14,18 +14,22 @@ import json
 import random
 import sys
 from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import product
 from xml.etree import ElementTree
 
 from tqdm import tqdm
 
 from mxeon.jobs import pool
+from tests.fuzz import journals, signals
 from tests.fuzz.__main__ import keep
 from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
 from tests.fuzz.documents import originals
-from tests.fuzz.found import LOBE, MATERIAL
+from tests.fuzz.found import LOBE
 from tests.fuzz.trial import judged
 from tests.fuzz.words import ATTRIBUTES, CATEGORIES, PATHS, SNIPPETS, TYPES, VALUES
+from tests.support.documents import material
 
 SEED = 1
 LIMIT = 60.0  # seconds for one case
@@ -100,7 +104,7 @@ def lines():
 
 
 def _document_case(rng, nodes):
-    return Case("document", (("base.mtlx", MATERIAL.format(nodes).encode()),), _arguments(rng))
+    return Case("document", (("base.mtlx", material(nodes).encode()),), _arguments(rng))
 
 
 def _attribute_case(rng, row):
@@ -113,7 +117,10 @@ def _attribute_case(rng, row):
 
 def _coding_case(rng, row):
     declared, used = row
-    text = f'<?xml version="1.0" encoding="{declared}"?>' + MATERIAL.format(LOBE.format(""))
+    text = (
+        f'<?xml version="1.0" encoding="{declared}"?>'
+        + material(LOBE.format("")).partition("?>")[2]
+    )
     try:
         data = text.encode(used)
     except (LookupError, UnicodeError):
@@ -125,7 +132,7 @@ def _line_case(_, row):
     command, place, word = row
     arguments = (*command[:place], word, *command[place + 1 :])
     host = ("--host", "abacus") if command[0] == "check" else ()
-    data = MATERIAL.format(LOBE.format("")).encode()
+    data = material(LOBE.format("")).encode()
     return Case(" ".join(arguments), (("base.mtlx", data), ("part.mtlx", data)), arguments + host)
 
 
@@ -137,22 +144,44 @@ def _arguments(rng):
     return "generate", "base.mtlx", "--target", rng.choice(TARGETS), "--outputPath", OUT
 
 
-# Family -> its rows, how a row becomes a case, and how many are tried.
+@dataclass(frozen=True)
+class Family:
+    """Cases of one kind.
+
+    Attributes
+    ----------
+    rows : callable () -> iterable
+        What the cases are made of.
+    to_case : callable (random.Random, row) -> case
+    count : int
+        How many are tried.
+    trial : callable (case) -> (int, str)
+        Exit status and fault of a case; can be imported by name.
+    """
+
+    rows: Callable
+    to_case: Callable
+    count: int
+    trial: Callable = judged
+
+
 FAMILIES = {
-    "documents": (documents, _document_case, 1500),
-    "attributes": (attributes, _attribute_case, 4000),
-    "numbers": (numbers, _document_case, 600),
-    "encodings": (codings, _coding_case, 600),
-    "command lines": (lines, _line_case, 1000),
+    "documents": Family(documents, _document_case, 1500),
+    "attributes": Family(attributes, _attribute_case, 4000),
+    "numbers": Family(numbers, _document_case, 600),
+    "encodings": Family(codings, _coding_case, 600),
+    "command lines": Family(lines, _line_case, 1000),
+    "journals": Family(journals.rows, journals.to_case, 500),
+    "signals": Family(signals.rows, lambda _, row: row, 150, signals.struck),
 }
 
 
 def cases(family, count=None):
     """Cases of a family: all of them or, where there are more than `count`, some."""
-    rows, to_case, usual = FAMILIES[family]
+    row = FAMILIES[family]
     rng = random.Random(f"{SEED}-{family}")
-    rows = list(rows())
-    return [to_case(rng, row) for row in rng.sample(rows, min(count or usual, len(rows)))]
+    rows = list(row.rows())
+    return [row.to_case(rng, each) for each in rng.sample(rows, min(count or row.count, len(rows)))]
 
 
 def measure(families=FAMILIES, count=None, workers=1, progress=tqdm):
@@ -166,13 +195,13 @@ def measure(families=FAMILIES, count=None, workers=1, progress=tqdm):
     figures = {}
     for family in families:
         tried = cases(family, count)
-        outcomes = pool.run(judged, tried, workers, LIMIT)
+        outcomes = pool.run(FAMILIES[family].trial, tried, workers, LIMIT)
         tally = Counter()
         for place, outcome in progress(outcomes, total=len(tried), desc=family, disable=None):
             status, fault = outcome.value or (None, outcome.failure)
-            tally["faults" if fault else STATUSES[status]] += 1
+            tally["faults" if fault else STATUSES.get(status, "ended")] += 1
             if fault:
-                print(f"{family}: {tried[place].name!r}: {fault}", file=sys.stderr, flush=True)
+                print(f"{family}: {tried[place]}: {fault}", file=sys.stderr, flush=True)
         figures[family] = {"tried": len(tried), **tally}
     return figures
 

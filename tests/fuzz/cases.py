@@ -24,7 +24,7 @@ COMMANDS = (
     ("render", "base.mtlx", "--host", "reference", "--environment", "textures/a.png", "--output", f"{OUT}/a.png", "--size", "4"),
     ("check", "base.mtlx", "--host", "abacus"),
     ("check", "--library", "stock", "--report", f"{OUT}/r", "--resume", "--host", "abacus"),
-    ("check", "--workers", "1", "--limit", "5", "--json", "--host", "abacus"),
+    ("check", "--workers", "1", "--timeout", "5", "--json", "--host", "abacus"),
     ("library",),
     ("library", "--folder"),
     ("library", "--verify"),

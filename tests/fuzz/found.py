@@ -3,14 +3,9 @@
 
 from tests.fuzz.cases import OUT, Case
 from tests.fuzz.words import POISON
+from tests.support.documents import material
 
 LOBE = '<oren_nayar_diffuse_bsdf name="lobe" type="BSDF">{}</oren_nayar_diffuse_bsdf>'
-MATERIAL = """<materialx version="1.39">{}
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe"/></surface>
-  <surfacematerial name="look" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading"/></surfacematerial>
-</materialx>"""
 TINTED = LOBE.format('<input name="color" type="color3" nodename="tint"/>')
 ROUGH = LOBE.format('<input name="roughness" type="float" value="0"/>')
 LEFT = '<mix name="lobe" type="BSDF"><input name="fg" type="BSDF" nodename="a"/></mix>'
@@ -91,7 +86,7 @@ ROWS = (
     ),
 )
 FOUND = tuple(
-    Case(name, (("base.mtlx", MATERIAL.format(nodes).encode()),), arguments)
+    Case(name, (("base.mtlx", material(nodes).encode()),), arguments)
     for name, nodes, arguments in ROWS
 ) + (
     Case("an argument of one long word", (), ("library", "a" * 70_000)),

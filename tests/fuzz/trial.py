@@ -65,6 +65,8 @@ def _run(tried):
 
 def _outputs(arguments):
     """Where a command line asks for something to be written."""
+    if arguments[:2] == ("report", "make"):  # a run's report is written beside its journal
+        return arguments[2:3]
     pairs = itertools.pairwise(arguments)
     return [path for option, path in pairs if option in OUTPUTS and "\0" not in path]
 
@@ -84,6 +86,7 @@ def _prepared(root, tried):
     for name, text in AROUND:
         (root / name).write_text(text)
     for name, data in tried.files:
+        (home / name).parent.mkdir(parents=True, exist_ok=True)
         (home / name).write_bytes(data)
     return home
 

@@ -10,7 +10,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.io.files import replacing, write_image, write_text
+from mxeon.io.files import replacing, write_text
+from mxeon.io.images import write_image
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import room_for
 

@@ -26,10 +26,10 @@ def test_every_item_is_worked_on_once():
 @pytest.mark.parametrize(
     "fault, end",
     [
-        ("SIGKILL", "ended by SIGKILL; last output: about to SIGKILL"),
-        ("SIGSEGV", "ended by SIGSEGV; last output: about to SIGSEGV"),
-        ("exit", "exit status 7; last output: about to exit"),
-        ("hang", "no end within 1 s; last output: about to hang"),
+        ("SIGKILL", "worker process crashed (SIGKILL); last output: about to SIGKILL"),
+        ("SIGSEGV", "worker process crashed (SIGSEGV); last output: about to SIGSEGV"),
+        ("exit", "worker process ended with exit status 7; last output: about to exit"),
+        ("hang", "timed out after 1 s; last output: about to hang"),
         ("raise", "RuntimeError: no light; last output: about to raise"),
     ],
 )
@@ -44,7 +44,7 @@ def test_a_fault_costs_its_item_alone_and_is_named(fault, end):
 def test_processes_that_hang_before_they_begin_are_given_up(monkeypatch):
     monkeypatch.setattr(pool, "START", 2.0)
     (outcome,) = dict(pool.run(square, [Tar()], 1, 1.0)).values()
-    assert outcome == Outcome(None, "no end within 1 s; last output: none", ATTEMPTS)
+    assert outcome == Outcome(None, "timed out after 1 s; last output: none", ATTEMPTS)
 
 
 def test_an_item_whose_worker_was_killed_is_tried_again(tmp_path):
@@ -87,7 +87,7 @@ def test_no_temporary_file_outlives_the_pool():
 def test_a_pool_that_breaks_again_and_again_is_given_up(monkeypatch):
     monkeypatch.setattr(pool, "_serve", lambda *_: iter(()))
     (outcome,) = dict(run(square, [3], 1, 1.0)).values()
-    assert outcome.failure == "the processes end before they begin to work"
+    assert outcome.failure == "worker processes end before they begin to work"
 
 
 def test_what_the_work_raises_is_no_time_out_of_ours():
@@ -104,8 +104,8 @@ def test_workers_are_other_processes():
     "options, words",
     [
         ((0, 1.0), "workers must be at least 1; got 0"),
-        ((1, 0.0), "limit must be positive and at most 1e.06 s; got 0"),
-        ((1, float("inf")), "limit must be positive and at most 1e.06 s; got inf"),
+        ((1, 0.0), "timeout must be positive and at most 1e.06 s; got 0"),
+        ((1, float("inf")), "timeout must be positive and at most 1e.06 s; got inf"),
     ],
 )
 def test_an_impossible_pool_is_one_line(options, words):

@@ -7,14 +7,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models import geometry
+from mxeon.models import arguments as validation
+from mxeon.models import evaluation, threads, tiling
 from mxeon.models.albedo import fon_albedo_avg, fon_albedo_dir_approx
 from mxeon.models.brdf import eon_brdf, fon_brdf, lambert_brdf, oren_nayar_brdf
-from mxeon.models.table import DEFECTS, MODELS, model
+from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from tests.support import oracle, tolerances
 from tests.support.cases import direction, pairs, parameter
 
-ALL = MODELS + DEFECTS
+ALL = MODELS + KNOWN_DEFECTS
 
 
 def named(rows):
@@ -215,25 +216,63 @@ def test_blocks_of_any_size_give_the_same_values(row, monkeypatch):
     arguments = wo[:, np.newaxis], wi[:7], rho[:, np.newaxis], *parameter(row, fraction[:7])
     whole = row.brdf(*arguments)
     for size in (1, 5, 50):
-        monkeypatch.setattr(geometry, "BLOCK", size)
+        monkeypatch.setattr(tiling, "BLOCK", size)
         assert_same(row.brdf(*arguments), whole, *np.broadcast_arrays(*arguments[:2]))
 
 
-@named([row for row in MODELS if row.name in ("oren_nayar", "eon")])
-def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes(row, monkeypatch):
-    monkeypatch.setattr(geometry, "WORKERS", 4)
+@named([model("oren_nayar"), model("eon")])
+def test_memory_beyond_arguments_and_result_stays_below_64_mebibytes_on_four_threads(row):
     wo, wi, rho, fraction = pairs(800_000, seed=14)
     tracemalloc.start()
-    result = row.brdf(wo, wi, rho, *parameter(row, fraction))
+    with threads(4):
+        result = row.brdf(wo, wi, rho, *parameter(row, fraction))
     beyond = tracemalloc.get_traced_memory()[1] - result.nbytes
     tracemalloc.stop()
     assert beyond < 2**26
 
 
+# More pairs than a block takes.
+MANY = pairs(2 * tiling.BLOCK, seed=17)
+
+
+def test_a_call_starts_no_thread_unless_asked(monkeypatch):
+    monkeypatch.setattr(evaluation, "ThreadPoolExecutor", None)
+    eon_brdf(*MANY)
+
+
+def test_as_many_threads_evaluate_as_the_context_asks_for(monkeypatch):
+    counts = []
+    pool = evaluation.ThreadPoolExecutor
+    monkeypatch.setattr(evaluation, "ThreadPoolExecutor", lambda n: counts.append(n) or pool(n))
+    with threads(2):
+        eon_brdf(*MANY)
+    eon_brdf(*MANY)
+    assert counts == [2]
+
+
+def test_values_do_not_depend_on_the_number_of_threads():
+    with threads(2):
+        several = eon_brdf(*MANY)
+    assert np.array_equal(several, eon_brdf(*MANY))
+
+
+def test_a_block_that_fails_on_a_thread_of_several_is_an_error():
+    wo, wi, rho, r = (argument.copy() for argument in MANY)
+    wi[-1, 2] = -1.0
+    with threads(2), pytest.raises(ValueError, match="wi must not point below the horizon"):
+        eon_brdf(wo, wi, rho, r)
+
+
+@pytest.mark.parametrize("count", [0, -1, 1.5, "two"])
+def test_a_number_of_threads_below_one_is_refused(count):
+    with pytest.raises(ValueError, match="threads must be a positive integer; got"), threads(count):
+        pass
+
+
 def test_checked_arguments_come_back_as_they_were():
     wo, _, rho, _ = pairs(3, seed=16)
-    assert geometry.checked_directions("wo", wo) is wo
-    assert geometry.checked("rho", rho) is rho
+    assert validation.checked_directions("wo", wo) is wo
+    assert validation.checked("rho", rho) is rho
 
 
 def test_arguments_are_left_as_they_were():
@@ -271,7 +310,7 @@ def test_lambert_has_no_interval():
 # --- known wrong variants --------------------------------------------------------------------
 
 
-@named([row for row in DEFECTS if row.parameter == "roughness"])
+@named([row for row in KNOWN_DEFECTS if row.parameter == "roughness"])
 def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     wo, wi, rho, r = pairs(2000, seed=13)
     front = np.sum(wo * wi, axis=-1) > 1e-6

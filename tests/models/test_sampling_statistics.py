@@ -67,8 +67,8 @@ def test_samples_pass_the_chi_square_test_against_their_pdf(sampler, mu, roughne
 
 @pytest.mark.parametrize("mu", COSINES)
 def test_chi_square_tells_the_samplers_apart(mu):
-    for sampler in SAMPLERS[:4]:
-        assert chi_square(sampler, BY_NAME["eon"], mu, 1.0) < SHARE
+    for name in ("uniform", "cosine", "ltc0", "ltc"):
+        assert chi_square(BY_NAME[name], BY_NAME["eon"], mu, 1.0) < SHARE
 
 
 @every_sampler

@@ -11,7 +11,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from mxeon.models.brdf import eon_brdf
-from mxeon.models.formulas import C1, C2, fon_quotient, loss
+from mxeon.models.formulas import C1, C2, fon_loss, fon_quotient
 from mxeon.models.sampling import eon as eon_sampling
 from mxeon.models.sampling import eon_pdf
 from tests.support import tolerances
@@ -58,11 +58,11 @@ def multiple_error():
     t = 1.0 - w**2
     mu = t * (1.0 + w**2 * (a + w**2 * (b + w * (c + w * (d + w * (e + w**4 * f))))))
     np.testing.assert_allclose(
-        eon_sampling.multiple_cosine(t(ROOTS) ** 3)[0], mu(ROOTS), atol=tolerances.DIRECTION
+        eon_sampling.eon_multiple_cosine(t(ROOTS)), mu(ROOTS), atol=tolerances.DIRECTION
     )
     # The random number is t^3, its derivative by w is -6 w t^2.
     slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
-    return mu(ROOTS), 1.0 / (slope * 2.0 * loss(mu(ROOTS)) * mu(ROOTS) / (C1 - C2)) - 1.0
+    return mu(ROOTS), 1.0 / (slope * 2.0 * fon_loss(mu(ROOTS)) * mu(ROOTS) / (C1 - C2)) - 1.0
 
 
 def upper_error(mu_o):
@@ -70,10 +70,11 @@ def upper_error(mu_o):
     y = Polynomial([0.0, 1.0])
     fit = y * (1.0 + (1.0 - y) * Polynomial(eon_sampling.UPPER))
     S_o = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
-    K_o = eon_sampling.segment(mu_o, S_o)
-    y_o = (K_o / (0.25 * np.pi - 1.0 / 3.0)) ** 0.4
+    K_o = eon_sampling.eon_segment(mu_o, S_o)
+    y_o = eon_sampling.eon_upper_limit(mu_o, S_o)
     scale = (1.0 - mu_o) / fit(y_o)
-    mu, S = eon_sampling.upper_cosine(ROOTS**2.5, mu_o, S_o)
+    mu = eon_sampling.eon_upper_cosine(ROOTS, mu_o, y_o)
+    S = np.sqrt((1.0 - mu) * (1.0 + mu))
     np.testing.assert_allclose(mu, 1.0 - scale * fit(y_o * ROOTS), atol=tolerances.DIRECTION)
     # The random number is y^2.5.
     slope = scale * y_o * fit.deriv()(y_o * ROOTS) / (2.5 * ROOTS**1.5)
@@ -84,7 +85,7 @@ def excess(mu, roughness):
     """Relative excess of the density of exact samples over `eon_pdf`, with its probabilities."""
     wi, solid_angle = hemisphere(mu, 32)
     mu_i, s = wi[:, 2], view(mu)[0] * wi[:, 0]
-    multiple = roughness * loss(mu_i) * loss(mu) / (C1 - C2)
+    multiple = roughness * fon_loss(mu_i) * fon_loss(mu) / (C1 - C2)
     upper = np.where(mu_i >= mu, roughness * np.maximum(s, 0.0) * (1.0 / mu_i - 1.0), 0.0)
     total = 1.0 + roughness * fon_quotient(mu, mu_i, s) + multiple
     extra = multiple * np.interp(mu_i, *(row[::-1] for row in multiple_error()))

@@ -46,7 +46,7 @@ def measure(count=10, progress=iter):
 
 def _once(folder, goal):
     """A run of which one worker is stopped after so many items: how many could be stopped."""
-    process = start(folder, "--limit", str(ITEM))
+    process = start(folder, "--timeout", str(ITEM))
     until(lambda: finished(folder) > goal and workers(process), LIMIT, process)
     stopped = _stop(workers(process)[:1])
     wait_for_end(process, LIMIT)
@@ -55,7 +55,7 @@ def _once(folder, goal):
 
 def _persistent(folder, tally):
     """A run whose workers are all stopped until two items have been given up."""
-    process = start(folder, "--limit", "3")
+    process = start(folder, "--timeout", "3")
     until(lambda: finished(folder) > 4, LIMIT, process)
 
     def given_up():
@@ -69,7 +69,7 @@ def _persistent(folder, tally):
     reasons = _not_run(folder)
     tally["persistent"] += 1
     tally["reasons"] += len(reasons)
-    tally["named"] += sum("no end within 3 s" in reason for reason in reasons)
+    tally["named"] += sum("timed out after 3 s" in reason for reason in reasons)
 
 
 def _not_run(folder):

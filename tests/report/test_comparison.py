@@ -13,7 +13,7 @@ from mxeon.conformance.records import read_record
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Picture, Result, Run
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 PLACE = "gl, eonlib, value, clay"
 
@@ -110,9 +110,9 @@ def refusal_of(folder, capsys):
         ("figure", 10**400, "must be a number below 1.8e308; got one of 401 digits"),
         ("figure", "1e-7", "must be a number; got '1e-7'"),
         ("figure", True, "must be a number; got True"),
-        ("tolerance", None, "figure must have its tolerance; got 1e-07 and none"),
-        ("figure", -1.0, "figure and tolerance must be at least 0; got -1.0 and 1e-06"),
-        ("figure", "-Infinity", "figure and tolerance must be at least 0; got -inf"),
+        ("tolerance", None, "an error must have a tolerance; got 1e-07 and none"),
+        ("figure", -1.0, "error and tolerance must be at least 0; got -1.0 and 1e-06"),
+        ("figure", "-Infinity", "error and tolerance must be at least 0; got -inf"),
         ("verdict", "maybe", "verdict must be one of passed, failed, not run; got 'maybe'"),
         ("verdict", None, "must be a text; got None @ $.results[0].verdict"),
         ("verdict", [], "must be a text; got [] @ $.results[0].verdict"),

@@ -13,7 +13,8 @@ from mxeon.errors import LONGEST, DocumentError
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.reading import DocumentWarning, read_document
 from mxeon.shaders.generation import generate
-from tests.support.documents import EON, FLAG, connected, lobe, material
+from mxeon.shaders.nodes import EON
+from tests.support.documents import COMPENSATED, connected, lobe, material
 
 INCLUDE = '<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude">{}</materialx>'
 DEFINED = '<nodedef name="ND_{0}" node="{0}"><output name="out" type="BSDF"/></nodedef>'
@@ -79,7 +80,7 @@ OUTSIDE = (
     ({"weight": "-1"}, f'input "lobe/weight" must lie in [0, 1], {MODEL} -1'),
     ({"roughness": "-0.1"}, f'input "lobe/roughness" must lie in [0, 1.5708], {MODEL} -0.1'),
     ({"roughness": "1.6"}, f'input "lobe/roughness" must lie in [0, 1.5708], {MODEL} 1.6'),
-    ({"roughness": "1.2"} | FLAG, f'input "lobe/roughness" must lie in [0, 1], {MODEL} 1.2'),
+    ({"roughness": "1.2"} | COMPENSATED, f'input "lobe/roughness" must lie in [0, 1], {MODEL} 1.2'),
 )
 
 # Texts of a float, and what MaterialX reads of them.
@@ -186,7 +187,9 @@ def test_bad_nodes_are_refused_with_their_names(nodes, rule, target):
 
 
 @pytest.mark.parametrize(
-    "inputs", [{"roughness": str(pi / 2)}, {"roughness": "1"} | FLAG, {"color": "0, 1, 0"}], ids=str
+    "inputs",
+    [{"roughness": str(pi / 2)}, {"roughness": "1"} | COMPENSATED, {"color": "0, 1, 0"}],
+    ids=str,
 )
 def test_the_ends_of_a_range_are_accepted(inputs):
     assert generate(material(lobe(**inputs)), "glsl")

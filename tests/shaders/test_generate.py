@@ -16,8 +16,9 @@ from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
 from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.library import data_folder, examples_folder, load_library
+from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available
-from tests.support.documents import EON, FLAG, OREN_NAYAR, lobe, material
+from tests.support.documents import COMPENSATED, lobe, material
 
 EXAMPLES = sorted(examples_folder().glob("*.mtlx"))
 RASTERISED = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang")
@@ -33,7 +34,7 @@ VALUES = {
     "energy_compensation": ("false", "true"),
 }
 FIRST = {name: first for name, (first, _) in VALUES.items()}
-EON_FIRST = {name: value for name, value in FIRST.items() if name not in FLAG}
+EON_FIRST = {name: value for name, value in FIRST.items() if name not in COMPENSATED}
 NODES = ((OREN_NAYAR, FIRST), (EON, EON_FIRST))
 
 SURFACE = """<materialx version="1.39">
@@ -299,7 +300,7 @@ def test_a_file_gives_the_same_from_every_working_folder(path, tmp_path, monkeyp
 
 @on_each_target
 def test_inputs_say_name_type_value_and_place(target):
-    [shader] = generate(material(lobe(**FLAG, color="0.8, 0.4, 0.1")), target)
+    [shader] = generate(material(lobe(**COMPENSATED, color="0.8, 0.4, 0.1")), target)
     found = {each.path: each for each in shader.inputs}
     color = tuple(map(pytest.approx, (0.8, 0.4, 0.1)))
     assert found["lobe/color"] == Input("lobe_color", "color3", color, "lobe/color")

@@ -17,8 +17,10 @@ from mxeon.models.brdf import eon_brdf
 from mxeon.shaders.generation import ApproximationWarning, generate
 from mxeon.shaders.hosts import cycles
 from mxeon.shaders.hosts.cycles import process as cycles_process
+from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text, node_text
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, sphere
 from tests.support.availability import available
+from tests.support.documents import lobe, material
 from tests.support.tolerances import (
     CYCLES_EON_RELATIVE,
     CYCLES_FURNACE_MEAN,
@@ -28,32 +30,17 @@ from tests.support.tolerances import (
     TWIN_VALUE,
 )
 
-MATERIAL = """<materialx version="1.39">
-  <{node} name="lobe" type="BSDF">
-    <input name="color" type="color3" value="{color}"/>
-    <input name="roughness" type="float" value="{roughness}"/>{rest}
-  </{node}>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe"/>
-  </surface>
-  <surfacematerial name="look" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-  </surfacematerial>
-</materialx>"""
-FLAG = '\n    <input name="energy_compensation" type="boolean" value="{}"/>'
 EMIT = "shader emit\n(\n    output closure color out = 0\n)\n{{\n    {}\n}}\n"
 SMALL = replace(FRONT, size=64)
 LIGHTS = [replace(scene, size=64) for scene in (FRONT, SIDE, BACK)]
 
 
-def oren_nayar(flag, color="0.8, 0.4, 0.1", roughness=1.0):
-    rest = FLAG.format(flag)
-    node = "oren_nayar_diffuse_bsdf"
-    return MATERIAL.format(node=node, color=color, roughness=roughness, rest=rest)
+def oren_nayar(flag, color=(0.8, 0.4, 0.1), roughness=1.0):
+    return material_text(OREN_NAYAR, {"color": color, "roughness": roughness, FLAG: flag})
 
 
 def eon(color, roughness):
-    return MATERIAL.format(node="eon_diffuse_bsdf", color=color, roughness=roughness, rest="")
+    return material_text(EON, {"color": color, "roughness": roughness})
 
 
 def normalized(vectors):
@@ -227,22 +214,11 @@ def test_a_white_furnace_returns_all_light(host):
 
 
 def test_both_nodes_live_in_one_material(host):
-    text = """<materialx version="1.39">
-      <eon_diffuse_bsdf name="a" type="BSDF"/>
-      <oren_nayar_diffuse_bsdf name="b" type="BSDF">
-        <input name="energy_compensation" type="boolean" value="true"/>
-      </oren_nayar_diffuse_bsdf>
-      <add name="both" type="BSDF">
-        <input name="in1" type="BSDF" nodename="a"/>
-        <input name="in2" type="BSDF" nodename="b"/>
-      </add>
-      <surface name="shading" type="surfaceshader">
-        <input name="bsdf" type="BSDF" nodename="both"/>
-      </surface>
-      <surfacematerial name="look" type="material">
-        <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
-      </surfacematerial>
-    </materialx>"""
+    lobes = lobe(EON, "a") + lobe(OREN_NAYAR, "b", energy_compensation=True)
+    ports = (
+        '<input name="in1" type="BSDF" nodename="a"/><input name="in2" type="BSDF" nodename="b"/>'
+    )
+    text = material(lobes + node_text("add", "BSDF", "lobe", ports))
     assert host.picture(osl(text, profile="cycles"), SMALL).any()
 
 

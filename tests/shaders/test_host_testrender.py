@@ -16,11 +16,13 @@ import pytest
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.probes import PlaneProbe
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.conformance.run.plan import Judge, plan
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import testrender
+from mxeon.shaders.plane import plane_pairs
 from mxeon.shaders.scene import SIDE
 
 STAND_INS = {
@@ -88,7 +90,7 @@ def test_it_says_its_version(host):
 
 def test_the_plane_is_seen_at_all_angles():
     scene = PlaneProbe.lit[1]
-    wo, wi = testrender.plane_pairs(scene)
+    wo, wi = plane_pairs(scene)
     assert wo[:, 2].min() < 0.1 and wo[:, 2].max() > 0.8
     np.testing.assert_allclose(np.linalg.norm(wo, axis=1), 1.0, atol=1e-12)
     assert ((wo * wi).sum(axis=1) < 0.0).any() and ((wo * wi).sum(axis=1) > 0.5).any()
@@ -96,7 +98,7 @@ def test_the_plane_is_seen_at_all_angles():
 
 def verdicts(library, *keys):
     """Verdict and diagnosis of checks of the node with the flag, by key."""
-    items = plan([], ["testrender"], [library]).items
+    items = make_plan([], ["testrender"], [library]).tasks
     with closing(Judge(DEFAULT)) as judge:
         chosen = [each for each in items if (each.subject, each.check) in product([EON], keys)]
         results = [result for item in chosen for result in judge.work(item).results]

@@ -13,12 +13,12 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon import cli
+from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError
+from mxeon.io import images
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
-from mxeon.shaders.hosts import open_host
-from mxeon.shaders.hosts import textures as images
 from mxeon.shaders.scene import FURNACE
 from tests.fuzz.found import doubled, row
 from tests.support.documents import connected, lobe, material
@@ -307,7 +307,7 @@ def test_an_image_larger_than_its_file_is_refused(tmp_path, monkeypatch):
 @pytest.mark.parametrize("names", [("in1",), ("in1", "in2")], ids=["in a row", "each used twice"])
 def test_the_reference_evaluates_long_graphs(names):
     shader = generate(material(row(900, names)), "glsl")[0]
-    image = open_host("reference").picture(shader, replace(FURNACE, size=4))
+    image = Reference().picture(shader, replace(FURNACE, size=4))
     assert np.isfinite(image).all()
 
 

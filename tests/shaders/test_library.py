@@ -14,8 +14,9 @@ from mxeon.models.albedo import fon_albedo_avg
 from mxeon.shaders import library
 from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.hosts.cycles.process import interpreter
+from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
-from tests.support.documents import EON, OREN_NAYAR, lobe, material
+from tests.support.documents import lobe, material
 from tests.support.tolerances import MDL_TINT
 
 SCRIPTS = Path(mx.__file__).parent / "_scripts"
@@ -44,7 +45,7 @@ CALLS = {
 ORDERS = {"ours first": [OURS, *STOCK], "stock first": [*STOCK, OURS]}
 in_each_order = pytest.mark.parametrize("folders", ORDERS.values(), ids=ORDERS)
 on_each_target = pytest.mark.parametrize("target", library.TARGETS)
-of_each_node = pytest.mark.parametrize("node", library.NODES)
+of_each_node = pytest.mark.parametrize("node", NODEDEFS)
 
 USD = """
 import sys
@@ -189,8 +190,22 @@ class Rho(float):
     __call__ = staticmethod(float)
 
 
+FLAG = {
+    "genmdl": (r"{{energy_compensation}} \? (.*) : color\(0\.0\)", r"\1"),
+    "genosl": ("{{energy_compensation}}", "1"),
+}
+
+
+@pytest.mark.parametrize("target", FLAG)
+def test_the_source_of_eon_is_that_of_oren_nayar_with_the_flag_set(target):
+    nodes = [library.load_library().getNodeDef(f"ND_{name}") for name in (OREN_NAYAR, EON)]
+    oren_nayar, eon = (node.getImplementation(target).getAttribute("sourcecode") for node in nodes)
+    flag, replacement = FLAG[target]
+    assert re.subn(flag, replacement, oren_nayar) == (eon, 1)
+
+
 def test_without_the_flag_the_mdl_tint_is_black():
-    source = library.load_library().getNodeDef(library.NODES[0]).getImplementation("genmdl")
+    source = library.load_library().getNodeDef(NODEDEFS[0]).getImplementation("genmdl")
     assert source.getAttribute("sourcecode").endswith(" : color(0.0)))))")
 
 
@@ -223,10 +238,10 @@ def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
     with available("cycles"):  # USD with MaterialX comes with Blender
         python = interpreter()
     monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
-    command = [python, "-c", USD, *library.NODES]
+    command = [python, "-c", USD, *NODEDEFS]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     definitions = library.eonlib_folder() / "eonlib_defs.mtlx"
     assert re.findall("found .*", done.stdout) == [
-        f"found {node} {definitions}" for node in library.NODES
+        f"found {node} {definitions}" for node in NODEDEFS
     ]
     assert "MaterialX" not in done.stderr

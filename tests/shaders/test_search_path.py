@@ -7,9 +7,9 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.cli import batch as making
-from mxeon.cli import main
+from mxeon.cli import batch, main
 from mxeon.conformance.checks.image import judge_document
+from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError, ImageError
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
@@ -135,7 +135,7 @@ def test_a_missing_image_is_an_error_to_render_and_check(home, capfd):
     options = ["--host", "reference", "--output", str(home / "a.exr"), "--workers", "0"]
     assert main(["render", str(path), *options]) == 2
     assert error in capfd.readouterr().err
-    reference = open_host("reference")
+    reference = Reference()
     with pytest.raises(DocumentError, match="must name a file that exists"):
         judge_document(path, open_host("gl"), reference, "eonlib")
 
@@ -145,7 +145,7 @@ def test_a_missing_image_is_an_error_to_render_and_check(home, capfd):
 def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
     rest = ("front", None, 16, None, "eonlib", searched(home))
     shown, expected = (
-        making.picture(str(written(home, textured(each))), host, *rest)[0]
+        batch.picture(str(written(home, textured(each))), host, *rest)[0]
         for each in (name, "maps/a.exr")
     )
     assert expected.any() and np.array_equal(shown, expected)
@@ -162,13 +162,13 @@ def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
     picture(home / "five.exr", (0.1, 0.2, 0.3, 0.4, 0.5))
     path = str(written(home, textured("five.exr")))
     with pytest.raises(ImageError, match="five.exr: must have at most 4 channels; got 5"):
-        making.picture(path, host, "front", None, 16, None, "eonlib", Policy())
+        batch.picture(path, host, "front", None, 16, None, "eonlib", Policy())
 
 
 def test_a_texture_of_two_channels_is_not_the_references(home):
     picture(home / "two.exr", (0.1, 0.2))
     path = written(home, textured("two.exr"))
-    [result], _, _ = judge_document(path, open_host("gl"), open_host("reference"), "eonlib")
+    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
     assert (result.check, result.verdict) == ("finite", "passed")
     assert "two.exr: must be read as float, or as color3 from an image of 3" in result.diagnosis
 
@@ -176,5 +176,5 @@ def test_a_texture_of_two_channels_is_not_the_references(home):
 def test_a_texture_of_one_channel_is_gray(home):
     picture(home / "one.exr", (0.5,))
     path = written(home, textured("one.exr"))
-    [result], _, _ = judge_document(path, open_host("gl"), open_host("reference"), "eonlib")
+    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
     assert (result.check, result.verdict) == ("picture", "passed")

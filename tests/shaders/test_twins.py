@@ -9,6 +9,7 @@ import pytest
 
 from mxeon.models import albedo, formulas
 from mxeon.models import brdf as models
+from mxeon.models.sampling import cltc, eon, ltc
 from mxeon.shaders import functions as twins
 from mxeon.shaders.library import data_folder
 from tests.support.cases import directions_32
@@ -104,6 +105,33 @@ def test_twins_have_the_functions_and_arguments_of_the_python_package(language, 
     assert names == list(inspect.signature(function).parameters)
 
 
+def formulas_in_both():
+    """Python's formulas that the shaders have too, by name."""
+    shaders = re.findall(r"^(?:float|vec3) (\w+)\(", twins.source("glsl"), re.MULTILINE)
+    functions = {}
+    for module in (formulas, ltc, cltc, eon):
+        functions |= {name: getattr(module, name) for name in shaders if hasattr(module, name)}
+    samplers = re.compile(r"\w+_(sample|pdf)")
+    return {name: each for name, each in functions.items() if not samplers.fullmatch(name)}
+
+
+@pytest.mark.parametrize("name", formulas_in_both())
+def test_a_formula_takes_the_same_arguments_in_python_and_in_the_shaders(name):
+    parameters = inspect.signature(formulas_in_both()[name]).parameters.values()
+    names = [each.name for each in parameters if each.default is each.empty]
+    assert [argument for _, argument in twins.signature("glsl", name)] == names
+
+
+def test_the_formulas_of_python_have_the_names_of_the_shaders():
+    own = {"cosines", "oren_nayar_interreflection"}  # no function of their own in a shader
+    defined = {
+        name
+        for name, each in vars(formulas).items()
+        if inspect.isfunction(each) and each.__module__ == formulas.__name__
+    }
+    assert defined - own <= set(formulas_in_both())
+
+
 def test_paper_quartic_has_the_same_coefficients_in_shader_and_package():
     found = re.findall(r"#define EON_G\d (\S+)", text("glsl", twins.FAMILY))
     assert tuple(map(float, found)) == formulas.FON_G
@@ -136,5 +164,5 @@ def test_twin_albedos_agree_with_float64_on_the_closed_domain(gl, function):
 
 def test_twin_loss_keeps_its_relative_accuracy_down_to_grazing(gl):
     mu = np.logspace(-8, 0, 100_000).astype("f4")
-    error = gl.call("fon_loss", mu)[:, 0] / formulas.loss(np.float64(mu)) - 1.0
+    error = gl.call("fon_loss", mu)[:, 0] / formulas.fon_loss(np.float64(mu)) - 1.0
     assert np.max(np.abs(error)) <= TWIN_LOSS

@@ -11,7 +11,7 @@ from mxeon.cli import main
 from mxeon.conformance.results import NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import InterfaceError, NotRun
-from mxeon.shaders import generation, hosts, library
+from mxeon.shaders import generation, library
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import UntestedVersionWarning, check_closure_calls, load_library
 from tests.support.documents import lobe, material
@@ -117,7 +117,7 @@ def test_calls_of_the_same_form_and_other_functions_are_accepted(text):
 
 def test_a_host_whose_target_this_version_lacks_is_not_run(monkeypatch):
     targets = tuple(target for target in generation.TARGETS if target != "slang")
-    monkeypatch.setattr(hosts, "TARGETS", targets)
+    monkeypatch.setattr(generation, "TARGETS", targets)
     with pytest.raises(
         NotRun, match="slang: MaterialX must have a generator for slang; .* none: pip"
     ):

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 import pytest
 
 from mxeon.errors import NotRun
-from mxeon.shaders.hosts import HOSTS
+from mxeon.shaders.hosts import host_names
 
 VARIABLE = "MXEON_REQUIRE"
 
@@ -24,9 +24,9 @@ def required():
         If one is unknown; lists the known ones.
     """
     names = {name for name in os.environ.get(VARIABLE, "").split(",") if name}
-    if unknown := names - set(HOSTS):
+    if unknown := names - set(host_names()):
         raise ValueError(
-            f"{VARIABLE} must hold some of {', '.join(HOSTS)}; got {', '.join(sorted(unknown))}"
+            f"{VARIABLE} must hold some of {', '.join(host_names())}; got {', '.join(sorted(unknown))}"
         )
     return names
 

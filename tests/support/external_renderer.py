@@ -11,8 +11,8 @@ import os
 import sys
 from pathlib import Path
 
+import bpy  # isort: skip  # first: its folder holds the others
 import _cycles
-import bpy
 from mathutils import Vector
 
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Views, random numbers, and a quadrature of the hemisphere, for the tests of the samplers."""
 
+from functools import lru_cache
+
 import numpy as np
 import pytest
 
@@ -26,9 +28,12 @@ def polar_angle(mu):
     return np.minimum(np.arccos(mu), 0.5 * np.pi)
 
 
+gauss_legendre = lru_cache(np.polynomial.legendre.leggauss)
+
+
 def rule(edges, count):
     """Nodes and weights of Gauss-Legendre between each two edges, shape (panels, count)."""
-    x, w = np.polynomial.legendre.leggauss(count)
+    x, w = gauss_legendre(count)
     edges = np.asarray(edges)[:, np.newaxis]
     half = 0.5 * np.diff(edges, axis=0)
     return edges[:-1] + half * (1.0 + x), half * w

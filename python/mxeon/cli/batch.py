@@ -1,99 +1,110 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the commands make of documents, in processes that a document may bring down."""
+"""Run generate and render jobs in worker processes, which a document may crash."""
+
+from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import mxeon
 from mxeon.errors import InputError, MxeonError, NotRun, printable
-from mxeon.jobs import pool
+from mxeon.jobs.timeouts import check_timeout
+
+if TYPE_CHECKING:
+    from mxeon.shaders.document.policy import Policy
+    from mxeon.shaders.generation import Shader
 
 
-class Ended(NotRun):
-    """The process that worked on a document ended, or did not end in time."""
+class WorkerCrashed(NotRun):
+    """A worker process that crashed or timed out."""
 
 
 @dataclass(frozen=True)
-class Made:
-    """What became of one piece of work.
+class BatchResult:
+    """Result of one job.
 
     Attributes
     ----------
     value : object
-        What was made, or None.
+        Return value of the job, or None.
     warnings : tuple of str
     error : Exception or None
-        Why nothing was made.
+        Reason why there is no value.
     """
 
-    value: object
+    value: Any
     warnings: tuple[str, ...] = ()
     error: Exception | None = None
 
 
-def make(work, documents, workers, limit):
-    """What `work` makes of each document, in their order.
+def run_batch(
+    work: Callable[[Any], Any], documents: Sequence[Any], workers: int, timeout: float
+) -> Iterator[BatchResult]:
+    """Results of `work` on each document, in their order.
 
     Parameters
     ----------
     work : callable (document) -> object
         Can be imported by name.
     documents : sequence
-        Whatever `work` takes; its text stands in the message if the process ends.
+        Arguments for `work`, whose text names them in messages.
     workers : int
-        Processes that share the work; 0 for none but this.
-    limit : float
-        Seconds for one document in such a process.
+        Number of worker processes; 0 runs in-process.
+    timeout : float
+        Seconds for one document in a worker process.
 
     Yields
     ------
-    Made
+    BatchResult
 
     Raises
     ------
-    ValueError
-        If `workers` is negative or `limit` is not positive.
+    InputError
+        If `workers` is negative or `timeout` is out of range.
     """
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
-    work = partial(_made, work)
+    check_timeout(timeout)
+    work = partial(_work, work)
     if workers == 0:
         yield from map(work, documents)
         return
-    outcomes = pool.in_order(pool.run(work, documents, workers, limit))
+    from mxeon.jobs import pool
+
+    outcomes = pool.in_order(pool.run(work, documents, workers, timeout))
     for document, outcome in zip(documents, outcomes, strict=True):
-        yield outcome.value or _ended(document, outcome.failure)
+        error = WorkerCrashed(f"{document}: {outcome.failure}")
+        yield outcome.value or BatchResult(None, error=error)
 
 
-def _ended(document, failure):
-    return Made(None, error=Ended(f"{document}: must be worked on to the end; {failure}"))
-
-
-def _made(work, document):
-    with warnings.catch_warnings(record=True) as caught:
+def _work(work: Callable[[Any], Any], document: Any) -> BatchResult:
+    with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
+        value, error = None, None
         try:
-            value, error = work(document), None
-        except (MxeonError, OSError) as raised:
-            value, error = None, raised
-    return Made(value, tuple(str(each.message) for each in caught), error)
+            value = work(document)
+        except (MxeonError, OSError) as reason:
+            error = reason
+    return BatchResult(value, tuple(str(record.message) for record in records), error)
 
 
 @dataclass(frozen=True)
 class Source:
-    """A document and the target that shaders are wanted for."""
+    """A document and a target to generate its shaders for."""
 
     file: str
     target: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.file}: {self.target}"
 
 
-def texts(source, element, **options):
+def shader_texts(source: Source, element: str | None, **options: Any) -> dict[str, str]:
     """Shader texts of a document by file name; options are those of `mxeon.generate`."""
     from mxeon.shaders.generation import generate
 
@@ -105,45 +116,50 @@ def texts(source, element, **options):
     }
 
 
-def _ending(shader, stage):
-    """As generateshader ends the names of files."""
+def _ending(shader: Shader, stage: str) -> str:
+    """Ending of a file name, as generateshader has it."""
     return {"pixel": ".frag", "vertex": ".vert"}[stage] if len(shader.stages) > 1 else ""
 
 
-def picture(file, host, scene, environment, size, element, library, policy):
-    """A picture of a document's one material, and what is to be said of it in a file.
+def picture(
+    file: str,
+    host: str,
+    scene: str,
+    environment: str | None,
+    size: int,
+    element: str | None,
+    library: str,
+    policy: Policy,
+) -> tuple[Any, dict[str, str]]:
+    """A picture of a document's one material, and its provenance.
 
     Parameters
     ----------
     file, host, scene, element, library : str
         Scene is a name that `mxeon.shaders.scene.scene` knows.
     environment : str or None
-        A latitude-longitude image that takes the place of the scene's light.
+        A latitude-longitude image instead of the scene's light.
     size : int
         Width and height in pixels.
     policy : Policy
 
     Returns
     -------
-    ndarray, dict
+    ndarray, shape (size, size, 3), float32
+        Linear radiance.
+    dict of str to str
+        Versions and options that made it, as metadata for the file.
     """
+    from mxeon.conformance import reference
     from mxeon.shaders import scene as scenes
-    from mxeon.shaders.document.notes import MissingFileWarning
-    from mxeon.shaders.generation import generate
     from mxeon.shaders.hosts import open_host
 
-    shown = scenes.scene(scene)
+    setting = scenes.scene(scene)
     if environment:
-        shown = scenes.Scene("environment", environment=Path(environment))
-    with closing(open_host(host)) as engine:
-        options = {"library": library, "profile": engine.profile, "lights": True}
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", MissingFileWarning)
-            found = generate(file, engine.target, element, policy=policy, **options)
-        if len(found) > 1:
-            known = ", ".join(shader.element for shader in found)
-            raise InputError(f"--element must name one of {known}; got none")
-        image = engine.picture(found[0], replace(shown, size=size))
+        setting = scenes.Scene("environment", environment=Path(environment))
+    with closing(open_host(host, reference.ROW)) as engine:
+        shader = _one_shader(file, engine, element, library, policy)
+        image = engine.picture(shader, replace(setting, size=size))
         identity = engine.identity()
     return image, {
         "version": mxeon.__version__,
@@ -151,6 +167,25 @@ def picture(file, host, scene, environment, size, element, library, policy):
         "device": identity.device,
         "library": library,
         "document": file,
-        "element": found[0].element,
-        "scene": shown.name,
+        "element": shader.element,
+        "scene": setting.name,
     }
+
+
+def _one_shader(
+    file: str, engine: Any, element: str | None, library: str, policy: Policy
+) -> Shader:
+    """The shader of a document's one material, or of its element of that name."""
+    from mxeon.shaders.document.notes import MissingFileWarning
+    from mxeon.shaders.generation import generate
+
+    options = {"library": library, "profile": engine.profile, "lights": True}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MissingFileWarning)
+        shaders: tuple[Shader, ...] = generate(
+            file, engine.target, element, policy=policy, **options
+        )
+    if len(shaders) > 1:
+        names = ", ".join(shader.element for shader in shaders)
+        raise InputError(f"--element must name one of {names}; got none")
+    return shaders[0]

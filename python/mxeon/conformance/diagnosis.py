@@ -27,7 +27,7 @@ class Diagnosis:
 def nearest_value(probe):
     """The model nearest to the probe's values, as a Diagnosis."""
     batches = [_clipped(batch) for batch in probe.few]
-    rows = {row.brdf: row for row in reference.DEFECTS + reference.MODELS}
+    rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
     return _nearest(
         rows.values(),
         [probe.direct(batch) for batch in batches],
@@ -38,7 +38,7 @@ def nearest_value(probe):
 def nearest_albedo(probe):
     """The model whose directional albedo is nearest to the probe's environment branch."""
     batches = [_clipped(batch) for batch in probe.cosines]
-    rows = [row for row in reference.MODELS + reference.DEFECTS if row.albedo_dir]
+    rows = [row for row in reference.MODELS + reference.KNOWN_DEFECTS if row.albedo_dir]
     return _nearest(
         rows,
         [probe.albedo(batch) for batch in batches],

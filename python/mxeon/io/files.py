@@ -1,29 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files: regular ones alone are read; what is written appears whole or not at all."""
+"""Files: regular ones alone are read, and those that are written appear whole or not at all."""
 
 import errno
 import os
 import stat
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-PNG_END = b"IEND\xaeB`\x82"  # its last chunk
-PART = "not all of it is in the file; the disk may be full"
+AnyPath = str | os.PathLike[str]
 
 
 @contextmanager
-def replacing(path):
-    """A path beside `path` to write to, moved onto it when the block ends without an error.
+def replacing(path: AnyPath) -> Iterator[Path]:
+    """Path beside `path` to write to, moved onto it when the block ends without an error.
 
     Parameters
     ----------
     path : path-like
-        Its folder is made if need be. A file already there is replaced whole.
+        Its folder is created if need be. A file already there is replaced whole.
 
     Yields
     ------
     Path
-        In the same folder and with the same suffix, which image writers go by.
+        In the same folder and with the same suffix, from which image writers take the format.
 
     Raises
     ------
@@ -36,18 +36,18 @@ def replacing(path):
     try:
         yield beside
         with beside.open("rb") as file:
-            os.fsync(file.fileno())  # some file systems tell only now that there is no room
+            os.fsync(file.fileno())  # some file systems report a full disk only here
         os.replace(beside, path)
     except OSError as error:
-        if error.errno:  # what the system says names the file beside it, or of a full disk, none
+        if error.errno:  # the system's error names the temporary file, or none on a full disk
             error.filename = str(path)
         raise
     finally:
         beside.unlink(missing_ok=True)
 
 
-def write_text(path, text):
-    """Writes `text` to `path` in UTF-8, replacing it whole; see `replacing`.
+def write_text(path: AnyPath, text: str) -> None:
+    """Write `text` to `path` in UTF-8, replacing it whole; see `replacing`.
 
     A lone surrogate, which a file name can bring in and UTF-8 cannot hold, becomes "?".
     """
@@ -55,66 +55,16 @@ def write_text(path, text):
         beside.write_text(text, encoding="utf-8", errors="replace")
 
 
-def write_image(path, pixels, attributes):
-    """Write pixels to an image file in the format that the ending of `path` names.
-
-    Parameters
-    ----------
-    path : path-like
-        Replaced whole; see `replacing`.
-    pixels : ndarray of float32 or uint8, shape (height, width, channels)
-        Contiguous, of a type that the format keeps as it is.
-    attributes : mapping of str to str
-        Kept in the file, by OpenImageIO's names.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; says why.
-
-    Notes
-    -----
-    The file is read again: OpenImageIO's PNG writer, and any whose last bytes wait in a buffer of
-    the C library, report no full disk.
-    """
-    import OpenImageIO as oiio
-
-    try:
-        str(path).encode()
-    except UnicodeEncodeError:
-        raise OSError(errno.EILSEQ, "the name must be UTF-8", str(path)) from None
-    image = oiio.ImageBuf(pixels)
-    for name, value in attributes.items():
-        image.specmod().attribute(name, value)
-    with replacing(path) as beside:
-        if not image.write(str(beside)):
-            raise OSError(errno.EIO, image.geterror().replace(str(beside), str(path)))
-        if not _holds(beside, pixels):
-            raise OSError(errno.EIO, PART)
-
-
-def _holds(path, pixels):
-    """Whether an image file holds these pixels."""
-    import OpenImageIO as oiio
-
-    if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
-        return False  # libpng would print that
-    file = oiio.ImageInput.open(str(path))
-    stored = file.read_image(oiio.UNKNOWN) if file else None
-    oiio.geterror()  # else it is printed when Python ends
-    return stored is not None and stored.tobytes() == pixels.tobytes()
-
-
-def regular(path, flags):
+def regular(path: AnyPath, flags: int) -> int:
     """Descriptor of a regular file: `open(path, opener=regular)`.
 
-    A pipe or a device may have no end, and a pipe that nobody writes to blocks who opens it.
+    A pipe or a device may have no end, and opening a pipe without a writer blocks.
 
     Parameters
     ----------
     path : path-like
     flags : int
-        As of `os.open`.
+        As for `os.open`.
 
     Returns
     -------
@@ -132,6 +82,6 @@ def regular(path, flags):
     return file
 
 
-def assert_regular(path):
-    """Raise OSError unless a path names a regular file that can be read; for what opens by name."""
+def assert_regular(path: AnyPath) -> None:
+    """Raise OSError unless a path names a readable regular file; for libraries that open by name."""
     os.close(regular(path, os.O_RDONLY))

@@ -1,19 +1,45 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures as files: linear EXR, sRGB PNG, and the difference of two pictures."""
+"""Images in memory and as files: linear EXR, sRGB PNG, and the difference of two images."""
 
+import errno
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import InputError
-from mxeon.io.files import write_image
+from mxeon.errors import ImageError, InputError
+from mxeon.io.files import AnyPath, assert_regular, replacing
 
-# What a pixel that is not a finite number looks like, in code values.
-NOT_FINITE = (255, 0, 255)
+Floats = NDArray[np.float64]
+Pixels = NDArray[np.float32]
+Codes = NDArray[np.uint8]
+
+NOT_FINITE = (255, 0, 255)  # code values of a pixel that is not a finite number
+LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
+PNG_END = b"IEND\xaeB`\x82"  # the last chunk of a PNG file
+INCOMPLETE = "the file is incomplete; the disk may be full"
 
 
-def srgb_encoded(image):
-    """Eight-bit sRGB code values of a linear picture.
+def srgb_decoded(image: ArrayLike) -> Floats:
+    """Linear values of sRGB values in [0, 1].
+
+    References
+    ----------
+    IEC 61966-2-1, the encoding of sRGB.
+
+    Examples
+    --------
+    >>> srgb_decoded([0.0, 0.5, 1.0]).round(3).tolist()
+    [0.0, 0.214, 1.0]
+    """
+    image = np.asarray(image, np.float64)
+    return np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
+
+
+def srgb_encoded(image: ArrayLike) -> Codes:
+    """Eight-bit sRGB code values of a linear image.
 
     Parameters
     ----------
@@ -44,7 +70,7 @@ def srgb_encoded(image):
     return np.where(finite, codes, np.array(NOT_FINITE, dtype=np.uint8))
 
 
-def difference(image, reference):
+def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
     """Largest absolute difference over the channels of each pixel.
 
     Parameters
@@ -54,7 +80,7 @@ def difference(image, reference):
     Returns
     -------
     ndarray, shape (...), float64
-        In the unit of the pictures; not finite where one of them is not.
+        In the unit of the images; not finite where one of them is not.
 
     Examples
     --------
@@ -63,22 +89,23 @@ def difference(image, reference):
     """
     image, reference = np.asarray(image, np.float64), np.asarray(reference, np.float64)
     with np.errstate(invalid="ignore"):  # inf - inf
-        return np.abs(image - reference).max(axis=-1)
+        largest: Floats = np.abs(image - reference).max(axis=-1)
+    return largest
 
 
-def difference_scale(difference_map):
-    """Full scale for showing a difference: the next of 1, 2, 5, 10, ... above nearly all of it.
+def difference_scale(difference_map: ArrayLike) -> float:
+    """Full scale of a plot of a difference: the next of 1, 2, 5, 10, ... above nearly all of it.
 
     Parameters
     ----------
     difference_map : array_like
-        Non-negative; zeros and what is not finite are left out.
+        Non-negative; zeros and values that are not finite are left out.
 
     Returns
     -------
     float
         At least the 99th percentile, so that a few pixels at a rim or a terminator do not
-        darken the rest; at least 1e-9, so that equal pictures have a scale too.
+        darken the rest; at least 1e-9, so that equal images have a scale too.
 
     Examples
     --------
@@ -86,16 +113,100 @@ def difference_scale(difference_map):
     0.005
     """
     difference_map = np.asarray(difference_map)
-    shown = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
-    nearly_all = max(np.quantile(shown, 0.99) if shown.size else 0.0, 1e-9)
+    positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
+    nearly_all = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
     decade = int(np.floor(np.log10(nearly_all)))
     # Read as decimals, so that the bounds are the printed numbers and not products of them.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
     return next((step for step in steps if nearly_all <= step), steps[-1])
 
 
-def write_picture(path, image, metadata):
-    """Writes a linear picture as what the ending of `path` says; see `write_exr`, `write_png`.
+def read_image(path: AnyPath) -> Pixels:
+    """Pixels of an image file, row 0 at the top, as stored: no color is transformed.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width, channels)
+
+    Raises
+    ------
+    ImageError
+        If it is no regular file, if OpenImageIO cannot read it, in OpenImageIO's words, or if it
+        has more than LARGEST values, which a small file can.
+    """
+    import OpenImageIO as oiio
+
+    try:
+        assert_regular(path)
+    except OSError as error:
+        raise ImageError(f"{path}: must be an image file; {error.strerror}") from None
+    file = oiio.ImageInput.open(str(path))
+    values = file.spec().image_pixels() * file.spec().nchannels if file else 0
+    if values > LARGEST:
+        raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
+    pixels: Pixels | None = file.read_image(oiio.FLOAT) if file else None
+    if pixels is None:
+        reason = " ".join((file.geterror() if file else oiio.geterror()).split())
+        raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
+    return pixels
+
+
+def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str]) -> None:
+    """Write pixels to an image file in the format that the ending of `path` names.
+
+    Parameters
+    ----------
+    path : path-like
+        Replaced whole; see `mxeon.io.files.replacing`.
+    pixels : ndarray of float32 or uint8, shape (height, width, channels)
+        Contiguous, of a type that the format keeps as it is.
+    attributes : mapping of str to str
+        Metadata of the file, by OpenImageIO's names.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; says why.
+
+    Notes
+    -----
+    The file is read again: OpenImageIO's PNG writer, and any whose last bytes wait in a buffer of
+    the C library, report no full disk.
+    """
+    import OpenImageIO as oiio
+
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise OSError(errno.EILSEQ, "the name must be UTF-8", str(path)) from None
+    image = oiio.ImageBuf(pixels)
+    for name, value in attributes.items():
+        image.specmod().attribute(name, value)
+    with replacing(path) as beside:
+        if not image.write(str(beside)):
+            raise OSError(errno.EIO, image.geterror().replace(str(beside), str(path)))
+        if not _holds(beside, pixels):
+            raise OSError(errno.EIO, INCOMPLETE)
+
+
+def _holds(path: Path, pixels: Pixels | Codes) -> bool:
+    """Whether an image file holds these pixels."""
+    import OpenImageIO as oiio
+
+    if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
+        return False  # before OpenImageIO reads it, as libpng would print a message
+    file = oiio.ImageInput.open(str(path))
+    stored: NDArray[Any] | None = file.read_image(oiio.UNKNOWN) if file else None
+    oiio.geterror()  # else it is printed when Python ends
+    return stored is not None and stored.tobytes() == pixels.tobytes()
+
+
+def write_picture(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
+    """Write a linear image as EXR or PNG by the ending of `path`; see `write_exr`, `write_png`.
 
     Raises
     ------
@@ -111,16 +222,16 @@ def write_picture(path, image, metadata):
     writers[ending](path, image, metadata)
 
 
-def write_exr(path, image, metadata):
-    """Writes a linear picture as a 32-bit float EXR with the Rec. 709 primaries.
+def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
+    """Write a linear image as a 32-bit float EXR with the Rec. 709 primaries.
 
     Parameters
     ----------
     path : path-like
         Ends in .exr; replaced whole.
     image : array_like, shape (height, width, 3)
-    metadata : mapping of str to str
-        Kept in the file under "mxeon:" and the key.
+    metadata : mapping of str to object
+        As text in the file, under "mxeon:" and the key.
 
     Raises
     ------
@@ -131,11 +242,11 @@ def write_exr(path, image, metadata):
     write_image(path, pixels, _attributes("lin_rec709_scene", metadata))
 
 
-def write_png(path, image, metadata):
-    """Writes a linear picture as an eight-bit sRGB PNG; parameters as in `write_exr`."""
+def write_png(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
+    """Write a linear image as an eight-bit sRGB PNG; parameters as for `write_exr`."""
     write_image(path, srgb_encoded(image), _attributes("srgb_rec709_scene", metadata))
 
 
-def _attributes(space, metadata):
-    named = {f"mxeon:{key}": str(value) for key, value in metadata.items()}
-    return {"oiio:ColorSpace": space, "Software": "mxeon"} | named
+def _attributes(space: str, metadata: Mapping[str, object]) -> dict[str, str]:
+    values = {f"mxeon:{key}": str(value) for key, value in metadata.items()}
+    return {"oiio:ColorSpace": space, "Software": "mxeon"} | values

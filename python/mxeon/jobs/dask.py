@@ -1,57 +1,68 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work on many items on the machines of a Dask cluster. Needs the `dask` extra.
 
-Dask places the items, brings dead workers back and tries their items again. Here is what it cannot
-know: which workers fit, that an item one machine cannot do may be done by another, and time limits.
+Dask places the items, restarts workers and tries items again. This module adds what Dask does not
+have: which workers are compatible, items that only some machines can do, and timeouts.
 """
+
+from __future__ import annotations
 
 import faulthandler
 import sys
 import time
 import warnings
 from collections import deque
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import mxeon
 from mxeon.errors import InputError, NotRun, PackageError
-from mxeon.jobs.pool import Outcome, check_limit
+from mxeon.jobs.pool import Outcome, log_bug
+from mxeon.jobs.timeouts import WAIT, check_timeout
 
 WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
 ANSWER = 10.0  # seconds until a scheduler answers
-WAIT = 60.0  # seconds for workers to come, or to come back when all restart at once
 POLL = 1.0  # seconds between looks at the workers that come and go
 
 
 @contextmanager
-def connected(address, wait=WAIT):
-    """The workers of a cluster.
+def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
+    """Connect to the workers of a cluster.
 
     Parameters
     ----------
     address : str
         Of the scheduler, "tcp://host:8786".
     wait : float
-        Seconds that the cluster may be without a worker that fits, now and later.
+        Seconds that the cluster may be without a compatible worker, now and later.
 
     Raises
     ------
-    ValueError
-        If no scheduler answers at the address, none of its workers fits, or `wait` is out of range.
+    InputError
+        If no scheduler answers at the address, none of its workers is compatible, or `wait` is out
+        of range.
     NotRun
         If it has no workers and none comes in time.
-    ImportError
+    PackageError
         If Dask is not installed; says what to install.
     """
-    check_limit(wait, "waitForWorkers")
-    client = _connect(address)
+    check_timeout(wait, "waitForWorkers")
+    client = _client(address)
     try:
-        yield _Workers(client, wait)
+        yield Workers(client, wait)
     finally:
         client.close()
 
 
-def run(work, items, workers, limit, elsewhere):
+def run(
+    work: Callable[[Any], Any],
+    items: Sequence[Any],
+    workers: Workers,
+    timeout: float,
+    unavailable: type[Exception],
+) -> Iterator[tuple[int, Outcome]]:
     """Outcomes of `work` on every item, as they come; see `mxeon.jobs.pool.run`.
 
     Parameters
@@ -59,11 +70,11 @@ def run(work, items, workers, limit, elsewhere):
     work : callable (item) -> object
         Can be imported by name on the workers.
     items : sequence
-    workers : what `connected` gives
-    limit : float
+    workers : Workers
+    timeout : float
         Seconds for one item, after which its worker process ends and its nanny starts another.
-    elsewhere : type of exception
-        What `work` raises when this worker cannot do the item; others are asked then.
+    unavailable : type of exception
+        What `work` raises when this worker cannot do the item; it is then sent to others.
 
     Yields
     ------
@@ -72,49 +83,56 @@ def run(work, items, workers, limit, elsewhere):
     Raises
     ------
     NotRun
-        If the cluster is without a worker that fits for too long, or its scheduler is gone.
+        If the cluster is without a compatible worker for too long, or its scheduler is gone.
     """
     from distributed import wait
 
-    waiting = deque(_Task(place, item) for place, item in enumerate(items))
-    running = {}
+    waiting = deque(_Task(index, item) for index, item in enumerate(items))
+    running: dict[Any, _Task] = {}
     while waiting or running:
-        fit = workers.fit()
-        while waiting and len(running) < WINDOW * len(fit):
+        compatible = workers.compatible()
+        while waiting and len(running) < WINDOW * len(compatible):
             task = waiting.popleft()
-            chosen = fit - task.tried or fit
-            future = workers.submit(_timed, work, task.item, limit, elsewhere, among=chosen)
+            chosen = compatible - task.tried or compatible
+            future = workers.submit(_work_timed, work, task.item, timeout, unavailable, on=chosen)
             running[future] = replace(task, chosen=chosen)
         if not running:
-            workers.await_fit()
+            workers.await_compatible()
             continue
         with suppress(TimeoutError):
             wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
         for future, task in list(running.items()):
-            if future.done():
-                outcome, task = _ended(future, task, fit)
-            elif not task.chosen & fit:  # for those that came instead
-                outcome = None
-            else:
-                continue
-            del running[future]
+            outcome, retry = _progress(future, task, compatible)
+            if outcome or retry:
+                del running[future]
             if outcome:
-                yield task.place, outcome
-            else:
-                waiting.append(task)
+                yield task.index, outcome
+            elif retry:
+                waiting.append(retry)
 
 
 @dataclass(frozen=True)
 class _Task:
     """An item, the workers that could not do it, and those it is bound to."""
 
-    place: int
-    item: object
-    tried: frozenset = frozenset()
-    chosen: frozenset = frozenset()
+    index: int
+    item: Any
+    tried: frozenset[str] = frozenset()
+    chosen: frozenset[str] = frozenset()
 
 
-def _connect(address):
+class WorkerUnavailable(Exception):
+    """A worker cannot do an item; holds the reason and its address."""
+
+    def __init__(self, reason: str, worker: str) -> None:
+        super().__init__(reason, worker)
+        self.worker = worker
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def _client(address: str) -> Any:
     try:
         from distributed import Client
     except ModuleNotFoundError:
@@ -128,40 +146,48 @@ def _connect(address):
         ) from None
 
 
-def _ended(future, task, fit):
-    """The outcome of a task that ended; or none, and the task as others are to try it."""
+def _progress(
+    future: Any, task: _Task, compatible: frozenset[str]
+) -> tuple[Outcome | None, _Task | None]:
+    """The outcome of a task that is done, or the task to submit again, or neither."""
+    if not future.done():
+        return None, None if task.chosen & compatible else task  # its workers are gone
     error = future.exception()
-    if isinstance(error, Elsewhere):
+    if isinstance(error, WorkerUnavailable):
         tried = task.tried | {error.worker}
-        if fit - tried:
-            return None, replace(task, tried=tried)
-    return _outcome(future, error), task
+        return (
+            (None, replace(task, tried=tried)) if compatible - tried else (_outcome(future), None)
+        )
+    return _outcome(future), None
 
 
-def _outcome(future, error):
+def _outcome(future: Any) -> Outcome:
+    error = future.exception()
     if error is None:
         return Outcome(future.result())
-    if isinstance(error, Elsewhere):
+    if isinstance(error, WorkerUnavailable):
         return Outcome(None, str(error))
+    if not type(error).__module__.startswith("distributed."):  # raised by the work
+        log_bug(error)
     return Outcome(None, " ".join(f"{type(error).__name__}: {error}".split()))
 
 
-class _Workers:
-    """The workers of a cluster, of which those fit that have this version and one thread."""
+class Workers:
+    """The workers of a cluster; those that have this version and one thread are compatible."""
 
-    def __init__(self, client, wait):
+    def __init__(self, client: Any, wait: float) -> None:
         self.client = client
         self._wait = wait
-        self._fits = {}
-        if not self.fit() and self._fits:  # who is there will not change
+        self._compatible: dict[str, bool] = {}
+        if not self.compatible() and self._compatible:  # these workers will not change
             raise InputError(
                 f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
-                f"got {len(self._fits)} others"
+                f"got {len(self._compatible)} others"
             )
-        self.await_fit()
+        self.await_compatible()
 
-    def await_fit(self):
-        """Wait for a worker that fits.
+    def await_compatible(self) -> None:
+        """Wait for a compatible worker.
 
         Raises
         ------
@@ -169,57 +195,50 @@ class _Workers:
             If none comes in time.
         """
         end = time.monotonic() + self._wait
-        while not self.fit():
+        while not self.compatible():
             if time.monotonic() > end:
-                rule = f"cluster must have a worker that fits; none came within {self._wait:g} s"
-                raise NotRun(f"{rule}: --waitForWorkers moves the limit")
+                raise NotRun(
+                    f"no compatible Dask worker came within {self._wait:g} s; "
+                    "raise it with --waitForWorkers"
+                )
             time.sleep(min(POLL, self._wait))
 
-    def fit(self):
-        """Addresses of the workers that fit; a warning for each other one when it is first seen."""
-        known = self.client.scheduler_info(n_workers=-1)
-        if "workers" not in known:  # the client has closed
+    def compatible(self) -> frozenset[str]:
+        """Addresses of the compatible workers; warns once of each other one."""
+        info = self.client.scheduler_info(n_workers=-1)
+        if "workers" not in info:  # the client has closed
             raise NotRun("scheduler must run until the end; it answers no more")
-        threads = {address: each["nthreads"] for address, each in known["workers"].items()}
-        unknown = sorted(threads.keys() - self._fits.keys())
-        versions = self.client.run(_version, workers=unknown, on_error="return") if unknown else {}
+        threads = {address: worker["nthreads"] for address, worker in info["workers"].items()}
+        new = sorted(threads.keys() - self._compatible.keys())
+        versions = self.client.run(_version, workers=new, on_error="return") if new else {}
         for address, version in versions.items():
-            why = _unfit(version, threads[address])
-            self._fits[address] = not why
-            if why:
-                warnings.warn(f"worker {address} gets no work: {why}", stacklevel=2)
-        return frozenset(address for address in threads if self._fits.get(address))
+            reason = _incompatibility(version, threads[address])
+            self._compatible[address] = not reason
+            if reason:
+                warnings.warn(f"worker {address} gets no work: {reason}", stacklevel=2)
+        return frozenset(address for address in threads if self._compatible.get(address))
 
-    def submit(self, *task, among):
+    def submit(self, *task: Any, on: frozenset[str]) -> Any:
         """The future of a task that some of the workers may do."""
-        return self.client.submit(*task, workers=sorted(among), pure=False)
+        return self.client.submit(*task, workers=sorted(on), pure=False)
 
 
-class Elsewhere(Exception):
-    """A worker cannot do an item, and says its address."""
-
-    def __init__(self, reason, worker):
-        super().__init__(reason, worker)
-        self.worker = worker
-
-    def __str__(self):
-        return self.args[0]
-
-
-def _timed(work, item, limit, elsewhere):
-    """The work on an item, on a worker, whose process ends if it takes too long."""
+def _work_timed(
+    work: Callable[[Any], Any], item: Any, timeout: float, unavailable: type[Exception]
+) -> Any:
+    """Work on an item, on a worker, whose process ends at the timeout."""
     from distributed import get_worker
 
-    faulthandler.dump_traceback_later(limit, exit=True, file=sys.__stderr__)
+    faulthandler.dump_traceback_later(timeout, exit=True, file=sys.__stderr__ or 2)
     try:
         return work(item)
-    except elsewhere as reason:
-        raise Elsewhere(str(reason), get_worker().address) from None
+    except unavailable as reason:
+        raise WorkerUnavailable(str(reason), get_worker().address) from None
     finally:
         faulthandler.cancel_dump_traceback_later()
 
 
-def _unfit(version, threads):
+def _incompatibility(version: object, threads: int) -> str:
     if version != mxeon.__version__:
         return f"it must have mxeon {mxeon.__version__}; got {version}"
     if threads != 1:
@@ -227,5 +246,5 @@ def _unfit(version, threads):
     return ""
 
 
-def _version():
+def _version() -> str:
     return mxeon.__version__

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Work on many items in processes of their own, of which any may crash, hang or be killed.
+"""A pool of worker processes, any of which may crash, hang or be killed."""
 
-Nothing here knows what the work is.
-"""
-
+import logging
 import multiprocessing
 import os
 import signal
@@ -11,45 +9,64 @@ import sys
 import tempfile
 import threading
 from collections import deque
-from concurrent.futures import FIRST_COMPLETED, wait
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass, replace
 from multiprocessing import resource_tracker
 from pathlib import Path
+from typing import Any
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
-from mxeon.errors import InputError, NotRun
+from mxeon.errors import InputError, MxeonError, NotRun
 from mxeon.jobs.processes import Context, safe_path
-from mxeon.jobs.signals import blocked
+from mxeon.jobs.signals import block_signals
+from mxeon.jobs.timeouts import check_timeout
+
+logger = logging.getLogger(__name__)
 
 ATTEMPTS = 2
-BREAKS = 3  # pools that break one after the other before any item ends
+BREAKS = 3  # pools that break one after the other before any item is done
 START = 60.0  # seconds that a process may take before it begins to work
-LONGEST = 1e6  # seconds of a limit; what waits cannot count much further
-LOCK = 10.0  # seconds until workers take the lock of one that was killed with it from it
+LOCK = 10.0  # seconds until workers take over the lock of one that was killed while it held it
 LAST_LINES = 4  # of a worker's output, in the reason
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How the work on one item ended.
+    """Outcome of the work on one item.
 
     Attributes
     ----------
     value : object
-        What the work returned, or None.
+        Return value of the work, or None.
     failure : str
-        Why it returned nothing, in one line, or "".
+        Reason why there is no value, in one line, or "".
     attempts : int
     """
 
-    value: object
+    value: Any
     failure: str = ""
     attempts: int = 1
 
 
-def run(work, items, workers, limit):
+@dataclass(frozen=True)
+class _Attempt:
+    """An attempt at an item, whose worker prints to the file `log`."""
+
+    index: int
+    item: Any
+    number: int = 1
+    log: str = ""
+
+
+def run(
+    work: Callable[[Any], Any], items: Sequence[Any], workers: int, timeout: float
+) -> Iterator[tuple[int, Outcome]]:
     """Outcomes of `work` on every item, as they come.
+
+    An exception that has no words for the user (see `mxeon.errors`) is a bug: its traceback is
+    logged, which prints it on standard error unless logging is configured.
 
     Parameters
     ----------
@@ -58,57 +75,47 @@ def run(work, items, workers, limit):
     items : sequence
     workers : int
         Number of processes, at least 1.
-    limit : float
+    timeout : float
         Seconds for one item, after which its process is killed.
 
     Yields
     ------
     int, Outcome
-        Place of the item in `items`. A crash or time-out costs the item alone: it is tried once
-        more and then given up.
+        Index of the item in `items`. A crash or timeout affects that item alone, which is tried
+        once more.
 
     Raises
     ------
-    ValueError
-        If `workers` is below 1 or `limit` is out of range.
+    InputError
+        If `workers` is below 1 or `timeout` is out of range.
     NotRun
         If no process can start; says why.
 
     Notes
     -----
-    No process imports anything from the working folder. No more than two items a worker are under way, so results do not pile up in memory. Whatever a
-    worker prints goes to a file; its last lines are quoted when it fails.
+    No process imports anything from the working folder. At most two items per worker are under way,
+    so results do not pile up in memory. What a worker prints goes to a file; its last lines are
+    quoted when it fails.
     """
     if workers < 1:
         raise InputError(f"workers must be at least 1; got {workers}")
-    check_limit(limit)
+    check_timeout(timeout)
     _check_working_folder()
     workers = min(workers, len(items))
-    waiting = deque((place, item, 1) for place, item in enumerate(items))
+    waiting = deque(_Attempt(index, item) for index, item in enumerate(items))
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
         breaks = 0
         while waiting and breaks < BREAKS:
             breaks += 1
-            for ended in _serve(work, waiting, workers, limit, logs):
+            for outcome in _serve(work, waiting, workers, timeout, logs):
                 breaks = 0
-                yield ended
-    for place, _, attempt in waiting:
-        yield place, Outcome(None, "the processes end before they begin to work", attempt)
+                yield outcome
+    for attempt in waiting:
+        failure = "worker processes end before they begin to work"
+        yield attempt.index, Outcome(None, failure, attempt.number)
 
 
-def check_limit(limit, name="limit"):
-    """Nothing, if an item may have that many seconds.
-
-    Raises
-    ------
-    ValueError
-        If `limit` is not positive or above LONGEST.
-    """
-    if not 0.0 < limit <= LONGEST:
-        raise InputError(f"{name} must be positive and at most {LONGEST:g} s; got {limit:g}")
-
-
-def _check_working_folder():
+def _check_working_folder() -> None:
     """Raise NotRun unless the folder exists in which processes start."""
     try:
         os.getcwd()
@@ -117,98 +124,123 @@ def _check_working_folder():
         raise NotRun(f"{rule}; it was deleted") from None
 
 
-def in_order(outcomes):
-    """Outcomes by the places of their items, which those that end early wait for."""
-    early, due = {}, 0
-    for place, outcome in outcomes:
-        early[place] = outcome
+def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
+    """Outcomes in the order of their items."""
+    early: dict[int, Outcome] = {}
+    due = 0
+    for index, outcome in outcomes:
+        early[index] = outcome
         while due in early:
             yield early.pop(due)
             due += 1
 
 
-def _serve(work, waiting, workers, limit, logs):
+def _serve(
+    work: Callable[[Any], Any],
+    waiting: deque[_Attempt],
+    workers: int,
+    timeout: float,
+    logs: str,
+) -> Iterator[tuple[int, Outcome]]:
     """Outcomes until nothing waits or the pool breaks, which leaves its items waiting."""
     pool = ProcessPool(workers, initializer=_prepare, context=Context())
-    running = {}
+    running: dict[Future[Any], _Attempt] = {}
     try:
-        begun = _started(pool)
-        while begun and (waiting or running) and pool.active:
+        active = _start(pool)
+        while active and (waiting or running) and pool.active:
             while waiting and len(running) < 2 * workers:
-                place, item, attempt = waiting.popleft()
-                log = os.path.join(logs, f"{place}-{attempt}.txt")
-                future = pool.schedule(_logged, args=(work, item, log), timeout=limit)
-                running[future] = place, item, attempt, log
-            ended = wait(running, timeout=START + limit, return_when=FIRST_COMPLETED).done
-            for future in ended or tuple(running):  # none: the processes hang before they begin
-                place, item, attempt, log = running.pop(future)
-                outcome = _outcome(future, attempt, limit, log)
-                if outcome.failure and attempt < ATTEMPTS:
-                    waiting.append((place, item, attempt + 1))
+                attempt = waiting.popleft()
+                attempt = replace(
+                    attempt, log=os.path.join(logs, f"{attempt.index}-{attempt.number}.txt")
+                )
+                arguments = (work, attempt.item, attempt.log)
+                running[pool.schedule(_work_logged, args=arguments, timeout=timeout)] = attempt
+            done = wait(running, timeout=START + timeout, return_when=FIRST_COMPLETED).done
+            for future in done or tuple(running):  # none: the processes hang before they begin
+                attempt = running.pop(future)
+                outcome = _outcome(future, attempt, timeout)
+                if outcome.failure and attempt.number < ATTEMPTS:
+                    waiting.append(replace(attempt, number=attempt.number + 1))
                 else:
-                    yield place, outcome
-                Path(log).unlink(missing_ok=True)
-            if not ended:
+                    yield attempt.index, outcome
+                Path(attempt.log).unlink(missing_ok=True)
+            if not done:
                 return
     finally:
-        waiting.extend((place, item, attempt) for place, item, attempt, _ in running.values())
-        with blocked():
+        waiting.extend(running.values())
+        with block_signals():
             pool.stop()
             pool.join()
 
 
-def _started(pool):
-    """Start the threads and processes of a pool; whether it is at work then."""
+def _start(pool: ProcessPool) -> bool:
+    """Start the threads and processes of a pool; whether it is active then."""
     try:
-        with blocked(), safe_path():
+        with block_signals(), safe_path():
             resource_tracker.ensure_running()  # else the first process does, and unblocks signals
-        with blocked():
-            return pool.active
+        with block_signals():
+            return bool(pool.active)
     except (OSError, RuntimeError) as error:
         cause = error.__cause__ or error  # pebble's own error has no words
         reason = getattr(cause, "strerror", None) or cause
         raise NotRun(f"worker processes must start; {reason}") from error
 
 
-def _outcome(future, attempt, limit, log):
+def _outcome(future: Future[Any], attempt: _Attempt, timeout: float) -> Outcome:
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
-        return Outcome(future.result(), attempts=attempt)
-    if isinstance(error, TimeoutError) and error.__cause__ is None:  # else the work raised it
-        end = f"no end within {limit:g} s"
-    elif isinstance(error, ProcessExpired):
-        code = error.exitcode
-        end = f"ended by {_signal(-code)}" if code < 0 else f"exit status {code}"
-    else:
-        end = f"{type(error).__name__}: {error}"
-    path = Path(log)
-    printed = path.read_text(errors="replace").split("\n") if path.exists() else []
-    last = " | ".join([line.strip() for line in printed if line.strip()][-LAST_LINES:]) or "none"
-    return Outcome(None, f"{' '.join(end.split())}; last output: {last}", attempt)
+        return Outcome(future.result(), attempts=attempt.number)
+    raised = error.__cause__ is not None  # by the work; pebble chains its traceback
+    if raised and attempt.number == ATTEMPTS:
+        log_bug(error)
+    end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)
+    path = Path(attempt.log)
+    lines = path.read_text(errors="replace").split("\n") if path.exists() else []
+    last = " | ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:]) or "none"
+    return Outcome(None, f"{' '.join(end.split())}; last output: {last}", attempt.number)
 
 
-def _signal(number):
+def log_bug(error: BaseException) -> None:
+    """Log the traceback of an exception that a worker raised, unless it has words for the user."""
+    if not isinstance(error, (MxeonError, OSError, MemoryError)):
+        logger.error("bug in a worker process", exc_info=error)
+
+
+def _end(error: BaseException, timeout: float) -> str:
+    """The end of a worker process, in words."""
+    if isinstance(error, TimeoutError):
+        return f"timed out after {timeout:g} s"
+    if not isinstance(error, ProcessExpired):
+        return f"{type(error).__name__}: {error}"
+    code = error.exitcode
+    end = f"crashed ({_signal(-code)})" if code < 0 else f"ended with exit status {code}"
+    return f"worker process {end}"
+
+
+def _signal(number: int) -> str:
     try:
         return signal.Signals(number).name
     except ValueError:  # a real-time signal has no name
         return f"signal {number}"
 
 
-def _prepare():
-    """Make this process a worker that ends with its parent, however that ends."""
+def _prepare() -> None:
+    """Make this process a worker that exits when its parent does."""
     CONSTS.channel_lock_timeout = LOCK
+    parent = multiprocessing.parent_process()
+    assert parent is not None  # a worker has one
 
-    def wait_for_end():
-        multiprocessing.parent_process().join()
+    def exit_with_parent() -> None:
+        parent.join()
         os._exit(1)
 
-    threading.Thread(target=wait_for_end, daemon=True).start()
+    threading.Thread(target=exit_with_parent, daemon=True).start()
 
 
-def _logged(work, item, log):
-    """The work on an item; all that this process prints meanwhile, C++ included, goes to `log`.
+def _work_logged(work: Callable[[Any], Any], item: Any, log: str) -> Any:
+    """Work on an item, with all output of this process, C++ included, in the file `log`.
 
-    Temporary files stay beside it, and go with it whatever becomes of this process.
+    Temporary files stay beside it, and are deleted with it whatever becomes of this process.
     """
     tempfile.tempdir = os.path.dirname(log)
     if sys.stdout:  # a daemon may have none

@@ -8,19 +8,22 @@ Python puts the working folder first on the path of `python -c` and `python -m`,
 import os
 import sys
 import threading
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from multiprocessing import spawn, util
 from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
+from typing import Any
 
 HOME = str(Path(__file__).resolve().parents[2])  # the folder that mxeon is imported from
 PYTHON = (sys.executable, "-P")  # opens a command line; -P keeps the working folder off the path
 
 _patching = threading.Lock()
+_util: Any = util  # has the private function that is replaced
 
 
 class _Process(SpawnProcess):
-    def start(self):
+    def start(self) -> None:
         with safe_path():
             super().start()
 
@@ -32,7 +35,7 @@ class Context(SpawnContext):
 
 
 @contextmanager
-def safe_path():
+def safe_path() -> Iterator[None]:
     """Give the processes that `multiprocessing` starts meanwhile, in any thread, a safe path.
 
     The flag is passed on the command line since PYTHONSAFEPATH has no effect beside -E. The
@@ -40,22 +43,22 @@ def safe_path():
     interactive.
     """
     with _patching:
-        flags, data = util._args_from_interpreter_flags, spawn.get_preparation_data
-        util._args_from_interpreter_flags = lambda: [*flags(), "-P"]
+        flags, data = _util._args_from_interpreter_flags, spawn.get_preparation_data
+        _util._args_from_interpreter_flags = lambda: [*flags(), "-P"]
         spawn.get_preparation_data = lambda name: data(name) | {"sys_path": _path()}
         try:
             yield
         finally:
-            util._args_from_interpreter_flags, spawn.get_preparation_data = flags, data
+            _util._args_from_interpreter_flags, spawn.get_preparation_data = flags, data
 
 
-def forget_working_folder():
-    """Take the working folder, which `python -m` puts first, off the path; mxeon may lie there."""
+def forget_working_folder() -> None:
+    """Remove the working folder, which `python -m` puts first, from the path, unless mxeon is there."""
     with suppress(FileNotFoundError):  # it may have been deleted
         if not sys.flags.safe_path and sys.path[0] == os.getcwd() != HOME:
             del sys.path[0]
 
 
-def _path():
+def _path() -> list[str]:
     path = [folder for folder in sys.path if folder]
     return path if HOME in path else [*path, HOME]

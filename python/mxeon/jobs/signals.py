@@ -3,16 +3,18 @@
 
 import signal
 import threading
+from collections.abc import Iterator
 from contextlib import contextmanager
+from types import FrameType
 
 TERMINAL = (signal.SIGINT, signal.SIGHUP)  # come to all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
 
-_postponed = None  # the numbers of those that came, while they are put off
+_pending: list[int] | None = None  # numbers of the signals that came while they are blocked
 
 
-class Ended(KeyboardInterrupt):
-    """A signal ended the command.
+class SignalExit(KeyboardInterrupt):
+    """A signal that ends the command.
 
     Attributes
     ----------
@@ -20,7 +22,7 @@ class Ended(KeyboardInterrupt):
         Exit status of the command: 128 and the number of the signal, as a shell has it.
     """
 
-    def __init__(self, number):
+    def __init__(self, number: int) -> None:
         interrupted = number == signal.SIGINT
         super().__init__(
             "interrupted" if interrupted else f"ended by {signal.Signals(number).name}"
@@ -29,37 +31,38 @@ class Ended(KeyboardInterrupt):
 
 
 @contextmanager
-def raised():
-    """Raise Ended at such a signal, so that nothing stays behind; one that is ignored stays so."""
+def raise_signals() -> Iterator[None]:
+    """Raise SignalExit at such a signal, so that all is cleaned up; an ignored one stays ignored."""
 
-    def end(number, _):
-        if _postponed is None:
-            raise Ended(number)
-        _postponed.append(number)
+    def end(number: int, _: FrameType | None) -> None:
+        if _pending is None:
+            raise SignalExit(number)
+        _pending.append(number)
 
     main = threading.current_thread() is threading.main_thread()  # Python lets no other listen
-    heard = [each for each in ENDING if main and signal.getsignal(each) != signal.SIG_IGN]
-    before = {number: signal.signal(number, end) for number in heard}
+    numbers = [each for each in ENDING if main and signal.getsignal(each) != signal.SIG_IGN]
+    before = {number: signal.signal(number, end) for number in numbers}
     try:
         yield
     finally:
-        for number, usual in before.items():
-            signal.signal(number, usual or signal.SIG_DFL)
+        for number, handler in before.items():
+            signal.signal(number, handler or signal.SIG_DFL)
 
 
 @contextmanager
-def blocked():
-    """Put such signals off; processes started meanwhile never hear of those of a terminal.
+def block_signals() -> Iterator[None]:
+    """Block the signals of a terminal, so that child processes inherit the blocked mask.
 
-    This process decides when they end, by SIGTERM, so that one must reach them at any time.
+    This process decides when they end, by SIGTERM, which must reach them at any time. What came
+    meanwhile is raised at the end.
     """
-    global _postponed
-    _postponed = []
+    global _pending
+    _pending = []
     before = signal.pthread_sigmask(signal.SIG_BLOCK, TERMINAL)
     try:
         yield
     finally:
-        postponed, _postponed = _postponed, None
+        pending, _pending = _pending, None
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-        if postponed:
-            raise Ended(postponed[0])
+        if pending:
+            raise SignalExit(pending[0])

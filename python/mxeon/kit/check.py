@@ -23,7 +23,7 @@ from mxeon.kit.questions import QUESTIONS, Question, answer
 from mxeon.kit.submitted import Missing, Unusable, read_render
 from mxeon.kit.views import MATERIALS, View, views
 from mxeon.models import table as reference
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import sphere
 
 RENDERER = "renderer"

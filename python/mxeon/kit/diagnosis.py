@@ -51,7 +51,7 @@ def candidates(pictures: Sequence[Case], depth: float) -> list[Candidate]:
     -------
     list of Candidate
     """
-    rows = [row for row in reference.DEFECTS + reference.MODELS if row.name not in TOO_NEAR]
+    rows = [row for row in reference.KNOWN_DEFECTS + reference.MODELS if row.name not in TOO_NEAR]
     if all(case.view.scene.light for case in pictures):
         rows = list({row.brdf: row for row in rows}.values())  # some differ in their albedo alone
     return sorted((_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance)

@@ -7,16 +7,12 @@ They are determined on Lambert under a distant light, whose values every model s
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.io.images import srgb_decoded
 from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
 
 LIKENESS = 0.02  # largest rms error over rms value, without noise, at which a fault explains it
 SAME_SCALE = 0.005  # a factor nearer to 1 is noise or the depth of a mesh
-
-
-def _srgb_decoded(image: NDArray[np.float64]) -> NDArray[np.float64]:
-    image = np.clip(image, 0.0, None)
-    return np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
 
 
 def _tone_mapped_back(image: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -27,7 +23,7 @@ def _tone_mapped_back(image: NDArray[np.float64]) -> NDArray[np.float64]:
 # Each fault in words, and the function that undoes it.
 FAULTS = (
     ("", lambda image: image),
-    ("sRGB-encoded", _srgb_decoded),
+    ("sRGB-encoded", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
     ("encoded with a power of 1/2.2", lambda image: np.clip(image, 0.0, None) ** 2.2),
     ("tone-mapped by x / (1 + x)", _tone_mapped_back),
     ("upside down", lambda image: image[::-1]),

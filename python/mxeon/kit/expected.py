@@ -8,11 +8,10 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.reference import VIEW, local_directions
 from mxeon.kit.views import Material, View
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
-from mxeon.shaders.scene import Scene, sphere
+from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 # Smallest cosine of either direction that is judged: near the rim and the terminator the value
 # depends on the position within a pixel. With 64 pixels or more, a whole pixel above the cut lies

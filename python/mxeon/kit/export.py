@@ -14,28 +14,13 @@ import mxeon
 from mxeon.io.files import write_text
 from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
-from mxeon.kit.views import MATERIALS, NODE, USUAL, Material, View, views
+from mxeon.kit.views import MATERIALS, USUAL, Material, View, views
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import Scene
 
 KIT_FORMAT = 1
 DESCRIPTION = "kit.json"
 RENDERS = "renders"
-
-MATERIAL = """<?xml version="1.0"?>
-<materialx version="1.39">
-  <{node} name="lobe" type="BSDF">
-    <input name="color" type="color3" value="{color}" />
-    <input name="roughness" type="float" value="{roughness!r}" />
-    <input name="energy_compensation" type="boolean" value="{flag}" />
-  </{node}>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-  <surfacematerial name="{name}" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>
-"""
 
 
 def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
@@ -75,13 +60,12 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
 
 def material_document(material: Material) -> str:
     """A material of the kit as MaterialX text."""
-    return MATERIAL.format(
-        node=NODE,
-        name=material.name,
-        color=", ".join(map(str, material.color)),
-        roughness=material.roughness,
-        flag=str(material.energy_compensation).lower(),
-    )
+    inputs = {
+        "color": material.color,
+        "roughness": material.roughness,
+        FLAG: material.energy_compensation,
+    }
+    return material_text(OREN_NAYAR, inputs, material.name)
 
 
 def description(pictures: Sequence[View], size: int) -> dict[str, Any]:
@@ -124,7 +108,7 @@ def description(pictures: Sequence[View], size: int) -> dict[str, Any]:
 def _material(material: Material) -> dict[str, Any]:
     return {
         "file": f"materials/{material.name}.mtlx",
-        "node": NODE,
+        "node": OREN_NAYAR,
         "color": material.color,
         "roughness": material.roughness,
         "energy_compensation": material.energy_compensation,

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from mxeon.errors import InputError
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
-NODE = "oren_nayar_diffuse_bsdf"
 COLOR = (0.2, 0.5, 0.8)  # a wrong power of the color shows in each channel
 
 # Below, the points that bound a pixel may miss the sphere; above, nothing is gained.

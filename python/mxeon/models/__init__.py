@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diffuse reflection models in NumPy: values, albedos, inversion and sampling. Imports NumPy alone."""
+"""Diffuse reflection models in NumPy: values, albedos, inversion and sampling.
+
+The models import NumPy alone. A call uses the caller's thread alone, unless `threads` asks for more.
+"""
 
 from mxeon.models.brdf import (
     eon_brdf,
@@ -11,6 +14,7 @@ from mxeon.models.brdf import (
     qon_footnote_brdf,
     qon_fujii_brdf,
 )
+from mxeon.models.evaluation import threads
 
 __all__ = [
     "eon_brdf",
@@ -21,4 +25,5 @@ __all__ = [
     "qon_brdf",
     "qon_footnote_brdf",
     "qon_fujii_brdf",
+    "threads",
 ]

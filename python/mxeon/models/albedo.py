@@ -2,16 +2,19 @@
 """Directional and average albedos of the Oren-Nayar family, in closed form and by quadrature.
 
 The albedos of QON and FON are those at unit reflectance: multiply by rho. All functions broadcast
-and work on the closed domain; H is `fon_loss`.
+and work on the closed domain; of numbers alone, those without channels return a number. H is
+`fon_loss`.
 """
 
 import numpy as np
 
-from mxeon.models.formulas import C1, C2, loss, loss_approx, qon_a, qon_b, recaptured
-from mxeon.models.geometry import checked, lead_shape
+from mxeon.models import formulas
+from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.formulas import C1, C2, fon_a, qon_a, qon_b
 
 
-def fon_loss(mu):
+def fon_loss(mu: ArrayLike) -> Array:
     """Energy that FON loses at unit reflectance, divided by roughness and by the factor A.
 
         H(mu) = c1 - G_F(mu) / pi,  1 - E_FON = roughness A H
@@ -23,7 +26,7 @@ def fon_loss(mu):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         Dimensionless, in [0, c1]: 0 at grazing, c1 = 1/2 - 2 / (3 pi) at normal incidence.
 
     Raises
@@ -45,10 +48,10 @@ def fon_loss(mu):
     array([0.      , 0.173441, 0.287793])
     """
     (mu,) = _floats(mu=mu)
-    return loss(mu)
+    return formulas.fon_loss(mu)
 
 
-def qon_albedo_dir(mu, sigma):
+def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of QON at unit reflectance.
 
         E(mu) = A + B G(mu) / pi,  G = pi (c1 - H(mu)) + 2/3 sqrt(1 - mu^2)
@@ -62,7 +65,7 @@ def qon_albedo_dir(mu, sigma):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         Dimensionless, positive; above 1, to 1.02, near grazing for sigma < 0.6.
 
     Raises
@@ -84,11 +87,11 @@ def qon_albedo_dir(mu, sigma):
     array([0.949924, 0.784483])
     """
     mu, sigma = _floats(mu=mu, sigma=sigma)
-    g_over_pi = C1 - loss(mu) + 2.0 / (3.0 * np.pi) * np.sqrt((1.0 - mu) * (1.0 + mu))
+    g_over_pi = C1 - formulas.fon_loss(mu) + 2.0 / (3.0 * np.pi) * np.sqrt((1.0 - mu) * (1.0 + mu))
     return qon_a(sigma) + qon_b(sigma) * g_over_pi
 
 
-def qon_albedo_avg(sigma):
+def qon_albedo_avg(sigma: ArrayLike) -> Array:
     """Average albedo of QON at unit reflectance.
 
         <E> = A + (2/3 - 64 / (45 pi)) B
@@ -100,7 +103,7 @@ def qon_albedo_avg(sigma):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         Dimensionless, in (0, 1].
 
     Raises
@@ -121,7 +124,7 @@ def qon_albedo_avg(sigma):
     return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_b(sigma)
 
 
-def fon_albedo_dir(mu, roughness):
+def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of FON at unit reflectance.
 
         E(mu) = 1 - roughness A H(mu),  A = 1 / (1 + c1 roughness)
@@ -135,7 +138,7 @@ def fon_albedo_dir(mu, roughness):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         Dimensionless, in (0, 1].
 
     Raises
@@ -157,10 +160,10 @@ def fon_albedo_dir(mu, roughness):
     array([1.      , 0.776522])
     """
     mu, r = _floats(mu=mu, roughness=roughness)
-    return 1.0 - r * loss(mu) / (1.0 + C1 * r)
+    return 1.0 - r * formulas.fon_loss(mu) * fon_a(r)
 
 
-def fon_albedo_dir_approx(mu, roughness):
+def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of FON at unit reflectance, with a quartic.
 
         E(mu) ~ (1 + roughness (g1 m + g2 m^2 + g3 m^3 + g4 m^4)) A,  m = 1 - mu
@@ -174,7 +177,7 @@ def fon_albedo_dir_approx(mu, roughness):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         Dimensionless, positive; above 1, by up to 3.6e-4, for mu < 0.0014.
 
     Raises
@@ -196,10 +199,10 @@ def fon_albedo_dir_approx(mu, roughness):
     array([1.000356, 0.776522])
     """
     mu, r = _floats(mu=mu, roughness=roughness)
-    return 1.0 - r * loss_approx(mu) / (1.0 + C1 * r)
+    return 1.0 - r * formulas.fon_loss_approx(mu) * fon_a(r)
 
 
-def fon_albedo_avg(roughness):
+def fon_albedo_avg(roughness: ArrayLike) -> Array:
     """Average albedo of FON at unit reflectance.
 
         <E> = (1 + c2 roughness) / (1 + c1 roughness),  c2 = 2/3 - 28 / (15 pi)
@@ -211,7 +214,7 @@ def fon_albedo_avg(roughness):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         Dimensionless, in (0, 1].
 
     Raises
@@ -229,10 +232,10 @@ def fon_albedo_avg(roughness):
     array([1.      , 0.832811])
     """
     (r,) = _floats(roughness=roughness)
-    return (1.0 + C2 * r) / (1.0 + C1 * r)
+    return (1.0 + C2 * r) * fon_a(r)
 
 
-def eon_albedo_dir(mu, rho, roughness):
+def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of EON.
 
         E(mu) = rho (1 - (1 - rho) roughness H(mu) / D),
@@ -272,10 +275,10 @@ def eon_albedo_dir(mu, rho, roughness):
            [0.439034, 1.      ]])
     """
     rho, r, mu = _colored(rho, roughness=roughness, mu=mu)
-    return _eon_albedo(loss(mu), rho, r)
+    return _eon_albedo(formulas.fon_loss(mu), rho, r)
 
 
-def eon_albedo_dir_approx(mu, rho, roughness):
+def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of EON, with the quartic for the albedo of FON.
 
         E(mu) as in `eon_albedo_dir`,  H = c1 - (g1 m + g2 m^2 + g3 m^3 + g4 m^4),  m = 1 - mu
@@ -314,10 +317,10 @@ def eon_albedo_dir_approx(mu, rho, roughness):
            [0.439034, 1.      ]])
     """
     rho, r, mu = _colored(rho, roughness=roughness, mu=mu)
-    return _eon_albedo(loss_approx(mu), rho, r)
+    return _eon_albedo(formulas.fon_loss_approx(mu), rho, r)
 
 
-def eon_albedo_avg(rho, roughness):
+def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Average albedo of EON.
 
         <E> = rho (1 + c2 roughness) / D = rho <E_FON> / (1 - rho (1 - <E_FON>)),
@@ -352,19 +355,19 @@ def eon_albedo_avg(rho, roughness):
     return _eon_albedo(C1 - C2, *_colored(rho, roughness=roughness))
 
 
-def _eon_albedo(lost, rho, r):
+def _eon_albedo(lost: Array | float, rho: Array, r: Array) -> Array:
     """Albedo of EON where FON loses r A lost."""
-    return rho * (1.0 - (1.0 - rho) * r * lost / recaptured(rho, r))
+    return rho * (1.0 - (1.0 - rho) * r * lost / formulas.eon_denominator(rho, r))
 
 
-def _floats(**arguments):
+def _floats(**arguments: ArrayLike) -> list[Array]:
     """Checked arguments in float64, whose shapes broadcast."""
     arrays = {name: checked(name, value) for name, value in arguments.items()}
     lead_shape({}, arrays)
     return [np.asarray(array, np.float64) for array in arrays.values()]
 
 
-def _colored(rho, **arguments):
+def _colored(rho: ArrayLike, **arguments: ArrayLike) -> tuple[Array, ...]:
     """Checked `rho` (..., C), and the others with an axis for its channels."""
     rho = np.atleast_1d(np.asarray(checked("rho", rho), np.float64))
     numbers = {name: checked(name, value) for name, value in arguments.items()}

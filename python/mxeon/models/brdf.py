@@ -2,15 +2,17 @@
 """BRDF of Lambert and of the Oren-Nayar family, in 1/sr and without the cosine.
 
 All functions broadcast, are reciprocal, work on the closed domain, and evaluate in blocks, so that
-memory beyond arguments and result does not grow. Where both directions graze the surface and s > 0,
+memory beyond arguments and result does not grow. They use the caller's thread alone; `threads` lets
+several share a large call. Where both directions graze the surface and s > 0,
 s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there for any choice.
 """
 
 from mxeon.models import formulas
-from mxeon.models.geometry import evaluate
+from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.evaluation import evaluate
 
 
-def lambert_brdf(wo, wi, rho):
+def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     """BRDF of a smooth diffuse surface, Lambert's.
 
         f = rho / pi
@@ -41,10 +43,10 @@ def lambert_brdf(wo, wi, rho):
     >>> lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8]).round(6)
     array([0.063662, 0.254648])
     """
-    return evaluate(formulas.lambert, wo, wi, rho)
+    return evaluate(formulas.lambert_brdf, wo, wi, rho)
 
 
-def oren_nayar_brdf(wo, wi, rho, sigma):
+def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of the full Oren-Nayar model, interreflection included.
 
         f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)
@@ -91,10 +93,10 @@ def oren_nayar_brdf(wo, wi, rho, sigma):
     >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
     array([0.063766, 0.269282])
     """
-    return evaluate(formulas.oren_nayar, wo, wi, rho, sigma=sigma)
+    return evaluate(formulas.oren_nayar_brdf, wo, wi, rho, sigma=sigma)
 
 
-def qon_brdf(wo, wi, rho, sigma):
+def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of the qualitative Oren-Nayar model.
 
         f = rho / pi (A + B s / t),  1/t = 0 where s <= 0, else 1 / max(mu_o, mu_i)
@@ -132,10 +134,10 @@ def qon_brdf(wo, wi, rho, sigma):
     >>> qon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
     array([0.06258 , 0.250322])
     """
-    return evaluate(formulas.qon, wo, wi, rho, sigma=sigma)
+    return evaluate(formulas.qon_brdf, wo, wi, rho, sigma=sigma)
 
 
-def qon_footnote_brdf(wo, wi, rho, sigma):
+def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of QON with 0.57 in place of 0.33 in A, which approximates interreflection.
 
         f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
@@ -173,10 +175,10 @@ def qon_footnote_brdf(wo, wi, rho, sigma):
     >>> qon_footnote_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
     array([0.066596, 0.266385])
     """
-    return evaluate(formulas.qon_footnote, wo, wi, rho, sigma=sigma)
+    return evaluate(formulas.qon_footnote_brdf, wo, wi, rho, sigma=sigma)
 
 
-def qon_fujii_brdf(wo, wi, rho, sigma):
+def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of QON with coefficients that match the full model, and with a tinted A.
 
         f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
@@ -215,10 +217,10 @@ def qon_fujii_brdf(wo, wi, rho, sigma):
     >>> qon_fujii_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
     array([0.064005, 0.273106])
     """
-    return evaluate(formulas.qon_fujii, wo, wi, rho, sigma=sigma)
+    return evaluate(formulas.qon_fujii_brdf, wo, wi, rho, sigma=sigma)
 
 
-def fon_brdf(wo, wi, rho, roughness):
+def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the Fujii Oren-Nayar model.
 
         f = rho / pi A (1 + roughness s / t),  1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
@@ -256,10 +258,10 @@ def fon_brdf(wo, wi, rho, roughness):
     >>> fon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
     array([0.07235 , 0.289399])
     """
-    return evaluate(formulas.fon, wo, wi, rho, roughness=roughness)
+    return evaluate(formulas.fon_brdf, wo, wi, rho, roughness=roughness)
 
 
-def eon_brdf(wo, wi, rho, roughness):
+def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the energy-preserving Oren-Nayar model.
 
         f = rho / pi A (1 + r s / t + rho r (1 + c2 r) / ((c1 - c2) D) H(mu_o) H(mu_i)),
@@ -300,10 +302,10 @@ def eon_brdf(wo, wi, rho, roughness):
     >>> eon_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
     array([0.073621, 0.310981])
     """
-    return evaluate(formulas.eon, wo, wi, rho, roughness=roughness)
+    return evaluate(formulas.eon_brdf, wo, wi, rho, roughness=roughness)
 
 
-def eon_brdf_approx(wo, wi, rho, roughness):
+def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of EON with the quartic for the albedo of FON.
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
@@ -343,4 +345,4 @@ def eon_brdf_approx(wo, wi, rho, roughness):
     >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
     array([0.073622, 0.311002])
     """
-    return evaluate(formulas.eon_approx, wo, wi, rho, roughness=roughness)
+    return evaluate(formulas.eon_brdf_approx, wo, wi, rho, roughness=roughness)

@@ -6,8 +6,9 @@ Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no o
 
 import numpy as np
 
+from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.formulas import C1, C2
-from mxeon.models.geometry import checked, lead_shape
 
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
 # where the paper states less than 0.3 %, and 2.84e-3.
@@ -19,7 +20,7 @@ NORMAL_REFIT = (0.2531091, 0.9883170)
 AVERAGE_REFIT = 0.1843278
 
 
-def eon_rho_from_albedo_normal(color, roughness):
+def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflectance rho that gives EON this directional albedo at normal incidence.
 
         rho = 2 C d / (b + sqrt(b^2 + 4 c2 r d C)),  b = 1 + (c1 - c2) r C,  d = 1 + c1 r
@@ -63,7 +64,7 @@ def eon_rho_from_albedo_normal(color, roughness):
     return np.minimum(rho, 1.0)
 
 
-def eon_rho_from_albedo_avg(color, roughness):
+def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflectance rho that gives EON this average albedo.
 
         rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
@@ -103,7 +104,7 @@ def eon_rho_from_albedo_avg(color, roughness):
     return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
 
 
-def eon_rho_from_albedo_normal_approx(color, roughness):
+def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by the paper's polynomial.
 
     Parameters
@@ -140,7 +141,7 @@ def eon_rho_from_albedo_normal_approx(color, roughness):
     return _polynomial(color, roughness, *NORMAL)
 
 
-def eon_rho_from_albedo_normal_refit_approx(color, roughness):
+def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
 
     Parameters
@@ -177,7 +178,7 @@ def eon_rho_from_albedo_normal_refit_approx(color, roughness):
     return _polynomial(color, roughness, *NORMAL_REFIT)
 
 
-def eon_rho_from_albedo_avg_approx(color, roughness):
+def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by the paper's polynomial.
 
     Parameters
@@ -213,7 +214,7 @@ def eon_rho_from_albedo_avg_approx(color, roughness):
     return _polynomial(color, roughness, AVERAGE, 1.0)
 
 
-def eon_rho_from_albedo_avg_refit_approx(color, roughness):
+def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
 
     Parameters
@@ -249,7 +250,7 @@ def eon_rho_from_albedo_avg_refit_approx(color, roughness):
     return _polynomial(color, roughness, AVERAGE_REFIT, 1.0)
 
 
-def _checked(color, roughness):
+def _checked(color: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Checked arguments as float64 arrays: colors (..., C), roughness (..., 1)."""
     color = np.atleast_1d(np.asarray(checked("color", color), np.float64))
     roughness = np.asarray(checked("roughness", roughness), np.float64)
@@ -257,7 +258,7 @@ def _checked(color, roughness):
     return color, roughness[..., np.newaxis]
 
 
-def _polynomial(color, roughness, slope, zero):
+def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: float) -> Array:
     """C + slope (zero - C) C r: [Portsmouth2025], Eqs. (32) and (34)."""
     color, r = _checked(color, roughness)
     return color + slope * (zero - color) * color * r

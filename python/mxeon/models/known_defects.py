@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of EON and QON that renderers in the field implement, to recognise them by."""
+"""Wrong variants of EON and QON that renderers in the field implement, to recognize them by."""
 
 import numpy as np
 
 from mxeon.models import formulas
 from mxeon.models.albedo import eon_albedo_dir, fon_albedo_dir, qon_albedo_dir
+from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.brdf import qon_brdf
-from mxeon.models.geometry import cosines, evaluate
+from mxeon.models.evaluation import evaluate
+from mxeon.models.formulas import C1, C2, cosines
 
 
-def eon_clamped_brdf(wo, wi, rho, roughness):
+def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON with dot(wo, wi) kept above 1e-8 before s is formed.
 
         s = max(dot(wo, wi), 1e-8) - mu_o mu_i
@@ -22,7 +24,7 @@ def eon_clamped_brdf(wo, wi, rho, roughness):
     Returns
     -------
     ndarray, shape (..., C), float64
-        In 1/sr; too bright where dot(wo, wi) < 0, and right elsewhere.
+        In 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere.
 
     Raises
     ------
@@ -41,7 +43,7 @@ def eon_clamped_brdf(wo, wi, rho, roughness):
     return evaluate(_eon_clamped, wo, wi, rho, roughness=roughness)
 
 
-def eon_rho_cubed_brdf(wo, wi, rho, roughness):
+def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
 
     Parameters
@@ -52,7 +54,7 @@ def eon_rho_cubed_brdf(wo, wi, rho, roughness):
     Returns
     -------
     ndarray, shape (..., C), float64
-        In 1/sr; too dark, and right where rho is 0 or 1.
+        In 1/sr; too dark, and correct where rho is 0 or 1.
 
     Raises
     ------
@@ -71,7 +73,9 @@ def eon_rho_cubed_brdf(wo, wi, rho, roughness):
     return evaluate(_eon_rho_cubed, wo, wi, rho, roughness=roughness)
 
 
-def fon_white_lobe_brdf(wo, wi, rho, roughness):
+def fon_white_lobe_brdf(
+    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+) -> Array:
     """Reflection of FON plus the multiple-scattering lobe of a white surface.
 
     Parameters
@@ -82,7 +86,7 @@ def fon_white_lobe_brdf(wo, wi, rho, roughness):
     Returns
     -------
     ndarray, shape (..., C), float64
-        In 1/sr; too bright, and right where rho is 1.
+        In 1/sr; too bright, and correct where rho is 1.
 
     Raises
     ------
@@ -101,8 +105,8 @@ def fon_white_lobe_brdf(wo, wi, rho, roughness):
     return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
 
 
-def qon_tinted_twice_brdf(wo, wi, rho, sigma):
-    """Reflection of QON that is multiplied by its own colour once more.
+def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Reflection of QON that is multiplied by its own color once more.
 
     Parameters
     ----------
@@ -112,7 +116,7 @@ def qon_tinted_twice_brdf(wo, wi, rho, sigma):
     Returns
     -------
     ndarray, shape (..., C), float64
-        In 1/sr; too dark, and right where rho is 0 or 1.
+        In 1/sr; too dark, and correct where rho is 0 or 1.
 
     Raises
     ------
@@ -128,10 +132,10 @@ def qon_tinted_twice_brdf(wo, wi, rho, sigma):
     >>> qon_tinted_twice_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.5, 1.0], 0.0).round(6)
     array([0.079577, 0.31831 ])
     """
-    return rho * qon_brdf(wo, wi, rho, sigma)
+    return np.asarray(rho) * qon_brdf(wo, wi, rho, sigma)
 
 
-def qon_tinted_twice_albedo_dir(mu, rho, sigma):
+def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of `qon_tinted_twice_brdf`.
 
     Parameters
@@ -152,7 +156,7 @@ def qon_tinted_twice_albedo_dir(mu, rho, sigma):
     return np.square(rho) * qon_albedo_dir(mu, sigma)[..., np.newaxis]
 
 
-def eon_rho_cubed_albedo_dir(mu, rho, roughness):
+def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of `eon_rho_cubed_brdf`.
 
         E = rho (E_EON + (1 - rho) E_FON)
@@ -177,11 +181,11 @@ def eon_rho_cubed_albedo_dir(mu, rho, roughness):
     >>> eon_rho_cubed_albedo_dir(0.5, [0.5, 1.0], 1.0).round(6)
     array([0.447959, 1.      ])
     """
-    single = fon_albedo_dir(mu, roughness)[..., np.newaxis]
-    return rho * (eon_albedo_dir(mu, rho, roughness) + (1.0 - np.asarray(rho)) * single)
+    fon = fon_albedo_dir(mu, roughness)[..., np.newaxis]
+    return np.asarray(rho) * (eon_albedo_dir(mu, rho, roughness) + (1.0 - np.asarray(rho)) * fon)
 
 
-def fon_white_lobe_albedo_dir(mu, rho, roughness):
+def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of `fon_white_lobe_brdf`.
 
         E = 1 - (1 - rho) E_FON
@@ -209,7 +213,7 @@ def fon_white_lobe_albedo_dir(mu, rho, roughness):
     return 1.0 - (1.0 - np.asarray(rho)) * fon_albedo_dir(mu, roughness)[..., np.newaxis]
 
 
-def qon_fitted_albedo_dir(mu, rho, sigma):
+def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of QON as MaterialX fits it: a quotient of polynomials.
 
     Parameters
@@ -235,24 +239,29 @@ def qon_fitted_albedo_dir(mu, rho, sigma):
     >>> qon_fitted_albedo_dir(0.5, [0.5, 1.0], 1.0).round(6)
     array([0.374198, 0.748396])
     """
-    mu, sigma = np.asarray(mu), np.asarray(sigma)
+    mu, sigma = np.asarray(mu, np.float64), np.asarray(sigma, np.float64)
     over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma**2
     under = 1.0 - 0.6076 * sigma - 0.4993 * mu * sigma + 2.0315 * sigma**2
-    return (over / under)[..., np.newaxis] * rho
+    white: Array = over / under
+    return white[..., np.newaxis] * np.asarray(rho, np.float64)
 
 
-def _eon_clamped(wo, wi, rho, r):
+def _eon_clamped(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     mu_o, mu_i, s = cosines(wo, wi)
     s = np.maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
-    return formulas.eon_of(mu_o, mu_i, s, rho, r, formulas.multiple_weight(rho, r))
+    return formulas.eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
 
 
-def _eon_rho_cubed(wo, wi, rho, r):
-    return formulas.eon_of(*cosines(wo, wi), rho, r, rho * formulas.multiple_weight(rho, r))
+def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    mu_o, mu_i, s = cosines(wo, wi)
+    single = 1.0 + roughness * formulas.fon_quotient(mu_o, mu_i, s)
+    weight = rho * formulas.eon_multiple_weight(rho, roughness)
+    multiple = weight * (formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i))
+    return formulas.fon_scale(rho, roughness) * (single + multiple)
 
 
-def _fon_white_lobe(wo, wi, rho, r):
+def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     mu_o, mu_i, _ = cosines(wo, wi)
-    lost = formulas.loss(mu_o) * formulas.loss(mu_i)
-    white = r / (np.pi * formulas.fon_d(r) * (formulas.C1 - formulas.C2)) * lost
-    return formulas.fon(wo, wi, rho, r) + white
+    lost = formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i)
+    white = roughness * formulas.fon_a(roughness) / (np.pi * (C1 - C2)) * lost
+    return formulas.fon_brdf(wo, wi, rho, roughness) + white

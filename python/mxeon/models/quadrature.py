@@ -1,12 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Directional albedo of any model, by Gauss-Legendre rules between the kinks of this family."""
 
+from collections.abc import Callable
+from functools import lru_cache
+
 import numpy as np
 
-from mxeon.models.geometry import checked, lead_shape
+from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arrays import Array, ArrayLike
 
 
-def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
+def albedo_dir_quadrature(
+    brdf: Callable[..., Array],
+    mu: ArrayLike,
+    rho: ArrayLike,
+    *parameter: ArrayLike,
+    nodes: int = 64,
+) -> Array:
     """Directional albedo of any model that mirrors in the plane of incidence, by quadrature.
 
         E(mu) = integral of brdf(wo, wi, rho) cos(theta_i) over the hemisphere of wi
@@ -20,7 +30,7 @@ def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
     rho : array_like, shape (..., C)
         Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
     *parameter : array_like, shape (...)
-        What `brdf` takes after rho: sigma, roughness or nothing.
+        Argument of `brdf` after rho, if it has one: sigma or roughness.
     nodes : int
         Gauss-Legendre nodes for each of two intervals of both angles; the time grows as its square.
 
@@ -48,22 +58,21 @@ def albedo_dir_quadrature(brdf, mu, rho, *parameter, nodes=64):
     array([0.47804055, 1.        ])
     """
     mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
-    parameter = [np.asarray(value) for value in parameter]
-    numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameter)}
+    parameters = [np.asarray(value) for value in parameter]
+    numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameters)}
     lead = lead_shape({"rho": rho}, numbers)
     mu, rho = np.broadcast_to(mu, lead), np.broadcast_to(rho, lead + rho.shape[-1:])
-    parameter = [np.broadcast_to(value, lead) for value in parameter]
+    parameters = [np.broadcast_to(value, lead) for value in parameters]
     albedo = np.empty(rho.shape)
     for index in np.ndindex(lead):
-        wo, wi, weights = hemisphere_nodes(mu[index], nodes)
-        albedo[index] = weights @ brdf(wo, wi, rho[index], *(value[index] for value in parameter))
+        wo, wi, weights = hemisphere_nodes(float(mu[index]), nodes)
+        albedo[index] = weights @ brdf(wo, wi, rho[index], *(value[index] for value in parameters))
     return albedo
 
 
-def hemisphere_nodes(mu, nodes):
-    """wo at azimuth 0, wi in half the hemisphere, and their shares of the projected hemisphere."""
-    x, weight = np.polynomial.legendre.leggauss(nodes)
-    x, weight = 0.5 * (1.0 + x), 0.5 * weight
+def hemisphere_nodes(mu: float, nodes: int) -> tuple[Array, Array, Array]:
+    """wo at azimuth 0, wi in half the hemisphere, and their weights, which sum to pi."""
+    x, weight = _unit_interval_rule(nodes)
     theta_o = np.arccos(mu)
     rest = np.pi / 2.0 - theta_o
     theta = np.concatenate([theta_o * (1.0 - x**5), theta_o + rest * x])
@@ -73,5 +82,12 @@ def hemisphere_nodes(mu, nodes):
     theta, phi = (grid.ravel() for grid in np.meshgrid(theta, phi, indexing="ij"))
     x, y, z = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
     wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])
-    shares = 2.0 * np.outer(d_theta, d_phi).ravel() * np.sin(theta) * z
-    return wo, np.stack([x, y, z], axis=-1), shares
+    weights = 2.0 * np.outer(d_theta, d_phi).ravel() * np.sin(theta) * z
+    return wo, np.stack([x, y, z], axis=-1), weights
+
+
+@lru_cache(maxsize=8)  # the rule takes longer than what it is used for
+def _unit_interval_rule(nodes: int) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss-Legendre on [0, 1]."""
+    x, weight = np.polynomial.legendre.leggauss(nodes)
+    return 0.5 * (1.0 + x), 0.5 * weight

@@ -6,20 +6,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import albedo
+from mxeon.models import albedo, known_defects
 from mxeon.models import brdf as models
-from mxeon.models import known_defects as defects
-from mxeon.models.geometry import RANGES
+from mxeon.models.arguments import RANGES
+from mxeon.models.arrays import Array, ArrayLike
 
 
 @dataclass(frozen=True)
 class Model:
-    """A reflection model and what is known of it in closed form.
+    """A reflection model and its closed forms.
 
     Attributes
     ----------
     name, title : str
-        As in names of functions, and as in print.
+        Prefix of its functions, and name in print.
     brdf : callable
         `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
     parameter : str or None
@@ -32,54 +32,66 @@ class Model:
 
     name: str
     title: str
-    brdf: Callable
+    brdf: Callable[..., Array]
     parameter: str | None
-    albedo_dir: Callable | None = None
-    albedo_avg: Callable | None = None
+    albedo_dir: Callable[..., Array] | None = None
+    albedo_avg: Callable[..., Array] | None = None
 
     @property
-    def interval(self):
+    def interval(self) -> tuple[float, float] | None:
         """Least and largest value of the parameter; None without one."""
-        return RANGES[self.parameter][:2] if self.parameter else None
+        if self.parameter is None:
+            return None
+        low, high, _ = RANGES[self.parameter]
+        return low, high
 
 
-def model(name):
-    """The row of `MODELS` or `DEFECTS` that is called `name`.
+def model(name: str) -> Model:
+    """The row of `MODELS` or `KNOWN_DEFECTS` with this name.
 
     Raises
     ------
     ValueError
-        If there is none; lists the known ones.
+        If there is none; lists the names.
 
     Examples
     --------
     >>> model("eon").parameter
     'roughness'
     """
-    for row in MODELS + DEFECTS:
+    for row in MODELS + KNOWN_DEFECTS:
         if row.name == name:
             return row
-    known = ", ".join(row.name for row in MODELS + DEFECTS)
-    raise ValueError(f"model must be one of {known}; got {name!r}")
+    names = ", ".join(row.name for row in MODELS + KNOWN_DEFECTS)
+    raise ValueError(f"model must be one of {names}; got {name!r}")
 
 
-def _lambert_albedo_dir(mu, rho):
-    rho = np.atleast_1d(rho)
-    return np.broadcast_to(rho, np.broadcast_shapes(np.shape(mu) + (1,), rho.shape)).astype(float)
+def _lambert_albedo_dir(mu: ArrayLike, rho: ArrayLike) -> Array:
+    """Albedo rho in the shape to which mu and rho broadcast."""
+    rho = np.atleast_1d(np.asarray(rho, np.float64))
+    return np.broadcast_to(rho, np.broadcast_shapes(np.shape(mu) + (1,), rho.shape)).copy()
 
 
-def _tinted(white):
-    """An albedo at unit reflectance, `white(..., parameter)`, as one that takes rho before it."""
+def _lambert_albedo_avg(rho: ArrayLike) -> Array:
+    """Albedo rho, shape (..., C)."""
+    return np.atleast_1d(np.asarray(rho, np.float64))
 
-    def tinted(*arguments):
+
+def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
+    """Albedo at unit reflectance, `white(..., parameter)`, as one that takes rho before it."""
+
+    def tinted(*arguments: ArrayLike) -> Array:
         *mu, rho, parameter = arguments
-        return white(*mu, parameter)[..., np.newaxis] * rho
+        albedo = white(*mu, parameter)[..., np.newaxis]
+        return albedo * np.asarray(rho, np.float64)
 
     return tinted
 
 
 MODELS = (
-    Model("lambert", "Lambert", models.lambert_brdf, None, _lambert_albedo_dir, np.atleast_1d),
+    Model(
+        "lambert", "Lambert", models.lambert_brdf, None, _lambert_albedo_dir, _lambert_albedo_avg
+    ),
     Model("oren_nayar", "full Oren-Nayar", models.oren_nayar_brdf, "sigma"),
     Model(
         "qon",
@@ -110,34 +122,36 @@ MODELS = (
     Model("eon_approx", "EON with the paper's quartic", models.eon_brdf_approx, "roughness"),
 )
 
-DEFECTS = (
-    Model("eon_clamped", "EON with clamped dot(wo, wi)", defects.eon_clamped_brdf, "roughness"),
+KNOWN_DEFECTS = (
+    Model(
+        "eon_clamped", "EON with clamped dot(wo, wi)", known_defects.eon_clamped_brdf, "roughness"
+    ),
     Model(
         "eon_rho_cubed",
         "EON with rho^3",
-        defects.eon_rho_cubed_brdf,
+        known_defects.eon_rho_cubed_brdf,
         "roughness",
-        defects.eon_rho_cubed_albedo_dir,
+        known_defects.eon_rho_cubed_albedo_dir,
     ),
     Model(
         "fon_white_lobe",
         "FON + white lobe",
-        defects.fon_white_lobe_brdf,
+        known_defects.fon_white_lobe_brdf,
         "roughness",
-        defects.fon_white_lobe_albedo_dir,
+        known_defects.fon_white_lobe_albedo_dir,
     ),
     Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
         models.qon_brdf,
         "sigma",
-        defects.qon_fitted_albedo_dir,
+        known_defects.qon_fitted_albedo_dir,
     ),
     Model(
         "qon_tinted_twice",
         "QON tinted twice",
-        defects.qon_tinted_twice_brdf,
+        known_defects.qon_tinted_twice_brdf,
         "sigma",
-        defects.qon_tinted_twice_albedo_dir,
+        known_defects.qon_tinted_twice_albedo_dir,
     ),
 )

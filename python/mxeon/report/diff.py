@@ -15,7 +15,7 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, VERDICTS, Result
 from mxeon.errors import InputError
 from mxeon.io.files import regular
 from mxeon.report import JSON_FORMAT
-from mxeon.shaders.hosts import Identity
+from mxeon.shaders.hosts.base import Identity
 
 FACTOR = 2.0  # a figure that changes by less is not reported
 ORDER = (PASSED, NOT_RUN, FAILED)
@@ -163,15 +163,15 @@ def _results(
 ) -> Iterator[Change]:
     for key in dict.fromkeys((*before, *after)):
         place, old, new = ", ".join(key), before.get(key), after.get(key)
-        if old is None:
+        if new is None:
+            yield Change(WORSE, place, before[key].verdict, "none")
+        elif old is None:
             yield Change(OTHER, place, "none", new.verdict)
-        elif new is None:
-            yield Change(WORSE, place, old.verdict, "none")
         elif old.verdict != new.verdict:
             worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
-            yield Change(WORSE if worse else BETTER, place, _with_figure(old), _with_figure(new))
-        elif _apart(old.figure, new.figure):
-            yield Change(OTHER, place, _with_figure(old), _with_figure(new))
+            yield Change(WORSE if worse else BETTER, place, _with_error(old), _with_error(new))
+        elif _apart(old.error, new.error):
+            yield Change(OTHER, place, _with_error(old), _with_error(new))
 
 
 def _pictures(
@@ -204,8 +204,8 @@ def _apart(old: float | None, new: float | None) -> bool:
     return large > FACTOR * small
 
 
-def _with_figure(result: Result) -> str:
-    return result.verdict + ("" if result.figure is None else f" at {_number(result.figure)}")
+def _with_error(result: Result) -> str:
+    return result.verdict + ("" if result.error is None else f" at {_number(result.error)}")
 
 
 def _number(value: float | None) -> str:

@@ -16,7 +16,6 @@ from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Curve, Picture, Result, Run
-from mxeon.conformance.verdict import explained, summarize
 from mxeon.io.images import difference, difference_scale, srgb_encoded
 from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
 
@@ -60,7 +59,7 @@ class Check:
     @property
     def tightest(self) -> Result | None:
         """The result with the largest share of its tolerance; None if none ran."""
-        ran = [result for result in self.results if result.figure is not None]
+        ran = [result for result in self.results if result.error is not None]
         return max(ran, key=share, default=None)
 
     @property
@@ -69,7 +68,7 @@ class Check:
         subjects: dict[str, list[str]] = {}
         for one in self.results:
             if one.verdict == FAILED:
-                words = one.diagnosis if one.figure is None or share(one) > 1.0 else explained(one)
+                words = one.diagnosis if one.error is None or share(one) > 1.0 else one.explanation
                 subjects.setdefault(words, []).append(one.subject)
         return subjects
 
@@ -80,12 +79,13 @@ class Check:
 
 
 def share(result: Result) -> float:
-    """Figure over tolerance; infinite if the figure is not finite."""
-    if not math.isfinite(result.figure):
+    """Error over tolerance; infinite if the error is missing or not finite."""
+    error, tolerance = result.error, result.tolerance
+    if error is None or not math.isfinite(error):
         return math.inf
-    if not result.tolerance:
-        return math.inf if result.figure > 0.0 else 0.0
-    return result.figure / result.tolerance
+    if not tolerance:
+        return math.inf if error > 0.0 else 0.0
+    return error / tolerance
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -239,7 +239,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
     environment.filters |= {"share": share, "look": LOOKS.__getitem__, "nearest": nearest}
     return environment.get_template("report.html.jinja").generate(
         run=run,
-        summary=summarize(run.results, run.missing, run.errors),
+        summary=run.summary,
         script=Markup(script),
         script_hash=b64encode(sha256(script.encode()).digest()).decode(),
         places=places,

@@ -21,18 +21,8 @@ from mxeon.shaders.document.reading import label, read_document
 from mxeon.shaders.document.references import foreign_code
 from mxeon.shaders.document.values import plain
 from mxeon.shaders.library import check_closure_calls, load_library
+from mxeon.shaders.targets import CLASSES
 
-# Target -> module of MaterialX and class in it. MaterialX has slang since 1.39.5, wgsl since 1.39.4.
-CLASSES = {
-    "glsl": ("GenGlsl", "GlslShaderGenerator"),
-    "essl": ("GenGlsl", "EsslShaderGenerator"),
-    "vulkan": ("GenGlsl", "VkShaderGenerator"),
-    "wgsl": ("GenGlsl", "WgslShaderGenerator"),
-    "msl": ("GenMsl", "MslShaderGenerator"),
-    "slang": ("GenSlang", "SlangShaderGenerator"),
-    "osl": ("GenOsl", "OslShaderGenerator"),
-    "mdl": ("GenMdl", "MdlShaderGenerator"),
-}
 GENERATORS = {}
 for _target, (_module, _name) in CLASSES.items():
     with suppress(ModuleNotFoundError, AttributeError):

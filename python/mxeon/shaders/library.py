@@ -19,6 +19,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 
 import mxeon
 from mxeon.errors import InputError, InterfaceError, LibraryError, PackageError
+from mxeon.shaders.nodes import DIFFUSE_NODES, NODEDEFS
 
 TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
 REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
@@ -26,12 +27,8 @@ REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerT
 LIBRARIES = ("eonlib", "stock")
 PROFILES = ("cycles",)
 
-# Nodes that eonlib implements, and the targets a generator asks for; 1.39.5 alone has all.
-NODES = ("ND_oren_nayar_diffuse_bsdf", "ND_eon_diffuse_bsdf")
+# Targets of generators; 1.39.5 alone has all.
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
-
-# Functions of eonlib's GLSL sources that generated code calls.
-ENTRY_POINTS = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
 class UntestedVersionWarning(UserWarning):
@@ -175,7 +172,7 @@ def check_closure_calls(text: str, target: str) -> None:
     target : str
         The target it was generated for, for the message.
     """
-    for name in ENTRY_POINTS:
+    for name in DIFFUSE_NODES:
         definition = re.search(rf"\bvoid {name}\(", text)
         if not definition:  # the node is not used, or not eonlib's
             continue
@@ -206,12 +203,12 @@ def implementations(document):
     Returns
     -------
     tuple of Implementation
-        One for each pair of NODES and those TARGETS that this MaterialX has.
+        One for each pair of NODEDEFS and those TARGETS that this MaterialX has.
     """
     data = document.getDataLibrary() or document
     known = {each.getName() for each in data.getTargetDefs()} or TARGETS
     targets = [target for target in TARGETS if target in known]
-    return tuple(_found(document, node, target) for node in NODES for target in targets)
+    return tuple(_found(document, node, target) for node in NODEDEFS for target in targets)
 
 
 def _found(document, node, target):

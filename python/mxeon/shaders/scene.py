@@ -10,6 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.errors import InputError
 
@@ -58,6 +59,7 @@ def _towards(azimuth, polar):
     )
 
 
+VIEW = (0.0, 0.0, 1.0)  # towards the viewer
 FRONT = Scene("front", light=(0.0, 0.0, 1.0))
 SIDE = Scene("side", light=_towards(azimuth=20, polar=60))
 BACK = Scene("back", light=_towards(azimuth=160, polar=130))
@@ -127,3 +129,16 @@ def sphere(size, margin=0):
     for array in vars(points).values():
         array.flags.writeable = False  # shared by all who ask for this size
     return points
+
+
+def local_directions(
+    normal: NDArray[np.float64], direction: tuple[float, float, float]
+) -> NDArray[np.float64]:
+    """A direction in the frames of unit normals (N, 3), as unit vectors (N, 3)."""
+    helper = np.where(np.abs(normal[:, :1]) < 0.5, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    tangent = np.cross(helper, normal)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    axes = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    local = axes @ np.asarray(direction)
+    unit: NDArray[np.float64] = local / np.linalg.norm(local, axis=1, keepdims=True)
+    return unit

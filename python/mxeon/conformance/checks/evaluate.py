@@ -5,11 +5,12 @@ import numpy as np
 
 from mxeon.conformance.checks.measures import integrated
 from mxeon.conformance.checks.nodes import FLAG
-from mxeon.conformance.checks.probes import FRONT_LIT_ONLY, PROBES
+from mxeon.conformance.checks.probes import probe_type
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis import Diagnosis, nearest_albedo, nearest_value
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
 from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders.hosts import front_lit_only
 
 SURROUNDED = ("environment", "furnace")
 CURVE = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
@@ -22,7 +23,7 @@ def applies(check, subject, kind, host):
         subject.model in check.models
         and kind in check.tolerances
         and not (check.key == "flag" and FLAG not in subject.inputs)
-        and not (check.key in SURROUNDED and (host, subject.model) in FRONT_LIT_ONLY)
+        and not (check.key in SURROUNDED and front_lit_only(host, subject.model))
     )
 
 
@@ -54,7 +55,7 @@ def judge_subject(probe, checks=CHECKS):
 def judge_twins(host, library, checks=CHECKS):
     """Results of the checks of the shader twins, which are the same whatever library is judged."""
     place = {"subject": "shader twins", "host": host.name, "library": library}
-    kind = PROBES[host.name].kind
+    kind = probe_type(host.name).kind
     return tuple(
         _judge(check, host.call, check.tolerances[kind], place, lambda check, probe: Diagnosis())
         for check in checks
@@ -96,21 +97,21 @@ def _judge(check, probe, tolerance, place, diagnose):
         return Result(check.key, check.claim, **place, verdict=NOT_RUN, reason=str(reason))
     except ShaderError as error:
         return Result(check.key, check.claim, **place, verdict=FAILED, diagnosis=str(error))
-    right, caught = found.figure <= tolerance.limit, wrong.figure > tolerance.limit
+    right, caught = found.error <= tolerance.limit, wrong.error > tolerance.limit
     diagnosis = Diagnosis() if right else diagnose(check, probe)
     return Result(
         check.key,
         check.claim,
         **place,
         verdict=PASSED if right and caught else FAILED,
-        figure=found.figure,
+        error=found.error,
         unit=tolerance.unit,
         tolerance=tolerance.limit,
         derivation=tolerance.derivation,
         worst=found.worst,
         diagnosis=diagnosis.text,
         distances=diagnosis.distances,
-        control=Control(check.variant, wrong.figure, caught),
+        control=Control(check.variant, wrong.error, caught),
     )
 
 

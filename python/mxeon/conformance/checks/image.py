@@ -14,14 +14,8 @@ from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, generate
-from mxeon.shaders.scene import BACK, FURNACE, SIDE, sphere
-
-# Lights under which a host shows a material. Cycles has noise in a surrounding.
-SCENES = {
-    "gl": (SIDE, BACK, FURNACE),
-    "webgl": (SIDE, BACK, FURNACE),
-    "cycles": (SIDE, BACK),
-}
+from mxeon.shaders.hosts import host_row
+from mxeon.shaders.scene import sphere
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 UNIT = "pi f cos, times cos(theta_o)"
@@ -85,7 +79,7 @@ def judge_document(file, host, judge, library, policy=DEFAULT):
 
 def _judge_material(file, shader, host, judge, library, front_lit):
     """One material; `front_lit` where the host has its model for s >= 0 only."""
-    scenes = SCENES[host.name]
+    scenes = host_row(host.name).scenes
     subject = f"{file.name}: {shader.element}"
     place = {"subject": subject, "host": host.name, "library": library}
     try:
@@ -135,7 +129,7 @@ def _judge_finite(place, images, reason):
         FINITE,
         **place,
         verdict=PASSED if bad == 0 < caught else FAILED,
-        figure=bad,
+        error=bad,
         unit="pixels",
         tolerance=0,
         derivation="a count",
@@ -150,7 +144,7 @@ def _not_finite(images):
 
 def _judge_match(place, cases, tolerance, front_lit):
     limit, derivation = tolerance
-    figure, worst, light = max(
+    error, worst, light = max(
         ((*_worst_pixel(*case, front_lit), case[0].name) for case in cases),
         key=lambda found: found[0],
     )
@@ -160,13 +154,13 @@ def _judge_match(place, cases, tolerance, front_lit):
         "picture",
         MATCH,
         **place,
-        verdict=PASSED if figure <= limit < brighter else FAILED,
-        figure=figure,
+        verdict=PASSED if error <= limit < brighter else FAILED,
+        error=error,
         unit=UNIT,
         tolerance=limit,
         derivation=derivation,
         worst=worst,
-        diagnosis="" if figure <= limit else f"most in the picture of the scene {light}",
+        diagnosis="" if error <= limit else f"most in the picture of the scene {light}",
         control=Control("the picture is brighter by three tolerances", brighter, brighter > limit),
     )
 

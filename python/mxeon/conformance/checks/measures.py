@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the checks measure: each takes a probe and gives its worst figure and where it was found."""
+"""What the checks measure: each takes a probe and gives its worst error and where it was found."""
 
 from dataclasses import dataclass, replace
 from itertools import product
@@ -8,7 +8,6 @@ import numpy as np
 
 from mxeon.conformance.checks.nodes import FLAG
 from mxeon.conformance.checks.probes import (
-    FRONT_LIT_ONLY,
     GRAZING,
     SEED,
     Batch,
@@ -18,6 +17,7 @@ from mxeon.conformance.checks.probes import (
 from mxeon.models import albedo
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.shaders.hosts import front_lit_only
 
 CHANGES = {
     "weight": 0.5,
@@ -33,16 +33,16 @@ QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
 @dataclass(frozen=True)
 class Measurement:
-    """The worst figure of a check, and where it was found.
+    """The worst error of a check, and where it was found.
 
     Attributes
     ----------
-    figure : float
+    error : float
     worst : dict of str to list of float
         Inputs and values at the worst point, by name.
     """
 
-    figure: float
+    error: float
     worst: dict
 
 
@@ -150,7 +150,7 @@ def flag(probe, _):
     for batch in probe.few:
         batch = batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
         judged = slice(None)
-        if (probe.host.name, "qon") in FRONT_LIT_ONLY:
+        if front_lit_only(probe.host.name, "qon"):
             judged = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
         on, off = (probe.direct(batch.altered(**{FLAG: state})) for state in (True, False))
         models = batch.expected("eon") - batch.expected("qon")
@@ -228,7 +228,7 @@ def _worst(error, cases):
     for batch, measured, expected in cases:
         errors = error(measured, expected)
         row = int(np.argmax(errors))
-        if errors[row] > found.figure:
+        if errors[row] > found.error:
             expected = np.broadcast_to(expected, measured.shape)
             values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
             found = Measurement(float(errors[row]), {**_point(batch, row), **values})

@@ -3,44 +3,17 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from mxeon.shaders.library import LIBRARIES
-
-NODE_DOCUMENT = """<?xml version="1.0"?>
-<materialx version="1.39">
-  <constant name="shading_normal" type="vector3">
-    <input name="value" type="vector3" value="{normal}" />
-  </constant>
-  <{node} name="lobe" type="BSDF">
-{inputs}
-  </{node}>
-  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-  <surfacematerial name="{node}" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>
-"""
-SURFACE_DOCUMENT = """<?xml version="1.0"?>
-<materialx version="1.39">
-  <{node} name="shading" type="surfaceshader">
-{inputs}
-  </{node}>
-  <surfacematerial name="material" type="material">
-    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
-  </surfacematerial>
-</materialx>
-"""
-FLAG = "energy_compensation"
-TYPES = {
-    "weight": "float",
-    "color": "color3",
-    "roughness": "float",
-    "normal": "vector3",
-    FLAG: "boolean",
-}
+from mxeon.shaders.nodes import (
+    EON,
+    FLAG,
+    INPUT_TYPES,
+    OREN_NAYAR,
+    document_text,
+    input_text,
+    material_text,
+    node_text,
+)
 
 
 @dataclass(frozen=True)
@@ -62,12 +35,12 @@ class Subject:
     node: str
     flag: bool | None
     model: str
-    names: tuple[str, ...] = tuple(TYPES)
+    names: tuple[str, ...] = tuple(INPUT_TYPES)
 
     @property
     def stock(self):
         """Whether MaterialX has this node as it comes."""
-        return self.node != "eon_diffuse_bsdf"
+        return self.node != EON
 
     @property
     def title(self):
@@ -86,19 +59,13 @@ class Subject:
 
     def document(self, inputs=None):
         """MaterialX text of a material that is this node alone, with the inputs given."""
-        given = self.with_flag(inputs or {})
-        lines = "\n".join(
-            f'    <input name="{name}" type="{TYPES[name]}" {_source(name, value)} />'
-            for name, value in given.items()
-        )
-        normal = _text(given.get("normal", (0.0, 0.0, 1.0)))
-        return NODE_DOCUMENT.format(node=self.node, inputs=lines, normal=normal)
+        return material_text(self.node, self.with_flag(inputs or {}), self.node)
 
 
 SUBJECTS = (
-    Subject("oren_nayar_diffuse_bsdf", True, "eon"),
-    Subject("oren_nayar_diffuse_bsdf", False, "qon"),
-    Subject("eon_diffuse_bsdf", None, "eon"),
+    Subject(OREN_NAYAR, True, "eon"),
+    Subject(OREN_NAYAR, False, "qon"),
+    Subject(EON, None, "eon"),
 )
 
 
@@ -133,14 +100,11 @@ class Surface:
 
     def document(self, inputs):
         """MaterialX text of a material that is this shader alone."""
-        given = [(self.color, "color3", _text(inputs["color"])), *self.fixed]
+        values = [(self.color, "color3", inputs["color"]), *self.fixed]
         if self.roughness:
-            given.append((self.roughness, "float", _text(inputs["roughness"])))
-        lines = "\n".join(
-            f'    <input name="{name}" type="{kind}" value="{value}" />'
-            for name, kind, value in given
-        )
-        return SURFACE_DOCUMENT.format(node=self.node, inputs=lines)
+            values.append((self.roughness, "float", inputs["roughness"]))
+        ports = "".join(input_text(*each) for each in values)
+        return document_text(node_text(self.node, "surfaceshader", "shading", ports))
 
 
 # OpenPBR asks for EON, Standard Surface for Oren-Nayar, USD Preview Surface and glTF for Lambert.
@@ -177,14 +141,3 @@ NATIVE = tuple(
     Subject(node, None, "eon", ("color", "roughness"))
     for node in ("Diffuse BSDF", "Principled BSDF")
 )
-
-
-def _source(name, value):
-    """Where an input comes from. MaterialX drops the value of a normal that is not connected."""
-    return 'nodename="shading_normal"' if name == "normal" else f'value="{_text(value)}"'
-
-
-def _text(value):
-    if isinstance(value, bool):
-        return str(value).lower()
-    return ", ".join(repr(float(each)) for each in np.ravel(value))

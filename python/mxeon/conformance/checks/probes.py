@@ -13,11 +13,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from mxeon.conformance.checks.nodes import Subject, Surface
-from mxeon.conformance.reference import local_directions
 from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning, generate
-from mxeon.shaders.hosts.testrender import plane_pairs
-from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene, sphere
+from mxeon.shaders.hosts import front_lit_only, host_row
+from mxeon.shaders.plane import plane_pairs
+from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 SEED = 1
 PAIRS = 1 << 20
@@ -32,9 +32,6 @@ PICTURE_INPUTS = (
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
 )
 PICTURE_SIZE = 128
-
-# Host and model where no closure gives the model for s < 0: such pairs are not judged.
-FRONT_LIT_ONLY = (("cycles", "qon"),)
 
 
 @dataclass(frozen=True)
@@ -178,7 +175,7 @@ class PictureProbe:
 
     def _judged(self, wo, wi):
         """Pairs to judge: those for which the host has a closure that can be the model."""
-        if (self.host.name, self.subject.model) not in FRONT_LIT_ONLY:
+        if not front_lit_only(self.host.name, self.subject.model):
             return np.ones(len(wo), dtype=bool)
         return wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0
 
@@ -257,14 +254,16 @@ class NativeProbe(PictureProbe):
 
 
 PROBES = {
-    "gl": PairProbe,
-    "webgl": PairProbe,
-    "vulkan": PairProbe,
-    "slang": PairProbe,
-    "cycles": PictureProbe,
-    "cycles-native": NativeProbe,
-    "testrender": PlaneProbe,
+    "pairs": PairProbe,
+    "pictures": PictureProbe,
+    "planes": PlaneProbe,
+    "native": NativeProbe,
 }
+
+
+def probe_type(host):
+    """The class of probe that asks the host of a name, or None where only text is checked."""
+    return PROBES.get(host_row(host).probe)
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
@@ -287,7 +286,7 @@ def picture_pairs(scene):
     """
     points = sphere(scene.size)
     normal = points.normal[points.mask]
-    wo = local_directions(normal, (0.0, 0.0, 1.0))
+    wo = local_directions(normal, VIEW)
     wi = wo if scene.light is None else local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
 

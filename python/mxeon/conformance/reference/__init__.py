@@ -6,18 +6,20 @@ import numpy as np
 from mxeon.conformance.reference.graph import Graph
 from mxeon.errors import NotRun
 from mxeon.models import table as reference
-from mxeon.shaders.hosts import Identity
-from mxeon.shaders.scene import sphere
+from mxeon.shaders import hosts
+from mxeon.shaders.hosts import base
+from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.scene import VIEW, local_directions, sphere
 
-VIEW = (0.0, 0.0, 1.0)
+# Any target will do: the document behind the shader is what is evaluated.
+ROW = hosts.Row("reference", target="glsl", module=__name__)
 
 
-class Host:
+class Host(base.Host):
     """The models of `mxeon.models.table`."""
 
-    name = "reference"
-    target = "glsl"  # any will do: the document behind the shader is what is evaluated
-    profile = None
+    name = ROW.name
+    target = ROW.target
 
     def identity(self):
         """NumPy's version."""
@@ -49,9 +51,6 @@ class Host:
         lobe = _furnace(wo[:, 2], 1.0) if branch == "environment" else _lit(wo, wi, 1.0)
         return Graph(shader.document, None, lobe, inputs).element(shader.element)
 
-    def close(self):
-        """Nothing to give back."""
-
 
 def _lit(wo, wi, irradiance):
     """Lobe under a distant light: its irradiance times f cos(theta_i), 0 below the horizon."""
@@ -75,13 +74,3 @@ def _furnace(mu, radiance):
         return radiance * reference.model(name).albedo_dir(mu, rho, parameter)
 
     return lobe
-
-
-def local_directions(normal, direction):
-    """A direction in the frames of unit normals, as unit vectors (N, 3)."""
-    helper = np.where(np.abs(normal[:, :1]) < 0.5, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
-    tangent = np.cross(helper, normal)
-    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-    axes = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
-    local = axes @ np.asarray(direction)
-    return local / np.linalg.norm(local, axis=1, keepdims=True)

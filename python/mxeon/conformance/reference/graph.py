@@ -13,8 +13,10 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.errors import NotRun, OutsideModel
-from mxeon.shaders.document.graph_size import reached
+from mxeon.io.images import srgb_decoded
+from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.hosts.textures import read_texture
+from mxeon.shaders.nodes import DIFFUSE_NODES, EON
 
 # Operations on values and on lobes alike: node category -> its inputs, and the result from them.
 OPERATIONS = {
@@ -33,7 +35,6 @@ OPERATIONS = {
 }
 CLOSURES = ("BSDF", "EDF", "surfaceshader")  # black where nothing is connected
 CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
-LOBES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
 class Graph:
@@ -76,7 +77,7 @@ class Graph:
         return self._evaluate(self._place((), root))
 
     def _evaluate(self, root):
-        parts = reached([root], lambda place: self._recipe(place)[1])
+        parts = reachable([root], lambda place: self._recipe(place)[1])
         uses = Counter(part for each in parts.values() for part in each)
         values, waiting = {}, [root]
         while waiting:
@@ -102,10 +103,10 @@ class Graph:
     def _made(self, place):
         node = self._elements[place]
         category = node.getCategory()
-        if category in LOBES:
+        if category in DIFFUSE_NODES:
             names = ("normal", "color", "roughness", "weight")
             make = partial(self._diffuse, node.getNamePath())
-            if category == "eon_diffuse_bsdf":
+            if category == EON:
                 return partial(make, True), self._sources(place, names)
             return make, self._sources(place, ("energy_compensation", *names))
         if category == "image":
@@ -120,7 +121,7 @@ class Graph:
         return lambda value: value, (self._place(place, outputs[0].getConnectedNode()),)
 
     def _sources(self, place, names):
-        lobe = self._elements[place].getCategory() in LOBES
+        lobe = self._elements[place].getCategory() in DIFFUSE_NODES
         given = self._inputs if lobe else {}
         return tuple(
             self._constant(place, name, given[name]) if name in given else self._source(place, name)
@@ -176,7 +177,7 @@ class Graph:
             return value
         if space != "srgb_texture":
             raise NotRun(f"reference: there is no transform for colour space {space!r}")
-        return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+        return srgb_decoded(value)
 
     def _diffuse(self, name, compensated, normal, color, roughness, weight):
         if normal is not None:

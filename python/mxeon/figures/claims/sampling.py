@@ -101,7 +101,11 @@ def no_number() -> tuple[str, ArrayLike]:
 
 
 def determinant() -> tuple[str, ArrayLike]:
-    a, b, c, d = ltc.coefficients(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
+    """Determinant of the inverse of M over all cosines and roughnesses."""
+    a, b, c, d = (
+        entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
+        for entry in (ltc.ltc_a, ltc.ltc_b, ltc.ltc_c, ltc.ltc_d)
+    )
     det = c * (a - b * d)
     return f"det M from {det.min():.3f} to {det.max():.3f}", det.min()
 
@@ -109,9 +113,9 @@ def determinant() -> tuple[str, ArrayLike]:
 def side_of_the_lune() -> tuple[str, ArrayLike]:
     """Lowest draw of Listing 3 along the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
-    d = ltc.coefficients(mu, 1.0)[3]
-    u = np.random.default_rng(2).random((2, 200_000))
-    wh = cltc.clipped_cosine(u, -d[-1], cltc.kept_part(d[-1]))
+    d = ltc.ltc_d(mu, 1.0)
+    u1, u2 = np.random.default_rng(2).random((2, 200_000))
+    wh = cltc.cltc_clipped(u1, u2, -d[-1])
     lowest = np.min(d[-1] * wh[:, 0] + wh[:, 2])
     sentence = f"d > 0 for mu > {mu[d > 0.0].min():.5f}: up to {d.max():.1e} at r = 1"
     return f"{sentence}, where the listing draws z down to {lowest:.1e}", lowest
@@ -128,8 +132,9 @@ def normalized() -> tuple[str, ArrayLike]:
 
 
 def wasted() -> tuple[str, ArrayLike]:
-    d = ltc.coefficients(COSINES, 1.0)[3]
-    share = 1.0 - cltc.kept_part(d)
+    """Share of the samples of LTC that fall below the horizon."""
+    d = ltc.ltc_d(COSINES, 1.0)
+    share = 1.0 - cltc.cltc_kept_fraction(d)
     at = COSINES[share.argmax()]
     sentence = f"up to {100 * share.max():.2f} % of the samples at r = 1, at mu = {at:g}"
     return sentence, share.max()

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Importance sampling: a sampler is a pair, x_sample(...) -> wi, pdf and x_pdf(...).
 
-Argument order `wo`, `wi`, `u`, `roughness`, leaving out what a sampler does not depend on. Random
-numbers `u` have shape (..., 2) and lie in [0, 1). Densities are in solid angle, 1/sr.
+Argument order `wo`, `wi`, `u`, `roughness`, without those that a sampler does not depend on; `rho`,
+which only the exact sampler of EON takes, is a keyword. Random numbers `u` have shape (..., 2) and
+lie in [0, 1). Densities are in solid angle, 1/sr.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from mxeon.models.arrays import Array
 from mxeon.models.sampling.cltc import cltc_pdf, cltc_sample, eon_cltc_pdf, eon_cltc_sample
 from mxeon.models.sampling.eon import eon_pdf, eon_sample
 from mxeon.models.sampling.hemisphere import cosine_pdf, cosine_sample, uniform_pdf, uniform_sample
@@ -50,8 +52,8 @@ class Sampler:
     """
 
     name: str
-    sample: Callable
-    pdf: Callable
+    sample: Callable[..., tuple[Array, Array]]
+    pdf: Callable[..., Array]
     title: str
 
 

@@ -7,17 +7,19 @@ rest has the shape of a lune. See `mxeon.models.sampling.ltc` for the matrix and
 
 import numpy as np
 
+from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.sampling.hemisphere import (
+    around,
     checked_draw,
     checked_pdf,
-    numbers,
+    stack_xyz,
     uniform_sample,
-    vector,
+    unpack_uniforms,
 )
-from mxeon.models.sampling.ltc import coefficients, density, transformed
+from mxeon.models.sampling.ltc import ltc_d, ltc_density, ltc_transformed
 
 
-def cltc_sample(wo, u, roughness):
+def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the clipped transformed cosine, and its density.
 
     Parameters
@@ -33,7 +35,7 @@ def cltc_sample(wo, u, roughness):
     -------
     wi : ndarray, shape (..., 3), float64
         Unit vectors on or above the horizon.
-    pdf : ndarray, shape (...), float64
+    pdf : float64 or ndarray, shape (...)
         1/sr.
 
     Raises
@@ -61,15 +63,14 @@ def cltc_sample(wo, u, roughness):
     True
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    matrix = coefficients(wo[..., 2], roughness)
-    kept = kept_part(matrix[3])
-    wi, pdf = transformed(wo, clipped_cosine(numbers(u), matrix[3], kept), matrix)
+    d = ltc_d(wo[..., 2], roughness)
+    wi, pdf = ltc_transformed(wo, cltc_clipped(*unpack_uniforms(u), d), roughness, d)
     # On the edge of the lune d x + z is zero up to rounding, of either sign.
     wi[..., 2] = np.maximum(wi[..., 2], 0.0)
-    return wi, pdf / kept
+    return wi, pdf / cltc_kept_fraction(d)
 
 
-def cltc_pdf(wo, wi, roughness):
+def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `cltc_sample` at `wi`, in solid angle.
 
     Parameters
@@ -81,7 +82,7 @@ def cltc_pdf(wo, wi, roughness):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         1/sr; 0 for the directions that it never draws.
 
     Raises
@@ -99,12 +100,11 @@ def cltc_pdf(wo, wi, roughness):
     0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    matrix = coefficients(wo[..., 2], roughness)
-    pdf = density(wo, wi, matrix)
-    return pdf / kept_part(matrix[3])
+    d = ltc_d(wo[..., 2], roughness)
+    return ltc_density(wo, wi, roughness, d) / cltc_kept_fraction(d)
 
 
-def eon_cltc_sample(wo, u, roughness):
+def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
 
     Parameters
@@ -120,7 +120,7 @@ def eon_cltc_sample(wo, u, roughness):
     -------
     wi : ndarray, shape (..., 3), float64
         Unit vectors on or above the horizon.
-    pdf : ndarray, shape (...), float64
+    pdf : float64 or ndarray, shape (...)
         Of the mixture, in 1/sr.
 
     Raises
@@ -144,18 +144,18 @@ def eon_cltc_sample(wo, u, roughness):
     (array([0., 0., 1.]), 0.31831)
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    u1, u2 = numbers(u)
-    share = _uniform_share(wo[..., 2], roughness)
-    uniform = u1 < share
-    # Stretch each side of `share` over [0, 1); rounding may reach 1, which is not in there.
-    part = np.where(uniform, u1, u1 - share) / np.where(uniform, share, 1.0 - share)
-    again = vector(np.minimum(part, np.nextafter(1.0, 0.0)), u2)
-    clipped, _ = cltc_sample(wo, again, roughness)
-    wi = np.where(uniform[..., np.newaxis], uniform_sample(again)[0], clipped)
+    u1, u2 = unpack_uniforms(u)
+    P_u = eon_cltc_probability(wo[..., 2], roughness)
+    is_uniform = u1 < P_u
+    # Stretch each side of P_u over [0, 1); rounding may reach 1, which is not in there.
+    v = np.where(is_uniform, u1, u1 - P_u) / np.where(is_uniform, P_u, 1.0 - P_u)
+    v = np.stack(np.broadcast_arrays(np.minimum(v, np.nextafter(1.0, 0.0)), u2), axis=-1)
+    clipped, _ = cltc_sample(wo, v, roughness)
+    wi = np.where(is_uniform[..., np.newaxis], uniform_sample(v)[0], clipped)
     return wi, eon_cltc_pdf(wo, wi, roughness)
 
 
-def eon_cltc_pdf(wo, wi, roughness):
+def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `eon_cltc_sample` at `wi`, in solid angle.
 
     Parameters
@@ -167,7 +167,7 @@ def eon_cltc_pdf(wo, wi, roughness):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         1/sr.
 
     Raises
@@ -185,27 +185,29 @@ def eon_cltc_pdf(wo, wi, roughness):
     0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    share = _uniform_share(wo[..., 2], roughness)
-    return share * (0.5 / np.pi) + (1.0 - share) * cltc_pdf(wo, wi, roughness)
+    P_u = eon_cltc_probability(wo[..., 2], roughness)
+    return P_u * (0.5 / np.pi) + (1.0 - P_u) * cltc_pdf(wo, wi, roughness)
 
 
 # [Portsmouth2025], Listing 4: mu and roughness in [0, 1]; the paper states no error.
-def _uniform_share(mu, r):
-    """Probability P_u with which the mixture draws uniformly."""
-    return r**0.1 * (0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu)
+def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
+    """Probability P_u of the uniform lobe."""
+    P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
+    return roughness**0.1 * P_u
 
 
-def kept_part(d):
-    """Part of the clamped cosine that is left when the lune d x + z < 0 is cut away."""
+def cltc_kept_fraction(d: Array) -> Array:
+    """Fraction of the clamped cosine above d x + z = 0: [Portsmouth2025], below Eq. (26)."""
     return 0.5 * (1.0 + 1.0 / np.sqrt(1.0 + d * d))
 
 
-def clipped_cosine(u, d, kept):
-    """Directions under a clamped cosine with d x + z >= 0, by [Portsmouth2025], Listing 3."""
-    radius, phi = np.sqrt(u[0]), 2.0 * np.pi * u[1]
-    x, y = radius * np.cos(phi), radius * np.sin(phi)
+def cltc_clipped(u1: Array, u2: Array, d: Array) -> Array:
+    """Direction under the clamped cosine with d x + z >= 0: [Portsmouth2025], Listing 3."""
+    wh = around(np.sqrt(1.0 - u1), np.sqrt(u1), u2)
+    x, y = wh[..., 0], wh[..., 1]
     # Squeeze the disk's chord at y onto the part of it that is kept.
+    kept = cltc_kept_fraction(d)
     x = np.sqrt(1.0 - y * y) * (1.0 - kept) + x * kept
     x = np.where(d > 0.0, x, -x)
     # Rounding may leave x^2 + y^2 > 1 on the rim.
-    return vector(x, y, np.sqrt(np.maximum(1.0 - (x * x + y * y), 0.0)))
+    return stack_xyz(x, y, np.sqrt(np.maximum(1.0 - (x * x + y * y), 0.0)))

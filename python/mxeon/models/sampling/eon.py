@@ -23,15 +23,23 @@ the parts' errors under non-negative weights, so that the sum has no larger erro
 
 import numpy as np
 
-from mxeon.models.formulas import C1, C2, fon_quotient, loss, multiple_weight
-from mxeon.models.geometry import cosines
+from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.formulas import (
+    C1,
+    C2,
+    cosines,
+    eon_multiple_weight,
+    fon_loss,
+    fon_quotient,
+)
 from mxeon.models.sampling.hemisphere import (
-    azimuth,
+    around,
+    azimuth_frame,
     checked_draw,
     checked_pdf,
-    numbers,
-    turned,
-    vector,
+    rotate_z,
+    stack_xyz,
+    unpack_uniforms,
 )
 
 # Our fits, fits/eon_sampling.py. Random number and fitted root of it in [0, 1]; largest relative
@@ -54,7 +62,9 @@ UPPER = (
 )
 
 
-def eon_sample(wo, u, roughness, *, rho=1.0):
+def eon_sample(
+    wo: ArrayLike, u: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0
+) -> tuple[Array, Array]:
     """Direction sampled proportionally to EON times its cosine, and its density.
 
     Parameters
@@ -66,13 +76,13 @@ def eon_sample(wo, u, roughness, *, rho=1.0):
     roughness : array_like, shape (...)
         Dimensionless, in [0, 1].
     rho : array_like, shape (...)
-        Grey reflectance for which the sampling is exact, dimensionless, in [0, 1].
+        Gray reflectance for which the sampling is exact, dimensionless, in [0, 1].
 
     Returns
     -------
     wi : ndarray, shape (..., 3), float64
         Unit vectors, z >= 2^-53.
-    pdf : ndarray, shape (...), float64
+    pdf : float64 or ndarray, shape (...)
         `eon_pdf` of `wi`, in 1/sr.
 
     Raises
@@ -96,17 +106,17 @@ def eon_sample(wo, u, roughness, *, rho=1.0):
     >>> wi.round(6), round(float(pdf), 6)
     (array([0.      , 0.707107, 0.707107]), 0.225079)
     """
-    wo, u, r, rho = checked_draw(wo, u, roughness=roughness, rho=rho)
-    u1, u2 = numbers(u)
-    cosine, sine, S_o = azimuth(wo)
+    wo, u, roughness, rho = checked_draw(wo, u, roughness=roughness, rho=rho)
+    u1, u2 = unpack_uniforms(u)
+    cosine, sine, S_o = azimuth_frame(wo)
     mu_o, S_o = np.minimum(wo[..., 2], 1.0), np.minimum(S_o, 1.0)
-    wi = turned(_drawn(u1, u2, mu_o, S_o, r, rho), cosine, sine)
+    wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
     # The end of a part may reach the horizon, where the density is 0 and a weight 0/0.
     wi[..., 2] = np.maximum(wi[..., 2], 0.5 * np.finfo(np.float64).eps)
-    return wi, _density(wo, wi, r, rho)
+    return wi, _density(wo, wi, rho, roughness)
 
 
-def eon_pdf(wo, wi, roughness, *, rho=1.0):
+def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0) -> Array:
     """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
 
     Parameters
@@ -116,11 +126,11 @@ def eon_pdf(wo, wi, roughness, *, rho=1.0):
     roughness : array_like, shape (...)
         Dimensionless, in [0, 1].
     rho : array_like, shape (...)
-        Grey reflectance for which the sampling is exact, dimensionless, in [0, 1].
+        Gray reflectance for which the sampling is exact, dimensionless, in [0, 1].
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         1/sr. At rho = 1 it is `eon_brdf` at reflectance 1, times the cosine of `wi`.
 
     Raises
@@ -142,57 +152,65 @@ def eon_pdf(wo, wi, roughness, *, rho=1.0):
     >>> round(float(eon_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
     0.332784
     """
-    return _density(*checked_pdf(wo, wi, roughness=roughness, rho=rho))
+    wo, wi, roughness, rho = checked_pdf(wo, wi, roughness=roughness, rho=rho)
+    return _density(wo, wi, rho, roughness)
 
 
-def _density(wo, wi, r, rho):
+def _density(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     """The four parts together, with the weight of `multiple` for `rho`, over their integral."""
     mu_o, mu_i, s = cosines(wo, wi)
-    weight, loss_o = multiple_weight(rho, r), loss(mu_o)
-    parts = 1.0 + r * fon_quotient(mu_o, mu_i, s) + weight * loss_o * loss(mu_i)
-    total = 1.0 + C1 * r + (weight * (C1 - C2) - r) * loss_o
+    weight, loss_o = eon_multiple_weight(rho, roughness), fon_loss(mu_o)
+    parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss(mu_i)
+    total = 1.0 + C1 * roughness + (weight * (C1 - C2) - roughness) * loss_o
     return mu_i * parts / (np.pi * total)
 
 
-def _drawn(u1, u2, mu_o, S_o, r, rho):
+def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughness: Array) -> Array:
     """Direction drawn from one of the four parts; `wo` has azimuth 0."""
     # Choose a part by u1, and stretch what is left of u1 over [0, 1).
-    ends = np.cumsum(integrals(mu_o, S_o, r, rho), axis=-1)
-    ends = np.moveaxis(ends / ends[..., -1:], -1, 0)
-    v = [_stretched(u1, start, end) for start, end in zip((0.0, *ends), ends, strict=False)]
+    parts = eon_integrals(mu_o, S_o, rho, roughness)
+    ends = np.cumsum(np.stack(np.broadcast_arrays(*parts)), axis=0)
+    ends = ends / ends[-1]
+    starts = [np.zeros_like(ends[0]), *ends[:-1]]
+    v = [_stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     # Draw from each part, and keep the draw from the one chosen.
-    towards_wo = 2.0 * np.sqrt(u2 * (1.0 - u2)), 2.0 * u2 - 1.0
-    around = np.cos(2.0 * np.pi * u2), np.sin(2.0 * np.pi * u2)
-    draws = (
-        polar(*lower_cosine(v[0], mu_o, S_o), towards_wo),
-        polar(*upper_cosine(v[1], mu_o, S_o), towards_wo),
-        polar(*multiple_cosine(v[2]), around),
-        flat_direction(v[3], around, r * S_o),
+    x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
+    S_lower = np.cbrt(1.0 - x)
+    lower = eon_lower_cosine(x, S_lower)
+    upper = eon_upper_cosine(v[1] ** 0.4, mu_o, eon_upper_limit(mu_o, S_o))
+    multiple = eon_multiple_cosine(np.cbrt(v[2]))
+    draws = np.broadcast_arrays(
+        eon_towards(lower, S_lower, u2),
+        eon_towards(upper, np.sqrt((1.0 - upper) * (1.0 + upper)), u2),
+        around(multiple, np.sqrt((1.0 - multiple) * (1.0 + multiple)), u2),
+        eon_flat_draw(v[3], u2, roughness * S_o),
     )
     chosen = [(u1 < end)[..., np.newaxis] for end in ends[:3]]
-    *draws, flat = np.broadcast_arrays(*draws)
-    return np.select(np.broadcast_arrays(*chosen), draws, flat)
+    return np.select(np.broadcast_arrays(*chosen), draws[:3], draws[3])
 
 
-def integrals(mu_o, S_o, r, rho):
+def eon_integrals(
+    mu_o: Array, S_o: Array, rho: Array, roughness: Array
+) -> tuple[Array, Array, Array, Array]:
     """Integrals over the disk of lower, upper, multiple and flat, over pi."""
-    towards = (2.0 / np.pi) * r * S_o
-    lower = towards * (1.0 - mu_o) * cube_gap(mu_o, S_o) / 3.0
-    multiple = (C1 - C2) * multiple_weight(rho, r) * loss(mu_o)
-    return vector(lower, towards * segment(mu_o, S_o), multiple, 1.0)
+    towards = (2.0 / np.pi) * roughness * S_o
+    lower = towards * (1.0 - mu_o) * eon_cube_gap(mu_o, S_o) / 3.0
+    upper = towards * eon_segment(mu_o, S_o)
+    multiple = (C1 - C2) * eon_multiple_weight(rho, roughness) * fon_loss(mu_o)
+    return lower, upper, multiple, np.ones_like(mu_o)
 
 
-def cube_gap(mu, S):
+def eon_cube_gap(mu: Array, S: Array) -> Array:
     """(1 - S^3) / mu, with neither a division by mu nor a cancellation."""
     return mu * (1.0 + S + S * S) / (1.0 + S)
 
 
-def segment(mu, S):
+def eon_segment(mu: Array, S: Array) -> Array:
     """K(theta), integral of sin^2 (1 - cos); near the normal its terms cancel, perhaps below 0."""
     return np.maximum(0.5 * (np.arctan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
 
 
-def _stretched(u, start, end):
+def _stretched(u: Array, start: Array, end: Array) -> Array:
     """`u` mapped from [start, end) to [0, 1); what lies outside goes to the nearer end.
 
     It goes there before the division, which would overflow for the shortest intervals.
@@ -201,57 +219,58 @@ def _stretched(u, start, end):
     return np.minimum((np.clip(u, start, end) - start) / length, np.nextafter(1.0, 0.0))
 
 
-def polar(mu, S, turn):
-    """Direction with cosine `mu` and sine `S`; `turn` holds cosine and sine of its azimuth."""
-    return vector(S * turn[0], S * turn[1], mu)
+def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
+    """Direction with cosine `mu` and sine `S` at an azimuth whose sine is uniform, towards wo."""
+    return stack_xyz(2.0 * S * np.sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu)
 
 
-def lower_cosine(v, mu_o, S_o):
-    """Cosine and sine drawn in proportion to S mu below mu_o: 1 - S^3 is uniform."""
-    x = v * mu_o * cube_gap(mu_o, S_o)
-    S = np.cbrt(1.0 - x)
-    return np.sqrt(x * (1.0 + S) / (1.0 + S + S * S)), S
+def eon_lower_cosine(x: Array, S: Array) -> Array:
+    """Cosine drawn in proportion to S mu below mu_o: x = 1 - S^3 is uniform."""
+    return np.sqrt(x * (1.0 + S) / (1.0 + S + S * S))
 
 
-def upper_cosine(v, mu_o, S_o):
-    """Cosine and sine drawn in proportion to S (1 - mu) / mu above mu_o: K is uniform.
-
-        1 - mu = m(v K_o) (1 - mu_o) / m(K_o),  m(K) = y Q(y),  y = (K / K(pi / 2))^(2/5)
-
-    The quotient, instead of m(v K_o) alone, keeps every sample above mu_o.
-    """
-    y_o = (segment(mu_o, S_o) / (0.25 * np.pi - 1.0 / 3.0)) ** 0.4
-    y = v**0.4
-    m = (1.0 - mu_o) / _upper_quotient(y_o) * (y * _upper_quotient(y_o * y))
-    return 1.0 - m, np.sqrt(m * (2.0 - m))
+def eon_upper_limit(mu: Array, S: Array) -> Array:
+    """y = (K / K(pi / 2))^(2/5) of the angle with this cosine and sine."""
+    return (eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0)) ** 0.4
 
 
-def _upper_quotient(y):
-    """Q(y) of `upper_cosine`, 1 at y = 1."""
+def eon_upper_quotient(y: Array) -> Array:
+    """Q(y) of `eon_upper_cosine`, 1 at y = 1."""
     a, b, c, d, e, f = UPPER
     y2 = y * y
     even, odd = a + y2 * (c + y2 * e), b + y2 * (d + y2 * f)
     return 1.0 + (1.0 - y) * (even + y * odd)
 
 
-def multiple_cosine(v):
-    """Cosine and sine drawn in proportion to H(mu) mu; mu is a function of cbrt(v)."""
+def eon_upper_cosine(y: Array, mu_o: Array, y_o: Array) -> Array:
+    """Cosine drawn in proportion to S (1 - mu) / mu above mu_o: K is uniform, y = v^(2/5).
+
+        1 - mu = m(v K_o) (1 - mu_o) / m(K_o),  m(K) = y Q(y)
+
+    The quotient, instead of m(v K_o) alone, keeps every sample above mu_o.
+    """
+    m = (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y))
+    return 1.0 - m
+
+
+def eon_multiple_cosine(t: Array) -> Array:
+    """Cosine drawn in proportion to H(mu) mu, a function of t = v^(1/3)."""
     a, b, c, d, e, f = MULTIPLE
-    t = np.cbrt(v)
     m = 1.0 - t
     w = np.sqrt(m)
     even, odd = a + m * (b + m * d), c + m * (e + m * m * f)
-    mu = t * (1.0 + m * (even + m * w * odd))
-    return mu, np.sqrt((1.0 - mu) * (1.0 + mu))
+    return t * (1.0 + m * (even + m * w * odd))
 
 
-def flat_direction(v, turn, q):
+def eon_flat_draw(v: Array, u2: Array, q: Array) -> Array:
     """Direction drawn in proportion to (1 + q x) on the disk.
 
     Along each chord of the disk, x is drawn by its inverse distribution from the uniform point
-    (x, y) = sqrt(v) turn. z is the square root of 1 - x^2 - y^2 without a cancellation.
+    (x, y). z is the square root of 1 - x^2 - y^2 without a cancellation.
     """
-    x, y = np.sqrt(v) * turn[0], np.sqrt(v) * turn[1]
-    root = np.sqrt((1.0 + q * x) ** 2 + q * q * (1.0 - v))
-    z = np.sqrt(2.0 * (1.0 - v) / (1.0 + q * x + root))
-    return vector((q * (1.0 - y * y) + 2.0 * x) / (1.0 + root), y, z)
+    wh = around(np.sqrt(1.0 - v), np.sqrt(v), u2)
+    x, y = wh[..., 0], wh[..., 1]
+    ahead = 1.0 + q * x
+    root = np.sqrt(ahead * ahead + q * q * (1.0 - v))
+    z = np.sqrt(2.0 * (1.0 - v) / (ahead + root))
+    return stack_xyz((q * (1.0 - y * y) + 2.0 * x) / (1.0 + root), y, z)

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sampling of the hemisphere that knows no material, and the frame turned towards wo.
+"""Sampling of the hemisphere independent of the material, and the frame of wo.
 
 Directions leave the surface, local frame with the normal +z. Random numbers `u` lie in [0, 1).
 """
 
 import numpy as np
 
-from mxeon.models.geometry import checked, checked_directions, lead_shape
+from mxeon.models.arguments import checked, checked_directions, lead_shape
+from mxeon.models.arrays import Array, ArrayLike, Numbers
 
 
-def uniform_sample(u):
+def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled uniformly on the hemisphere, and its density.
 
     Parameters
@@ -21,7 +22,7 @@ def uniform_sample(u):
     -------
     wi : ndarray, shape (..., 3), float64
         Unit vectors, z = u[..., 0].
-    pdf : ndarray, shape (...), float64
+    pdf : float64 or ndarray, shape (...)
         1/(2 pi), in 1/sr.
 
     Raises
@@ -39,12 +40,12 @@ def uniform_sample(u):
     >>> wi.round(12), round(float(pdf), 6)
     (array([0.6, 0. , 0.8]), 0.159155)
     """
-    u1, u2 = numbers(u)
-    wi = direction(np.sqrt((1.0 - u1) * (1.0 + u1)), 2.0 * np.pi * u2, u1)
-    return wi, uniform_density(wi)
+    u1, u2 = unpack_uniforms(u)
+    wi = around(u1, np.sqrt((1.0 - u1) * (1.0 + u1)), u2)
+    return wi, _uniform_density(wi)
 
 
-def uniform_pdf(wi):
+def uniform_pdf(wi: ArrayLike) -> Array:
     """Density of `uniform_sample` at `wi`, in solid angle.
 
     Parameters
@@ -54,7 +55,7 @@ def uniform_pdf(wi):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         1/(2 pi), in 1/sr.
 
     Raises
@@ -67,10 +68,10 @@ def uniform_pdf(wi):
     >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
     0.159155
     """
-    return uniform_density(checked_directions("wi", wi))
+    return _uniform_density(checked_directions("wi", wi))
 
 
-def cosine_sample(u):
+def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled proportionally to its cosine with the normal, and its density.
 
     Parameters
@@ -82,7 +83,7 @@ def cosine_sample(u):
     -------
     wi : ndarray, shape (..., 3), float64
         Unit vectors, z > 0.
-    pdf : ndarray, shape (...), float64
+    pdf : float64 or ndarray, shape (...)
         z / pi, in 1/sr.
 
     Raises
@@ -100,12 +101,12 @@ def cosine_sample(u):
     >>> wi.round(12), round(float(pdf), 6)
     (array([0.6, 0. , 0.8]), 0.254648)
     """
-    u1, u2 = numbers(u)
-    wi = direction(np.sqrt(u1), 2.0 * np.pi * u2, np.sqrt(1.0 - u1))
+    u1, u2 = unpack_uniforms(u)
+    wi = around(np.sqrt(1.0 - u1), np.sqrt(u1), u2)
     return wi, wi[..., 2] / np.pi
 
 
-def cosine_pdf(wi):
+def cosine_pdf(wi: ArrayLike) -> Array:
     """Density of `cosine_sample` at `wi`, in solid angle.
 
     Parameters
@@ -115,7 +116,7 @@ def cosine_pdf(wi):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         z / pi, in 1/sr.
 
     Raises
@@ -128,55 +129,41 @@ def cosine_pdf(wi):
     >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
     0.254648
     """
-    return np.float64(checked_directions("wi", wi)[..., 2]) / np.pi
+    return np.asarray(checked_directions("wi", wi)[..., 2], np.float64) / np.pi
 
 
-def checked_draw(wo, u, **numbers):
+def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
     """Checked arguments of a sampler, in this order, as float64 arrays whose shapes broadcast."""
-    return _broadcastable({"wo": checked_directions("wo", wo), "u": checked_pairs(u)}, numbers)
+    return _broadcastable({"wo": checked_directions("wo", wo), "u": _checked_pairs(u)}, numbers)
 
 
-def checked_pdf(wo, wi, **numbers):
+def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Array]:
     """Checked arguments of a density, in this order, as float64 arrays whose shapes broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     return _broadcastable(vectors, numbers)
 
 
-def _broadcastable(vectors, numbers):
-    numbers = {name: checked(name, value) for name, value in numbers.items()}
-    lead_shape(vectors, numbers)
-    arrays = (*vectors.values(), *numbers.values())
-    return [np.asarray(array, np.float64) for array in arrays]
-
-
-def checked_pairs(u):
-    """Checked random numbers of shape (..., 2), as a float64 array."""
-    u = np.asarray(checked("u", u), np.float64)
-    if u.shape[-1:] != (2,):
-        raise ValueError(f"u must have shape (..., 2); got shape {u.shape}")
-    return u
-
-
-def numbers(u):
+def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
     """The two random numbers of each pair, checked, as float64 arrays of shape (...)."""
-    u = checked_pairs(u)
+    u = _checked_pairs(u)
     return u[..., 0], u[..., 1]
 
 
-def direction(radius, phi, z):
-    """Vectors (radius cos(phi), radius sin(phi), z)."""
-    return vector(radius * np.cos(phi), radius * np.sin(phi), z)
+def around(mu: Array, S: Array, u2: Array) -> Array:
+    """Direction with cosine `mu` and sine `S` at the azimuth 2 pi u2."""
+    phi = 2.0 * np.pi * u2
+    return stack_xyz(S * np.cos(phi), S * np.sin(phi), mu)
 
 
-def vector(*components):
-    """Components, broadcast against each other, put together along a last axis."""
-    return np.stack(np.broadcast_arrays(*components), axis=-1)
+def stack_xyz(x: Array, y: Array, z: Array) -> Array:
+    """Components, broadcast against each other, as vectors along a last axis."""
+    return np.stack(np.broadcast_arrays(x, y, z), axis=-1)
 
 
-def azimuth(wo):
+def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
     """Cosine and sine of the azimuth of `wo`, and the sine of its polar angle.
 
-    A `wo` along the normal has no azimuth; any would do, and it is given 0.
+    The azimuth of a `wo` along the normal counts as 0.
     """
     sine = np.hypot(wo[..., 0], wo[..., 1])
     tilted = sine > 0.0
@@ -184,12 +171,27 @@ def azimuth(wo):
     return np.where(tilted, wo[..., 0] / length, 1.0), wo[..., 1] / length, sine
 
 
-def turned(w, cosine, sine):
-    """`w` turned about the normal by the angle that has this cosine and sine."""
+def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
+    """Vectors rotated about the normal by the angle that has this cosine and sine."""
     x, y = w[..., 0], w[..., 1]
-    return vector(cosine * x - sine * y, sine * x + cosine * y, w[..., 2])
+    return stack_xyz(cosine * x - sine * y, sine * x + cosine * y, w[..., 2])
 
 
-def uniform_density(wi):
+def _broadcastable(vectors: dict[str, Numbers], numbers: dict[str, ArrayLike]) -> list[Array]:
+    """Vectors and checked numbers as float64 arrays; raise if their shapes do not broadcast."""
+    arrays = {name: checked(name, value) for name, value in numbers.items()}
+    lead_shape(vectors, arrays)
+    return [np.asarray(array, np.float64) for array in (*vectors.values(), *arrays.values())]
+
+
+def _checked_pairs(u: ArrayLike) -> Array:
+    """Checked random numbers of shape (..., 2), as a float64 array."""
+    pairs = np.asarray(checked("u", u), np.float64)
+    if pairs.shape[-1:] != (2,):
+        raise ValueError(f"u must have shape (..., 2); got shape {pairs.shape}")
+    return pairs
+
+
+def _uniform_density(wi: Numbers) -> Array:
     """1/(2 pi) in the shape of `wi` without its last axis."""
-    return np.full(wi.shape[:-1], 0.5 / np.pi)
+    return np.full(wi.shape[:-1], 0.5 / np.pi)[()]

@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Linearly transformed cosines fitted to EON, without and with the coefficient d.
 
-They turn the surface about the normal until `wo` has azimuth 0, and map a direction `wh` drawn
-under a clamped cosine by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
+The surface is rotated about the normal until `wo` has azimuth 0. A direction `wh` drawn
+under a clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
 
     wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M.
 """
 
 import numpy as np
 
+from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.sampling.hemisphere import (
-    azimuth,
+    azimuth_frame,
     checked_draw,
     checked_pdf,
     cosine_sample,
-    turned,
-    vector,
+    rotate_z,
+    stack_xyz,
 )
 
 
-def ltc0_sample(wo, u, roughness):
+def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine without the coefficient d, and its density.
 
     Parameters
@@ -35,7 +36,7 @@ def ltc0_sample(wo, u, roughness):
     -------
     wi : ndarray, shape (..., 3), float64
         Unit vectors above the horizon.
-    pdf : ndarray, shape (...), float64
+    pdf : float64 or ndarray, shape (...)
         1/sr.
 
     Raises
@@ -59,11 +60,10 @@ def ltc0_sample(wo, u, roughness):
     (array([-0.310077,  0.      ,  0.950711]), 0.227343)
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    a, b, c, _ = coefficients(wo[..., 2], roughness)
-    return transformed(wo, cosine_sample(u)[0], (a, b, c, 0.0))
+    return ltc_transformed(wo, cosine_sample(u)[0], roughness, 0.0)
 
 
-def ltc0_pdf(wo, wi, roughness):
+def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc0_sample` at `wi`, in solid angle.
 
     Parameters
@@ -75,7 +75,7 @@ def ltc0_pdf(wo, wi, roughness):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         1/sr.
 
     Raises
@@ -93,11 +93,10 @@ def ltc0_pdf(wo, wi, roughness):
     0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    a, b, c, _ = coefficients(wo[..., 2], roughness)
-    return density(wo, wi, (a, b, c, 0.0))
+    return ltc_density(wo, wi, roughness, 0.0)
 
 
-def ltc_sample(wo, u, roughness):
+def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine, may be below the horizon; and its density.
 
     Parameters
@@ -113,7 +112,7 @@ def ltc_sample(wo, u, roughness):
     -------
     wi : ndarray, shape (..., 3), float64
         Unit vectors; those with z < 0 are wasted, their weight is 0.
-    pdf : ndarray, shape (...), float64
+    pdf : float64 or ndarray, shape (...)
         1/sr.
 
     Raises
@@ -137,10 +136,10 @@ def ltc_sample(wo, u, roughness):
     True
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    return transformed(wo, cosine_sample(u)[0], coefficients(wo[..., 2], roughness))
+    return ltc_transformed(wo, cosine_sample(u)[0], roughness, ltc_d(wo[..., 2], roughness))
 
 
-def ltc_pdf(wo, wi, roughness):
+def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
 
     Parameters
@@ -152,7 +151,7 @@ def ltc_pdf(wo, wi, roughness):
 
     Returns
     -------
-    ndarray, shape (...), float64
+    float64 or ndarray, shape (...)
         1/sr; its integral over the hemisphere is the probability that no sample is wasted.
 
     Raises
@@ -170,35 +169,52 @@ def ltc_pdf(wo, wi, roughness):
     0.31831
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    return density(wo, wi, coefficients(wo[..., 2], roughness))
+    return ltc_density(wo, wi, roughness, ltc_d(wo[..., 2], roughness))
 
 
-# [Portsmouth2025], Listing 2: mu and roughness in [0, 1]; the paper states no error.
-def coefficients(mu, r):
-    """Entries a, b, c, d of M for the cosine `mu` of `wo` and the roughness `r`."""
-    a = 1.0 + r * (0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * r)
-    b = r * (-1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * r) / (mu**3 - 1.43545)
-    c = 1.0 + r * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
-    d = r * (0.540852 + (-1.01625 + 0.475392 * mu) * mu) / (-1.0743 + (0.0725628 + mu) * mu)
-    return a, b, c, d
+# Entries of the matrix: [Portsmouth2025], Listing 2; mu, the cosine of wo, and roughness in [0, 1];
+# the paper states no error.
+def ltc_a(mu: Array, roughness: Array) -> Array:
+    """Entry a of M."""
+    a = 0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * roughness
+    return 1.0 + roughness * a
 
 
-def transformed(wo, wh, matrix):
+def ltc_b(mu: Array, roughness: Array) -> Array:
+    """Entry b of M."""
+    b = -1.16407 + 1.15859 * mu + (0.150815 - 0.150105 * mu) * roughness
+    return roughness * b / (mu**3 - 1.43545)
+
+
+def ltc_c(mu: Array, roughness: Array) -> Array:
+    """Entry c of M."""
+    return 1.0 + roughness * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
+
+
+def ltc_d(mu: Array, roughness: Array) -> Array:
+    """Entry d of M."""
+    d = 0.540852 + (-1.01625 + 0.475392 * mu) * mu
+    return roughness * d / (-1.0743 + (0.0725628 + mu) * mu)
+
+
+def ltc_transformed(
+    wo: Array, wh: Array, roughness: Array, d: Array | float
+) -> tuple[Array, Array]:
     """Unit M wh in the local frame of the surface, and its density under the clamped cosine."""
-    a, b, c, d = matrix
+    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_a, ltc_b, ltc_c))
     x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
-    wi = vector(a * x + b * z, c * y, d * x + z)
+    wi = stack_xyz(a * x + b * z, c * y, d * x + z)
     length = np.sqrt(np.sum(wi * wi, axis=-1))
-    cosine, sine, _ = azimuth(wo)
+    cosine, sine, _ = azimuth_frame(wo)
     pdf = z / np.pi * length**3 / (c * (a - b * d))
-    return turned(wi / length[..., np.newaxis], cosine, sine), pdf
+    return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
 
 
-def density(wo, wi, matrix):
+def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array | float) -> Array:
     """Density at `wi` of M wh / |M wh| for `wh` under the clamped cosine."""
-    a, b, c, d = matrix
-    cosine, sine, _ = azimuth(wo)
-    wi = turned(np.float64(wi), cosine, -sine)
+    a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_a, ltc_b, ltc_c))
+    cosine, sine, _ = azimuth_frame(wo)
+    wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
     det = c * (a - b * d)
     # The adjugate of M times wi: wh up to its length.

@@ -6,11 +6,12 @@ nodes are counted as often as they are used, by weights, without visiting them a
 here recurses: depth is what is to be found out.
 """
 
-from graphlib import CycleError, TopologicalSorter
+from graphlib import CycleError
 
 import MaterialX as mx
 
 from mxeon.errors import DocumentError
+from mxeon.shaders.document.graphs import heights, parts_first, reachable
 from mxeon.shaders.document.xml import check_limit
 
 
@@ -35,9 +36,9 @@ def check_expansion(document, elements, policy, called):
     weights, weigh = {}, _Weights(document, policy, called)
     check_limit(policy, "shaders", len(elements), rule, "renderable elements")
     for element in elements:
-        graph = reached([element.getNamePath()], lambda path: _upstream(document, path))
+        graph = reachable([element.getNamePath()], lambda path: _upstream(document, path))
         order = _ordered(graph, f"{called}: node", "be upstream of itself")
-        longest = max(_heights(graph, order).values())
+        longest = max(heights(graph, order).values())
         check_limit(policy, "chain", longest, rule, "nodes in a row")
         for path in order:
             definition = _definition(document.getDescendant(path))
@@ -59,12 +60,12 @@ def check_inheritance(document, policy, called):
         Otherwise.
     """
     heirs = [each for each in document.getChildren() if each.hasAttribute("inherit")]
-    graph = reached(
+    graph = reachable(
         [each.getName() for each in heirs],
         {each.getName(): [each.getAttribute("inherit")] for each in heirs}.get,
     )
     order = _ordered(graph, f"{called}: definition", "inherit itself")
-    deepest = max(_heights(graph, order).values(), default=0)
+    deepest = max(heights(graph, order).values(), default=0)
     rule = f"{called}: must have"
     check_limit(policy, "depth", deepest, rule, "definitions that inherit each other")
 
@@ -86,9 +87,9 @@ class _Weights:
         self._document, self._permissions, self._called = document, policy, called
 
     def __call__(self, name):
-        graph = reached([name], self._parts)
+        graph = reachable([name], self._parts)
         order = _ordered(graph, f"{self._called}: nodedef", "contain itself")
-        deepest, rule = max(_heights(graph, order).values()), f"{self._called}: must have"
+        deepest, rule = max(heights(graph, order).values()), f"{self._called}: must have"
         check_limit(self._permissions, "depth", deepest, rule, "nodegraphs within each other")
         weights = {}
         for each in order:
@@ -111,31 +112,12 @@ class _Weights:
         return self._document.getNodeGraph(implementation.getAttribute("nodegraph"))
 
 
-def reached(roots, parts):
-    """A graph as a mapping from each key to its parts, made of all that the roots lead to."""
-    graph, waiting = {}, list(roots)
-    while waiting:
-        key = waiting.pop()
-        if key not in graph:
-            graph[key] = parts(key) or ()
-            waiting += graph[key]
-    return graph
-
-
 def _ordered(graph, kind, rule):
     """Its keys, each after its parts."""
     try:
-        return tuple(TopologicalSorter(graph).static_order())
+        return parts_first(graph)
     except CycleError as error:
         raise DocumentError(f'{kind} "{min(error.args[1])}" must not {rule}') from None
-
-
-def _heights(graph, order):
-    """How many keys in a row lead to each."""
-    heights = {}
-    for key in order:
-        heights[key] = 1 + max((heights[part] for part in graph[key]), default=0)
-    return heights
 
 
 def _upstream(document, path):

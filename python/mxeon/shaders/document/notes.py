@@ -10,11 +10,11 @@ import MaterialX as mx
 from mxeon.errors import DocumentError, one_line
 from mxeon.shaders.document.references import files, folder
 from mxeon.shaders.document.values import NUMERIC, is_exact, plain
+from mxeon.shaders.nodes import DIFFUSE_NODES, FLAG, OREN_NAYAR
 
 TEXT = "document text"
 COLORED = ("color3", "color4", "filename")
 HALF_PI = ctypes.c_float(math.pi / 2.0).value  # as MaterialX keeps it, which is above pi / 2
-DIFFUSE_NODES = ("oren_nayar_diffuse_bsdf", "eon_diffuse_bsdf")
 
 
 class DocumentWarning(UserWarning):
@@ -136,6 +136,6 @@ def _range(element):
         return 0.0, 1.0
     if element.getName() != "roughness":
         return -math.inf, math.inf
-    flag = node.getInputValue("energy_compensation")
-    qualitative = node.getCategory() == "oren_nayar_diffuse_bsdf" and not flag
+    flag = node.getInputValue(FLAG)
+    qualitative = node.getCategory() == OREN_NAYAR and not flag
     return 0.0, HALF_PI if qualitative else 1.0

@@ -13,7 +13,7 @@ from functools import cache
 import MaterialX as mx
 
 from mxeon.errors import DocumentError
-from mxeon.shaders.document.graph_size import reached
+from mxeon.shaders.document.graphs import reachable
 
 # Attributes that are names, or become part of one: identifiers, with `:` between namespaces.
 NAMES = frozenset(
@@ -122,4 +122,4 @@ def _choices(document):
     for each in inputs:
         sources[each.getName()].append(each.getInterfaceName())
     chosen = [each.getName() for each in inputs if each.hasAttribute("enum")]
-    return reached(["geomprop", *chosen], sources.get)
+    return reachable(["geomprop", *chosen], sources.get)

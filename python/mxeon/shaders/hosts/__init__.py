@@ -1,49 +1,118 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Things that execute a shader, one module each; all offer the same verbs.
+"""The table of hosts: engines that execute shaders, one module and one row each."""
 
-    identity()                                   -> Identity
-    picture(shader, scene)                       -> ndarray (size, size, 3) float32, linear, 0 off the sphere
-    evaluate(shader, wo, wi, inputs, branch)     -> ndarray (N, 3), f cos(theta_i) in 1/sr, or the albedo
-    call(function, *arguments)                   -> ndarray (N, 3), a function of the shader twins
-
-each as far as that host can. A host that cannot do something here raises NotRun with the reason.
-"""
+from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
-
-import MaterialX as mx
+from typing import cast
 
 from mxeon.errors import InputError, NotRun
-from mxeon.shaders.generation import TARGETS
-from mxeon.shaders.library import TESTED
+from mxeon.shaders.hosts.base import Host
+from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 
 @dataclass(frozen=True)
-class Identity:
-    """Who executed: the host's name, its version and the device it ran on."""
+class Row:
+    """One host of the table.
+
+    Attributes
+    ----------
+    name : str
+        On the command line.
+    target : str
+        Target of the shaders that it executes.
+    module : str
+        Module with its class `Host`; "" where only the text of the target is checked.
+    probe : str
+        How checks ask it: for "pairs" of directions, for "pictures" of a sphere, for pictures of
+        "planes", for pictures of "native" nodes of its own, or "" for nothing.
+    needs : str
+        What running it would take, where only its text is checked.
+    scenes : tuple of Scene
+        Lights under which it shows the materials of documents.
+    surfaces : bool
+        Whether surface shaders are judged on it.
+    front_lit : tuple of str
+        Models that it has for s >= 0 alone.
+    """
 
     name: str
-    version: str
-    device: str
+    target: str
+    module: str = ""
+    probe: str = ""
+    needs: str = ""
+    scenes: tuple[Scene, ...] = ()
+    surfaces: bool = False
+    front_lit: tuple[str, ...] = ()
 
 
-# Name on the command line, which is that of a module of this package with a class `Host`.
-HOSTS = ("gl", "webgl", "vulkan", "slang", "cycles", "cycles-native", "testrender", "reference")
+HOSTS = (
+    # Its pictures are exact and take no time.
+    Row(
+        "gl",
+        "glsl",
+        "mxeon.shaders.hosts.gl",
+        "pairs",
+        scenes=(SIDE, BACK, FURNACE),
+        surfaces=True,
+    ),
+    Row("webgl", "essl", "mxeon.shaders.hosts.webgl", "pairs", scenes=(SIDE, BACK, FURNACE)),
+    Row("vulkan", "vulkan", "mxeon.shaders.hosts.vulkan", "pairs"),
+    Row("slang", "slang", "mxeon.shaders.hosts.slang", "pairs"),
+    # Its environment has noise. No closure of Cycles is QON for s < 0.
+    Row(
+        "cycles",
+        "osl",
+        "mxeon.shaders.hosts.cycles",
+        "pictures",
+        scenes=(SIDE, BACK),
+        front_lit=("qon",),
+    ),
+    Row("cycles-native", "osl", "mxeon.shaders.hosts.cycles.native", "native"),
+    Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes"),
+    Row("msl", "msl", needs="Metal, which macOS alone has"),
+    Row("mdl", "mdl", needs="a renderer that compiles MDL"),
+    Row(
+        "wgsl",
+        "wgsl",
+        needs="MaterialX's WGSL in place of the GLSL that it writes, which WebGPU does not take",
+    ),
+)
 
-MODULES = {name: f"shaders.hosts.{name}" for name in HOSTS}
-MODULES |= {"cycles-native": "shaders.hosts.cycles.native", "reference": "conformance.reference"}
 
-# Targets whose text is generated and checked, and what it would take to run it.
-TEXT_ONLY = {
-    "msl": "Metal, which macOS alone has",
-    "mdl": "a renderer that compiles MDL",
-    "wgsl": "MaterialX's WGSL in place of the GLSL that it writes, which WebGPU does not take",
-}
+def host_names() -> tuple[str, ...]:
+    """Names of all hosts, in the order of the table."""
+    return tuple(row.name for row in HOSTS)
 
 
-def open_host(name):
-    """The host called `name`, started.
+def host_row(name: str, *others: Row) -> Row:
+    """The row of a host, from the table or from `others`.
+
+    Raises
+    ------
+    ValueError
+        If there is no such host; lists the known ones.
+    """
+    rows = {row.name: row for row in (*HOSTS, *others)}
+    if name not in rows:
+        raise InputError(f"host must be one of {', '.join(rows)}; got {name!r}")
+    return rows[name]
+
+
+def front_lit_only(host: str, model: str) -> bool:
+    """Whether a host has a model for s >= 0 alone; what is not in the table has all of it."""
+    return any(row.name == host and model in row.front_lit for row in HOSTS)
+
+
+def open_host(name: str, *others: Row) -> Host:
+    """The host of a name, started.
+
+    Parameters
+    ----------
+    name : str
+    *others : Row
+        Hosts beside those of the table.
 
     Raises
     ------
@@ -52,14 +121,22 @@ def open_host(name):
     NotRun
         If it cannot run on this machine.
     """
-    if name in TEXT_ONLY:
-        raise NotRun(f"{name}: running it needs {TEXT_ONLY[name]}; its text is checked")
-    if name not in HOSTS:
-        raise InputError(f"host must be one of {', '.join((*HOSTS, *TEXT_ONLY))}; got {name!r}")
-    host = import_module(f"mxeon.{MODULES[name]}").Host
-    if host.target not in TARGETS:
-        raise NotRun(
-            f"{name}: MaterialX must have a generator for {host.target}; {mx.__version__} has none: "
-            f"pip install materialx=={TESTED[-1]}"
-        )
-    return host()
+    from mxeon.shaders.generation import TARGETS
+
+    row = host_row(name, *others)
+    if not row.module:
+        raise NotRun(f"{name}: running it needs {row.needs}; its text is checked")
+    if row.target not in TARGETS:
+        raise NotRun(_no_generator(row))
+    return cast(Host, import_module(row.module).Host())
+
+
+def _no_generator(row: Row) -> str:
+    import MaterialX as mx
+
+    from mxeon.shaders.library import TESTED
+
+    return (
+        f"{row.name}: MaterialX must have a generator for {row.target}; {mx.__version__} has none: "
+        f"pip install materialx=={TESTED[-1]}"
+    )

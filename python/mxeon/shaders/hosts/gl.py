@@ -8,7 +8,8 @@ import numpy as np
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions as twins
-from mxeon.shaders.hosts import Identity, fragment, raster
+from mxeon.shaders.hosts import fragment, raster
+from mxeon.shaders.hosts.base import Identity
 
 PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
 

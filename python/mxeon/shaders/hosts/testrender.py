@@ -15,17 +15,15 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders.hosts import Identity
-from mxeon.shaders.hosts.textures import read_image
+from mxeon.io.images import read_image
+from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.plane import DISTANCE, FOV, TILT, falloff
 
 PROGRAMS = {"oslc": "MXEON_OSLC", "testrender": "MXEON_TESTRENDER"}  # and what may name them
 LIMIT = 300.0  # seconds for one of them
 LINES = 4  # of what a program printed last, in a message
 
-FOV = 90.0  # degrees, as testrender counts them: the frame is tan(FOV / 2) wide at distance 1
-TILT = np.radians(60.0)  # of the camera, which stands 1 above the plane and looks along y
 PLANE = 100.0  # half the plane's side
-DISTANCE = 1000.0  # of the light, a square of side 1
 SAMPLES = {"light": 8, "environment": 16}  # squared: rays for each pixel
 
 HELPERS = {
@@ -108,7 +106,11 @@ class Host:
         for name, text in {shader.name: shader.stages["pixel"], **HELPERS}.items():
             self._compile(name, text)
         pixels = self._render(_scene(shader, scene), scene)
-        return pixels if scene.light is None else pixels / _falloff(scene)[:, np.newaxis]
+        return (
+            pixels
+            if scene.light is None
+            else pixels / falloff(scene.light, scene.size)[:, np.newaxis]
+        )
 
     def call(self, function, *arguments):
         """Nothing: testrender evaluates closures alone.
@@ -147,40 +149,6 @@ class Host:
         except ValueError as error:
             raise NotRun(f"testrender: {error}") from None
         return pixels[..., :3].reshape(-1, 3).astype(np.float64)
-
-
-def plane_pairs(scene):
-    """Directions at the points of the plane under the pixel centres.
-
-    Returns
-    -------
-    wo, wi : ndarray, shape (size * size, 3)
-        Row 0 of the picture first; wi is wo where there is no distant light.
-    """
-    points = _points(scene.size)
-    wo = _unit([0.0, 0.0, 1.0] - points)
-    return wo, wo if scene.light is None else _unit(DISTANCE * np.array(scene.light) - points)
-
-
-def _points(size):
-    """Points of the plane, (size * size, 3)."""
-    axis = (np.arange(size) + 0.5) / size - 0.5
-    x, y = (each.ravel() for each in np.meshgrid(axis, -axis))
-    width = np.tan(np.radians(FOV) / 2.0)
-    ahead, up = np.array([0.0, np.sin(TILT), -np.cos(TILT)]), [0.0, np.cos(TILT), np.sin(TILT)]
-    ray = ahead + width * (x[:, np.newaxis] * [1.0, 0.0, 0.0] + y[:, np.newaxis] * np.array(up))
-    return [0.0, 0.0, 1.0] - ray / ray[:, 2:]
-
-
-def _falloff(scene):
-    """The light's irradiance on a surface that faces it, over pi: 1 below the camera, nearly."""
-    away = DISTANCE * np.array(scene.light) - _points(scene.size)
-    squared = (away**2).sum(axis=1)
-    return DISTANCE**2 * (_unit(away) @ np.array(scene.light)) / squared
-
-
-def _unit(vectors):
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def _scene(shader, scene):

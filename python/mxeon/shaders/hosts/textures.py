@@ -10,38 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.errors import ImageError
-from mxeon.io.files import assert_regular
+from mxeon.io.images import read_image
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
-LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
 RADIANCE_SIZE = 64  # rows and columns, or little more, from which it is summed
-
-
-def read_image(path):
-    """Pixels of an image file, row 0 at the top.
-
-    Raises
-    ------
-    ImageError
-        If it is no regular file, or OpenImageIO cannot read it, in OpenImageIO's words; or if it is
-        too large, which a small file can be.
-    """
-    import OpenImageIO as oiio
-
-    try:
-        assert_regular(path)
-    except OSError as error:
-        raise ImageError(f"{path}: must be an image file; {error.strerror}") from None
-    file = oiio.ImageInput.open(str(path))
-    values = file.spec().image_pixels() * file.spec().nchannels if file else 0
-    if values > LARGEST:
-        raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
-    pixels = file.read_image(oiio.FLOAT) if file else None
-    if pixels is None:
-        reason = " ".join((file.geterror() if file else oiio.geterror()).split())
-        raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
-    return pixels
 
 
 def read_texture(path):
@@ -53,7 +26,7 @@ def read_texture(path):
     Raises
     ------
     ImageError
-        As `read_image` does; or if it has more channels than a color.
+        As `mxeon.io.images.read_image` does; or if it has more channels than a color.
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)

@@ -17,7 +17,8 @@ import numpy as np
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions as twins
-from mxeon.shaders.hosts import Identity, fragment
+from mxeon.shaders.hosts import fragment
+from mxeon.shaders.hosts.base import Identity
 
 try:
     import wgpu

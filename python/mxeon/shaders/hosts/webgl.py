@@ -19,7 +19,8 @@ import numpy as np
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions as twins
-from mxeon.shaders.hosts import Identity, fragment, raster
+from mxeon.shaders.hosts import fragment, raster
+from mxeon.shaders.hosts.base import Identity
 
 try:
     from playwright import sync_api

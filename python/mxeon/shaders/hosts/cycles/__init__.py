@@ -14,10 +14,9 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
-from mxeon.io.files import write_image
-from mxeon.shaders.hosts import Identity
+from mxeon.io.images import read_image, write_image
+from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.hosts.cycles.process import Worker, interpreter
-from mxeon.shaders.hosts.textures import read_image
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import sphere
 

@@ -2,7 +2,8 @@
 """Blender's own nodes as a renderer to judge: Cycles without OSL, and without MaterialX."""
 
 from mxeon.errors import NotRun
-from mxeon.shaders.hosts import Identity, cycles
+from mxeon.shaders.hosts import cycles
+from mxeon.shaders.hosts.base import Identity
 
 # Title of a node -> Blender's type, its sockets for color and roughness, and what switches all
 # but its diffuse lobe off.

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is made of documents in other processes: in order, and whatever becomes of these."""
+"""Jobs in worker processes: results in order, whatever becomes of the processes."""
 
 import os
 import warnings
 
 import pytest
 
-from mxeon.cli.batch import Ended, Made, Source, make, picture, texts
+from mxeon.cli.batch import BatchResult, Source, WorkerCrashed, picture, run_batch, shader_texts
 from mxeon.errors import DocumentError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library import examples_folder
@@ -20,7 +20,7 @@ with_processes = pytest.mark.parametrize("workers", [0, 2])
 
 
 def clay(target):
-    return texts(Source(CLAY, target), **KNOWN)
+    return shader_texts(Source(CLAY, target), **KNOWN)
 
 
 def process(_):
@@ -36,37 +36,37 @@ def hesitant(document):
 
 @with_processes
 def test_values_warnings_and_errors_come_in_order(workers):
-    one, bad, two = make(hesitant, ["one", "bad", "two"], workers, 60.0)
-    assert one == Made("ONE", ("one is odd",))
+    one, bad, two = run_batch(hesitant, ["one", "bad", "two"], workers, 60.0)
+    assert one == BatchResult("ONE", ("one is odd",))
     assert (bad.value, bad.warnings) == (None, ("bad is odd",))
     assert isinstance(bad.error, DocumentError) and str(bad.error) == "bad: must be good"
-    assert two == Made("TWO", ("two is odd",))
+    assert two == BatchResult("TWO", ("two is odd",))
 
 
 @with_processes
 def test_texts_are_those_of_generate(workers):
-    found = [each.value for each in make(clay, ["glsl", "osl"], workers, 60.0)]
+    found = [each.value for each in run_batch(clay, ["glsl", "osl"], workers, 60.0)]
     assert found == [clay("glsl"), clay("osl")]
     assert set(found[1]) == {"clay.terracotta.osl", "clay.modeling_clay.osl"}
 
 
 def test_no_workers_means_this_process():
-    assert [each.value for each in make(process, [0], 0, 60.0)] == [os.getpid()]
-    assert [each.value for each in make(process, [0], 1, 60.0)] != [os.getpid()]
+    assert [each.value for each in run_batch(process, [0], 0, 60.0)] == [os.getpid()]
+    assert [each.value for each in run_batch(process, [0], 1, 60.0)] != [os.getpid()]
 
 
 def test_a_process_that_crashes_costs_its_document_alone():
-    first, crashed, last = make(misbehave, [2, "SIGSEGV", 3], 1, 60.0)
-    assert (first, last) == (Made(4), Made(9))
-    assert isinstance(crashed.error, Ended) and str(crashed.error) == (
-        "SIGSEGV: must be worked on to the end; ended by SIGSEGV; last output: about to SIGSEGV"
+    first, crashed, last = run_batch(misbehave, [2, "SIGSEGV", 3], 1, 60.0)
+    assert (first, last) == (BatchResult(4), BatchResult(9))
+    assert isinstance(crashed.error, WorkerCrashed) and str(crashed.error) == (
+        "SIGSEGV: worker process crashed (SIGSEGV); last output: about to SIGSEGV"
     )
 
 
-@pytest.mark.parametrize("workers, limit, words", [(-1, 1.0, "workers"), (1, 0.0, "limit")])
-def test_bad_options_are_refused(workers, limit, words):
+@pytest.mark.parametrize("workers, timeout, words", [(-1, 1.0, "workers"), (1, 0.0, "timeout")])
+def test_bad_options_are_refused(workers, timeout, words):
     with pytest.raises(ValueError, match=words):
-        list(make(process, [0], workers, limit))
+        list(run_batch(process, [0], workers, timeout))
 
 
 def test_a_picture_says_what_made_it(tmp_path):

@@ -27,9 +27,9 @@ pytestmark = [
 EXAMPLE = examples_folder() / "plaster.mtlx"
 
 
-def run(work, items, address, limit=60.0):
-    with cluster.connected(address) as workers:
-        return dict(cluster.run(work, items, workers, limit, NotRun))
+def run(work, items, address, timeout=60.0):
+    with cluster.connect(address) as workers:
+        return dict(cluster.run(work, items, workers, timeout, NotRun))
 
 
 @contextmanager
@@ -86,7 +86,7 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
 
 def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
     with dask.config.set({"distributed.scheduler.allowed-failures": 0}), farm({}) as address:
-        (outcome,) = run(_sleep, [60.0], address, limit=1.0).values()
+        (outcome,) = run(_sleep, [60.0], address, timeout=1.0).values()
     assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
 
 
@@ -135,20 +135,20 @@ NOBODY, SOMEBODY = {"workers": {}}, {"workers": {"tcp://a": {"nthreads": 1}}}
 
 def test_workers_that_all_restart_are_waited_for(monkeypatch):
     monkeypatch.setattr(cluster, "POLL", 0.0)
-    workers = cluster._Workers(Client(NOBODY, NOBODY, SOMEBODY, NOBODY, NOBODY, SOMEBODY), 60.0)
-    workers.await_fit()
-    assert workers.fit() == {"tcp://a"}
+    workers = cluster.Workers(Client(NOBODY, NOBODY, SOMEBODY, NOBODY, NOBODY, SOMEBODY), 60.0)
+    workers.await_compatible()
+    assert workers.compatible() == {"tcp://a"}
 
 
 @pytest.mark.parametrize("answers", [(NOBODY,), (SOMEBODY, NOBODY)], ids=["at first", "later"])
 def test_workers_that_do_not_come_are_one_line(answers):
-    rule = "cluster must have a worker that fits; none came within 0.01 s: --waitForWorkers moves"
+    rule = "no compatible Dask worker came within 0.01 s; raise it with --waitForWorkers"
     with pytest.raises(NotRun, match=rule):
-        list(cluster.run(square, [1], cluster._Workers(Client(*answers), 0.01), 1.0, NotRun))
+        list(cluster.run(square, [1], cluster.Workers(Client(*answers), 0.01), 1.0, NotRun))
 
 
 def test_a_scheduler_that_ends_is_one_line():
-    workers = cluster._Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
+    workers = cluster.Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
     with pytest.raises(NotRun, match="scheduler must run until the end; it answers no more"):
         list(cluster.run(square, [1], workers, 1.0, NotRun))
 

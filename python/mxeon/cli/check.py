@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon check`: run the checks on hosts, and compare pictures of documents."""
+
+import argparse
+
+from mxeon.cli import arguments
+from mxeon.cli.output import progress_bar
+from mxeon.cli.verdict import show_run
+from mxeon.errors import InputError
+from mxeon.jobs.timeouts import WAIT
+from mxeon.shaders.hosts import host_names
+
+
+def add_parser(commands: arguments.Commands) -> None:
+    """Add the command and its options."""
+    default, *others = host_names()
+    summary = "run the checks on hosts, and compare pictures of documents with the reference"
+    command = arguments.add_command(commands, "check", summary, run)
+    command.add_argument(
+        "files", nargs="*", metavar="FILE", help="MaterialX documents; none: the examples"
+    )
+    command.add_argument(
+        "--host",
+        action="append",
+        metavar="NAME",
+        help=f"{default} (the default), {', '.join(others)}, or all; may be repeated",
+    )
+    command.add_argument(
+        "--library",
+        action="append",
+        type=arguments.library,
+        metavar="NAME",
+        help=f"{arguments.LIBRARY}; may be repeated",
+    )
+    arguments.add_report(command)
+    command.add_argument(
+        "--resume", action="store_true", help="continue the interrupted run in the report's DIR"
+    )
+    command.add_argument(
+        "--scheduler", metavar="ADDRESS", help="use the workers of this Dask scheduler"
+    )
+    command.add_argument(
+        "--waitForWorkers",
+        type=float,
+        default=WAIT,
+        metavar="SECONDS",
+        help=f"how long the cluster may be without a compatible worker; {WAIT:g}",
+    )
+    arguments.add_workers(command)
+    arguments.add_policy(command, runs_code=True)
+    arguments.add_json(command)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check hosts and libraries; return the exit status."""
+    from mxeon.conformance.run import check
+
+    if options.resume and not options.report:
+        raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
+    hosts = options.host or ("gl",)
+    result = check(
+        options.files,
+        host_names() if "all" in hosts else hosts,
+        options.library or ("eonlib",),
+        workers=options.workers,
+        timeout=options.timeout,
+        folder=options.report,
+        resume=options.resume,
+        scheduler=options.scheduler,
+        wait=options.waitForWorkers,
+        policy=arguments.policy(options),
+        progress=progress_bar("mxeon check"),
+    )
+    return show_run(result, options)

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon generate`: write shader sources."""
+
+import argparse
+import json
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+from mxeon.cli import arguments
+from mxeon.cli.batch import Source, run_batch, shader_texts
+from mxeon.cli.output import fail, status_of, warn
+from mxeon.errors import PASSED, InputError
+from mxeon.shaders.targets import CLASSES
+
+
+def add_parser(commands: arguments.Commands) -> None:
+    """Add the command and its options."""
+    command = arguments.add_command(commands, "generate", "write shader sources", run)
+    command.add_argument("files", nargs="+", metavar="FILE", help="MaterialX documents")
+    command.add_argument(
+        "--target",
+        action="append",
+        required=True,
+        metavar="NAME",
+        help=f"{', '.join(CLASSES)}; may be repeated",
+    )
+    command.add_argument("--element", metavar="NAME", help="one renderable element; none: all")
+    command.add_argument("--profile", metavar="NAME", help="cycles: osl for Blender's Cycles")
+    command.add_argument("--outputPath", metavar="DIR", required=True, help="where to write")
+    arguments.add_library(command)
+    arguments.add_workers(command)
+    arguments.add_policy(command)
+    arguments.add_json(command)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the shaders of all documents for all targets; return the exit status."""
+    sources = [Source(file, target) for file in options.files for target in options.target]
+    work = partial(
+        shader_texts,
+        element=options.element,
+        library=options.library,
+        profile=options.profile,
+        policy=arguments.policy(options),
+    )
+    results = run_batch(work, sources, options.workers, options.timeout)
+    written: list[str] = []
+    errors: list[Exception] = []
+    for source, result in zip(sources, results, strict=True):
+        for warning in result.warnings:
+            warn(warning)
+        error = result.error or _collision(source, result.value, options.outputPath, written)
+        if error:
+            errors.append(error)
+        else:
+            written += _write(result.value, options.outputPath)
+    outcome = {"files": written, "errors": list(map(str, errors))}
+    print(json.dumps(outcome) if options.json else "\n".join(written))
+    return min((fail(*status_of(error)) for error in errors), default=PASSED)
+
+
+def _collision(
+    source: Source, texts: Mapping[str, str], folder: str, written: list[str]
+) -> InputError | None:
+    """The error that a file of a document was written for another one, or None."""
+    taken = {str(Path(folder, name)) for name in texts} & set(written)
+    if not taken:
+        return None
+    return InputError(
+        f"{source.file}: must not overwrite {min(taken)} of this run; rename the document"
+    )
+
+
+def _write(texts: Mapping[str, str], folder: str) -> list[str]:
+    """Write texts by file name; return their paths."""
+    from mxeon.io.files import write_text
+
+    files = {str(Path(folder, name)): text for name, text in texts.items()}
+    for path, text in files.items():
+        write_text(path, text)
+    return list(files)

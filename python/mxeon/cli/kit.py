@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon kit`: test a renderer by its images of the conformance kit."""
+
+import argparse
+
+from mxeon.cli import arguments
+from mxeon.cli.output import progress_bar
+from mxeon.cli.verdict import show_run
+from mxeon.errors import PASSED
+
+
+def add_parser(commands: arguments.Commands) -> None:
+    """Add the command and its actions."""
+    summary = "test a renderer by its images of the conformance kit"
+    actions = commands.add_parser("kit", help=summary, description=summary)
+    actions = actions.add_subparsers(required=True, metavar="ACTION")
+    summary = "write scenes, materials and a page of instructions"
+    export = arguments.add_command(actions, "export", summary, run_export)
+    export.add_argument("folder", metavar="DIR", help="where to write")
+    export.add_argument(
+        "--size", type=int, default=128, help="width and height in pixels; %(default)s"
+    )
+    check = arguments.add_command(actions, "check", "check the images in DIR/renders", run_check)
+    check.add_argument("folder", metavar="DIR", help="the folder of the kit")
+    check.add_argument(
+        "--renderer",
+        default="renderer",
+        metavar="NAME",
+        help="name of the renderer, for the report",
+    )
+    arguments.add_report(check)
+    arguments.add_json(check)
+
+
+def run_export(options: argparse.Namespace) -> int:
+    """Write the kit and print the path of its page; return the exit status."""
+    from mxeon.kit.export import export_kit
+
+    print(export_kit(options.folder, options.size))
+    return PASSED
+
+
+def run_check(options: argparse.Namespace) -> int:
+    """Check images of the kit; return the exit status."""
+    from mxeon.kit.check import check_kit
+
+    result = check_kit(options.folder, options.renderer, progress_bar("mxeon kit check"))
+    return show_run(result, options)

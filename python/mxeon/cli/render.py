@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon render`: draw a material on a sphere."""
+
+import argparse
+from functools import partial
+
+from mxeon.cli import arguments
+from mxeon.cli.batch import picture, run_batch
+from mxeon.cli.output import warn
+from mxeon.errors import PASSED
+from mxeon.shaders.hosts import HOSTS
+
+
+def add_parser(commands: arguments.Commands) -> None:
+    """Add the command and its options."""
+    rows = (row.name for row in HOSTS if row.scenes and row.name != "gl")
+    hosts = ", ".join((*rows, "reference"))
+    command = arguments.add_command(commands, "render", "draw a material on a sphere", run)
+    command.add_argument("file", metavar="FILE", help="a MaterialX document")
+    command.add_argument("--host", default="gl", metavar="NAME", help=f"gl (the default), {hosts}")
+    command.add_argument("--element", metavar="NAME", help="needed where there are several")
+    command.add_argument("--output", metavar="OUT", required=True, help="linear .exr or sRGB .png")
+    command.add_argument(
+        "--scene", default="side", metavar="NAME", help="front, side (the default), back, furnace"
+    )
+    command.add_argument(
+        "--environment", metavar="IMAGE", help="light it with a latitude-longitude image instead"
+    )
+    command.add_argument(
+        "--size", type=int, default=512, help="width and height in pixels; %(default)s"
+    )
+    arguments.add_library(command)
+    arguments.add_workers(command)
+    arguments.add_policy(command, runs_code=True)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write a picture; return the exit status."""
+    from mxeon.io.images import write_picture
+
+    names = ("host", "scene", "environment", "size", "element", "library")
+    known = {name: getattr(options, name) for name in names}
+    work = partial(picture, policy=arguments.policy(options), **known)
+    [result] = run_batch(work, [options.file], options.workers, options.timeout)
+    for warning in result.warnings:
+        warn(warning)
+    if result.error:
+        raise result.error
+    write_picture(options.output, *result.value)
+    return PASSED

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon report`: write the report of a run, and compare two."""
+
+import argparse
+import json
+
+from mxeon.cli import arguments
+from mxeon.cli.verdict import show_run
+from mxeon.errors import FAILED, PASSED, one_line
+
+
+def add_parser(commands: arguments.Commands) -> None:
+    """Add the command and its actions."""
+    summary = "write the report of a run, or compare two reports"
+    actions = commands.add_parser("report", help=summary, description=summary)
+    actions = actions.add_subparsers(required=True, metavar="ACTION")
+    summary = "write the report of a run, finished or not"
+    make = arguments.add_command(actions, "make", summary, run_make)
+    make.add_argument("report", metavar="DIR", help="the folder of the run")
+    arguments.add_json(make)
+    diff = arguments.add_command(actions, "diff", "compare two reports", run_diff)
+    diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
+    diff.add_argument("after", metavar="B", help="the same of another run")
+    arguments.add_json(diff)
+
+
+def run_make(options: argparse.Namespace) -> int:
+    """Write the report of a run; return the exit status that the run means."""
+    from mxeon.conformance.run import read_run
+
+    return show_run(read_run(options.report), options)
+
+
+def run_diff(options: argparse.Namespace) -> int:
+    """Print the differences of two reports; return FAILED if a verdict became worse."""
+    from mxeon.report.diff import WORSE, compare, read_results
+
+    changes = compare(read_results(options.before), read_results(options.after))
+    if options.json:
+        print(json.dumps([vars(change) for change in changes], indent=1))
+    else:
+        print("\n".join(map(one_line, changes)) or "no difference")
+    return FAILED if any(change.kind == WORSE for change in changes) else PASSED

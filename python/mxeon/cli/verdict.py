@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A run, printed as the options say, and its exit status."""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from mxeon.cli.output import fail
+from mxeon.errors import FAILED, MISUSE, NOT_RUN, PASSED, one_line, printable
+
+if TYPE_CHECKING:
+    from mxeon.conformance.results import Run
+
+
+def show_run(run: Run, options: argparse.Namespace) -> int:
+    """Write the report of a run and print its verdict; return the exit status."""
+    from mxeon import report
+
+    page = report.write(run, options.report) if options.report else None
+    summary = run.summary
+    if options.json:
+        print(report.to_json(run))
+    else:
+        _print_not_run(run)
+        _print_failed(run)
+        for note in run.notes:
+            print(printable(" ".join(f"note: {note}".split())))
+        print(printable(summary.sentence))
+        if page:
+            print(f"report: {page}")
+    for error in run.errors:
+        fail(MISUSE, error)
+    if run.errors:
+        return MISUSE
+    return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[summary.verdict]
+
+
+def _print_not_run(run: Run) -> None:
+    """Print each reason that kept checks from running, with their number."""
+    reasons = Counter(
+        (result.location, result.reason) for result in run.results if result.verdict == "not run"
+    )
+    for (where, reason), count in reasons.items():
+        print(one_line(f"not run: {where}, {count} checks: {reason}"))
+
+
+def _print_failed(run: Run) -> None:
+    for result in run.results:
+        if result.verdict == "failed":
+            where = f"{result.location}, {result.check}, {result.subject}"
+            print(one_line(f"failed: {where}: {result.explanation}"))

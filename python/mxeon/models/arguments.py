@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Validation of arguments: ranges, directions and shapes.
+
+Directions leave the surface, in a local frame with the normal +z.
+"""
+
+from collections.abc import Mapping
+from typing import NoReturn
+
+import numpy as np
+
+from mxeon.models.arrays import ArrayLike, Numbers
+from mxeon.models.tiling import blocks, channels_first
+
+# Closed ranges of the quantities of the house, by name: least, largest, as printed.
+RANGES = {
+    "mu": (0.0, 1.0, "[0, 1]"),
+    "rho": (0.0, 1.0, "[0, 1]"),
+    "roughness": (0.0, 1.0, "[0, 1]"),
+    "sigma": (0.0, 0.5 * np.pi, "[0, pi/2]"),
+    "color": (0.0, 1.0, "[0, 1]"),
+    "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
+}
+
+# Largest error of the squared length of a direction: directions rounded to float32 pass.
+UNIT_TOLERANCE = 1e-6
+
+
+def checked(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array of real numbers inside the range that its name has in `RANGES`.
+
+    Parameters
+    ----------
+    name : str
+        A key of `RANGES`.
+    value : array_like
+        The caller's argument.
+
+    Returns
+    -------
+    ndarray
+        `value`, in the precision in which it came.
+
+    Raises
+    ------
+    ValueError
+        If an element is no real number or leaves the range; names it, and NaN leaves every range.
+        A masked array is refused, for the result could not keep its mask.
+
+    Examples
+    --------
+    >>> checked("roughness", [0.5, 1.2])
+    Traceback (most recent call last):
+    ...
+    ValueError: roughness must lie in [0, 1]; got 1.2 at index (1,)
+    """
+    array = _real(name, value)
+    low, high, interval = RANGES[name]
+    if array.size and not (array.min() >= low and array.max() <= high):
+        _refuse(f"{name} must lie in {interval}", array, (array >= low) & (array <= high))
+    return array
+
+
+def checked_directions(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array of unit vectors on or above the horizon.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument in the error message.
+    value : array_like, shape (..., 3)
+        The caller's argument.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        `value`, in the precision in which it came.
+
+    Raises
+    ------
+    ValueError
+        If the last axis is not 3, a squared length differs from 1 by more than `UNIT_TOLERANCE`,
+        or a direction points below the horizon; names the first such element.
+
+    Examples
+    --------
+    >>> checked_directions("wo", [0.0, 0.6, -0.8])
+    Traceback (most recent call last):
+    ...
+    ValueError: wo must not point below the horizon (z >= 0); got z = -0.8
+    """
+    array = checked_triples(name, value)
+    for block in blocks(array.shape[:-1]):
+        if not are_directions(channels_first(array[block])):
+            refuse_direction(name, array)
+    return array
+
+
+def checked_triples(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array of shape (..., 3), whose lengths are not looked at."""
+    array = _real(name, value)
+    if array.shape[-1:] != (3,):
+        raise ValueError(f"{name} must have shape (..., 3); got shape {array.shape}")
+    return array
+
+
+def are_directions(components: Numbers) -> bool:
+    """Whether all vectors of shape (3, ...) are unit and on or above the horizon."""
+    x, y, z = components
+    if not z.size:
+        return True
+    with np.errstate(over="ignore"):
+        length = x * x + y * y + z * z
+    unit = abs(length.min() - 1.0) <= UNIT_TOLERANCE and abs(length.max() - 1.0) <= UNIT_TOLERANCE
+    return bool(unit and z.min() >= 0.0)
+
+
+def refuse_direction(name: str, w: Numbers) -> NoReturn:
+    """Raise for the first direction that is below the horizon or else of the wrong length."""
+    z = w[..., 2]
+    if (z < 0.0).any():
+        _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < 0.0), "z = ")
+    with np.errstate(over="ignore"):
+        length = np.sum(np.square(w, dtype=np.float64), axis=-1)
+    unit = np.abs(length - 1.0) <= UNIT_TOLERANCE
+    _refuse(f"{name} must be unit vectors to {UNIT_TOLERANCE}", length, unit, "squared length ")
+
+
+def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
+    """Shape to which arguments broadcast, without the last axis of those that have one of their own.
+
+    Parameters
+    ----------
+    vectors : dict of str to ndarray
+        Directions, random numbers or colors by name: shapes (..., C).
+    numbers : dict of str to ndarray
+        The others: shapes (...).
+
+    Returns
+    -------
+    tuple of int
+
+    Raises
+    ------
+    ValueError
+        If they do not broadcast; names them and their shapes.
+
+    Examples
+    --------
+    >>> lead_shape({"wo": np.zeros((4, 3))}, {"roughness": np.zeros(5)})
+    Traceback (most recent call last):
+    ...
+    ValueError: wo, roughness must broadcast (last axis of wo apart); got shapes (4, 3), (5,)
+    """
+    arrays = [*vectors.values(), *numbers.values()]
+    leads = [array.shape[:-1] for array in vectors.values()]
+    leads += [array.shape for array in numbers.values()]
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        names = ", ".join([*vectors, *numbers])
+        apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
+        shapes = ", ".join(str(array.shape) for array in arrays)
+        raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
+
+
+def _real(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array; raise for complex numbers, text, ragged lists and masks."""
+    if np.ma.isMaskedArray(value):
+        raise ValueError(f"{name} must not be a masked array, whose mask would be lost; fill it")
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        array = np.empty(0, object)
+    if not np.can_cast(array.dtype, np.float64, "same_kind"):
+        raise ValueError(f"{name} must be real numbers; got {value!r}")
+    return array
+
+
+def _refuse(rule: str, array: Numbers, valid: Numbers, quantity: str = "") -> NoReturn:
+    """Raise ValueError for the first element of `array` that is not valid."""
+    index = tuple(int(i) for i in np.argwhere(~valid)[0])
+    location = f" at index {index}" if index else ""
+    raise ValueError(f"{rule}; got {quantity}{array[index]}{location}")

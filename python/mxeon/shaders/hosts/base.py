@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The base class of all hosts: their verbs, and the error of those that a host lacks."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import Unsupported
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.scene import Scene
+
+if TYPE_CHECKING:
+    from mxeon.shaders.generation import Shader
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Who executed: the host's name, its version and the device it ran on."""
+
+    name: str
+    version: str
+    device: str
+
+
+class Host(ABC):
+    """An engine that executes shaders; a context manager, which closes it.
+
+    A host overrides the verbs that it has.
+
+    Attributes
+    ----------
+    name : str
+        On the command line.
+    target : str
+        Target of the shaders that it executes.
+    profile : str or None
+        Profile of the data library; see `mxeon.shaders.library.load_library`.
+    """
+
+    name: ClassVar[str]
+    target: ClassVar[str]
+    profile: ClassVar[str | None] = None
+
+    @abstractmethod
+    def identity(self) -> Identity:
+        """Name, version and device, as the engine has them."""
+
+    def compile(
+        self,
+        document: Any,
+        element: str | None = None,
+        *,
+        library: str = "eonlib",
+        policy: Policy = DEFAULT,
+    ) -> tuple[Shader, ...]:
+        """Shaders of a document for this host; arguments and errors are those of `mxeon.generate`."""
+        from mxeon.shaders.generation import generate
+
+        return generate(
+            document,
+            self.target,
+            element,
+            library=library,
+            profile=self.profile,
+            lights=True,
+            policy=policy,
+        )
+
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Picture of the unit sphere with a shader on it.
+
+        Returns
+        -------
+        ndarray, shape (size, size, 3)
+            Linear radiance, row 0 at the top, 0 off the sphere.
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        ShaderError
+            If the host's compiler refuses the shader.
+        NotRun
+            If the host cannot show the scene, or fails.
+        """
+        raise self._unsupported("pictures of a sphere")
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+    ) -> NDArray[Any]:
+        """Values of a shader's one BSDF for pairs of directions.
+
+        Parameters
+        ----------
+        shader : Shader
+        wo, wi : ndarray, shape (N, 3)
+            Unit vectors in the local frame, normal +z.
+        inputs : mapping of str to array
+            Node inputs by name, (N, ...) or constant.
+        branch : str
+            "direct", or "environment" for a uniform environment of radiance 1.
+
+        Returns
+        -------
+        ndarray, shape (N, 3)
+            f cos(theta_i) in 1/sr, or the directional albedo.
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        ValueError
+            If the shader does not call exactly one BSDF, or the branch is unknown.
+        ShaderError
+            If the host's compiler refuses the shader.
+        """
+        raise self._unsupported("values for pairs of directions")
+
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a shader function of eonlib.
+
+        Parameters
+        ----------
+        function : str
+        *arguments : array_like, shape (N, 3) for a vector or color, (N,) for a float
+            Taken as float32; what is the same for all N may have one row.
+
+        Returns
+        -------
+        ndarray, shape (N, 3)
+            A float in all three columns.
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        ValueError
+            If there is no such function.
+        """
+        raise self._unsupported("calls of a shader function")
+
+    def plane(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Radiance of a plane with a shader on it.
+
+        Returns
+        -------
+        ndarray, shape (size * size, 3)
+            pi f cos(theta_i), or the albedo, at `mxeon.shaders.plane.plane_pairs`.
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        """
+        raise self._unsupported("pictures of a plane")
+
+    def node(
+        self, title: str, color: Sequence[float], roughness: float, scene: Scene
+    ) -> NDArray[Any]:
+        """Picture of the unit sphere with a node of the renderer's own on it; see `picture`."""
+        raise self._unsupported("nodes of its own")
+
+    def close(self) -> None:  # noqa: B027, a host may hold nothing
+        """Release what the host holds."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def _unsupported(self, verb: str) -> Unsupported:
+        return Unsupported(f"{self.name}: this host has no {verb}")

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rough diffuse nodes, their inputs, and materials of one node as MaterialX text."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+OREN_NAYAR = "oren_nayar_diffuse_bsdf"
+EON = "eon_diffuse_bsdf"
+
+# Categories of the nodes that eonlib implements. Its GLSL functions have the same names.
+DIFFUSE_NODES = (OREN_NAYAR, EON)
+NODEDEFS = tuple(f"ND_{category}" for category in DIFFUSE_NODES)
+
+FLAG = "energy_compensation"  # which the first alone has: EON if true, else QON
+INPUT_TYPES = {
+    "weight": "float",
+    "color": "color3",
+    "roughness": "float",
+    "normal": "vector3",
+    FLAG: "boolean",
+}
+
+SURFACE = """  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe" />
+  </surface>
+"""
+DOCUMENT = """<?xml version="1.0"?>
+<materialx version="1.39">
+{nodes}  <surfacematerial name="{name}" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="shading" />
+  </surfacematerial>
+</materialx>
+"""
+
+
+def value_text(value: ArrayLike) -> str:
+    """A value as MaterialX writes it.
+
+    Examples
+    --------
+    >>> value_text(True), value_text(0.5), value_text((0.2, 0.5, 1))
+    ('true', '0.5', '0.2, 0.5, 1.0')
+    """
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return str(value).lower()
+    return ", ".join(repr(float(each)) for each in np.ravel(value))
+
+
+def input_text(name: str, kind: str, value: ArrayLike) -> str:
+    """XML of an input with a value."""
+    return f'    <input name="{name}" type="{kind}" value="{value_text(value)}" />\n'
+
+
+def node_text(category: str, kind: str, name: str, inputs: str = "") -> str:
+    """XML of a node around that of its inputs."""
+    return f'  <{category} name="{name}" type="{kind}">\n{inputs}  </{category}>\n'
+
+
+def lobe_text(category: str, inputs: Mapping[str, ArrayLike], name: str = "lobe") -> str:
+    """XML of a rough diffuse node.
+
+    Parameters
+    ----------
+    category : str
+        One of DIFFUSE_NODES.
+    inputs : mapping of str to bool, float, str or a sequence of floats
+        Values by names of INPUT_TYPES. MaterialX ignores a normal that is not connected, so its
+        value comes from a node of its own.
+    name : str
+        Name of the node.
+
+    Raises
+    ------
+    KeyError
+        If there is no input of that name.
+    """
+    values = {each: value for each, value in inputs.items() if each != "normal"}
+    text = "".join(input_text(each, INPUT_TYPES[each], value) for each, value in values.items())
+    if "normal" not in inputs:
+        return node_text(category, "BSDF", name, text)
+    normal = input_text("value", "vector3", inputs["normal"])
+    text += f'    <input name="normal" type="vector3" nodename="{name}_normal" />\n'
+    return node_text("constant", "vector3", f"{name}_normal", normal) + node_text(
+        category, "BSDF", name, text
+    )
+
+
+def document_text(nodes: str, name: str = "look") -> str:
+    """XML of a document with one material.
+
+    Parameters
+    ----------
+    nodes : str
+        XML of its nodes, of which `shading` is the material's surface shader.
+    name : str
+        Name of the material.
+    """
+    return DOCUMENT.format(nodes=nodes, name=name)
+
+
+def material_text(
+    category: str, inputs: Mapping[str, ArrayLike] | None = None, name: str = "look"
+) -> str:
+    """XML of a document whose material is one rough diffuse node; see `lobe_text`."""
+    return document_text(lobe_text(category, inputs or {}) + SURFACE, name)

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Targets of shader generation, by name; no engine is loaded."""
+
+# Target -> module of MaterialX and class in it. MaterialX has slang since 1.39.5, wgsl since 1.39.4.
+CLASSES = {
+    "glsl": ("GenGlsl", "GlslShaderGenerator"),
+    "essl": ("GenGlsl", "EsslShaderGenerator"),
+    "vulkan": ("GenGlsl", "VkShaderGenerator"),
+    "wgsl": ("GenGlsl", "WgslShaderGenerator"),
+    "msl": ("GenMsl", "MslShaderGenerator"),
+    "slang": ("GenSlang", "SlangShaderGenerator"),
+    "osl": ("GenOsl", "OslShaderGenerator"),
+    "mdl": ("GenMdl", "MdlShaderGenerator"),
+}
