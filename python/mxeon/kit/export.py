@@ -60,7 +60,7 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
 
 def material_document(material: Material) -> str:
     """A material of the kit as MaterialX text."""
-    inputs = {
+    inputs: dict[str, Any] = {
         "color": material.color,
         "roughness": material.roughness,
         FLAG: material.energy_compensation,

@@ -83,7 +83,7 @@ def _split(mesh: Mesh) -> Mesh:
 
 
 def _on_sphere(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    return points / np.linalg.norm(points, axis=1, keepdims=True)
+    return np.asarray(points / np.linalg.norm(points, axis=1, keepdims=True))
 
 
 def to_obj(mesh: Mesh) -> str:

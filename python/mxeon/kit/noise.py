@@ -127,4 +127,4 @@ def _squares(image: NDArray[Any]) -> NDArray[Any]:
 
 def _sum(values: NDArray[Any]) -> NDArray[Any]:
     """Sum over the squares of each tile, (tiles, channels)."""
-    return values.sum(axis=2).reshape(-1, values.shape[-1])
+    return np.asarray(values.sum(axis=2).reshape(-1, values.shape[-1]))
