@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ledger says what is so: each defect is still there, where its page has it, and as large."""
+"""The pages on defects of MaterialX: each is still there, at its place, and as large."""
 
+import re
 from functools import cache
 
 import numpy as np
@@ -20,6 +21,17 @@ of_each_defect = pytest.mark.parametrize("defect", ledger.ISSUES, ids=lambda eac
 def judged(host):
     with available(host):
         return ledger.judged(host)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_files_and_functions_that_a_page_names_exist(page):
+    text = (ledger.FOLDER / f"{page}.md").read_text()
+    root = ledger.FOLDER.parents[1]
+    for file, function in re.findall(
+        r"`((?:docs|genglsl|genosl|python|tests)/[^`:]*)`(?:, `(\w+)`)?", text
+    ):
+        assert (root / file).is_file(), file
+        assert not function or f" {function}(" in (root / file).read_text(), function
 
 
 def test_every_page_is_in_the_ledger():
@@ -80,9 +92,9 @@ def test_a_figure_twice_as_large_is_seen():
     assert ledger.figures(text.replace("0.39", "0.78"))[0] > (1.0 + PRINTED) * 0.39
 
 
-@pytest.mark.parametrize("page, made", ledger.OF_QUANTITIES.items())
-def test_the_quantities_of_each_page_are_those_computed(page, made):
-    assert ledger.written(page) == made()
+@pytest.mark.parametrize("page, measure", ledger.OF_QUANTITIES.items())
+def test_the_quantities_of_each_page_are_those_computed(page, measure):
+    assert ledger.written(page) == measure()
 
 
 @pytest.mark.parametrize("cause", ledger.CAUSES.values(), ids=lambda cause: cause.file)

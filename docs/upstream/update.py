@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The figures of the pages, made by the suite: `python -m docs.upstream.update` writes them anew.
+"""Measure the figures of the upstream pages: `python -m docs.upstream.update` rewrites them.
 
-Each page has a block between two markers, which nothing but this program writes.
+Each page has a block between two markers, which only this program writes.
 """
 
 import re
@@ -27,22 +27,22 @@ BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
 HEAD = "| check | subject | measured | allowed | unit |\n|---|---|---|---|---|\n"
 MEASURED = 2  # column of a row's figure
 
-# Pages whose figures are errors of a driver, and belong to the one that they name.
+# Pages whose figures are errors of the driver that they name.
 OF_DRIVERS = ("genglsl_albedo_acos",)
 
 
 @dataclass(frozen=True)
 class Cause:
-    """Where a defect lies in MaterialX's data.
+    """Location of a defect in MaterialX's data.
 
     Attributes
     ----------
     file : str
-        Below the folder `libraries`.
+        Path below the folder `libraries`.
     line : int
-        Of the file, from 1.
+        Line of the file, from 1.
     word : str
-        Occurs there.
+        Text that occurs in the line.
     """
 
     file: str
@@ -52,7 +52,7 @@ class Cause:
 
 OPENPBR = "bxdf/open_pbr_surface.mtlx"
 MICROFACET = "pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
-# Page -> cause, where the source is part of MaterialX's data.
+# Causes by page, where the source is part of MaterialX's data.
 CAUSES = {
     "genglsl_clamped_dot": Cause("pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl", 22, "LdotV"),
     "genglsl_qon_albedo_fit": Cause(MICROFACET, 21, "dir_albedo_analytic"),
@@ -105,13 +105,13 @@ def shown(defect, results):
 
 
 def block(results, place):
-    """Results as the table of a page, where they were measured, and what the first is named as."""
+    """The block of a page: a table of results, device and versions, and the first diagnosis."""
     rows = [
         f"| {each.check} | {each.subject} | {each.error:.2g} | {each.tolerance:.2g} | {each.unit} |"
         for each in results
     ]
-    said = f"Measured with {place}.\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
-    return HEAD + "\n".join(rows) + f"\n\n{said}"
+    text = f"Measured with {place}.\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
+    return HEAD + "\n".join(rows) + f"\n\n{text}"
 
 
 def figures(text):
@@ -120,7 +120,7 @@ def figures(text):
 
 
 def without_figures(text):
-    """Rows of a block without their figures, and what the suite says."""
+    """Rows of a block without their figures, and the diagnosis."""
     rows = [row.split(" | ") for row in _rows(text)]
     return [row[:MEASURED] + row[MEASURED + 1 :] for row in rows], text.split("\n\n")[2:]
 
@@ -130,7 +130,7 @@ def _rows(text):
 
 
 def _rounded(text):
-    """A diagnosis without pages and without distances, which drivers change."""
+    """A diagnosis without page and distances, which depend on the driver."""
     return re.sub(r" \([^()]*\d[^()]*\)", "", text.split("; see ")[0])
 
 
@@ -160,7 +160,7 @@ def printed_pi_block():
 
 
 def dropped_normal_block():
-    """Whether generated GLSL holds a normal that the document gives as a literal value."""
+    """Whether generated GLSL holds a normal that is a literal value of the document."""
     normal = input_text("normal", "vector3", (0.25, 0.5, 0.75))
     lobe = node_text(OREN_NAYAR, "BSDF", "lobe", normal)
     [shader] = generate(document_text(lobe + SURFACE), "glsl", library=STOCK)
@@ -184,7 +184,7 @@ OF_QUANTITIES = {
 
 
 def written(page):
-    """The block that a page holds."""
+    """The block of a page."""
     text = (FOLDER / f"{page}.md").read_text(encoding="utf-8")
     return text.split(BEGIN)[1].split(END)[0]
 
@@ -196,7 +196,7 @@ def main():
     for each in ISSUES:
         results, place = measured[each.host]
         blocks[each.page] = block(shown(each, results), place)
-    blocks |= {page: made() for page, made in OF_QUANTITIES.items()}
+    blocks |= {page: measure() for page, measure in OF_QUANTITIES.items()}
     for page, text in blocks.items():
         path = FOLDER / f"{page}.md"
         head, rest = path.read_text(encoding="utf-8").split(BEGIN)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kit: what it holds, what it makes of pictures good and bad, and Cycles as the stranger."""
+"""The kit: its files, its verdicts on right and wrong pictures, and Cycles as an external renderer."""
 
 import json
 import os
@@ -30,7 +30,7 @@ from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
 
 SIZE = 64
 VIEWS = {view.name: view for view in views(SIZE)}
-STRANGER = Path(__file__).parents[1] / "support" / "external_renderer.py"
+EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.py"
 EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
 
 
@@ -61,7 +61,7 @@ def read(path):
     return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
 
 
-def found(run, check, subject):
+def result_of(run, check, subject):
     """The one result of a check on a subject that begins so."""
     (result,) = [
         each for each in run.results if each.check == check and each.subject.startswith(subject)
@@ -168,9 +168,9 @@ def test_right_pictures_pass(kit):
     assert len(run.pictures) == len(VIEWS)
 
 
-def test_too_much_noise_is_said_and_passes_nothing(tmp_path):
+def test_too_much_noise_is_reported_and_passes_nothing(tmp_path):
     write_pictures(tmp_path, noise=1.0)
-    result = found(check_kit(tmp_path), "white", "white")
+    result = result_of(check_kit(tmp_path), "white", "white")
     assert result.verdict == "not run"
     assert "too noisy" in result.reason
 
@@ -185,14 +185,14 @@ def test_a_model_that_noise_hides_is_mentioned(tmp_path):
 def test_a_missing_picture_is_not_run(kit):
     render(kit, "true_back").unlink()
     run = check_kit(kit)
-    assert "true_back.exr: must be in" in found(run, "file", "true_back").reason
-    assert found(run, "model", "energy_compensation true, distant").verdict == "not run"
+    assert "true_back.exr: must be in" in result_of(run, "file", "true_back").reason
+    assert result_of(run, "model", "energy_compensation true, distant").verdict == "not run"
 
 
 def spoiled(kit, name, change):
     """The result on the file of a picture that was changed."""
     write_exr(render(kit, name), change(read(render(kit, name))), {})
-    return found(check_kit(kit), "file", name)
+    return result_of(check_kit(kit), "file", name)
 
 
 def planted(value):
@@ -226,17 +226,17 @@ def test_an_eight_bit_file_is_refused(kit):
     path = kit / "renders" / "true_side.png"
     image = oiio.ImageBuf(oiio.ImageSpec(SIZE, SIZE, 3, oiio.UINT8))
     assert image.write(str(path))
-    assert "got uint8" in found(check_kit(kit), "file", "true_side").diagnosis
+    assert "got uint8" in result_of(check_kit(kit), "file", "true_side").diagnosis
 
 
 def test_two_files_of_a_name_are_refused(kit):
     (kit / "renders" / "true_side.csv").write_text("")
-    assert "must be one file" in found(check_kit(kit), "file", "true_side").diagnosis
+    assert "must be one file" in result_of(check_kit(kit), "file", "true_side").diagnosis
 
 
 def test_a_file_that_is_no_image_is_refused(kit):
     render(kit, "true_side").write_text("nothing")
-    assert "must be an EXR or CSV file" in found(check_kit(kit), "file", "true_side").diagnosis
+    assert "must be an EXR or CSV file" in result_of(check_kit(kit), "file", "true_side").diagnosis
 
 
 def write_channels(kit, name, image, names, **place):
@@ -261,21 +261,21 @@ def test_red_green_and_blue_are_found_by_name(kit):
 def test_channels_that_are_no_one_red_green_and_blue_are_refused(kit, names):
     image = np.ones((SIZE, SIZE, len(names)), dtype=np.float32)
     write_channels(kit, "true_side", image, list(names))
-    message = found(check_kit(kit), "file", "true_side").diagnosis
+    message = result_of(check_kit(kit), "file", "true_side").diagnosis
     assert f"must hold one R, G and B; got channels {', '.join(names)}" in message
 
 
 def test_a_picture_beside_its_place_is_refused(kit):
     image = read(render(kit, "true_side")).astype(np.float32)
     write_channels(kit, "true_side", image, list("RGB"), x=5, y=9)
-    message = found(check_kit(kit), "file", "true_side").diagnosis
+    message = result_of(check_kit(kit), "file", "true_side").diagnosis
     assert "must begin at the display window's corner; got (5, 9)" in message
 
 
 def test_half_a_file_is_refused(kit):
     path = render(kit, "true_side")
     path.write_bytes(path.read_bytes()[:900])
-    assert "true_side.exr: must be" in found(check_kit(kit), "file", "true_side").diagnosis
+    assert "true_side.exr: must be" in result_of(check_kit(kit), "file", "true_side").diagnosis
 
 
 @pytest.mark.parametrize("renderer", ["", " ", "two\nlines", "\x1b[31m", "\udcff"])
@@ -295,7 +295,7 @@ FAULTS = {
     "tone-mapped by x / (1 + x)": lambda image: image / (1.0 + image),
     "upside down": lambda image: image[::-1],
     "mirrored left to right": lambda image: image[:, ::-1],
-    "turned by half a turn": lambda image: image[::-1, ::-1],
+    "rotated by 180 degrees": lambda image: image[::-1, ::-1],
     "clipped": lambda image: np.minimum(image, 0.35),
     "pi times as bright": lambda image: np.pi * image,
     "1/pi times as bright": lambda image: image / np.pi,
@@ -324,8 +324,8 @@ def test_where_the_encoding_is_wrong_no_model_is_named(kit):
     for name in VIEWS:
         write_exr(render(kit, name), srgb(read(render(kit, name))), {})
     run = check_kit(kit)
-    assert found(run, "setup", "lambert").diagnosis == "lambert_side is sRGB-encoded"
-    result = found(run, "model", "energy_compensation true, distant light")
+    assert result_of(run, "setup", "lambert").diagnosis == "lambert_side is sRGB-encoded"
+    result = result_of(run, "model", "energy_compensation true, distant light")
     assert result.reason == "lambert_side is sRGB-encoded"
     assert names(run) == {}
 
@@ -359,7 +359,7 @@ def test_values_may_come_as_csv(kit):
 def test_a_wrong_csv_is_refused(kit, old, new, message):
     path = as_csv(kit, "true_side")
     path.write_text(re.sub(f"(?m)^{old}", new, path.read_text(), count=1))
-    assert message in found(check_kit(kit), "file", "true_side").diagnosis
+    assert message in result_of(check_kit(kit), "file", "true_side").diagnosis
 
 
 def test_csv_may_have_a_byte_order_mark_and_empty_lines(kit):
@@ -372,8 +372,8 @@ def test_csv_may_have_a_byte_order_mark_and_empty_lines(kit):
 def test_csv_that_is_none_costs_its_picture_alone(kit, data):
     as_csv(kit, "true_side").write_bytes(data)
     run = check_kit(kit)
-    assert "true_side.csv: must be" in found(run, "file", "true_side").diagnosis
-    assert found(run, "setup", "lambert").verdict == "passed"
+    assert "true_side.csv: must be" in result_of(run, "file", "true_side").diagnosis
+    assert result_of(run, "setup", "lambert").verdict == "passed"
 
 
 def test_a_folder_that_is_no_kit_is_refused(tmp_path, capsys):
@@ -420,7 +420,7 @@ def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):
 def test_what_is_no_regular_file_is_no_picture(kit, suffix, make):
     render(kit, "true_side").unlink()
     make(render(kit, "true_side").with_suffix(suffix))
-    assert "; not a regular file" in found(check_kit(kit), "file", "true_side").diagnosis
+    assert "; not a regular file" in result_of(check_kit(kit), "file", "true_side").diagnosis
 
 
 def test_a_pipe_in_place_of_a_description_blocks_nobody(tmp_path):
@@ -456,26 +456,26 @@ def write_osl(kit, library, profile):
     return folder
 
 
-def stranger_renders(kit, library, profile=None):
+def external_run(kit, library, profile=None):
     """Cycles' pictures of a new kit, judged."""
     with available("cycles"):
         python = interpreter()
     export_kit(kit, SIZE)
     sources = write_osl(kit, library, profile)
-    command = [python, "-I", "-W", "ignore", STRANGER, kit, sources, "256"]
+    command = [python, "-I", "-W", "ignore", EXTERNAL_RENDERER, kit, sources, "256"]
     subprocess.run(command, capture_output=True, check=True, timeout=300)
     return check_kit(kit, "Cycles")
 
 
-def test_cycles_as_a_stranger_is_named_eon_with_rho_cubed(tmp_path):
-    run = stranger_renders(tmp_path, "stock")
-    assert found(run, "setup", "lambert").verdict == "passed"
+def test_cycles_as_an_external_renderer_is_named_eon_with_rho_cubed(tmp_path):
+    run = external_run(tmp_path, "stock")
+    assert result_of(run, "setup", "lambert").verdict == "passed"
     assert set(names(run).values()) == {CUBED}
     assert len(names(run)) == 4
 
 
 def test_cycles_with_the_profile_is_named_eon(tmp_path):
-    run = stranger_renders(tmp_path, "eonlib", "cycles")
+    run = external_run(tmp_path, "eonlib", "cycles")
     for light in ("distant light", "environment"):
-        assert found(run, "model", f"energy_compensation true, {light}").verdict == "passed"
+        assert result_of(run, "model", f"energy_compensation true, {light}").verdict == "passed"
         assert names(run)[f"energy_compensation true, {light}"] == EON

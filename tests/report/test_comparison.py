@@ -88,7 +88,7 @@ def test_the_exit_status_says_whether_anything_got_worse(tmp_path, capsys, verdi
         ("{}", "must be the results.json of a report; lacks 'format'"),
         ('{"format": 1}', "must be the results.json of a report; lacks "),
         ('{"format": 1, "results": 3, "pictures": []}', "must be the results.json of a report; "),
-        ('{"format": 0}', "format must be 1; got 0: make it anew"),
+        ('{"format": 0}', "format must be 1; got 0; write the report again"),
     ],
 )
 def test_what_is_no_report_is_one_line(tmp_path, capsys, text, words):

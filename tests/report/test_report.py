@@ -4,12 +4,14 @@
 import json
 import math
 import re
+import subprocess
 import sys
 from base64 import b64encode
 from dataclasses import replace
 from hashlib import sha256
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import matplotlib
@@ -29,6 +31,7 @@ from mxeon.conformance.results import (
     summarize,
 )
 from mxeon.io.images import difference_scale, srgb_encoded
+from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.report.plots import SHOWN_SIZE, difference_pixels
 from mxeon.shaders.hosts.base import Identity
@@ -207,7 +210,13 @@ def test_page_says(page, words):
 
 
 def test_page_gives_the_verdict_before_anything_else(page):
-    order = ("Failed", "What failed", "What did not run", "Checks", "Pictures", "What took part")
+    order = (
+        "Failed",
+        "Failed checks",
+        "Checks that did not run",
+        "Pictures",
+        "Versions and documents",
+    )
     places = [page.text.index(words, len("mxeon:")) for words in order]
     assert places == sorted(places)
 
@@ -259,6 +268,32 @@ def test_page_shows_a_failure_without_a_figure(run):
     crash = made_result(FAILED, error=None, tolerance=None, diagnosis="no image came back")
     text = Page(page_of(replace(run, results=(crash,), pictures=(), curves=()))).text
     assert text.count("no image came back") == 2
+
+
+def test_a_figure_is_shown_beside_its_tolerance(run):
+    text = Page(page_of(run)).text
+    assert "1.25e-7 ≤ 2e-6 1/pi" in text
+    assert "inf > 2e-6 1/pi" in text
+
+
+def test_a_report_loads_no_engine_beside_what_results_load():
+    engines = {"MaterialX", "moderngl", "wgpu", "slangpy", "mxeon.shaders.scene"}
+    code = f"""import sys, mxeon.conformance.results; before = set(sys.modules)
+import mxeon.report.page, mxeon.report.junit; print({engines} & (set(sys.modules) - before))"""
+    command = [sys.executable, "-c", code]
+    result = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    assert result.stdout == "set()\n"
+
+
+def test_the_examples_of_the_page_on_the_kit_run(tmp_path, monkeypatch):
+    my_renderer = SimpleNamespace(my_brdf=eon_brdf)
+    monkeypatch.setitem(sys.modules, "my_renderer", my_renderer)
+    monkeypatch.chdir(tmp_path)
+    text = (Path(__file__).parents[2] / "docs/kit.md").read_text()
+    examples = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    assert len(examples) == 3
+    exec("\n".join(examples), {})
+    assert (tmp_path / "out/my_report/report.html").is_file()
 
 
 def test_page_shows_large_pictures_small(run):

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from mxeon.figures import claims, curves, renders, weights
 from mxeon.figures.claims import inversion as claims_inversion
@@ -41,8 +42,8 @@ SECTIONS = (
 
 def figures(
     folder: str | PathLike[str],
-    progress: Callable[[Sequence], Iterable] = iter,
-    **work: int,
+    progress: Callable[[Sequence[Any]], Iterable[Any]] = iter,
+    **work: Any,
 ) -> Path:
     """Write every figure to `folder`/figures, and `folder`/paper_checked.md.
 
@@ -82,8 +83,9 @@ def _gallery(folder: Path) -> str:
     """Every plot below the description of its figure, as Markdown."""
     lines = ["", "## The figures", ""]
     for step in FIGURES:
-        lines += [step.__doc__, ""]
-        for number in re.findall(r"\d+", step.__doc__.partition(":")[0]):
+        caption = str(step.__doc__)
+        lines += [caption, ""]
+        for number in re.findall(r"\d+", caption.partition(":")[0]):
             plots = sorted(folder.glob(f"figure_{number:0>2}*.[ps][nv]g"))
             lines += [f"![Figure {number}]({folder.name}/{plot.name})" for plot in plots] + [""]
     return "\n".join(lines)

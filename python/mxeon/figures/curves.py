@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures 3, 6, 7 and 15 of [Portsmouth2025]: values, albedos and their inversion as curves."""
 
-import numpy as np
+from collections.abc import Callable, Sequence
 
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.figures.sheet import Sheet
 from mxeon.models import inversion
 from mxeon.models.albedo import (
     fon_albedo_avg,
@@ -21,7 +26,7 @@ ANGLE_TICKS = (0, 30, 60, 90)
 SHADES = np.linspace(0.0, 1.0, 101)
 ROUGHNESS = (0.25, 0.5, 0.75, 1.0)
 SIGMA = (0.1, 0.2, 0.4, 0.8, 0.5 * np.pi)
-WANTED = (0.1, 0.3, 0.5, 0.7, 0.9)
+TARGETS = (0.1, 0.3, 0.5, 0.7, 0.9)
 SHORT = {
     "oren_nayar": "full Oren-Nayar",
     "qon": "QON",
@@ -40,19 +45,19 @@ def label(name: str) -> str:
     return SHORT.get(name) or model(name).title
 
 
-def cosine(degrees):
+def cosine(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
     """Cosine, 0 at 90 degrees."""
     return np.where(degrees == 90.0, 0.0, np.cos(np.radians(degrees)))
 
 
-def directions(theta, phi):
+def directions(theta: ArrayLike, phi: ArrayLike) -> NDArray[np.float64]:
     """Unit vectors at polar angle `theta` and azimuth `phi`, both in degrees."""
     theta, phi = np.radians(theta), np.radians(phi)
     parts = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta).clip(0.0)
     return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
 
-def comparison(sheet):
+def comparison(sheet: Sheet) -> None:
     """Figure 3: every model at half its largest roughness, rho = 0.8: the BRDF times the cosine."""
     figure, axes = sheet.axes(3, 3, 7.6, 6.4, sharex=True, sharey="row")
     columns = {"theta_o": DEGREES}
@@ -77,7 +82,7 @@ def comparison(sheet):
     sheet.plot("figure_03", figure)
 
 
-def qon_albedos(sheet):
+def qon_albedos(sheet: Sheet) -> None:
     """Figure 6: directional and average albedo of QON; lines are closed forms, dots quadrature."""
     figure, (axes,) = sheet.axes(1, 2, 7.2, 3.2)
     names = [f"$\\sigma = {sigma:g}$" for sigma in SIGMA[:-1]] + ["$\\sigma = \\pi/2$"]
@@ -89,7 +94,7 @@ def qon_albedos(sheet):
     sheet.plot("figure_06", figure)
 
 
-def fon_albedos(sheet):
+def fon_albedos(sheet: Sheet) -> None:
     """Figure 7: the same for FON, and the error of the paper's quartic."""
     figure, (axes,) = sheet.axes(1, 3, 9.6, 3.2)
     names = [f"$r = {r:g}$" for r in ROUGHNESS]
@@ -108,9 +113,16 @@ def fon_albedos(sheet):
     sheet.plot("figure_07", figure)
 
 
-def _directional(cell, closed, brdf, parameters, names):
-    """Draws directional albedos over the angle; returns the columns of their table."""
-    columns, mu = {"theta_o": DOTS}, cosine(DOTS)
+def _directional(
+    cell: Axes,
+    closed: Callable[..., NDArray[np.float64]],
+    brdf: Callable[..., NDArray[np.float64]],
+    parameters: Sequence[float],
+    names: Sequence[str],
+) -> dict[str, ArrayLike]:
+    """Draw directional albedos over the angle; return the columns of their table."""
+    columns: dict[str, ArrayLike] = {"theta_o": DOTS}
+    mu = cosine(DOTS)
     for parameter, name in zip(parameters, names, strict=True):
         dots = albedo_dir_quadrature(brdf, mu, 1.0, parameter)[:, 0]
         (line,) = cell.plot(DEGREES, closed(cosine(DEGREES), parameter), label=name)
@@ -124,8 +136,13 @@ def _directional(cell, closed, brdf, parameters, names):
     return columns
 
 
-def _average(cell, closed, brdf, largest):
-    """Draws the average albedo over the parameter; returns the columns of its table."""
+def _average(
+    cell: Axes,
+    closed: Callable[..., NDArray[np.float64]],
+    brdf: Callable[..., NDArray[np.float64]],
+    largest: float,
+) -> dict[str, ArrayLike]:
+    """Draw the average albedo over the parameter; return the columns of its table."""
     x, weight = np.polynomial.legendre.leggauss(32)
     mu, weight = 0.5 * (1.0 + x), 0.5 * weight
     parameter = largest * SHADES
@@ -137,7 +154,7 @@ def _average(cell, closed, brdf, largest):
     return {"parameter": at, "closed form": line[::10], "quadrature": dots}
 
 
-def inverted(sheet):
+def inverted(sheet: Sheet) -> None:
     """Figure 15: the rho that gives a color, over roughness, and the error of the fits."""
     figure, axes = sheet.axes(2, 2, 7.4, 5.6, sharex=True, sharey="row")
     columns, r = {"roughness": SHADES}, SHADES
@@ -145,20 +162,20 @@ def inverted(sheet):
     for (above, below), (constraint, title) in zip(axes.T, sides, strict=True):
         exact = getattr(inversion, f"eon_rho_from_albedo_{constraint}")
         approx = getattr(inversion, f"eon_rho_from_albedo_{constraint}_approx")
-        for color in WANTED:
+        for color in TARGETS:
             line, dashed = exact(color, r)[:, 0], approx(color, r)[:, 0]
             columns[f"{constraint} C={color:g}"] = line
             columns[f"{constraint} approx C={color:g}"] = dashed
             above.plot(r, line, color="black", linewidth=1.0)
             above.plot(r, dashed, "--", label=f"$C = {color:g}$")
             below.plot(r, 100.0 * (dashed - line))
-        for stated in (-0.3, 0.3):
-            below.axhline(stated, color="black", linewidth=0.8, linestyle=":")
+        for bound in (-0.3, 0.3):
+            below.axhline(bound, color="black", linewidth=0.8, linestyle=":")
         above.set(title=title)
         below.set(xlabel="$r$")
     axes[0, 0].set(ylabel="$\\rho$, exact and approximate")
     axes[1, 0].set(ylabel="error (%), stated below 0.3")
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(WANTED))
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(TARGETS))
     sheet.table("figure_15", columns)
     sheet.plot("figure_15", figure)

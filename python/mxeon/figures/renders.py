@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures 1, 2, 4, 5, 8, 9, 10 and 14 of [Portsmouth2025]: traced pictures of an open ball.
 
-The paper's objects are meshes; ours is analytic, and open, so that it lights itself.
+The paper's objects are meshes; ours is an analytic ball, cut open so that it lights itself.
 """
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.figures.curves import label
+from mxeon.figures.sheet import Sheet
 from mxeon.models.table import model
 
 
-def _unit(*vector):
-    return tuple(float(x) for x in np.array(vector) / np.linalg.norm(vector))
+def _unit(x: float, y: float, z: float) -> tuple[float, float, float]:
+    length = float(np.linalg.norm((x, y, z)))
+    return x / length, y / length, z / length
 
 
 EYE = _unit(0.0, 0.42, 1.0)
@@ -28,12 +34,12 @@ GALLERY = {
     "a": ("lambert", "oren_nayar", "qon", "qon_footnote"),
     "b": ("qon_fujii", "fon", "eon", "eon_approx"),
 }
-# Shown a little darker than they are, so that what is brighter than white shows too.
+# Exposures below 1, so that values above white remain visible.
 FURNACE_SHOWN, LOBES_SHOWN = 0.8, 0.75
 
 
-def look(name, part=1.0):
-    """A model at a part of its roughest, and the sampler that suits it."""
+def look(name: str, part: float = 1.0) -> dict[str, Any]:
+    """A model at a part of its largest roughness, and the sampler that suits it."""
     row = model(name)
     if not row.parameter:
         return {"model": name, "parameter": 0.0, "sampler": "cosine"}
@@ -41,26 +47,32 @@ def look(name, part=1.0):
     return {"model": name, "parameter": part * row.interval[1], "sampler": sampler}
 
 
-def title(sheet):
+def title(sheet: Sheet) -> None:
     """Figure 1: Lambert, and QON and EON at the highest roughness, lit from front and side."""
     names = ("lambert", "qon", "eon")
     _lit(sheet, "figure_01", names, 1.0, {"front-lit": FRONT, "side-lit": SIDE})
 
 
-def backscattering(sheet):
+def backscattering(sheet: Sheet) -> None:
     """Figure 2: Lambert, and QON, FON, EON at the highest roughness, lit from the viewer."""
     names = ("lambert", "qon", "fon", "eon")
     _lit(sheet, "figure_02", names, 1.0, {"lit from the eye": EYE})
 
 
-def gallery(sheet):
+def gallery(sheet: Sheet) -> None:
     """Figure 4: the models at half their largest roughness, as in Figure 3."""
     for part, names in GALLERY.items():
         _lit(sheet, f"figure_04{part}", names, 0.5, {"front-lit": FRONT, "side-lit": SIDE})
 
 
-def _lit(sheet, name, models, part, lights):
-    """Models from left to right, lights from top to bottom."""
+def _lit(
+    sheet: Sheet,
+    name: str,
+    models: Sequence[str],
+    part: float,
+    lights: Mapping[str, tuple[float, float, float]],
+) -> None:
+    """Draw models from left to right, lights from top to bottom."""
     rows = [
         [sheet.trace(STAGE | look(each, part), rho=CLAY, light=light) for each in models]
         for light in lights.values()
@@ -68,7 +80,7 @@ def _lit(sheet, name, models, part, lights):
     sheet.pictures(name, rows, [label(each) for each in models], list(lights))
 
 
-def furnaces(sheet):
+def furnaces(sheet: Sheet) -> None:
     """Figures 5, 8, 9: QON, FON, EON: one bounce, with more contrast, in a white furnace."""
     for figure, name in (("figure_05", "qon"), ("figure_08", "fon"), ("figure_09", "eon")):
         bounce = sheet.trace(VIEW | look(name), rho=CLAY, light=FRONT)
@@ -81,13 +93,13 @@ def furnaces(sheet):
         sheet.table(f"{figure}_furnace", columns)
 
 
-def _contrast(image):
-    """Black to white for the brighter part of what is lit."""
+def _contrast(image: NDArray[np.float32]) -> NDArray[Any]:
+    """The brighter part of the lit pixels, stretched from black to white."""
     low, high = np.quantile(image[image.max(axis=-1) > 0.02], (0.3, 0.995))
     return (image - low) / (high - low)
 
 
-def lobes(sheet):
+def lobes(sheet: Sheet) -> None:
     """Figure 10: QON, and the single and the multiple scattering of EON, for three colors."""
     columns = {
         "QON": look("qon"),
@@ -104,10 +116,10 @@ def lobes(sheet):
     sheet.pictures("figure_10", rows, list(columns), list(colors))
 
 
-def noise(sheet):
+def noise(sheet: Sheet) -> None:
     """Figure 14: EON at roughness 1 with 50 samples and 50 bounces, by three samplers."""
     samplers = {"cosine": "cosine", "eon_cltc": "CLTC + uniform", "eon": "exact"}
-    lights = {
+    lights: dict[str, dict[str, Any]] = {
         "uniform light": {"environment": 1.0},
         "distant light": {"environment": 0.0, "light": FRONT, "floor": 0.35},
     }

@@ -1,20 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A path tracer on the OpenGL host, which uses the shader twins for value, sampling and density.
+"""A path tracer on the OpenGL host that calls the shader functions for value, sample and density.
 
-It shows what a model and a sampler do over many bounces: a ball, alone or opened around a core.
-The estimate needs no choice of lights: a distant light is met at every reflection, and a uniform
-surrounding where a path leaves the objects. Nothing ends a path early but a weight of 0.
+It shows a model and a sampler over many bounces, on a ball that is closed or cut open around a core.
+A distant light is evaluated at every reflection, a uniform environment where a path leaves the
+objects. A path ends early only if its weight is 0.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.errors import InputError
 from mxeon.shaders import functions as twins
+from mxeon.shaders.hosts.gl import Host
 
-# How a draw and its density are called, by the sampler's name.
+# Calls of a sample and its density, by the sampler's name.
 SAMPLERS = {
     "uniform": ("uniform_sample(u1, u2)", "uniform_pdf(wi)"),
     "cosine": ("cosine_sample(u1, u2)", "cosine_pdf(wi)"),
@@ -24,7 +27,7 @@ SAMPLERS = {
     "eon_cltc": ("eon_cltc_sample(wo, u1, u2, r)", "eon_cltc_pdf(wo, wi, r)"),
     "eon": ("eon_sample(wo, u1, u2, TRACER_GREY, r)", "eon_pdf(wo, wi, TRACER_GREY, r)"),
 }
-# How a value is called, by the model's name; the lobes of EON are models too.
+# Call of a value, by the model's name; the lobes of EON are models too.
 SIGMA_MODELS = ("oren_nayar", "qon", "qon_footnote", "qon_fujii")
 MODELS = {
     "lambert": "lambert_brdf(wo, wi, rho)",
@@ -34,7 +37,7 @@ MODELS = {
     "eon_multiple": "(eon_brdf(wo, wi, rho, r) - fon_brdf(wo, wi, rho, r))",
 }
 
-# Attributes of a Trace that the shader takes as they are.
+# Attributes of a Trace that are uniforms of the shader.
 UNIFORMS = ("rho", "parameter", "light", "environment", "bounces", "opened", "floor", "eye", "seed")
 
 
@@ -49,11 +52,11 @@ class Trace:
     rho : tuple of 3 floats
         Reflectance of the ball.
     parameter : float
-        The model's sigma or roughness, as the ball has it. Samplers take 2 sigma / pi for one.
+        The ball's sigma or roughness. Samplers take 2 sigma / pi as the roughness of a sigma.
     light : tuple of 3 floats
         Unit vector towards a distant light of irradiance pi; zeros for none.
     environment : float
-        Radiance of a uniform surrounding.
+        Radiance of a uniform environment.
     bounces : int
         Reflections that a path may have, at least 1.
     opened : bool
@@ -61,11 +64,11 @@ class Trace:
     floor : float
         Reflectance of a Lambertian floor; negative for none.
     eye : tuple of 3 floats
-        Unit vector towards the viewer, who sees without perspective.
+        Unit vector towards the viewer; the projection is orthographic.
     height, half_width : float
-        Height of the point that the frame is centred on, and half of what the frame holds.
+        Height of the center of the frame, and half of its width.
     size, samples, seed : int
-        Pixels on a side, paths per pixel, and which random numbers they take.
+        Pixels on a side, paths per pixel, and the seed of the random numbers.
     """
 
     model: str
@@ -85,7 +88,7 @@ class Trace:
     seed: int = 0
 
 
-def program(model, sampler):
+def program(model: str, sampler: str) -> str:
     """Fragment shader of the path tracer for a model and a sampler.
 
     Raises
@@ -107,7 +110,9 @@ def program(model, sampler):
     return "\n".join(["#version 430", twins.source("glsl"), *defines, tracer])
 
 
-def trace(host, picture, progress=iter):
+def trace(
+    host: Host, picture: Trace, progress: Callable[[range], Iterable[int]] = iter
+) -> NDArray[np.float32]:
     """Linear radiance that arrives at the viewer.
 
     Parameters

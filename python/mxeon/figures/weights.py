@@ -4,9 +4,14 @@
 The weight of a sample of EON at unit reflectance is f cos(theta_i) / p, and 0 below the horizon.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.figures.curves import directions
+from mxeon.figures.sheet import Sheet
 from mxeon.models.brdf import eon_brdf
 from mxeon.models.sampling import SAMPLERS
 
@@ -17,12 +22,12 @@ STATISTICS = (
     ("largest weight", np.max),
     ("mean weight", np.mean),
 )
-# Exact samples have this variance or less over the density that they really follow: the two fits
-# leave 1.3e-5. Over the density that the sampler returns they have that of rounding.
+# Lower end of the plots of a variance. Exact samples have the variance of rounding over the density
+# that the sampler returns, which two fits leave within 1.3e-5 of the true one: (1.3e-5)^2.
 EXACT_VARIANCE = 1.7e-10
 
 
-def weights(sampler, theta_o, roughness, draws):
+def weights(sampler: Any, theta_o: float, roughness: float, draws: int) -> NDArray[np.float64]:
     """Throughput weights of `draws` samples at one angle in degrees."""
     u = np.random.default_rng(int(4.0 * theta_o)).random((draws, 2))
     wo = directions(theta_o, 0.0)
@@ -34,7 +39,9 @@ def weights(sampler, theta_o, roughness, draws):
     return weight
 
 
-def statistics(sampler, angles, roughness, draws):
+def statistics(
+    sampler: Any, angles: NDArray[np.float64], roughness: float, draws: int
+) -> NDArray[np.float64]:
     """Variance, largest weight and mean weight over the angle, shape (3, angles)."""
     rows = []
     for theta_o in angles:
@@ -43,13 +50,13 @@ def statistics(sampler, angles, roughness, draws):
     return np.transpose(rows)
 
 
-def over_angle(sheet):
+def over_angle(sheet: Sheet) -> None:
     """Figure 11: variance, largest value and mean of the weight of every sampler at roughness 1."""
     figure, (axes,) = sheet.axes(1, 3, 9.6, 3.5)
     columns = {"theta_o": ANGLES}
     for sampler in SAMPLERS:
-        found = statistics(sampler, ANGLES, 1.0, sheet.draws)
-        for cell, (name, _), values in zip(axes, STATISTICS, found, strict=True):
+        rows = statistics(sampler, ANGLES, 1.0, sheet.draws)
+        for cell, (name, _), values in zip(axes, STATISTICS, rows, strict=True):
             columns[f"{sampler.name} {name}"] = values
             if name == "variance":
                 values = np.maximum(values, EXACT_VARIANCE)
@@ -62,15 +69,15 @@ def over_angle(sheet):
     sheet.plot("figure_11", figure)
 
 
-def over_roughness(sheet):
+def over_roughness(sheet: Sheet) -> None:
     """Figure 13: cosine, the paper's mixture and the exact sampler at several roughnesses."""
     figure, (axes,) = sheet.axes(1, 2, 7.4, 3.7)
     columns = {"theta_o": ANGLES[::2]}
     styles = ("cosine", "-"), ("eon_cltc", "--"), ("eon", ":")
     for shade, r in enumerate((0.05, 0.25, 0.5, 1.0)):
         for name, style in styles:
-            found = statistics(BY_NAME[name], ANGLES[::2], r, sheet.draws)
-            for cell, (statistic, _), values in zip(axes, STATISTICS, found, strict=False):
+            rows = statistics(BY_NAME[name], ANGLES[::2], r, sheet.draws)
+            for cell, (statistic, _), values in zip(axes, STATISTICS, rows, strict=False):
                 columns[f"{name} r={r:g} {statistic}"] = values
                 if statistic == "variance":
                     values = np.maximum(values, EXACT_VARIANCE)
@@ -83,7 +90,7 @@ def over_roughness(sheet):
     sheet.plot("figure_13", figure)
 
 
-def _label(axes):
+def _label(axes: Sequence[Any]) -> None:
     for cell, (name, _) in zip(axes, STATISTICS, strict=False):
         cell.set(xlabel="$\\theta_o$ (degrees)", title=name, xticks=(0, 30, 60, 90))
         if name != "mean weight":

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kit, for renderers that mxeon cannot start: scenes out, pictures in, a verdict on them."""
+"""The kit: tests renderers that mxeon cannot run, by the pictures that they submit."""

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A renderer's pictures of the kit judged: what is in `renders/` in, a Run for the report out."""
+"""Check of the pictures that a renderer made of the kit."""
 
 import json
 import platform
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.metadata import version
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.results import FAILED, NOT_RUN, Picture, Result, Run
@@ -15,9 +19,9 @@ from mxeon.io.files import regular
 from mxeon.kit.expected import judged, pixel_means
 from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
 from mxeon.kit.mesh import unit_sphere
-from mxeon.kit.questions import QUESTIONS, answer
+from mxeon.kit.questions import QUESTIONS, Question, answer
 from mxeon.kit.submitted import Missing, Unusable, read_render
-from mxeon.kit.views import MATERIALS, views
+from mxeon.kit.views import MATERIALS, View, views
 from mxeon.models import table as reference
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import sphere
@@ -30,27 +34,31 @@ EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 
 
-def check_kit(folder, renderer=RENDERER, progress=list):
-    """The pictures in a kit's `renders/` judged.
+def check_kit(
+    folder: str | PathLike[str],
+    renderer: str = RENDERER,
+    progress: Callable[[Sequence[Question]], Iterable[Question]] = list,
+) -> Run:
+    """Results of the checks of a kit's pictures, which lie in its folder `renders/`.
 
     Parameters
     ----------
     folder : path-like
         Of the kit; it holds `kit.json` and `renders/`.
     renderer : str
-        What the report calls who made them.
+        Name of the renderer in the report.
     progress : callable (sequence) -> iterable
-        Goes through the questions; a progress bar, say.
+        Iterates over the questions, such as a progress bar.
 
     Returns
     -------
     Run
-        Its notes name the models.
+        Its notes name the nearest models.
 
     Raises
     ------
     ValueError
-        If `folder` is no kit, or one of another format, or `renderer` is no name to be printed.
+        If `folder` is not a kit of this format, or `renderer` is not a printable name.
     ImportError
         If scipy, of the `kit` extra, is not installed.
     """
@@ -58,15 +66,15 @@ def check_kit(folder, renderer=RENDERER, progress=list):
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
     pictures, depth = views(_size(folder)), unit_sphere().depth
-    place = {"host": renderer, "library": LIBRARY}
+    place: dict[str, Any] = {"host": renderer, "library": LIBRARY}
     images, results = _read(folder / RENDERS, pictures, place)
-    notes, level = [], ""
+    notes, obstacle = [], ""
     for question in progress(QUESTIONS):
-        # Where the light is wrong, every model is: nothing else can be judged.
-        result, words = answer(question, pictures, images, depth, place, obstacle=level)
+        # If light or encoding are wrong, no model can be told.
+        result, words = answer(question, pictures, images, depth, place, obstacle)
         results.append(result)
         if question.key == "setup":
-            level = words
+            obstacle = words
         if words:
             notes.append(f"{question.title}: {words}")
     return Run(
@@ -80,8 +88,8 @@ def check_kit(folder, renderer=RENDERER, progress=list):
     )
 
 
-def _size(folder):
-    """Width of the kit's pictures, from its description, which has to be that of this version."""
+def _size(folder: Path) -> int:
+    """Width of the kit's pictures; refuse a description that another version wrote."""
     file = folder / DESCRIPTION
     kit = _description(file)
     if type(kit.get("format")) is not int or kit["format"] != KIT_FORMAT:
@@ -100,7 +108,7 @@ def _size(folder):
     return size
 
 
-def _description(file):
+def _description(file: Path) -> dict[str, Any]:
     try:
         with open(file, encoding="utf-8", opener=regular) as stream:
             kit = json.load(stream)
@@ -115,8 +123,10 @@ def _description(file):
     return kit
 
 
-def _read(folder, pictures, place):
-    """The usable images by name, and a result for each file that is not."""
+def _read(
+    folder: Path, pictures: Sequence[View], place: dict[str, Any]
+) -> tuple[dict[str, NDArray[np.float64]], list[Result]]:
+    """Usable images by name, and a result for each file that is missing or unusable."""
     images, results = {}, []
     for view in pictures:
         about = {"check": "file", "claim": READABLE, "subject": view.name, **place}
@@ -129,11 +139,13 @@ def _read(folder, pictures, place):
     return images, results
 
 
-def _pictures(pictures, images, place):
-    """What could be read, each beside the model's picture."""
+def _pictures(
+    pictures: Sequence[View], images: dict[str, NDArray[np.float64]], place: dict[str, Any]
+) -> Iterator[Picture]:
+    """Pictures that could be read, each with the model's as its reference."""
     for view in pictures:
         if view.name in images:
-            made = {"version": mxeon.__version__, "scene": view.scene.name}
+            metadata = {"version": mxeon.__version__, "scene": view.scene.name}
             yield Picture(
                 document=f"{view.material.name}.mtlx",
                 element=view.material.name,
@@ -141,12 +153,12 @@ def _pictures(pictures, images, place):
                 scene=view.scene.name,
                 image=images[view.name].astype(np.float32) * judged(view.scene)[..., None],
                 reference=_model_picture(view),
-                metadata=made | place,
+                metadata=metadata | place,
             )
 
 
-def _model_picture(view):
-    """The model's values where they are judged, 0 elsewhere."""
+def _model_picture(view: View) -> NDArray[np.float64]:
+    """Values of the model at the judged pixels, 0 elsewhere."""
     image = np.zeros((*sphere(view.scene.size).mask.shape, 3))
     image[judged(view.scene)] = pixel_means(reference.model(view.material.model), view)
     return image

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The model that a renderer's pictures show: the nearest known one, and the second best."""
+"""Nearest known models to a renderer's pictures."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,13 +13,16 @@ from mxeon.kit.expected import expected
 from mxeon.kit.noise import ratio, tiles
 from mxeon.models import table as reference
 
-# Models nearer to another than a renderer's noise: EON's quartic is off by 1e-3 at most.
+if TYPE_CHECKING:
+    from mxeon.kit.questions import Case
+
+# Models nearer to another one than a renderer's noise: EON's quartic is off by 1e-3 at most.
 TOO_NEAR = ("eon_approx",)
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A known model or defect against the pictures of one question.
+    """Distance of a known model or defect from the pictures of one question.
 
     Attributes
     ----------
@@ -23,7 +30,7 @@ class Candidate:
     distance : float
         Root mean square of the tiles' mean errors, in units of pi f cos or of albedo.
     ratio : float
-        See `mxeon.kit.noise.ratio`; up to 1 the pictures may be this model's.
+        See `mxeon.kit.noise.ratio`; up to 1 the pictures agree with this model.
     """
 
     title: str
@@ -31,8 +38,8 @@ class Candidate:
     ratio: float
 
 
-def candidates(pictures, depth):
-    """Every known model and defect, nearest first, those with the same values once.
+def candidates(pictures: Sequence[Case], depth: float) -> list[Candidate]:
+    """Every known model and defect, nearest first; models with the same values once.
 
     Parameters
     ----------
@@ -46,24 +53,24 @@ def candidates(pictures, depth):
     """
     rows = [row for row in reference.KNOWN_DEFECTS + reference.MODELS if row.name not in TOO_NEAR]
     if all(case.view.scene.light for case in pictures):
-        rows = {row.brdf: row for row in rows}.values()  # some differ in their albedo alone
+        rows = list({row.brdf: row for row in rows}.values())  # some differ in their albedo alone
     return sorted((_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance)
 
 
-def _candidate(row, pictures, depth):
-    found = []
+def _candidate(row: reference.Model, pictures: Sequence[Case], depth: float) -> Candidate:
+    errors = []
     for case in pictures:
         model = expected(row, case.view, depth)
-        found.append(tiles(case.values - model.value, model.slack, case.mask))
-    means = np.concatenate([each.mean for each in found])
-    return Candidate(row.title, float(np.sqrt(np.mean(means**2))), ratio(found))
+        errors.append(tiles(case.values - model.value, model.slack, case.mask))
+    means = np.concatenate([each.mean for each in errors])
+    return Candidate(row.title, float(np.sqrt(np.mean(means**2))), ratio(errors))
 
 
-def named(ranking):
+def sentence(ranking: Sequence[Candidate]) -> str:
     """The nearest model and the second best, in words.
 
-    What the pictures cannot tell from the nearest one, at the confidence of `mxeon.kit.noise`, is
-    said to fit as well.
+    Names the models that the pictures cannot tell from the nearest one, at the confidence of
+    `mxeon.kit.noise`.
     """
     first, second = ranking[:2]
     text = (
@@ -71,6 +78,6 @@ def named(ranking):
         f"then {second.title} ({second.distance:.2g})"
     )
     if first.ratio > 1.0:
-        return f"{text}; neither is it"
+        return f"{text}; neither fits"
     also = [each.title for each in ranking[1:] if each.ratio <= 1.0]
     return f"{text}; cannot be told from {' and '.join(also)}" if also else text

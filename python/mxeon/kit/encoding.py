@@ -1,24 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with a picture whatever the model: its encoding, orientation or scale.
+"""Faults of a picture that do not depend on the model: encoding, orientation and scale.
 
-Judged on Lambert under a distant light, whose true values are beyond dispute.
+They are determined on Lambert under a distant light, whose values every model shares.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.io.images import srgb_decoded
+from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
 
-LIKENESS = 0.02  # error without noise over value, both rms, of an explanation
-SAME_SCALE = 0.005  # a factor nearer to 1 is noise or a mesh
+LIKENESS = 0.02  # largest rms error over rms value, without noise, at which a fault explains it
+SAME_SCALE = 0.005  # a factor nearer to 1 is noise or the depth of a mesh
 
 
-def _tone_mapped_back(image):
-    """Infinite where x / (1 + x) cannot have come from."""
+def _tone_mapped_back(image: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The inverse of x / (1 + x); infinity for values of 1 and more, which it has not."""
     return np.divide(image, 1.0 - image, out=np.full_like(image, np.inf), where=image < 1.0)
 
 
-# In words, and what undoes it.
+# Each fault in words, and the function that undoes it.
 FAULTS = (
     ("", lambda image: image),
     ("sRGB-encoded", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
@@ -26,62 +28,64 @@ FAULTS = (
     ("tone-mapped by x / (1 + x)", _tone_mapped_back),
     ("upside down", lambda image: image[::-1]),
     ("mirrored left to right", lambda image: image[:, ::-1]),
-    ("turned by half a turn", lambda image: image[::-1, ::-1]),
+    ("rotated by 180 degrees", lambda image: image[::-1, ::-1]),
 )
 FACTORS = ((np.pi, "pi"), (1.0 / np.pi, "1/pi"), (np.pi**2, "pi^2"), (2.0, "2"), (0.5, "1/2"))
 
 
-def fault(image, model, mask):
-    """What explains that a picture is not what it should be, in words.
+def fault(image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]) -> str:
+    """The fault that explains how a picture differs from the model, in words.
 
     Parameters
     ----------
     image : ndarray, shape (size, size, 3)
     model : mxeon.kit.expected.Expected
-        What the pixels of the mask should hold.
+        Values of the pixels of the mask.
     mask : ndarray of bool, shape (size, size)
 
     Returns
     -------
     str
-        "" if nothing known does and it is right within LIKENESS.
+        "" if the picture is right within LIKENESS.
     """
     if not image[mask].any():
         return "black"
-    likeness = {words: _likeness(undone(image)[mask], model, mask) for words, undone in FAULTS}
+    likeness = {words: _likeness(undo(image)[mask], model, mask) for words, undo in FAULTS}
     words = min(likeness, key=lambda each: likeness[each][1])
     factor, miss = likeness[words]
     if miss <= LIKENESS:
-        scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{_called(factor)} times as bright"
+        scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{_spelled(factor)} times as bright"
         return " and ".join(filter(None, (words, scale)))
     if _clipped(image[mask], model.value):
         return "clipped"
     return "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise"
 
 
-def _likeness(found, model, mask):
-    """The factor by which values are too large, and what remains then, beyond noise, relative.
+def _likeness(
+    values: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
+) -> tuple[float, float]:
+    """Best factor between values and model, and the relative error that remains beyond noise.
 
-    Where no factor above 0 explains anything, infinity remains.
+    The error is infinite if no positive factor fits.
     """
     value = model.value
-    if not np.isfinite(found).all():
+    if not np.isfinite(values).all():
         return 0.0, np.inf
-    factor = (found * value).sum() / (value * value).sum()
+    factor = (values * value).sum() / (value * value).sum()
     if not factor > 0.0:
         return 0.0, np.inf
-    error = found - factor * value
+    error = values - factor * value
     noise = tiles(error, model.slack, mask).pixel_noise
     rest = np.sqrt(max(0.0, np.mean(error**2) - noise**2))
     return factor, rest / np.sqrt(np.mean((factor * value) ** 2))
 
 
-def _called(factor):
-    named = (words for known, words in FACTORS if abs(factor / known - 1.0) <= SAME_SCALE)
-    return next(named, f"{factor:.3g}")
+def _spelled(factor: float) -> str:
+    names = (name for known, name in FACTORS if abs(factor / known - 1.0) <= SAME_SCALE)
+    return next(names, f"{factor:.3g}")
 
 
-def _clipped(found, value):
-    """Whether many pixels share one largest value while what they should hold differs."""
-    top = found >= found.max() - 1e-6
-    return top.sum() > 20 and np.ptp(value[top]) > 0.02
+def _clipped(values: NDArray[np.float64], expected: NDArray[np.float64]) -> bool:
+    """Whether many pixels share one largest value although their expected values differ."""
+    top = values >= values.max() - 1e-6
+    return bool(top.sum() > 20 and np.ptp(expected[top]) > 0.02)

@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a model says a picture of the kit shows, and how far a right renderer may be from it."""
+"""Expected values of a picture of the kit, and the deviation allowed to a correct renderer."""
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
+from mxeon.kit.views import Material, View
 from mxeon.models.quadrature import albedo_dir_quadrature
-from mxeon.shaders.scene import VIEW, local_directions, sphere
+from mxeon.models.table import Model
+from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
-# Smallest cosine of either direction that is judged: nearer to rim and terminator a pixel's place
-# is uncertain. With 64 pixels or more, all of a pixel above it lies on the sphere.
+# Smallest cosine of either direction that is judged: near the rim and the terminator the value
+# depends on the position within a pixel. With 64 pixels or more, a whole pixel above the cut lies
+# on the sphere.
 CUT = 0.2
 
 # Cosines at which an albedo is integrated. Between them, 1/128 apart, it is read linearly: its
@@ -29,15 +34,15 @@ HALF_STEP = 2.0**-24
 
 @dataclass(frozen=True)
 class Expected:
-    """A picture's judged pixels.
+    """Expected values of a picture's judged pixels.
 
     Attributes
     ----------
     value : ndarray, shape (N, 3)
         Mean over each pixel.
     slack : ndarray, shape (N, 3)
-        Sum of what the value may change through the pixel's center in place of its mean, through
-        the depth of the mesh, and through rounding to half.
+        Allowed deviation: the value at the pixel's center minus the mean, plus the change by the
+        depth of the mesh, plus rounding to half.
     """
 
     value: np.ndarray
@@ -45,17 +50,17 @@ class Expected:
 
 
 @lru_cache(maxsize=16)
-def judged(scene):
-    """Where both cosines are at least CUT, a mask of the picture."""
+def judged(scene: Scene) -> NDArray[np.bool_]:
+    """Mask of the pixels at which both cosines are at least CUT."""
     points = sphere(scene.size)
     lit = points.normal[..., 2] >= CUT
     if scene.light is not None:
         lit &= points.normal @ np.array(scene.light) >= CUT
-    return lit & points.mask
+    return np.asarray(lit & points.mask)
 
 
-def expected(row, view, depth):
-    """What the model of a row of `mxeon.models.table` gives for a view.
+def expected(row: Model, view: View, depth: float) -> Expected:
+    """Expected values of a view for the model of a row of `mxeon.models.table`.
 
     Parameters
     ----------
@@ -71,42 +76,43 @@ def expected(row, view, depth):
     place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     value = pixel_means(row, view)
     center = _values(row, view, place)
-    # A point of a triangle has the normal of its direction: that of a point further out.
+    # A point of a triangle has the normal of its direction: that of a sphere point further out.
     mesh = _values(row, view, place / (1.0 - depth))
     slack = np.abs(value - center) + np.abs(mesh - center) + HALF_ROUNDING * value + HALF_STEP
     return Expected(value, slack + (INTERPOLATION if view.scene.light is None else 0.0))
 
 
-def pixel_means(row, view):
-    """Means over the judged pixels, (N, 3)."""
+def pixel_means(row: Model, view: View) -> NDArray[np.float64]:
+    """Means over the judged pixels, shape (N, 3)."""
     place = sphere(view.scene.size).normal[judged(view.scene)][:, :2]
     step = GAUSS / view.scene.size
     offsets = [(x, y) for x in (-step, step) for y in (-step, step)]
-    return np.mean([_values(row, view, place + offset) for offset in offsets], axis=0)
+    means = np.mean([_values(row, view, place + offset) for offset in offsets], axis=0)
+    return np.asarray(means)
 
 
-def _values(row, view, place):
-    """Values at points of the picture, (N, 3)."""
+def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at points of the picture, shape (N, 3)."""
     x, y = place.T
     normal = np.stack([x, y, np.sqrt(1.0 - x * x - y * y)], axis=-1)
     if view.scene.light is None:
-        return view.scene.environment * _albedo(row, view.material, normal[:, 2])
+        return cast(float, view.scene.environment) * _albedo(row, view.material, normal[:, 2])
     wo = local_directions(normal, VIEW)
     wi = local_directions(normal, view.scene.light)
     return np.pi * row.brdf(wo, wi, view.material.color, *_parameter(row, view)) * wi[:, 2:]
 
 
-def _parameter(row, view):
+def _parameter(row: Model, view: View) -> list[float]:
     return [view.material.roughness] if row.parameter else []
 
 
-def _albedo(row, material, mu):
+def _albedo(row: Model, material: Material, mu: NDArray[np.float64]) -> NDArray[np.float64]:
     table = _albedo_table(row, material)
     return np.stack([np.interp(mu, COSINES, channel) for channel in table.T], axis=-1)
 
 
 @lru_cache(maxsize=64)
-def _albedo_table(row, material):
+def _albedo_table(row: Model, material: Material) -> NDArray[np.float64]:
     """Directional albedo at COSINES, (N, 3): in closed form, else by quadrature."""
     parameter = [material.roughness] if row.parameter else []
     if row.albedo_dir:

@@ -1,45 +1,49 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kit as files: what a renderer needs to make its pictures, and a page that explains them."""
+"""Files of the kit: documents, scenes, a mesh, and a page that explains them."""
 
 import json
 import math
+from collections.abc import Sequence
 from importlib.resources import files
+from os import PathLike
 from pathlib import Path
 from string import Template
+from typing import Any
 
 import mxeon
 from mxeon.io.files import write_text
-from mxeon.kit.mesh import to_obj, unit_sphere
+from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
-from mxeon.kit.views import MATERIALS, USUAL, views
+from mxeon.kit.views import MATERIALS, USUAL, Material, View, views
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.scene import Scene
 
 KIT_FORMAT = 1
 DESCRIPTION = "kit.json"
 RENDERS = "renders"
 
 
-def export_kit(folder, size=USUAL):
-    """Writes the kit into `folder`, replacing what has the same name; pictures stay.
+def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
+    """Write the kit into `folder`. Replaces files of the same name; keeps submitted pictures.
 
     Parameters
     ----------
     folder : path-like
-        Made if need be.
+        Created if it does not exist.
     size : int
         Width and height of the pictures in pixels.
 
     Returns
     -------
     Path
-        Of README.md, where to begin.
+        README.md of the kit.
 
     Raises
     ------
     ValueError
         If the size is out of range.
     OSError
-        If something cannot be written.
+        If a file cannot be written.
     """
     folder, pictures, mesh = Path(folder), views(size), unit_sphere()
     for material in MATERIALS:
@@ -54,9 +58,9 @@ def export_kit(folder, size=USUAL):
     return folder / "README.md"
 
 
-def material_document(material):
+def material_document(material: Material) -> str:
     """A material of the kit as MaterialX text."""
-    inputs = {
+    inputs: dict[str, Any] = {
         "color": material.color,
         "roughness": material.roughness,
         FLAG: material.energy_compensation,
@@ -64,7 +68,7 @@ def material_document(material):
     return material_text(OREN_NAYAR, inputs, material.name)
 
 
-def description(pictures, size):
+def description(pictures: Sequence[View], size: int) -> dict[str, Any]:
     """The numbers of the kit, as kit.json holds them.
 
     Returns
@@ -101,7 +105,7 @@ def description(pictures, size):
     }
 
 
-def _material(material):
+def _material(material: Material) -> dict[str, Any]:
     return {
         "file": f"materials/{material.name}.mtlx",
         "node": OREN_NAYAR,
@@ -111,13 +115,13 @@ def _material(material):
     }
 
 
-def _light(scene):
+def _light(scene: Scene) -> dict[str, Any]:
     if scene.light is None:
         return {"environment": {"radiance": scene.environment}}
     return {"distant": {"direction": scene.light, "irradiance": math.pi}}
 
 
-def _page(pictures, size, mesh):
+def _page(pictures: Sequence[View], size: int, mesh: Mesh) -> str:
     """README.md of the kit."""
     text = files("mxeon.kit").joinpath("templates", "kit.md").read_text(encoding="utf-8")
     rows = [
@@ -142,7 +146,7 @@ def _page(pictures, size, mesh):
     )
 
 
-def _in_words(scene):
+def _in_words(scene: Scene) -> str:
     if scene.light is None:
         return f"uniform environment of radiance {scene.environment:g} on all sides"
     direction = ", ".join(f"{each:.6f}" for each in scene.light)

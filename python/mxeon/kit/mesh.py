@@ -5,9 +5,12 @@ Each vertex lies on the sphere and is its own normal, so that the interpolated n
 a triangle has the direction of the point itself.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 SUBDIVISIONS = 5  # 20 480 triangles of about two degrees; each more quarters the error
 
@@ -24,19 +27,19 @@ class Mesh:
         Counter-clockwise as seen from outside.
     """
 
-    vertices: np.ndarray
-    triangles: np.ndarray
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
 
     @property
-    def depth(self):
-        """How far the triangles lie below the sphere at most."""
+    def depth(self) -> float:
+        """Largest distance of the triangles below the sphere."""
         a, b, c = np.moveaxis(self.vertices[self.triangles], 1, 0)
         normal = np.cross(b - a, c - a)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         return float(1.0 - (normal * a).sum(axis=1).min())
 
 
-def unit_sphere(subdivisions=SUBDIVISIONS):
+def unit_sphere(subdivisions: int = SUBDIVISIONS) -> Mesh:
     """The unit sphere: an icosahedron whose triangles are split in four, again and again.
 
     Examples
@@ -53,8 +56,8 @@ def unit_sphere(subdivisions=SUBDIVISIONS):
     return mesh
 
 
-def _faces(vertices):
-    """Triangles of neighbors, which are 2 apart, turned outwards."""
+def _faces(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Triangles of vertices that are 2 apart, facing outwards."""
     near = np.isclose(np.linalg.norm(vertices[:, None] - vertices, axis=-1), 2.0)
     count = range(len(vertices))
     faces = [
@@ -68,7 +71,7 @@ def _faces(vertices):
     return np.where(outward[:, None], faces, np.array(faces)[:, ::-1])
 
 
-def _split(mesh):
+def _split(mesh: Mesh) -> Mesh:
     """Each triangle in four, the middles of its edges lifted onto the sphere."""
     edges = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]]
     pairs, place = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
@@ -79,11 +82,11 @@ def _split(mesh):
     return Mesh(np.concatenate([mesh.vertices, middles]), triangles)
 
 
-def _on_sphere(points):
-    return points / np.linalg.norm(points, axis=1, keepdims=True)
+def _on_sphere(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(points / np.linalg.norm(points, axis=1, keepdims=True))
 
 
-def to_obj(mesh):
+def to_obj(mesh: Mesh) -> str:
     """A mesh as Wavefront OBJ, with normals and smooth shading."""
     rows = [f"{x:.9f} {y:.9f} {z:.9f}" for x, y, z in mesh.vertices]
     corners = [" ".join(f"{each}//{each}" for each in row) for row in mesh.triangles + 1]

@@ -1,20 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Noise told from bias: the mean error of each tile of a picture, and how far chance may take it.
+"""Separation of noise from bias: the mean error of each tile of a picture, and its distribution.
 
 A tile of 8 x 8 pixels has up to 16 squares of 2 x 2. A square's contrast, (a - b - c + d) / 2, has
 the variance of a pixel's noise and sees nothing of a smooth error; the tile's mean error sees all
 of it. Under normal noise the two are independent, so their quotient follows Student's t.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.errors import PackageError
 
 TILE = 8
-FEWEST = 8  # squares without which a tile is not judged
-CONFIDENCE = 0.999  # that no right picture of a whole kit is called biased
+FEWEST = 8  # squares that a tile needs to be judged
+CONFIDENCE = 0.999  # probability that a kit of correct pictures passes
 
 
 @dataclass(frozen=True)
@@ -33,35 +38,35 @@ class Tiles:
         The degrees of freedom.
     """
 
-    mean: np.ndarray
-    deviation: np.ndarray
-    slack: np.ndarray
-    squares: np.ndarray
+    mean: NDArray[np.float64]
+    deviation: NDArray[np.float64]
+    slack: NDArray[np.float64]
+    squares: NDArray[np.int64]
 
     @property
-    def pixel_noise(self):
+    def pixel_noise(self) -> float:
         """Standard deviation of a pixel, root mean square over the picture."""
         return float(np.sqrt(np.mean(self.deviation**2 * 4.0 * self.squares[:, None])))
 
 
-def tiles(error, slack, mask):
+def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[np.bool_]) -> Tiles:
     """Tiles of a picture.
 
     Parameters
     ----------
     error, slack : ndarray, shape (N, 3)
-        Of the pixels of the mask.
+        At the pixels of the mask.
     mask : ndarray of bool, shape (size, size)
 
     Returns
     -------
     Tiles
     """
-    whole = _squares(mask[..., None]).all(axis=(-1, -2))
+    whole = np.asarray(_squares(mask[..., None]).all(axis=(-1, -2)))
     square = _squares(_spread(error, mask))
     contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
     count = _sum(whole[..., None])[:, 0]
-    kept = count >= FEWEST
+    kept = np.asarray(count >= FEWEST)
     count = count[kept]
     weight = whole[..., None]
     mean = _sum(weight * square.mean(axis=-1))[kept] / count[:, None]
@@ -70,8 +75,8 @@ def tiles(error, slack, mask):
     return Tiles(mean, np.sqrt(variance / (4.0 * count[:, None])), allowed, count)
 
 
-def ratio(pictures, share=1.0):
-    """The largest mean error of a tile, over what slack and chance allow it.
+def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
+    """The largest mean error of a tile, relative to what slack and noise allow.
 
     Parameters
     ----------
@@ -105,14 +110,14 @@ def ratio(pictures, share=1.0):
     return largest
 
 
-def _spread(values, mask):
-    """Values of a mask's pixels in the picture, 0 elsewhere."""
+def _spread(values: NDArray[np.float64], mask: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """A picture with these values at the mask's pixels, 0 elsewhere."""
     image = np.zeros((*mask.shape, values.shape[-1]))
     image[mask] = values
     return image
 
 
-def _squares(image):
+def _squares(image: NDArray[Any]) -> NDArray[Any]:
     """Squares of 2 x 2 pixels of whole tiles, (tiles, tiles, 16, channels, 4)."""
     size, half = image.shape[0] // TILE, TILE // 2
     parts = image[: size * TILE, : size * TILE].reshape(size, half, 2, size, half, 2, -1)
@@ -120,6 +125,6 @@ def _squares(image):
     return parts.reshape(size, size, half * half, image.shape[-1], 4)
 
 
-def _sum(values):
+def _sum(values: NDArray[Any]) -> NDArray[Any]:
     """Sum over the squares of each tile, (tiles, channels)."""
-    return values.sum(axis=2).reshape(-1, values.shape[-1])
+    return np.asarray(values.sum(axis=2).reshape(-1, values.shape[-1]))

@@ -1,72 +1,74 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The questions put to a renderer's pictures, and how each is answered.
+"""The checks of a renderer's pictures, called questions, and the result of each.
 
-A question passes if the pictures are the model's but for noise, pixel and mesh, and if a wrong
-variant, made from the same noisy pictures, would have failed.
+A question passes if the pictures equal the model up to noise, pixel size and mesh, and if a wrong
+variant with the same noise fails.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Result
-from mxeon.kit.diagnosis import candidates, named
+from mxeon.kit.diagnosis import candidates, sentence
 from mxeon.kit.encoding import fault
-from mxeon.kit.expected import expected, judged, pixel_means
-from mxeon.kit.noise import CONFIDENCE, ratio, tiles
-from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE
+from mxeon.kit.expected import Expected, expected, judged, pixel_means
+from mxeon.kit.noise import CONFIDENCE, Tiles, ratio, tiles
+from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE, Material, View
 from mxeon.models import table as reference
 
 FLAG = "energy_compensation"
-UNIT = "allowances for noise, pixel and mesh"
+UNIT = "of what noise, pixel and mesh allow"
 DERIVATION = (
     "Student's t of each tile's mean error over its noise, Bonferroni over all tiles, channels and "
-    f"questions: {1.0 - CONFIDENCE:.1g} is the false rate of a whole kit; added are a pixel's mean "
-    "against its center, the depth of the mesh, and rounding to half"
+    f"questions: a kit of correct pictures fails with probability {1.0 - CONFIDENCE:.1g}; added are "
+    "a pixel's mean against its center, the depth of the mesh, and rounding to half"
 )
 
 
 @dataclass(frozen=True)
 class Question:
-    """Pictures that are judged together, and what they have to be.
+    """A check of one or more pictures, and its negative control.
 
     Attributes
     ----------
     key, claim : str
-        One word, and the sentence that is tested.
+        Name of the check, and the sentence that it tests.
     materials : tuple of Material
     lit : bool
-        By a distant light, else by an environment: a rasterizer has a formula for each.
+        Whether the light is distant; else an environment. A rasterizer has a formula for each.
     variant : str
-        What the control does wrong.
+        Description of the negative control.
     wrong : callable (View) -> ndarray, shape (N, 3)
-        What the variant gives for the judged pixels.
+        Values of the negative control at the judged pixels.
     """
 
     key: str
     claim: str
-    materials: tuple
+    materials: tuple[Material, ...]
     lit: bool
     variant: str
-    wrong: Callable
+    wrong: Callable[[View], NDArray[np.float64]]
 
     @property
-    def title(self):
+    def title(self) -> str:
         """Subject of the result."""
         material = self.materials[0]
         flagged = f"{FLAG} {str(material.energy_compensation).lower()}"
         name = flagged if self.key == "model" else material.name
         return f"{name}, {'distant light' if self.lit else 'environment'}"
 
-    def includes(self, view):
+    def includes(self, view: View) -> bool:
         """Whether a view belongs to the question."""
         return view.material in self.materials and (view.scene.light is not None) == self.lit
 
 
 @dataclass(frozen=True)
 class Case:
-    """A picture's judged pixels.
+    """A submitted picture at its judged pixels.
 
     Attributes
     ----------
@@ -75,20 +77,20 @@ class Case:
     values : ndarray, shape (N, 3)
     """
 
-    view: object
-    mask: np.ndarray
-    values: np.ndarray
+    view: View
+    mask: NDArray[np.bool_]
+    values: NDArray[np.float64]
 
 
-def _of(name, factor=1.0):
+def _of(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
     """A variant: values of a model, times a factor."""
     return lambda view: factor * pixel_means(reference.model(name), view)
 
 
-SETUP_RIGHT = "Lambert under a distant light is right: light, orientation and encoding."
-IS_MODEL = "The pictures are the model's, but for noise and the depth of a mesh."
+SETUP_RIGHT = "Lambert under a distant light has the right light, orientation and encoding."
+IS_MODEL = "The pictures equal the model, up to noise and the depth of a mesh."
 BLACK_IS = "A black surface reflects nothing."
-WHITE_IS = "A white surface in a white environment cannot be seen."
+WHITE_IS = "A white surface in a white environment is invisible."
 DROPPED, STUCK = "the flag is dropped", "the flag is stuck"
 QUESTIONS = (
     Question("setup", SETUP_RIGHT, (LAMBERT,), True, "5 % more light", _of("lambert", 1.05)),
@@ -101,14 +103,21 @@ QUESTIONS = (
 )
 
 
-def answer(question, views, images, depth, place, obstacle=""):
+def answer(
+    question: Question,
+    views: Sequence[View],
+    images: Mapping[str, NDArray[np.float64]],
+    depth: float,
+    place: Mapping[str, Any],
+    obstacle: str = "",
+) -> tuple[Result, str]:
     """The result of a question.
 
     Parameters
     ----------
     question : Question
     views : sequence of View
-        Of the whole kit.
+        All views of the kit.
     images : mapping of str to ndarray
         The usable pictures by name.
     depth : float
@@ -116,34 +125,37 @@ def answer(question, views, images, depth, place, obstacle=""):
     place : mapping
         Host and library of the result.
     obstacle : str
-        Why nothing can be judged, if so.
+        Reason why nothing can be judged; "" if there is none.
 
     Returns
     -------
     Result
     str
-        What the pictures show, in words; "" if that is not asked or not known.
+        The model or fault that the pictures show; "" if the question does not determine one.
     """
-    asked = [view for view in views if question.includes(view)]
+    chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
-    missing = [view.name for view in asked if view.name not in images]
+    missing = [view.name for view in chosen if view.name not in images]
     if obstacle or missing:
         reason = obstacle or f"no usable picture: {', '.join(missing)}"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
-    masks = [judged(view.scene) for view in asked]
+    masks = [judged(view.scene) for view in chosen]
     cases = [
-        Case(view, mask, images[view.name][mask]) for view, mask in zip(asked, masks, strict=True)
+        Case(view, mask, images[view.name][mask]) for view, mask in zip(chosen, masks, strict=True)
     ]
-    models = [expected(reference.model(view.material.model), view, depth) for view in asked]
-    found = _tiles(cases, models)
-    error = _ratio(found)
-    wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in asked]))
-    noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in found])))
+    models = [expected(reference.model(view.material.model), view, depth) for view in chosen]
+    errors = _tiles(cases, models)
+    error = _ratio(errors)
+    wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in chosen]))
+    noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in errors])))
     if max(error, wrong) <= 1.0:
-        reason = f"too noisy to notice if {question.variant}: {noise:.2g} rms a pixel; more samples"
+        reason = (
+            f"too noisy to detect that {question.variant}: {noise:.2g} rms per pixel; "
+            "render with more samples"
+        )
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
     ranking = candidates(cases, depth) if question.key == "model" else []
-    words = named(ranking) if ranking else ""
+    words = sentence(ranking) if ranking else ""
     if question.key == "setup" and error > 1.0:
         words = _fault(cases[0], models[0], images)
     return Result(
@@ -160,18 +172,22 @@ def answer(question, views, images, depth, place, obstacle=""):
     ), words
 
 
-def _fault(case, model, images):
-    """What is wrong with the light, in words."""
+def _fault(case: Case, model: Expected, images: Mapping[str, NDArray[np.float64]]) -> str:
+    """The fault of light, orientation or encoding, in words."""
     words = fault(images[case.view.name], model, case.mask)
     return f"{case.view.name} is {words}" if words else ""
 
 
-def _ratio(found):
-    return ratio(found, share=1.0 / len(QUESTIONS))
+def _ratio(errors: Sequence[Tiles]) -> float:
+    return ratio(errors, share=1.0 / len(QUESTIONS))
 
 
-def _tiles(cases, models, wrong=None):
-    """Tiles of the errors; with what the renderer would give if it had the wrong model."""
+def _tiles(
+    cases: Sequence[Case],
+    models: Sequence[Expected],
+    wrong: Sequence[NDArray[np.float64]] | None = None,
+) -> list[Tiles]:
+    """Tiles of the errors, or of those that a renderer with wrong values would have."""
     wrong = wrong or [model.value for model in models]
     return [
         tiles(case.values + other - 2.0 * model.value, model.slack, case.mask)

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures that a renderer put into the kit, read back, and what makes a file useless."""
+"""Reading of the pictures that a renderer submitted."""
 
 import csv
+from collections.abc import Sequence
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import OpenImageIO as oiio
+from numpy.typing import NDArray
 
 from mxeon.io.files import assert_regular, regular
+from mxeon.kit.views import View
 from mxeon.shaders.scene import sphere
 
 COLUMNS = ["row", "column", "red", "green", "blue"]
@@ -19,20 +24,20 @@ DISTINCT = 4
 
 
 class Missing(ValueError):
-    """A picture that is not there."""
+    """No file holds the picture."""
 
 
 class Unusable(ValueError):
-    """A picture that cannot be judged; names the file, the rule and what was found."""
+    """A file that cannot be judged; names the file, the rule and the violation."""
 
 
-def read_render(folder, view):
-    """The picture of a view.
+def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
+    """The submitted picture of a view.
 
     Parameters
     ----------
     folder : path-like
-        Where the renderer's files lie.
+        Folder of the renderer's files.
     view : mxeon.kit.views.View
 
     Returns
@@ -49,12 +54,12 @@ def read_render(folder, view):
         and blue, eight bits (also in a float file), or a pixel on the sphere that is missing or not
         finite.
     """
-    found = sorted(Path(folder).glob(f"{view.name}.*"))
-    if not found:
+    files = sorted(Path(folder).glob(f"{view.name}.*"))
+    if not files:
         raise Missing(f"{view.name}.exr: must be in {folder}; got no such file")
-    file, size = found[0], view.scene.size
-    if len(found) > 1:
-        raise Unusable(f"{view.name}: must be one file; got {', '.join(f.name for f in found)}")
+    file, size = files[0], view.scene.size
+    if len(files) > 1:
+        raise Unusable(f"{view.name}: must be one file; got {', '.join(f.name for f in files)}")
     image = _read_csv(file, size) if file.suffix.lower() == ".csv" else _read_image(file, size)
     mask = sphere(size).mask
     bad = ~np.isfinite(image).all(axis=-1) & mask
@@ -68,7 +73,7 @@ def read_render(folder, view):
     return np.where(mask[..., None], image, 0.0)
 
 
-def _read_image(file, size):
+def _read_image(file: Path, size: int) -> NDArray[np.float64]:
     try:
         assert_regular(file)
     except OSError as error:
@@ -93,20 +98,20 @@ def _read_image(file, size):
     return pixels[..., channels].astype(np.float64, order="C")
 
 
-def _channels(file, names):
-    """Places of red, green and blue: the plain ones, or those of the only layer that has them."""
-    layers = {}
-    for place, name in enumerate(names):
+def _channels(file: Path, names: Sequence[str]) -> list[int]:
+    """Indices of red, green and blue: the plain ones, or those of the only layer that has them."""
+    layers: dict[str, dict[str, int]] = {}
+    for index, name in enumerate(names):
         layer, _, channel = name.rpartition(".")
-        layers.setdefault(layer, {})[channel.upper()] = place
-    whole = {layer: found for layer, found in layers.items() if found.keys() >= set(CHANNELS)}
+        layers.setdefault(layer, {})[channel.upper()] = index
+    whole = {layer: rgb for layer, rgb in layers.items() if rgb.keys() >= set(CHANNELS)}
     chosen = whole.get("") or (len(whole) == 1 and next(iter(whole.values())))
     if not chosen:
         raise Unusable(f"{file.name}: must hold one R, G and B; got channels {', '.join(names)}")
     return [chosen[channel] for channel in CHANNELS]
 
 
-def _read_csv(file, size):
+def _read_csv(file: Path, size: int) -> NDArray[np.float64]:
     try:
         with open(file, newline="", encoding="utf-8-sig", opener=regular) as stream:
             return _table(file, csv.reader(stream), size)
@@ -115,15 +120,15 @@ def _read_csv(file, size):
         raise Unusable(f"{file.name}: must be CSV in UTF-8; {reason}") from None
 
 
-def _table(file, lines, size):
-    header = next(lines, [])
+def _table(file: Path, lines: Any, size: int) -> NDArray[np.float64]:
+    header: list[str] = next(lines, [])
     if header != COLUMNS:
         raise Unusable(f"{file.name}: must begin with {','.join(COLUMNS)}; got {','.join(header)}")
-    image, given = np.full((size, size, 3), np.nan), np.zeros((size, size), dtype=bool)
+    image, present = np.full((size, size, 3), np.nan), np.zeros((size, size), dtype=bool)
     for line in filter(None, lines):
         try:
             row, column, *values = int(line[0]), int(line[1]), *map(float, line[2:])
-            fits = min(row, column) >= 0 and len(values) == 3 and not given[row, column]
+            fits = min(row, column) >= 0 and len(values) == 3 and not present[row, column]
         except (ValueError, IndexError):
             fits = False
         if not fits:
@@ -132,12 +137,12 @@ def _table(file, lines, size):
                 f"{size} x {size}, that no line before it has, and three numbers; "
                 f"got {','.join(line)}"
             )
-        image[row, column], given[row, column] = values, True
+        image[row, column], present[row, column] = values, True
     return image
 
 
-def _check_depth(file, values):
-    """Refuse eight-bit values: few distinct ones, and all of them multiples of 1 / 255."""
+def _check_depth(file: Path, values: NDArray[np.float64]) -> None:
+    """Refuse eight-bit values: few distinct ones, all of them multiples of 1 / 255."""
     distinct = len(np.unique(values))
     steps = values * LEVELS
     whole = np.abs(steps - np.rint(steps)).max() < 0.02 * (1.0 + np.abs(values).max())

@@ -2,6 +2,10 @@
 """The scenes of the kit in USD's text form, written without USD."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.kit.mesh import Mesh
+from mxeon.kit.views import View
 
 MESH = """#usda 1.0
 (
@@ -103,8 +107,8 @@ DOME = """    def DomeLight "light"
     }}"""
 
 
-def mesh_layer(mesh):
-    """The sphere as a layer of its own, which the scenes refer to."""
+def mesh_layer(mesh: Mesh) -> str:
+    """The sphere as a layer that the scenes refer to."""
     return MESH.format(
         counts=", ".join(["3"] * len(mesh.triangles)),
         indices=", ".join(map(str, mesh.triangles.ravel())),
@@ -112,7 +116,7 @@ def mesh_layer(mesh):
     )
 
 
-def scene_layer(view):
+def scene_layer(view: View) -> str:
     """The scene of one picture."""
     material, scene = view.material, view.scene
     if scene.light is None:
@@ -130,7 +134,7 @@ def scene_layer(view):
     )
 
 
-def _frame(direction):
+def _frame(direction: ArrayLike) -> NDArray[np.float64]:
     """Rows x, y, z of a right-handed frame whose z is `direction`."""
     z = np.array(direction)
     helper = np.eye(3)[np.abs(z).argmin()]

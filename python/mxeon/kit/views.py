@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a renderer is asked for: the materials of the kit, and under which light each is shown."""
+"""The views of the kit: its materials, each under one or more lights."""
 
 from dataclasses import dataclass, replace
 
 from mxeon.errors import InputError
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
-COLOR = (0.2, 0.5, 0.8)  # any power of the color too many or too few shows in each channel
+COLOR = (0.2, 0.5, 0.8)  # a wrong power of the color shows in each channel
 
 # Below, the points that bound a pixel may miss the sphere; above, nothing is gained.
 SMALLEST, LARGEST = 64, 2048
@@ -32,7 +32,7 @@ class Material:
     energy_compensation: bool
 
     @property
-    def model(self):
+    def model(self) -> str:
         """Name of the model that the node stands for with this flag."""
         return "eon" if self.energy_compensation else "qon"
 
@@ -60,12 +60,12 @@ class View:
     scene: Scene
 
     @property
-    def name(self):
-        """As its files are called, without suffix."""
+    def name(self) -> str:
+        """Name of its files, without suffix."""
         return f"{self.material.name}_{self.scene.name}"
 
 
-# Lambert under a distant light: the picture that shows light, place and encoding, not the model.
+# Lambert under a distant light: shows light, orientation and encoding, whatever the model.
 SETUP = View(LAMBERT, SIDE)
 PICTURES = (
     SETUP,
@@ -83,8 +83,8 @@ PICTURES = (
 )
 
 
-def views(size):
-    """The pictures of the kit, `size` pixels wide and high.
+def views(size: int) -> tuple[View, ...]:
+    """The views of the kit, `size` pixels wide and high.
 
     Raises
     ------

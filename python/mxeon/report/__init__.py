@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A run as files: JSON for machines, JUnit for build servers, pictures, and a page for people."""
+"""Report of a run: results.json, junit.xml, pictures, and a page."""
 
 import json
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from mxeon.conformance.records import make_converter
-from mxeon.conformance.results import image_names
+from mxeon.conformance.results import Picture, Run, image_names
 from mxeon.errors import PackageError
 from mxeon.io.files import replacing, write_text
 from mxeon.io.images import difference, write_exr, write_png
@@ -16,11 +19,11 @@ from mxeon.report.junit import to_junit
 JSON_FORMAT = 1
 
 REFERENCE = "reference"
-# What a picture and its reference have in common.
+# Metadata that a picture shares with its reference.
 SHARED_METADATA = ("version", "library", "document", "element", "scene")
 
 
-def to_json(run):
+def to_json(run: Run) -> str:
     """A run as JSON text.
 
     Parameters
@@ -36,8 +39,8 @@ def to_json(run):
         - format: this layout's number, raised when a key changes or goes.
         - verdict: "passed", "failed" or "not run"; counts: the number of checks with each.
         - sentence: the same in words.
-        - missing: texts, the items that an interrupted run has not done.
-        - errors: texts, why documents were refused.
+        - missing: texts, the items that an interrupted run has not finished.
+        - errors: texts, one for each document that was refused.
         - version: of mxeon; software: name to version; documents: paths; notes: texts.
         - hosts: objects of name, version, device.
         - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
@@ -67,9 +70,9 @@ def to_json(run):
     return json.dumps(_plain(data), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
 
 
-def _picture_fields(run):
+def _picture_fields(run: Run) -> list[dict[str, Any]]:
     keys = ("document", "element", "host", "library", "scene")
-    fields = []
+    fields: list[dict[str, Any]] = []
     for picture, stem in zip(run.pictures, run.image_names, strict=True):
         largest = None
         if picture.reference is not None:
@@ -80,7 +83,7 @@ def _picture_fields(run):
     return fields
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """`value` in the types of JSON; arrays become lists, numbers that are not finite strings."""
     if hasattr(value, "tolist"):
         value = value.tolist()
@@ -93,30 +96,30 @@ def _plain(value):
     return value
 
 
-def write(run, folder):
+def write(run: Run, folder: str | PathLike[str]) -> Path:
     """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
     The pictures are those of the run and their references, each as EXR and PNG.
-    Each file appears whole or not at all and replaces one of the same name. The page comes
-    last, so that everything else is there when it cannot be made.
+    Each file is written as a whole or not at all, and replaces one of the same name. The page is
+    written last, so that all other files exist if it cannot be made.
 
     Parameters
     ----------
     run : mxeon.conformance.results.Run
     folder : path-like
-        Made if need be.
+        Created if it does not exist.
 
     Returns
     -------
     Path
-        Of report.html.
+        The page, report.html.
 
     Raises
     ------
     OSError
-        If something cannot be written.
+        If a file cannot be written.
     ImportError
-        If the page's libraries are not installed; says what to install.
+        If jinja2 or matplotlib, the `report` extra, is not installed.
     """
     folder = Path(folder)
     write_text(folder / "results.json", to_json(run))
@@ -132,13 +135,13 @@ def write(run, folder):
     return folder / "report.html"
 
 
-def html(run):
-    """A run as one self-contained HTML page, for a reader.
+def html(run: Run) -> Iterator[str]:
+    """A run as one self-contained HTML page.
 
     Yields
     ------
     str
-        The page's text piece by piece, so that no more than a few pictures are in memory.
+        Pieces of the page's text, so that no more than a few pictures are in memory.
 
     Raises
     ------
@@ -156,8 +159,8 @@ def html(run):
     return render(run, lambda picture: f"pictures/{files[id(picture)]}.png")
 
 
-def _with_references(pictures):
-    """`pictures`, and one of the reference for each that has one, unless it is there already."""
+def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
+    """`pictures`, then the reference of each that has one, once for all hosts."""
     shown = {_subject(picture) for picture in pictures if picture.host == REFERENCE}
     references = []
     for picture in pictures:
@@ -176,5 +179,5 @@ def _with_references(pictures):
     return (*pictures, *references)
 
 
-def _subject(picture):
+def _subject(picture: Picture) -> tuple[str, ...]:
     return picture.document, picture.element, picture.library, picture.scene

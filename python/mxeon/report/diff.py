@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two runs compared: what got worse, what got better, and what else is not the same."""
+"""Comparison of two reports: changes for the worse, for the better, and others."""
 
 import json
 import math
 from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ from mxeon.io.files import regular
 from mxeon.report import JSON_FORMAT
 from mxeon.shaders.hosts.base import Identity
 
-FACTOR = 2.0  # by which a figure has to change to be told
+FACTOR = 2.0  # a figure that changes by less is not reported
 ORDER = (PASSED, NOT_RUN, FAILED)
 WORSE, BETTER, OTHER = "worse", "better", "other"
 PLACE = ("host", "library", "check", "subject")
@@ -24,16 +26,16 @@ SHOWN = ("host", "library", "document", "element", "scene")
 
 @dataclass(frozen=True)
 class Change:
-    """One thing that is not as it was.
+    """One difference between two reports.
 
     Attributes
     ----------
     kind : str
-        WORSE, BETTER or OTHER; a verdict or a check that went is worse, a figure alone is not.
+        WORSE, BETTER or OTHER. A worse verdict or a missing check is WORSE, a figure alone OTHER.
     place : str
-        What changed, and where.
+        Host, library, check and subject, or the name of a version.
     before, after : str
-        "none" where there is none.
+        Values in the two reports; "none" where one has no such entry.
     """
 
     kind: str
@@ -41,13 +43,13 @@ class Change:
     before: str
     after: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.kind}: {self.place}: {self.before} -> {self.after}"
 
 
 @dataclass(frozen=True)
 class ShownPicture:
-    """A picture of a report, by its files; see `mxeon.report.to_json`."""
+    """A picture of a report and its files; see `mxeon.report.to_json`."""
 
     document: str
     element: str
@@ -58,7 +60,7 @@ class ShownPicture:
     png: str
     largest_difference: float | None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if (self.largest_difference or 0.0) < 0.0:
             raise InputError(
                 f"largest_difference must be at least 0; got {self.largest_difference}"
@@ -67,7 +69,7 @@ class ShownPicture:
 
 @dataclass(frozen=True)
 class Report:
-    """What results.json holds; see `mxeon.report.to_json`."""
+    """Content of results.json; see `mxeon.report.to_json`."""
 
     format: int
     verdict: str
@@ -84,7 +86,7 @@ class Report:
     pictures: tuple[ShownPicture, ...]
     curves: Any
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
             raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
         tally = Counter(result.verdict for result in self.results)
@@ -92,13 +94,13 @@ class Report:
             raise InputError(f"counts must be those of the results; got {self.counts}")
 
 
-def read_results(folder):
-    """What `mxeon check --report` wrote as results.json.
+def read_results(folder: str | PathLike[str]) -> Report:
+    """Content of a report's results.json.
 
     Parameters
     ----------
     folder : path-like
-        Of the report, or the file itself.
+        Folder of the report, or the file itself.
 
     Returns
     -------
@@ -107,7 +109,7 @@ def read_results(folder):
     Raises
     ------
     ValueError
-        If there is none, or it is not of this format; names the first value that is wrong.
+        If the file is missing or not of this format; names the first wrong value.
     """
     path = Path(folder) / "results.json" if Path(folder).is_dir() else Path(folder)
     rule = f"{path}: must be the results.json of a report"
@@ -121,11 +123,13 @@ def read_results(folder):
     except ERRORS as error:
         reason = f"lacks {error}" if isinstance(error, KeyError) else error
         raise InputError(f"{rule}; {reason}") from None
-    raise InputError(f"{path}: format must be {JSON_FORMAT}; got {written!r}: make it anew")
+    raise InputError(
+        f"{path}: format must be {JSON_FORMAT}; got {written!r}; write the report again"
+    )
 
 
-def compare(before, after):
-    """Changes from one run to another, the worse ones first.
+def compare(before: Report, after: Report) -> tuple[Change, ...]:
+    """Changes from one report to another, those for the worse first.
 
     Parameters
     ----------
@@ -143,31 +147,36 @@ def compare(before, after):
     return tuple(sorted(changes, key=lambda change: (WORSE, BETTER, OTHER).index(change.kind)))
 
 
-def _by(names, records):
-    """Records by the values of some names; those that share them are numbered."""
-    found, seen = {}, Counter()
+def _by(names: tuple[str, ...], records: Iterable[Any]) -> dict[tuple[str, ...], Any]:
+    """Records by the values of some attributes; records that share them are numbered."""
+    keyed: dict[tuple[str, ...], Any] = {}
+    uses: Counter[tuple[str, ...]] = Counter()
     for record in records:
         key = tuple(getattr(record, name) for name in names)
-        seen[key] += 1
-        found[key if seen[key] == 1 else (*key, f"number {seen[key]}")] = record
-    return found
+        uses[key] += 1
+        keyed[key if uses[key] == 1 else (*key, f"number {uses[key]}")] = record
+    return keyed
 
 
-def _results(before, after):
-    for key in before | after:
+def _results(
+    before: Mapping[tuple[str, ...], Result], after: Mapping[tuple[str, ...], Result]
+) -> Iterator[Change]:
+    for key in dict.fromkeys((*before, *after)):
         place, old, new = ", ".join(key), before.get(key), after.get(key)
-        if old is None:
+        if new is None:
+            yield Change(WORSE, place, before[key].verdict, "none")
+        elif old is None:
             yield Change(OTHER, place, "none", new.verdict)
-        elif new is None:
-            yield Change(WORSE, place, old.verdict, "none")
         elif old.verdict != new.verdict:
             worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
-            yield Change(WORSE if worse else BETTER, place, _told(old), _told(new))
+            yield Change(WORSE if worse else BETTER, place, _with_error(old), _with_error(new))
         elif _apart(old.error, new.error):
-            yield Change(OTHER, place, _told(old), _told(new))
+            yield Change(OTHER, place, _with_error(old), _with_error(new))
 
 
-def _pictures(before, after):
+def _pictures(
+    before: Mapping[tuple[str, ...], ShownPicture], after: Mapping[tuple[str, ...], ShownPicture]
+) -> Iterator[Change]:
     for key in before.keys() & after.keys():
         old, new = (run[key].largest_difference for run in (before, after))
         if _apart(old, new):
@@ -175,31 +184,31 @@ def _pictures(before, after):
             yield Change(OTHER, place, _number(old), _number(new))
 
 
-def _facts(before, after):
-    for name in before | after:
+def _facts(before: Mapping[str, str], after: Mapping[str, str]) -> Iterator[Change]:
+    for name in dict.fromkeys((*before, *after)):
         old, new = before.get(name, "none"), after.get(name, "none")
         if old != new:
             yield Change(OTHER, name, old, new)
 
 
-def _identities(run):
+def _identities(run: Report) -> dict[str, str]:
     hosts = {f"host {each.name}": f"{each.version}, {each.device}" for each in run.hosts}
     return {"mxeon": run.version} | run.software | hosts
 
 
-def _apart(old, new):
-    """Whether two figures differ by more than FACTOR; those that are no finite numbers, at all."""
-    if None in (old, new) or not (math.isfinite(old) and math.isfinite(new)):
+def _apart(old: float | None, new: float | None) -> bool:
+    """Whether two figures differ by more than FACTOR, or at all if one is not finite."""
+    if old is None or new is None or not (math.isfinite(old) and math.isfinite(new)):
         return _number(old) != _number(new)
     small, large = sorted((old, new))
     return large > FACTOR * small
 
 
-def _told(result):
+def _with_error(result: Result) -> str:
     return result.verdict + ("" if result.error is None else f" at {_number(result.error)}")
 
 
-def _number(value):
-    if value is None or not math.isfinite(value):
-        return "none" if value is None else spelled(value)
-    return f"{value:.3g}"
+def _number(value: float | None) -> str:
+    if value is None:
+        return "none"
+    return f"{value:.3g}" if math.isfinite(value) else str(spelled(value))

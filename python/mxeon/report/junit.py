@@ -2,15 +2,16 @@
 """A run as JUnit XML, for build servers."""
 
 import re
+from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from mxeon.conformance.results import FAILED, NOT_RUN, summarize
+from mxeon.conformance.results import FAILED, NOT_RUN, Result, Run, summarize
 
-# What XML 1.0 cannot hold, escaped or not (section 2.2, production Char).
+# Characters that XML 1.0 cannot hold, escaped or not (section 2.2, production Char).
 NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def to_junit(run):
+def to_junit(run: Run) -> str:
     """A run as JUnit XML text: a suite for each host and library, a case for each result.
 
     A failed check is a failure, one that did not run is skipped, a document that was refused is an
@@ -27,7 +28,7 @@ def to_junit(run):
     root = ElementTree.Element("testsuites", name="mxeon")
     for name in dict.fromkeys(result.location for result in run.results):
         results = [result for result in run.results if result.location == name]
-        suite = ElementTree.SubElement(root, "testsuite", name=_xml(name), **_totals(results))
+        suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | _totals(results))
         properties = ElementTree.SubElement(suite, "properties")
         for key, value in _properties(run, results[0].host).items():
             ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
@@ -37,18 +38,18 @@ def to_junit(run):
         _add_errors(root, run.errors)
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
-    # Not by the library, which would name the encoding of the system's locale.
+    # ElementTree would name the encoding of the system's locale.
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
-def _add_errors(root, errors):
+def _add_errors(root: ElementTree.Element, errors: Sequence[str]) -> None:
     totals = {
         "tests": str(len(errors)),
         "failures": "0",
         "errors": str(len(errors)),
         "skipped": "0",
     }
-    suite = ElementTree.SubElement(root, "testsuite", name="documents", **totals)
+    suite = ElementTree.SubElement(root, "testsuite", {"name": "documents"} | totals)
     for error in errors:
         case = ElementTree.SubElement(
             suite, "testcase", classname="mxeon.documents", name="refused"
@@ -56,14 +57,14 @@ def _add_errors(root, errors):
         ElementTree.SubElement(case, "error", message=_xml(error))
 
 
-def _totals(results):
+def _totals(results: Sequence[Result]) -> dict[str, str]:
     counts = summarize(results).counts
     totals = {"tests": len(results), "failures": counts[FAILED], "errors": 0}
     totals["skipped"] = counts[NOT_RUN]
     return {key: str(value) for key, value in totals.items()}
 
 
-def _properties(run, host):
+def _properties(run: Run, host: str) -> dict[str, str]:
     versions = {"mxeon": run.version} | run.software
     for identity in run.hosts:
         if identity.name == host:
@@ -72,7 +73,7 @@ def _properties(run, host):
     return versions
 
 
-def _add_case(suite, result):
+def _add_case(suite: ElementTree.Element, result: Result) -> None:
     name = f"mxeon.{result.host}.{result.library}.{result.check}"
     case = ElementTree.SubElement(
         suite, "testcase", classname=_xml(name), name=_xml(result.subject)
@@ -87,5 +88,5 @@ def _add_case(suite, result):
         failure.text = _xml(f"{result.diagnosis}\nworst point: {result.worst}")
 
 
-def _xml(text):
+def _xml(text: object) -> str:
     return NOT_XML.sub("\N{REPLACEMENT CHARACTER}", str(text))

@@ -1,38 +1,42 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report page: one HTML file with everything inside. Needs the `report` extra."""
+"""The report page, one self-contained HTML file. Needs the `report` extra."""
 
 import math
 import re
 from base64 import b64encode
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
+from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Curve, Picture, Result, Run
 from mxeon.io.images import difference, difference_scale, srgb_encoded
 from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
 
-# Hosts in plots, in order: matplotlib's marker, and the character that looks like it.
+# Markers of hosts in plots, in order: matplotlib's name, and the character that looks like it.
 MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
-# Materials whose pictures are in the page, a megabyte or so each; those of others lie beside it.
+# Materials whose pictures are inside the page, about a megabyte each; others are linked.
 SHOWN_MATERIALS = 60
-# How each verdict looks: its CSS class and its mark, for those who do not see the colour.
+# CSS class of each verdict, and a sign for readers who cannot see the color.
 LOOKS = {PASSED: ("passed", "✓"), FAILED: ("failed", "✗"), NOT_RUN: ("not-run", "–")}
 
 
 @dataclass(frozen=True)
 class Check:
-    """One row of the table of checks on one host with one library.
+    """Results of one check on one host with one library.
 
     Attributes
     ----------
     key : str
+        Name of the check.
     anchor : str
-        Its identifier in the page.
+        Identifier in the page.
     results : tuple of Result
         At least one, of different subjects.
     """
@@ -42,48 +46,49 @@ class Check:
     results: tuple[Result, ...]
 
     @property
-    def claim(self):
-        """What it tests, the same in all its results."""
+    def claim(self) -> str:
+        """The sentence that the check tests."""
         return self.results[0].claim
 
     @property
-    def verdict(self):
-        """The worst of its results."""
-        found = {result.verdict for result in self.results}
-        return next(verdict for verdict in (FAILED, NOT_RUN, PASSED) if verdict in found)
+    def verdict(self) -> str:
+        """The worst verdict of the results."""
+        verdicts = {result.verdict for result in self.results}
+        return next(verdict for verdict in (FAILED, NOT_RUN, PASSED) if verdict in verdicts)
 
     @property
-    def tightest(self):
-        """The result closest to its tolerance or furthest beyond, None if none ran."""
+    def tightest(self) -> Result | None:
+        """The result with the largest share of its tolerance; None if none ran."""
         ran = [result for result in self.results if result.error is not None]
         return max(ran, key=share, default=None)
 
     @property
-    def diagnoses(self):
-        """The subjects that failed, by their diagnosis."""
-        found = {}
+    def diagnoses(self) -> dict[str, list[str]]:
+        """Subjects that failed, by diagnosis."""
+        subjects: dict[str, list[str]] = {}
         for one in self.results:
             if one.verdict == FAILED:
                 words = one.diagnosis if one.error is None or share(one) > 1.0 else one.explanation
-                found.setdefault(words, []).append(one.subject)
-        return found
+                subjects.setdefault(words, []).append(one.subject)
+        return subjects
 
-    def distinct(self, attribute, verdict=None):
-        """The different non-empty values of `attribute`, of results with `verdict` or of all."""
-        found = [one for one in self.results if verdict in (None, one.verdict)]
-        return [value for value in dict.fromkeys(getattr(one, attribute) for one in found) if value]
+    def distinct(self, attribute: str) -> list[str]:
+        """Different non-empty values of an attribute of the results."""
+        values = dict.fromkeys(getattr(one, attribute) for one in self.results)
+        return [value for value in values if value]
 
 
-def share(result):
-    """Figure over tolerance; infinite where the figure is no finite number."""
-    if not math.isfinite(result.error):
+def share(result: Result) -> float:
+    """Error over tolerance; infinite if the error is missing or not finite."""
+    error, tolerance = result.error, result.tolerance
+    if error is None or not math.isfinite(error):
         return math.inf
-    if not result.tolerance:
-        return math.inf if result.error > 0.0 else 0.0
-    return result.error / result.tolerance
+    if not tolerance:
+        return math.inf if error > 0.0 else 0.0
+    return error / tolerance
 
 
-def number(value, digits=3):
+def number(value: float | None, digits: int = 3) -> str:
     """A number as text, or a dash for None.
 
     Examples
@@ -94,14 +99,14 @@ def number(value, digits=3):
     return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
 
 
-def nearest(distances, count=5):
-    """The nearest models of a classification: title, distance, and its share of the largest shown."""
-    found = sorted(distances.items(), key=lambda pair: pair[1])[:count]
-    largest = max((distance for _, distance in found), default=0.0) or 1.0
-    return [(title, distance, distance / largest) for title, distance in found]
+def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
+    """Title and distance of the nearest models, and the share of the largest distance shown."""
+    rows = sorted(distances.items(), key=lambda pair: pair[1])[:count]
+    largest = max((distance for _, distance in rows), default=0.0) or 1.0
+    return [(title, distance, distance / largest) for title, distance in rows]
 
 
-def vector(values):
+def vector(values: ArrayLike) -> str:
     """One or more numbers as text.
 
     Examples
@@ -113,81 +118,90 @@ def vector(values):
     return words[0] if len(words) == 1 else f"({', '.join(words)})"
 
 
-def checks_by_place(results):
-    """Mapping of (host, library) to the Checks made there, in order of appearance."""
-    found = {}
+def checks_by_place(results: Iterable[Result]) -> dict[tuple[str, str], list[Check]]:
+    """Checks by host and library, in order of appearance."""
+    places: dict[tuple[str, str], dict[str, list[Result]]] = {}
     for result in results:
-        place = found.setdefault((result.host, result.library), {})
+        place = places.setdefault((result.host, result.library), {})
         place.setdefault(result.check, []).append(result)
     return {
-        place: [
+        location: [
             Check(key, f"check-{column}-{row}", tuple(members))
             for row, (key, members) in enumerate(rows.items())
         ]
-        for column, (place, rows) in enumerate(found.items())
+        for column, (location, rows) in enumerate(places.items())
     }
 
 
-def matrix(places):
-    """Rows of (key, Check or None in each place), one for each check made anywhere."""
+def matrix(
+    places: Mapping[tuple[str, str], Sequence[Check]],
+) -> list[tuple[str, list[Check | None]]]:
+    """Rows of the table of checks: the name, and the Check of each host and library, or None."""
     columns = [{check.key: check for check in checks} for checks in places.values()]
     keys = dict.fromkeys(key for column in columns for key in column)
     return [(key, [column.get(key) for column in columns]) for key in keys]
 
 
-def reasons(results):
-    """Mapping of each reason for not running to the Results that it stopped."""
-    found = {}
+def reasons(results: Iterable[Result]) -> dict[str, list[Result]]:
+    """Results that did not run, by reason."""
+    stopped: dict[str, list[Result]] = {}
     for result in results:
         if result.verdict == NOT_RUN:
-            found.setdefault(result.reason, []).append(result)
-    return found
+            stopped.setdefault(result.reason, []).append(result)
+    return stopped
 
 
-def materials(pictures):
-    """Mapping of (document, element) to mappings of scene to its Pictures."""
-    found = {}
+def materials(
+    pictures: Iterable[Picture],
+) -> dict[tuple[str, str], dict[str, list[Picture]]]:
+    """Pictures by document and element, then by scene."""
+    groups: dict[tuple[str, str], dict[str, list[Picture]]] = {}
     for picture in pictures:
-        scenes = found.setdefault((picture.document, picture.element), {})
+        scenes = groups.setdefault((picture.document, picture.element), {})
         scenes.setdefault(picture.scene, []).append(picture)
-    return found
+    return groups
 
 
-def panels(pictures):
+def panels(pictures: Iterable[Picture]) -> list[dict[str, Any]]:
     """Panels of one scene: the reference if there is one, then pictures and differences."""
+    pictures = tuple(pictures)
     references = [one.reference for one in pictures if one.reference is not None]
-    found = []
+    row = []
     if references:
-        found.append(_panel("reference", "reference", "float64", srgb_encoded(references[0])))
+        row.append(_panel("reference", "reference", "NumPy, float64", srgb_encoded(references[0])))
     for one in pictures:
         place = {"host": one.host, "library": one.library}
-        found.append(_panel("image", one.host, one.library, srgb_encoded(one.image), **place))
+        row.append(_panel("image", one.host, one.library, srgb_encoded(one.image), **place))
         if one.reference is not None:
             apart = difference(one.image, one.reference)
             scale = difference_scale(apart)
             note = f"{one.host}, max {number(apart.max(), 2)}"
             pixels = difference_pixels(apart, scale)
-            found.append(_panel("difference", "difference", note, pixels, scale=scale, **place))
-    return found
+            row.append(_panel("difference", "difference", note, pixels, scale=scale, **place))
+    return row
 
 
-def _panel(kind, title, note, pixels, **more):
+def _panel(
+    kind: str, title: str, note: str, pixels: NDArray[np.uint8], **more: Any
+) -> dict[str, Any]:
     common = {"kind": kind, "title": title, "note": note, "image": picture_uri(pixels)}
     return {"host": "", "library": ""} | common | more
 
 
-def plots(curves):
-    """A plot for each subject, library, rho and roughness, with all its hosts."""
+def plots(curves: Sequence[Curve]) -> list[dict[str, Any]]:
+    """One plot with all hosts for each subject, library, rho and roughness."""
     hosts = list(dict.fromkeys(curve.host for curve in curves))
     marks = {host: MARKERS[row % len(MARKERS)] for row, host in enumerate(hosts)}
-    found = {}
+    groups: dict[tuple[Any, ...], list[Curve]] = {}
     for curve in curves:
         key = (curve.subject, curve.library, tuple(curve.rho), curve.roughness)
-        found.setdefault(key, []).append(curve)
-    return [_plot(members, marks, f"plot-{row}-") for row, members in enumerate(found.values())]
+        groups.setdefault(key, []).append(curve)
+    return [_plot(members, marks, f"plot-{row}-") for row, members in enumerate(groups.values())]
 
 
-def _plot(curves, marks, prefix):
+def _plot(
+    curves: Sequence[Curve], marks: Mapping[str, tuple[str, str]], prefix: str
+) -> dict[str, Any]:
     svg = albedo_plot(curves, [marks[curve.host][0] for curve in curves], prefix)
     legend = [
         (marks[curve.host][1], curve.host, np.abs(curve.measured - curve.expected).max())
@@ -196,24 +210,23 @@ def _plot(curves, marks, prefix):
     return {"curve": curves[0], "svg": Markup(svg), "legend": legend}
 
 
-def render(run, file_of):
-    """The page for `run`, an `mxeon.conformance.results.Run`.
+def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
+    """The page of a run.
 
     Parameters
     ----------
     run : mxeon.conformance.results.Run
     file_of : callable (Picture) -> str
-        The file beside the page that holds a picture, for those that the page does not show.
+        Path of the file of a picture, for pictures that the page links to.
 
     Yields
     ------
     str
-        HTML that loads nothing and runs nothing but its own script, without which it shows all.
-        All that comes from documents, shaders and hosts is escaped. Pieces of the text: a picture
-        is read when its turn has come.
+        Pieces of HTML; a picture is read when its piece is due. The page loads nothing, runs only its
+        own script, and is complete without it. Text from documents, shaders and hosts is escaped.
     """
     places = checks_by_place(run.results)
-    found = list(materials(run.pictures).items())
+    rows = list(materials(run.pictures).items())
     script = files("mxeon.report").joinpath("templates/report.js").read_text(encoding="utf-8")
     environment = Environment(
         loader=PackageLoader("mxeon.report"),
@@ -233,8 +246,8 @@ def render(run, file_of):
         matrix=matrix(places),
         identities={identity.name: identity for identity in run.hosts},
         reasons=reasons(run.results),
-        shown=found[:SHOWN_MATERIALS],
-        listed=found[SHOWN_MATERIALS:],
+        shown=rows[:SHOWN_MATERIALS],
+        listed=rows[SHOWN_MATERIALS:],
         panels=panels,
         file_of=file_of,
         gradient=Markup(difference_gradient()),

@@ -1,27 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images and plots that travel inside a page. Needs matplotlib, of the `report` extra."""
+"""Images and plots inside a page. Needs matplotlib, of the `report` extra."""
 
 import base64
 import io
 import re
-from functools import cache
+from collections.abc import Sequence
 
 import matplotlib
 import numpy as np
 from matplotlib import style
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
+from numpy.typing import NDArray
 
+from mxeon.conformance.results import Curve
 from mxeon.io.images import NOT_FINITE
-from mxeon.shaders.scene import sphere
 
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
 SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
-# Stands for the page's text colour until the plot is part of the page.
+# Stands for the page's text color until the plot is part of the page.
 TEXT_COLOR = "#010203"
-# Else matplotlib adds a description of itself, with addresses, to each plot.
+# Without these, matplotlib adds a description of itself, with addresses, to each plot.
 NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 STYLE = {
     "svg.fonttype": "none",
@@ -41,8 +43,8 @@ STYLE = {
 }
 
 
-def picture_uri(pixels):
-    """Address of a square picture of the sphere inside the page, transparent around it.
+def picture_uri(pixels: NDArray[np.uint8]) -> str:
+    """A picture as a data URI.
 
     Parameters
     ----------
@@ -51,21 +53,15 @@ def picture_uri(pixels):
     Returns
     -------
     str
-        A data URI holding a PNG of at most SHOWN_SIZE pixels on a side.
+        Holds a PNG of at most SHOWN_SIZE pixels on a side.
     """
     step = -(-len(pixels) // SHOWN_SIZE)
-    shown = np.dstack([pixels, _opacity(len(pixels))])[::step, ::step]
     buffer = io.BytesIO()
-    imsave(buffer, shown, format="png", metadata={"Software": None})
+    imsave(buffer, pixels[::step, ::step], format="png", metadata={"Software": None})
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
-@cache
-def _opacity(size):
-    return np.where(sphere(size).mask, 255, 0).astype(np.uint8)
-
-
-def difference_pixels(difference_map, scale):
+def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDArray[np.uint8]:
     """A difference in DIFFERENCE_COLORS, which span 0 to `scale`; magenta if not finite.
 
     Parameters
@@ -84,13 +80,13 @@ def difference_pixels(difference_map, scale):
     return np.where(finite[..., None], colors, np.array(NOT_FINITE, dtype=np.uint8))
 
 
-def difference_gradient(stops=9):
+def difference_gradient(stops: int = 9) -> str:
     """DIFFERENCE_COLORS from left to right, as a CSS gradient."""
     colors = (matplotlib.colors.to_hex(DIFFERENCE_COLORS(at)) for at in np.linspace(0, 1, stops))
     return f"linear-gradient(to right, {', '.join(colors)})"
 
 
-def albedo_plot(curves, markers, prefix):
+def albedo_plot(curves: Sequence[Curve], markers: Sequence[str], prefix: str) -> str:
     """Directional albedo over the cosine, as SVG text: lines expected, markers measured.
 
     Parameters
@@ -105,15 +101,15 @@ def albedo_plot(curves, markers, prefix):
     Returns
     -------
     str
-        An <svg> element that takes over the text colour around it and holds numbers only.
+        An <svg> element in the text color of the page; its text is numbers and axis labels only.
     """
-    grey = len(set(curves[0].rho)) == 1
+    gray = len(set(curves[0].rho)) == 1
     buffer = io.StringIO()
-    # Not what a file matplotlibrc in the working folder says: it could start LaTeX.
+    # The defaults, not a matplotlibrc of the working folder, which could start LaTeX.
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(3.6, 2.4), layout="constrained")
         axes = figure.subplots()
-        for channel, color in enumerate((TEXT_COLOR,) if grey else CHANNEL_COLORS):
+        for channel, color in enumerate((TEXT_COLOR,) if gray else CHANNEL_COLORS):
             _draw_channel(axes, curves, markers, channel, color)
         axes.set(xlim=(-0.03, 1.03), xlabel="cosine of the polar angle", ylabel="albedo")
         axes.margins(y=0.15)
@@ -123,7 +119,9 @@ def albedo_plot(curves, markers, prefix):
     return re.sub(r'((?:\bid="|href="#|url\(#))', rf"\g<1>{prefix}", svg)
 
 
-def _draw_channel(axes, curves, markers, channel, color):
+def _draw_channel(
+    axes: Axes, curves: Sequence[Curve], markers: Sequence[str], channel: int, color: str
+) -> None:
     axes.plot(curves[0].mu, curves[0].expected[:, channel], color=color, linewidth=1.2)
     for curve, marker in zip(curves, markers, strict=True):
         axes.plot(

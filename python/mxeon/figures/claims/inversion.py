@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Appendix A of [Portsmouth2025]: the rho that gives a wanted albedo."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -17,7 +19,7 @@ STATED = 3e-3
 FLOAT32 = 2.0**-24
 
 
-def rho(name: str) -> np.ndarray:
+def rho(name: str) -> Any:
     """An inversion on the grid of roughness times color."""
     return getattr(inversion, f"eon_rho_from_albedo_{name}")(COLORS, ROUGHNESS)
 
@@ -87,8 +89,8 @@ def _polynomial(constraint: str) -> tuple[str, ArrayLike]:
     return f"{sentence}; our fit of the same form {100 * ours:.3f} %", error.max()
 
 
-_EXACT = {"required": "error", "most": ROUNDING}
-_WITHIN = {"required": "error", "most": STATED}
+_EXACT: dict[str, Any] = {"required": "error", "most": ROUNDING}
+_WITHIN: dict[str, Any] = {"required": "error", "most": STATED}
 SECTION = Section(
     "Appendix A: inversion of the albedo",
     (

@@ -2,6 +2,7 @@
 """Sections 2 and 3 of [Portsmouth2025]: values and albedos of QON, FON and EON."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,11 +45,11 @@ def agreement(*errors: ArrayLike) -> tuple[str, ArrayLike]:
     return f"largest difference {largest:.1e}", largest
 
 
-def average(albedo: Callable, *parameter: float) -> float:
+def average(albedo: Callable[..., Any], *parameter: float) -> float:
     """Integral of 2 mu E(mu) over [0, 1]; theta as variable, in which albedos are smooth."""
     x, weight = np.polynomial.legendre.leggauss(64)
     theta, weight = 0.25 * np.pi * (1.0 + x), 0.25 * np.pi * weight
-    return np.sum(weight * np.sin(2.0 * theta) * albedo(np.cos(theta), *parameter))
+    return float(np.sum(weight * np.sin(2.0 * theta) * albedo(np.cos(theta), *parameter)))
 
 
 def vector_form() -> tuple[str, ArrayLike]:
@@ -180,7 +181,7 @@ def series() -> tuple[str, ArrayLike]:
 
 
 def multiple_albedo() -> tuple[str, ArrayLike]:
-    def multiple_brdf(wo, wi, rho, r):
+    def multiple_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, r: float) -> Any:
         return eon_brdf(wo, wi, rho, r) - fon_brdf(wo, wi, rho, r)
 
     E = fon_albedo_avg(1.0)
@@ -223,8 +224,8 @@ def listing_1() -> tuple[str, ArrayLike]:
     return sentence, [error[0], np.nanmax(error)]
 
 
-_AGREES = {"required": "difference", "most": ROUNDING}
-_EXCEEDS = {"required": "excess over 1", "most": ROUNDING}
+_AGREES: dict[str, Any] = {"required": "difference", "most": ROUNDING}
+_EXCEEDS: dict[str, Any] = {"required": "excess over 1", "most": ROUNDING}
 SECTION = Section(
     "Sections 2 and 3: the models",
     (

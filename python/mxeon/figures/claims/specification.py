@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pbrlib specification of MaterialX: its printed formulas, evaluated as they stand."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -87,7 +89,7 @@ def sheen_value() -> tuple[str, ArrayLike]:
 
 
 _OREN_NAYAR = "oren_nayar_diffuse_bsdf"
-_ERROR = {"required": "error", "most": ROUNDING}
+_ERROR: dict[str, Any] = {"required": "error", "most": ROUNDING}
 SECTION = Section(
     "The specification of MaterialX's pbrlib",
     (

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page gains with a script: filters, and the reference drawn over a picture by a slider.
+// Filters, and sliders that lay the reference over a picture. The page is complete without them.
 "use strict";
 
 document.documentElement.classList.add("scripted");
@@ -7,7 +7,7 @@ document.documentElement.classList.add("scripted");
 const filters = [...document.querySelectorAll(".filters select")];
 
 function filter() {
-  const chosen = filters.filter((each) => each.value).map((each) => [each.name, each.value]);
+  const chosen = filters.filter((select) => select.value).map((select) => [select.name, select.value]);
   for (const row of document.querySelectorAll("[data-host]")) {
     row.hidden = chosen.some(([name, value]) => name in row.dataset && row.dataset[name] !== value);
   }
@@ -16,7 +16,7 @@ function filter() {
   }
 }
 
-for (const each of filters) each.addEventListener("change", filter);
+for (const select of filters) select.addEventListener("change", filter);
 
 for (const panels of document.querySelectorAll(".panels.referenced")) {
   const reference = panels.querySelector(".reference img");
@@ -25,13 +25,13 @@ for (const panels of document.querySelectorAll(".panels.referenced")) {
     const slider = document.createElement("input");
     over.className = "over";
     Object.assign(slider, { type: "range", min: 0, max: 100, value: 0 });
-    slider.setAttribute("aria-label", "how much of the reference lies over the picture");
+    slider.setAttribute("aria-label", "share of the picture that the reference covers");
     slider.addEventListener("input", () => {
       over.style.clipPath = `inset(0 ${100 - slider.value}% 0 0)`;
     });
     over.style.clipPath = "inset(0 100% 0 0)";
     figure.querySelector(".frame").append(over);
-    figure.querySelector(".frame").after(slider);
+    figure.append(slider);
   }
 }
 
