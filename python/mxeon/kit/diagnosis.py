@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mxeon.conformance.diagnosis import sentence
 from mxeon.kit.expected import expected
 from mxeon.kit.noise import ratio, tiles
 from mxeon.models import table as reference
@@ -65,12 +66,8 @@ def named(ranking):
     What the pictures cannot tell from the nearest one, at the confidence of `mxeon.kit.noise`, is
     said to fit as well.
     """
-    first, second = ranking[:2]
-    text = (
-        f"nearest known model: {first.title} (rms {first.distance:.2g}), "
-        f"then {second.title} ({second.distance:.2g})"
-    )
-    if first.ratio > 1.0:
+    text = sentence([(one.title, one.distance) for one in ranking])
+    if ranking[0].ratio > 1.0:
         return f"{text}; neither is it"
     also = [each.title for each in ranking[1:] if each.ratio <= 1.0]
     return f"{text}; cannot be told from {' and '.join(also)}" if also else text

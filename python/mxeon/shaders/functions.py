@@ -32,6 +32,16 @@ def source(language, stem=ALL):
     return INCLUDE.sub(lambda found: source(language, found[1].split(".")[0]), text)
 
 
+def names(language):
+    """Names of all functions.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(_parameters(language))
+
+
 def signature(language, function):
     """Parameter types and names of a twin's function, in order.
 
@@ -45,7 +55,12 @@ def signature(language, function):
     ValueError
         If there is no such function; lists the known ones.
     """
-    found = dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))
-    if function not in found:
-        raise InputError(f"function must be one of {', '.join(found)}; got {function!r}")
-    return tuple(tuple(each.split()) for each in found[function].split(", "))
+    parameters = _parameters(language)
+    if function not in parameters:
+        raise InputError(f"function must be one of {', '.join(parameters)}; got {function!r}")
+    return tuple(tuple(each.split()) for each in parameters[function].split(", "))
+
+
+def _parameters(language):
+    """Text of the parameters of each function, by its name."""
+    return dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.shaders.library import LIBRARIES
-
 NODE_DOCUMENT = """<?xml version="1.0"?>
 <materialx version="1.39">
   <constant name="shading_normal" type="vector3">
@@ -118,7 +116,7 @@ class Surface:
     fixed : tuple of (str, str, str)
         Name, type and value of further inputs.
     libraries : tuple of str
-        In which it is judged.
+        The libraries with which it is judged; () for all.
     """
 
     title: str
@@ -127,7 +125,7 @@ class Surface:
     color: str
     roughness: str
     fixed: tuple[tuple[str, str, str], ...] = ()
-    libraries: tuple[str, ...] = LIBRARIES
+    libraries: tuple[str, ...] = ()
 
     inputs = ()
 
