@@ -181,8 +181,8 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
 
 
 def _probe(brdf: Brdf, model: str, name: str | None) -> CallableProbe:
-    name = name or getattr(brdf, "__name__", type(brdf).__name__)
-    return CallableProbe(Function(name, brdf), Claim(reference.model(model).title, model))
+    title = name or str(getattr(brdf, "__name__", type(brdf).__name__))
+    return CallableProbe(Function(title, brdf), Claim(reference.model(model).title, model))
 
 
 def _checks(model: str) -> tuple[Check, ...]:

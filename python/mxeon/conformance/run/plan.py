@@ -97,7 +97,7 @@ class Findings:
 
     def answer(self, task: Task) -> bool:
         """Whether these are findings of a task: there are some, and all are of its host."""
-        records = (*self.results, *self.pictures, *self.curves)
+        records: list[Result | Picture | Curve] = [*self.results, *self.pictures, *self.curves]
         location = (task.host, task.library)
         return bool(records or self.errors) and all(
             (record.host, record.library) == location for record in records
