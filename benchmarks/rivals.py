@@ -9,11 +9,12 @@ from functools import partial
 
 import numpy as np
 
+from mxeon.conformance.checks import tolerances
 from mxeon.models import albedo, sampling
 from mxeon.models import brdf as models
 
-# What drivers' float32 leaves of pi f cos <= 2: 14 roundings and two fits; as the shader twins'.
-VALUE = 2e-6
+# pi f cos in float32: as the conformance checks.
+VALUE = tolerances.VALUE.value
 # Listing 1 in float32: 1 - E loses digits, 1.3e-4 in E, and 3.61 x 0.29 x 1.3e-4 x 2 in the value.
 EXACT = 3e-4
 # [Portsmouth2025], Eq. (14): 6.0e-4 in E, twice 3.61 x 0.288 x 6.0e-4 in the value.

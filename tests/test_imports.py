@@ -82,6 +82,11 @@ def test_importing_the_table_of_hosts_or_results_loads_numpy_alone(module):
     assert loaded(f"mxeon.{module}") == ["mxeon", "numpy"]
 
 
+def test_checking_a_function_loads_no_engine():
+    call = "mxeon.models.brdf, mxeon; mxeon.check_brdf(mxeon.models.brdf.eon_brdf)"
+    assert {"MaterialX", "moderngl", "pebble", "cattrs", "filelock"}.isdisjoint(loaded(call))
+
+
 def test_asking_for_help_loads_no_engine():
     assert set(loaded("mxeon.cli")) <= {"mxeon", "numpy"}
 

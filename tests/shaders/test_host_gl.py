@@ -9,7 +9,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.checks.probes import directions, picture_pairs
+from mxeon.conformance.checks.batch import directions
+from mxeon.conformance.checks.probes import picture_pairs
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader, generate

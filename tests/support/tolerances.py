@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every tolerance of the tests, with its derivation and its scale."""
+"""Every tolerance of the tests, with its derivation and its scale.
+
+Those of quantities that the conformance checks judge too are theirs.
+"""
+
+from mxeon.conformance.checks import tolerances as checks
+from mxeon.conformance.checks.image import PLAIN
 
 # Unit roundoff of float64.
 ROUNDING = 2.0**-53
@@ -21,8 +27,9 @@ LOSS = (7 + FUNCTION) * ROUNDING
 # Closed-form albedo against quadrature, absolute, albedos <= 1.05. The integrand is analytic
 # between the kinks, so that 64 nodes leave rounding alone: 128 x 128 terms whose weights add up to
 # 1 and carry 20 roundings each, and whose sum adds one for each of at most 128 partial sums:
-# 150 roundings, 1.7e-14. Nodes and weights of NumPy's rule are good to 1e-14. Sixty times the sum.
-QUADRATURE = 1e-12
+# 150 roundings, 1.7e-14. The 64 nodes and weights of NumPy's rule are good to 1e-14 each:
+# at most 64 times that, should they all err to one side.
+QUADRATURE = 150 * ROUNDING * 1.05 + 64 * 1e-14
 
 # One rounding of a number in [1/2, 1].
 ONE_ROUNDING = 2.0 * ROUNDING
@@ -74,16 +81,10 @@ FIT_ANGLE = 2.5e-8
 
 # --- shader twins, float32 against float64 ---------------------------------------------------
 
-# Relative error of H: the fit's 2.7e-7, and at most 12 roundings on the way, 7.2e-7.
-TWIN_LOSS = 1e-6
-
-# An albedo is at most 1.02. Its longest chain has 12 roundings, 7.3e-7; the fit's error enters
-# times H <= 0.29, with 0.8e-7.
-TWIN_ALBEDO = 1e-6
-
-# pi f cos is at most 2, in units of which its longest chain of 14 roundings is 8.4e-7: 1.7e-6. Two
-# fits enter times the multiple-scattering part, at most 0.5: 2.7e-7.
-TWIN_VALUE = 2e-6
+# Relative error of H, albedos, and pi f cos: as the checks of the shader functions.
+TWIN_LOSS = checks.LOSS.value
+TWIN_ALBEDO = checks.ENVIRONMENT.value
+TWIN_VALUE = checks.VALUE.value
 
 # Cycles, float32. A point of the sphere is a ray's origin plus its length, both at most 2: three
 # roundings of 2^-23 together, and of a ray that grazes, with error e / mu, the test takes e.
@@ -92,15 +93,12 @@ CYCLES_NORMAL = 3 * 2.0**-23
 # OSL's atan2 is a polynomial: 1.2e-5 rad off (measured), 4e-6 after division by pi.
 CYCLES_TEXCOORD = 5e-6
 
-# A normal, and with it cos(theta_i), is off by CYCLES_NORMAL / cos(theta_o), and in relation to
-# itself by 3.6e-7 / 0.1^2 where both cosines exceed 0.1. The profile takes a roughness below 1e-5
-# for 0: another 1e-5.
+# A picture of EON, relative, where both cosines exceed CYCLES_RIM.
 CYCLES_RIM = 0.1
-CYCLES_EON_RELATIVE = 5e-5
+CYCLES_EON_RELATIVE = checks.ray_error(CYCLES_RIM)
 
-# At roughness 1 a pixel of 256 samples is off by 2e-3 rms, so 3e-5 in the mean of the 3200 pixels
-# of a sphere were they independent; their samples are not, hence the factor of 10.
-CYCLES_FURNACE_MEAN = 3e-4
+# Mean of the 3212 pixels of a picture in an environment.
+CYCLES_FURNACE_MEAN = checks.mean_noise(3212)
 
 # --- sampling twins, float32 against float64 ---------------------------------------------------
 
@@ -179,8 +177,9 @@ MDL_TINT = 32.0 * ROUNDING
 # Mean of a picture of the unit sphere: 64 x 64 pixels with 64 random points each, against a grid of
 # 512 x 512. The disk's rim is off by at most its 3200 cells, half of them on average and with both
 # signs, times a value of 1: 56 cells in 2^18, 2.2e-4. The random points, stratified in pixels, leave
-# the noise of the 200 pixels on the rim, 0.3 / 8 x sqrt(200) / 4096 = 1.3e-4. Four times both.
-TRACER_GRID = 1e-3
+# the noise of the 200 pixels on the rim, 0.3 / 8 x sqrt(200) / 4096 = 1.3e-4. Four standard errors
+# of both: four times the root of the sum of their squares.
+TRACER_GRID = 4.0 * (2.2e-4**2 + 1.3e-4**2) ** 0.5
 
 # A pixel of the opened ball in a white furnace: the product of the weights of a path, which has 20
 # reflections on average in the hollow (measured), each within TWIN_WEIGHT of 1.
@@ -188,9 +187,8 @@ FURNACE_OPENED = 20 * TWIN_WEIGHT
 
 # --- Pictures on OpenGL ----------------------------------------------------------------------
 
-# Error times cos(theta_o): 16 roundings of float32 in the place of a pixel's point, whose normal
-# changes by the inverse of that cosine from pixel to pixel, and 32 in the value.
-PICTURE = 48 * 2.0**-24
+# Error times cos(theta_o), as that of the pictures of a run.
+PICTURE = PLAIN.value
 
 # --- Albedo inversion as nodes -----------------------------------------------------------------
 

@@ -1,31 +1,41 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Python function judged like a host: for anyone whose renderer or library has bindings."""
+"""Checks of a Python function, for renderers and libraries with bindings."""
 
 import platform
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import mxeon
-from mxeon.conformance.checks.evaluate import judge_subject
-from mxeon.conformance.checks.probes import FEW, SEED, Batch, PairProbe, directions, random_inputs
-from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.checks.batch import (
+    FEW,
+    SEED,
+    Array,
+    Batch,
+    directions,
+    random_inputs,
+)
+from mxeon.conformance.checks.evaluate import judge_check
+from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.results import PASSED, Run
 from mxeon.errors import InputError
 from mxeon.models import table as reference
 from mxeon.shaders.hosts.base import Identity
 
-# What can be asked of values alone: there is no environment branch and no flag.
+# Checks of values alone: a function has no environment branch and no flag.
 KEYS = ("value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite")
 LIBRARY = "callable"
+
+Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # of wo, wi, rho, roughness
 
 
 @dataclass(frozen=True)
 class Function:
-    """What is judged, in place of a host.
+    """The function to judge, in place of a host.
 
     Attributes
     ----------
@@ -34,12 +44,12 @@ class Function:
     """
 
     name: str
-    brdf: Callable
+    brdf: Brdf
 
 
 @dataclass(frozen=True)
 class Claim:
-    """What a function has to be, in place of a node.
+    """The model that a function has to be, in place of a node.
 
     Attributes
     ----------
@@ -53,21 +63,30 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class CallableProbe(PairProbe):
-    """A function asked for pairs."""
+class CallableProbe:
+    """A function evaluated for pairs."""
+
+    kind = "pairs"
+    library = LIBRARY
+
+    host: Function
+    subject: Claim
 
     @cached_property
-    def batches(self):
+    def batches(self) -> tuple[Batch, ...]:
         """One batch of FEW random pairs."""
         rng = np.random.default_rng(SEED)
         wo, wi = directions(rng, FEW), directions(rng, FEW)
         return (Batch(wo, wi, random_inputs(rng, FEW, reference.model(self.subject.model))),)
 
-    def _evaluate(self, batch, branch):
-        """f cos(theta_i), (N, 3); for an environment nothing, (N, 0)."""
+    @property
+    def few(self) -> tuple[Batch, ...]:
+        """The same: they are few."""
+        return self.batches
+
+    def direct(self, batch: Batch) -> Array:
+        """pi f cos(theta_i), (N, 3)."""
         count = len(batch.wi)
-        if branch == "environment":
-            return np.empty((count, 0))
         rho = np.broadcast_to(np.asarray(batch.inputs["color"], float), (count, 3))
         roughness = np.broadcast_to(np.asarray(batch.inputs["roughness"], float), count)
         values = np.asarray(self.host.brdf(batch.wo, batch.wi, rho, roughness), np.float64)
@@ -75,11 +94,15 @@ class CallableProbe(PairProbe):
             raise InputError(
                 f"values of {self.host.name} must have shape {(count, 3)}; got {values.shape}"
             )
-        with np.errstate(invalid="ignore"):  # inf x 0 is for the checks to find
-            return values * batch.wi[:, 2:]
+        with np.errstate(invalid="ignore"):  # inf x 0 is for the checks to notice
+            return np.pi * (values * batch.wi[:, 2:])
+
+    def albedo(self, batch: Batch) -> Array:
+        """Nothing, (N, 0): a function has no environment branch."""
+        return np.empty((len(batch.wi), 0))
 
 
-def check_brdf(brdf, model="eon", name=None):
+def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     """Run every check that applies to a function of directions and inputs.
 
     Parameters
@@ -89,9 +112,9 @@ def check_brdf(brdf, model="eon", name=None):
         values (N, 3) in 1/sr, without the cosine. The directions leave the surface, in the local
         frame with the normal +z; roughness is sigma in radian for models that have one.
     model : str
-        What it has to be: a row of `mxeon.models.table.MODELS` with a parameter.
+        The model that it has to be: a row of `mxeon.models.table.MODELS` with a parameter.
     name : str or None
-        What the report calls it; None for the function's own name.
+        Its name in the report; None for the function's own name.
 
     Returns
     -------
@@ -110,7 +133,7 @@ def check_brdf(brdf, model="eon", name=None):
     {'passed'}
     """
     probe = _probe(brdf, model, name)
-    results = tuple(judge_subject(probe, (check,))[0] for check in _checks(model))
+    results = tuple(judge_check(check, probe) for check in _checks(model))
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version(), "numpy": version("numpy")},
@@ -119,7 +142,7 @@ def check_brdf(brdf, model="eon", name=None):
     )
 
 
-def brdf_test(brdf, model="eon", name=None):
+def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callable[..., None]:
     """Test function for pytest, with one case per check of `check_brdf`.
 
     Assign it to a name that begins with `test_`:
@@ -149,23 +172,25 @@ def brdf_test(brdf, model="eon", name=None):
     probe = _probe(brdf, model, name)
 
     @pytest.mark.parametrize("check", _checks(model), ids=lambda check: check.key)
-    def test_brdf(check):
-        (result,) = judge_subject(probe, (check,))
+    def test_brdf(check: Check) -> None:
+        result = judge_check(check, probe)
         assert result.verdict == PASSED, f"{check.claim} {result.explanation}"
 
-    return test_brdf
+    test: Callable[..., None] = test_brdf
+    return test
 
 
-def _probe(brdf, model, name):
-    name = name or getattr(brdf, "__name__", type(brdf).__name__)
-    return CallableProbe(Function(name, brdf), Claim(reference.model(model).title, model), LIBRARY)
+def _probe(brdf: Brdf, model: str, name: str | None) -> CallableProbe:
+    title = name or str(getattr(brdf, "__name__", type(brdf).__name__))
+    return CallableProbe(Function(title, brdf), Claim(reference.model(model).title, model))
 
 
-def _checks(model):
-    """Rows of the table that apply to values of a model."""
+def _checks(model: str) -> tuple[Check, ...]:
+    """Rows of the table for values of a model, whichever models they are made for."""
     row = reference.model(model)
     if not row.parameter:
-        known = ", ".join(each.name for each in reference.MODELS if each.parameter)
-        raise InputError(f"model must be one of {known}; got {model!r}")
-    kept = [key for key in KEYS if key != "albedo" or row.albedo_dir]
-    return tuple(replace(check, models=(model,)) for check in CHECKS if check.key in kept)
+        names = ", ".join(row.name for row in reference.MODELS if row.parameter)
+        raise InputError(f"model must be one of {names}; got {model!r}")
+    return tuple(
+        check for check in CHECKS if check.key in KEYS and (check.key != "albedo" or row.albedo_dir)
+    )

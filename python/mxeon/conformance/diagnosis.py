@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a host computes instead: the known model, or known defect, that its values are nearest to."""
+"""The diagnosis of a failure: the known model, or known defect, that is nearest to the values."""
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from mxeon.conformance.checks.batch import Array, Batch
 from mxeon.models import table as reference
+from mxeon.models.table import Model
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What values are nearest to.
+    """The models nearest to some values.
 
     Attributes
     ----------
@@ -21,11 +25,28 @@ class Diagnosis:
     """
 
     text: str = ""
-    distances: dict = field(default_factory=dict)
+    distances: dict[str, float] = field(default_factory=dict)
 
 
-def nearest_value(probe):
-    """The model nearest to the probe's values, as a Diagnosis."""
+def sentence(distances: Sequence[tuple[str, float]]) -> str:
+    """The nearest model and the second nearest, in words.
+
+    Parameters
+    ----------
+    distances : sequence of (str, float)
+        Title and root-mean-square distance of two models or more, nearest first.
+
+    Examples
+    --------
+    >>> sentence([("Lambert", 0.001), ("EON", 0.25)])
+    'nearest known model: Lambert (rms 0.001), then EON (0.25)'
+    """
+    (first, least), (second, next_least) = distances[:2]
+    return f"nearest known model: {first} (rms {least:.2g}), then {second} ({next_least:.2g})"
+
+
+def nearest_value(probe: Any) -> Diagnosis:
+    """The model nearest to the probe's values."""
     batches = [_clipped(batch) for batch in probe.few]
     rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
     return _nearest(
@@ -35,7 +56,7 @@ def nearest_value(probe):
     )
 
 
-def nearest_albedo(probe):
+def nearest_albedo(probe: Any) -> Diagnosis:
     """The model whose directional albedo is nearest to the probe's environment branch."""
     batches = [_clipped(batch) for batch in probe.cosines]
     rows = [row for row in reference.MODELS + reference.KNOWN_DEFECTS if row.albedo_dir]
@@ -46,27 +67,27 @@ def nearest_albedo(probe):
     )
 
 
-def _albedo(row, batch):
+def _albedo(row: Model, batch: Batch) -> Array:
     parameter = [batch.inputs["roughness"]] if row.parameter else []
-    return row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], *parameter)
+    assert row.albedo_dir is not None
+    albedo: Array = row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], *parameter)
+    return albedo
 
 
-def _clipped(batch):
+def _clipped(batch: Batch) -> Batch:
     """The batch with roughness in [0, 1], where every model takes it."""
     return batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
 
 
-def _nearest(rows, measured, expected):
-    measured = np.concatenate(measured)
-    if not np.isfinite(measured).all():
+def _nearest(
+    rows: Iterable[Model], measured: Sequence[Array], expected: Callable[[Model], list[Array]]
+) -> Diagnosis:
+    values = np.concatenate(measured)
+    if not np.isfinite(values).all():
         return Diagnosis("values that are not finite: no model is near")
     distances = {
-        row.title: float(np.sqrt(np.mean((measured - np.concatenate(expected(row))) ** 2)))
+        row.title: float(np.sqrt(np.mean((values - np.concatenate(expected(row))) ** 2)))
         for row in rows
     }
-    first, second = sorted(distances, key=distances.get)[:2]
-    return Diagnosis(
-        f"nearest known model: {first} (rms {distances[first]:.2g}), "
-        f"then {second} ({distances[second]:.2g})",
-        distances,
-    )
+    ranking = sorted(distances.items(), key=lambda item: item[1])
+    return Diagnosis(sentence(ranking), distances)

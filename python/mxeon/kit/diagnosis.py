@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mxeon.conformance.diagnosis import sentence
 from mxeon.kit.expected import expected
 from mxeon.kit.noise import ratio, tiles
 from mxeon.models import table as reference
@@ -66,18 +67,14 @@ def _candidate(row: reference.Model, pictures: Sequence[Case], depth: float) -> 
     return Candidate(row.title, float(np.sqrt(np.mean(means**2))), ratio(errors))
 
 
-def sentence(ranking: Sequence[Candidate]) -> str:
+def ranking_sentence(ranking: Sequence[Candidate]) -> str:
     """The nearest model and the second best, in words.
 
     Names the models that the pictures cannot tell from the nearest one, at the confidence of
     `mxeon.kit.noise`.
     """
-    first, second = ranking[:2]
-    text = (
-        f"nearest known model: {first.title} (rms {first.distance:.2g}), "
-        f"then {second.title} ({second.distance:.2g})"
-    )
-    if first.ratio > 1.0:
+    text = sentence([(one.title, one.distance) for one in ranking])
+    if ranking[0].ratio > 1.0:
         return f"{text}; neither fits"
     also = [each.title for each in ranking[1:] if each.ratio <= 1.0]
     return f"{text}; cannot be told from {' and '.join(also)}" if also else text

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Result
-from mxeon.kit.diagnosis import candidates, sentence
+from mxeon.kit.diagnosis import candidates, ranking_sentence
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import Expected, expected, judged, pixel_means
 from mxeon.kit.noise import CONFIDENCE, Tiles, ratio, tiles
@@ -155,7 +155,7 @@ def answer(
         )
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
     ranking = candidates(cases, depth) if question.key == "model" else []
-    words = sentence(ranking) if ranking else ""
+    words = ranking_sentence(ranking) if ranking else ""
     if question.key == "setup" and error > 1.0:
         words = _fault(cases[0], models[0], images)
     return Result(

@@ -2,7 +2,6 @@
 """Report of a run: results.json, junit.xml, pictures, and a page."""
 
 import json
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from os import PathLike
@@ -50,7 +49,6 @@ def to_json(run: Run) -> str:
         - curves: objects with the fields of `mxeon.conformance.results.Curve`.
     """
     summary = run.summary
-    hosts = [vars(identity) for identity in run.hosts]
     data = {
         "format": JSON_FORMAT,
         "verdict": summary.verdict,
@@ -62,12 +60,17 @@ def to_json(run: Run) -> str:
         "software": run.software,
         "documents": [str(path) for path in run.documents],
         "notes": run.notes,
-        "hosts": hosts,
-        "results": make_converter().unstructure(run.results),
+        "hosts": run.hosts,
+        "results": run.results,
         "pictures": _picture_fields(run),
-        "curves": [vars(curve) for curve in run.curves],
+        "curves": run.curves,
     }
-    return json.dumps(_plain(data), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    return (
+        json.dumps(
+            make_converter().unstructure(data), indent=1, allow_nan=False, ensure_ascii=False
+        )
+        + "\n"
+    )
 
 
 def _picture_fields(run: Run) -> list[dict[str, Any]]:
@@ -76,24 +79,11 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
     for picture, stem in zip(run.pictures, run.image_names, strict=True):
         largest = None
         if picture.reference is not None:
-            largest = difference(picture.image, picture.reference).max()
+            largest = float(difference(picture.image, picture.reference).max())
         files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
         named = {key: getattr(picture, key) for key in keys}
         fields.append(named | files | {"largest_difference": largest})
     return fields
-
-
-def _plain(value: Any) -> Any:
-    """`value` in the types of JSON; arrays become lists, numbers that are not finite strings."""
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
-    return value
 
 
 def write(run: Run, folder: str | PathLike[str]) -> Path:

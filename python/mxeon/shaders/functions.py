@@ -31,6 +31,11 @@ def source(language: str, stem: str = ALL) -> str:
     return INCLUDE.sub(lambda include: source(language, include[1].split(".")[0]), text)
 
 
+def names(language: str) -> tuple[str, ...]:
+    """Names of all shader functions of a language."""
+    return tuple(_parameters(language))
+
+
 def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
     """Parameter types and names of a shader function, in order.
 
@@ -50,8 +55,13 @@ def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
     ValueError
         If there is no such function; lists the known ones.
     """
-    functions = dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))
-    if function not in functions:
-        raise InputError(f"function must be one of {', '.join(functions)}; got {function!r}")
-    parameters = (each.rpartition(" ") for each in functions[function].split(", "))
-    return tuple((kind, name) for kind, _, name in parameters)
+    parameters = _parameters(language)
+    if function not in parameters:
+        raise InputError(f"function must be one of {', '.join(parameters)}; got {function!r}")
+    pairs = (each.rpartition(" ") for each in parameters[function].split(", "))
+    return tuple((kind, name) for kind, _, name in pairs)
+
+
+def _parameters(language: str) -> dict[str, str]:
+    """Text of the parameters of each function, by its name."""
+    return dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))

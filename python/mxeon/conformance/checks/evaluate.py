@@ -1,38 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of checks applied: a node on a host, with its controls and, on failure, a diagnosis."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
-from mxeon.conformance.checks.measures import integrated
-from mxeon.conformance.checks.nodes import FLAG
-from mxeon.conformance.checks.probes import probe_type
-from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.checks.measures import Measurement, integrated
+from mxeon.conformance.checks.table import CHECKS, Check
+from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis, nearest_albedo, nearest_value
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders.hosts import front_lit_only
 
-SURROUNDED = ("environment", "furnace")
-CURVE = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
+OF_ALBEDO = ("environment", "furnace")  # checks whose failures are diagnosed by the albedo
+CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
 
-def applies(check, subject, kind, host):
+def applies(check: Check, subject: Any, kind: str, host: str) -> bool:
     """Whether a row of the table can be asked about a subject, by a kind of probe, on a host."""
     return (
-        subject.model in check.models
-        and kind in check.tolerances
-        and not (check.key == "flag" and FLAG not in subject.inputs)
-        and not (check.key in SURROUNDED and front_lit_only(host, subject.model))
+        subject.model in check.models and kind in check.tolerances and check.applies(subject, host)
     )
 
 
-def judge_subject(probe, checks=CHECKS):
+def judge_subject(probe: Any, checks: Sequence[Check] = CHECKS) -> tuple[Result, ...]:
     """Results of the checks that apply to a node, as its host can be asked.
 
     Parameters
     ----------
-    probe : PairProbe or PictureProbe
+    probe : PairProbe, PictureProbe or CallableProbe
     checks : sequence of Check
         The rows to go through.
 
@@ -40,30 +38,14 @@ def judge_subject(probe, checks=CHECKS):
     -------
     tuple of Result
     """
-    place = {
-        "subject": probe.subject.title,
-        "host": probe.host.name,
-        "library": probe.library,
-    }
     return tuple(
-        _judge(check, probe, check.tolerances[probe.kind], place, _diagnose)
+        judge_check(check, probe)
         for check in checks
         if applies(check, probe.subject, probe.kind, probe.host.name)
     )
 
 
-def judge_twins(host, library, checks=CHECKS):
-    """Results of the checks of the shader twins, which are the same whatever library is judged."""
-    place = {"subject": "shader twins", "host": host.name, "library": library}
-    kind = probe_type(host.name).kind
-    return tuple(
-        _judge(check, host.call, check.tolerances[kind], place, lambda check, probe: Diagnosis())
-        for check in checks
-        if not check.models
-    )
-
-
-def judge_curve(probe):
+def judge_curve(probe: Any) -> tuple[Curve, ...]:
     """The node's directional albedo over the cosine, integrated from its values.
 
     Parameters
@@ -74,14 +56,14 @@ def judge_curve(probe):
     -------
     tuple of Curve
     """
-    measured, expected = integrated(probe, CURVE_COSINES, CURVE["color"], CURVE["roughness"])
+    measured, expected = integrated(probe, CURVE_COSINES, CURVE_COLOR, CURVE_ROUGHNESS)
     return (
         Curve(
             probe.subject.title,
             probe.host.name,
             probe.library,
-            CURVE["color"],
-            CURVE["roughness"],
+            CURVE_COLOR,
+            CURVE_ROUGHNESS,
             CURVE_COSINES,
             measured,
             expected,
@@ -89,31 +71,71 @@ def judge_curve(probe):
     )
 
 
-def _judge(check, probe, tolerance, place, diagnose):
-    try:
-        found = check.measure(probe, tolerance.error)
-        wrong = check.measure(check.control(probe), tolerance.error)
-    except NotRun as reason:
-        return Result(check.key, check.claim, **place, verdict=NOT_RUN, reason=str(reason))
-    except ShaderError as error:
-        return Result(check.key, check.claim, **place, verdict=FAILED, diagnosis=str(error))
-    right, caught = found.error <= tolerance.limit, wrong.error > tolerance.limit
-    diagnosis = Diagnosis() if right else diagnose(check, probe)
+def judge_measurements(
+    fields: dict[str, Any],
+    tolerance: Tolerance,
+    right: Measurement,
+    variant: str,
+    wrong: Measurement,
+    diagnosis: Diagnosis,
+) -> Result:
+    """The result of a check from its measurement and that of its control.
+
+    Parameters
+    ----------
+    fields : dict of str
+        Check, claim, subject, host and library of the result.
+    tolerance : Tolerance
+    right, wrong : Measurement
+        Of the probe and of its control.
+    variant : str
+        The error that the control makes.
+    diagnosis : Diagnosis
+
+    Returns
+    -------
+    Result
+    """
+    caught = wrong.error > tolerance.value
     return Result(
-        check.key,
-        check.claim,
-        **place,
-        verdict=PASSED if right and caught else FAILED,
-        error=found.error,
+        **fields,
+        verdict=PASSED if right.error <= tolerance.value and caught else FAILED,
+        error=right.error,
         unit=tolerance.unit,
-        tolerance=tolerance.limit,
+        tolerance=tolerance.value,
         derivation=tolerance.derivation,
-        worst=found.worst,
+        worst=right.worst,
         diagnosis=diagnosis.text,
         distances=diagnosis.distances,
-        control=Control(check.variant, wrong.error, caught),
+        control=Control(variant, wrong.error, caught),
     )
 
 
-def _diagnose(check, probe):
-    return nearest_albedo(probe) if check.key in SURROUNDED else nearest_value(probe)
+def not_measured(fields: dict[str, Any], error: NotRun | ShaderError) -> Result:
+    """The result of a check that was not measured: not run, or failed by a shader error."""
+    if isinstance(error, NotRun):
+        return Result(**fields, verdict=NOT_RUN, reason=str(error))
+    return Result(**fields, verdict=FAILED, diagnosis=str(error))
+
+
+def judge_check(check: Check, probe: Any) -> Result:
+    """The result of a row of the table for a probe, with its control and a diagnosis."""
+    fields = {
+        "check": check.key,
+        "claim": check.claim,
+        "subject": probe.subject.title,
+        "host": probe.host.name,
+        "library": probe.library,
+    }
+    tolerance = check.tolerances[probe.kind]
+    try:
+        right = check.measure(probe, tolerance.metric)
+        wrong = check.measure(check.control(probe), tolerance.metric)
+    except (NotRun, ShaderError) as error:
+        return not_measured(fields, error)
+    diagnosis = Diagnosis() if right.error <= tolerance.value else _diagnose(check, probe)
+    return judge_measurements(fields, tolerance, right, check.variant, wrong, diagnosis)
+
+
+def _diagnose(check: Check, probe: Any) -> Diagnosis:
+    return nearest_albedo(probe) if check.key in OF_ALBEDO else nearest_value(probe)

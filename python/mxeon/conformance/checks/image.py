@@ -8,7 +8,7 @@ import numpy as np
 import mxeon
 from mxeon.conformance.checks.measures import absolute
 from mxeon.conformance.checks.probes import picture_pairs
-from mxeon.conformance.checks.table import ROUNDING
+from mxeon.conformance.checks.tolerances import ROUNDING, Tolerance
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
@@ -19,16 +19,19 @@ from mxeon.shaders.scene import sphere
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 UNIT = "pi f cos, times cos(theta_o)"
-PLAIN = (
+PLAIN = Tolerance(
     48 * ROUNDING,
-    "16 roundings of float32, 2^-24 each, in the place of a pixel's point, and 32 in the value",
+    UNIT,
+    absolute,
+    "16 roundings of float32, 2^-24 each, in the position of a pixel's point, and 32 in the value",
 )
-TEXTURED = (
+TEXTURED = Tolerance(
     2.0**-8,
+    UNIT,
+    absolute,
     "a filter's weights have 8 bits after the point, the least OpenGL asks for, and texels differ "
     "by 1 at most",
 )
-
 
 MATCH = "The picture is the reference's in every pixel."
 FINITE = "No pixel is infinite or not a number."
@@ -142,25 +145,28 @@ def _not_finite(images):
 
 
 def _judge_match(place, cases, tolerance, front_lit):
-    limit, derivation = tolerance
     error, worst, light = max(
         ((*_worst_pixel(*case, front_lit), case[0].name) for case in cases),
         key=lambda found: found[0],
     )
     scene, image, expected = cases[0]
-    brighter, _ = _worst_pixel(scene, image + np.float32(3.0 * limit), expected, front_lit)
+    brighter, _ = _worst_pixel(
+        scene, image + np.float32(3.0 * tolerance.value), expected, front_lit
+    )
     return Result(
         "picture",
         MATCH,
         **place,
-        verdict=PASSED if error <= limit < brighter else FAILED,
+        verdict=PASSED if error <= tolerance.value < brighter else FAILED,
         error=error,
-        unit=UNIT,
-        tolerance=limit,
-        derivation=derivation,
+        unit=tolerance.unit,
+        tolerance=tolerance.value,
+        derivation=tolerance.derivation,
         worst=worst,
-        diagnosis="" if error <= limit else f"most in the picture of the scene {light}",
-        control=Control("the picture is brighter by three tolerances", brighter, brighter > limit),
+        diagnosis="" if error <= tolerance.value else f"most in the picture of the scene {light}",
+        control=Control(
+            "the picture is brighter by three tolerances", brighter, brighter > tolerance.value
+        ),
     )
 
 

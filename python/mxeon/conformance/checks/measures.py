@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the checks measure: each takes a probe and gives its worst error and where it was found."""
+"""The measurements of the checks: the worst error of a probe, and the point where it is."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from mxeon.conformance.checks.batch import Array, Batch
 from mxeon.conformance.checks.nodes import FLAG
-from mxeon.conformance.checks.probes import (
-    GRAZING,
-    SEED,
-    Batch,
-    directions,
-    random_inputs,
-)
-from mxeon.models import albedo
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.shaders.hosts import front_lit_only
@@ -27,13 +23,15 @@ CHANGES = {
 }
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
-TWIN_PAIRS = 1 << 16
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
+
+Metric = Callable[[Array, Any], Array]  # of measured and expected values: error of each row
+Case = tuple[Batch, Array, Array]  # with measured and expected values
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """The worst error of a check, and where it was found.
+    """The worst error of a check, and its point.
 
     Attributes
     ----------
@@ -43,38 +41,38 @@ class Measurement:
     """
 
     error: float
-    worst: dict
+    worst: dict[str, list[float]]
 
 
-def absolute(measured, expected):
+def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
     """Largest difference of each row; infinity for what is not a number."""
-    error = np.abs(measured - expected).max(axis=-1)
+    error = np.abs(np.subtract(measured, expected)).max(axis=-1)
     return np.where(np.isfinite(error), error, np.inf)
 
 
-def relative(measured, expected):
-    """Largest difference of each row, relative to what is expected."""
+def relative(measured: Array, expected: Array) -> Array:
+    """Largest difference of each row, relative to the expected value."""
     return absolute(measured / expected, 1.0)
 
 
-def of_mean(measured, expected):
-    """Difference of the means over all rows, for every row: what is left once noise averages."""
+def of_mean(measured: Array, expected: Array) -> Array:
+    """Difference of the means over all rows, for every row: noise averages out."""
     return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
-def value(probe, error):
+def value(probe: Any, metric: Metric) -> Measurement:
     """Values against the model's, over all pairs of the probe."""
     model = probe.subject.model
     return _worst(
-        error, ((each, probe.direct(each), each.expected(model)) for each in probe.batches)
+        metric, ((batch, probe.direct(batch), batch.expected(model)) for batch in probe.batches)
     )
 
 
-def environment(probe, error):
+def environment(probe: Any, metric: Metric) -> Measurement:
     """The environment branch against the closed form of the directional albedo."""
     row = reference.model(probe.subject.model)
     return _worst(
-        error,
+        metric,
         (
             (
                 batch,
@@ -86,17 +84,19 @@ def environment(probe, error):
     )
 
 
-def quadrature(probe, error):
+def quadrature(probe: Any, metric: Metric) -> Measurement:
     """Directional albedo, integrated from the host's values, against its closed form."""
-    cases = []
+    cases: list[Case] = []
     for mu, color, roughness in product((0.1, 0.3, 0.6, 0.95), COLORS, (0.25, 1.0)):
         wo = np.array([[np.sqrt(1.0 - mu * mu), 0.0, mu]])
         batch = Batch(wo, wo, {"color": color, "roughness": roughness})
         cases.append((batch, *integrated(probe, mu, color, roughness)))
-    return _worst(error, cases)
+    return _worst(metric, cases)
 
 
-def integrated(probe, mu, color, roughness):
+def integrated(
+    probe: Any, mu: ArrayLike, color: ArrayLike, roughness: float
+) -> tuple[Array, Array]:
     """Directional albedo at one or more cosines: from the host's values, and in closed form.
 
     Returns
@@ -104,9 +104,9 @@ def integrated(probe, mu, color, roughness):
     measured, expected : ndarray, shape (N, 3)
     """
 
-    def brdf(wo, wi, rho, roughness):
+    def brdf(wo: Array, wi: Array, rho: Array, roughness: float) -> Array:
         wo = np.broadcast_to(wo, wi.shape)
-        values = probe.direct(Batch(wo, wi, {"color": rho, "roughness": roughness}))
+        values: Array = probe.direct(Batch(wo, wi, {"color": rho, "roughness": roughness}))
         return values / (np.pi * wi[:, 2:])
 
     mu, color = np.atleast_1d(mu), np.array(color)
@@ -115,36 +115,38 @@ def integrated(probe, mu, color, roughness):
     return measured, row.albedo_dir(mu, color, roughness)
 
 
-def black(probe, error):
-    """What a black surface reflects."""
+def black(probe: Any, metric: Metric) -> Measurement:
+    """Values of a black surface against 0."""
     batches = [batch.altered(color=BLACK) for batch in probe.few]
-    return _worst(error, ((each, probe.direct(each), np.zeros((1, 3))) for each in batches))
+    return _worst(metric, ((batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
 
 
-def furnace(probe, error):
+def furnace(probe: Any, metric: Metric) -> Measurement:
     """Albedo of a white surface against 1."""
     batches = [batch.altered(color=WHITE) for batch in probe.cosines]
-    return _worst(error, ((each, probe.albedo(each), np.ones((1, 3))) for each in batches))
+    return _worst(metric, ((batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
 
 
-def reciprocity(probe, error):
+def reciprocity(probe: Any, metric: Metric) -> Measurement:
     """f(wo, wi) against f(wi, wo), both times both cosines."""
     cases = []
     for batch in probe.few:
-        turned = replace(batch, wo=batch.wi, wi=batch.wo)
+        swapped = replace(batch, wo=batch.wi, wi=batch.wo)
         there = probe.direct(batch) * batch.wo[:, 2:]
-        back = probe.direct(turned) * batch.wi[:, 2:]
+        back = probe.direct(swapped) * batch.wi[:, 2:]
         cases.append((batch, there, back))
-    return _worst(error, cases)
+    return _worst(metric, cases)
 
 
-def lambert(probe, error):
+def lambert(probe: Any, metric: Metric) -> Measurement:
     """Values at roughness 0 against Lambert's."""
     batches = [batch.altered(roughness=0.0) for batch in probe.few]
-    return _worst(error, ((each, probe.direct(each), each.expected("lambert")) for each in batches))
+    return _worst(
+        metric, ((batch, probe.direct(batch), batch.expected("lambert")) for batch in batches)
+    )
 
 
-def flag(probe, _):
+def flag(probe: Any, _: Metric) -> Measurement:
     """The change that the flag makes, against the one it has to make, relative to the largest."""
     error = largest = 0.0
     for batch in probe.few:
@@ -159,8 +161,8 @@ def flag(probe, _):
     return Measurement(float(error / largest), {"expected": [float(largest)]})
 
 
-def inputs(probe, _):
-    """How many inputs of the node change nothing."""
+def inputs(probe: Any, _: Metric) -> Measurement:
+    """Number of inputs of the node that change nothing."""
     batch = probe.few[0]
     before = probe.direct(batch)
     changes = {**CHANGES, FLAG: not probe.subject.flag}
@@ -172,8 +174,8 @@ def inputs(probe, _):
     return Measurement(len(dead), {name: [0.0] for name in dead})
 
 
-def finite(probe, _):
-    """How many values at the edges of the domain are not finite."""
+def finite(probe: Any, _: Metric) -> Measurement:
+    """Number of values at the edges of the domain that are not finite."""
     cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
     rows = product(cosine, cosine, [0.0, 1.0, 2.0, np.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
     mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
@@ -186,61 +188,28 @@ def finite(probe, _):
     return Measurement(int(bad.sum()), _point(batch, int(bad.argmax())) if bad.any() else {})
 
 
-def twins(call, _):
-    """Values and albedos of all models as functions of the shader twins, against NumPy."""
-    rng = np.random.default_rng(SEED)
-    wo, wi = directions(rng, TWIN_PAIRS), directions(rng, TWIN_PAIRS)
-    worst = {}
-    for row in reference.MODELS:
-        given = random_inputs(rng, TWIN_PAIRS, row)
-        parameter = [given["roughness"]] if row.parameter else []
-        name = row.brdf.__name__
-        measured = call(name, wo, wi, given["color"], *parameter)
-        expected = row.brdf(wo, wi, given["color"], *parameter)
-        worst[name] = np.pi * absolute(measured * wi[:, 2:], expected * wi[:, 2:])
-    given = random_inputs(rng, TWIN_PAIRS, reference.model("eon"))
-    mu, r, sigma = wo[:, 2], given["roughness"], 0.5 * np.pi * given["roughness"]
-    for name, arguments in (
-        ("qon_albedo_dir", (mu, sigma)),
-        ("qon_albedo_avg", (sigma,)),
-        ("fon_albedo_dir", (mu, r)),
-        ("fon_albedo_avg", (r,)),
-        ("eon_albedo_dir", (mu, given["color"], r)),
-        ("eon_albedo_avg", (given["color"], r)),
-    ):
-        expected = getattr(albedo, name)(*arguments).reshape(TWIN_PAIRS, -1)
-        worst[name] = absolute(call(name, *arguments), expected)
-    figures = {name: float(error.max()) for name, error in worst.items()}
-    name = max(figures, key=figures.get)
-    return Measurement(figures[name], {name: [figures[name]]})
-
-
-def loss(call, _):
-    """1 - E of FON, relative, down to grazing: as H(mu), which the shader twins compute."""
-    mu = np.float64(np.float32(np.geomspace(GRAZING, 1.0, TWIN_PAIRS)))
-    error = relative(call("fon_loss", mu), albedo.fon_loss(mu)[:, None])
-    return Measurement(float(error.max()), {"mu": [float(mu[error.argmax()])]})
-
-
-def _worst(error, cases):
+def _worst(metric: Metric, cases: Iterable[Case]) -> Measurement:
     """The worst row of (batch, measured, expected) cases."""
-    found = Measurement(-1.0, {})
+    worst = Measurement(-1.0, {})
     for batch, measured, expected in cases:
-        errors = error(measured, expected)
+        errors = metric(measured, expected)
         row = int(np.argmax(errors))
-        if errors[row] > found.error:
+        if errors[row] > worst.error:
             expected = np.broadcast_to(expected, measured.shape)
             values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
-            found = Measurement(float(errors[row]), {**_point(batch, row), **values})
-    return found
+            worst = Measurement(float(errors[row]), {**_point(batch, row), **values})
+    return worst
 
 
-def _point(batch, row):
+def _point(batch: Batch, row: int) -> dict[str, list[float]]:
     """Directions and inputs of one row of a batch."""
-    given = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
+    columns: dict[str, Any] = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
     return {
-        name: np.ravel(each[row] if len(np.shape(each)) and len(each) == len(batch.wo) else each)
-        .astype(float)
-        .tolist()
-        for name, each in given.items()
+        name: np.ravel(_row(values, row, len(batch.wo))).astype(float).tolist()
+        for name, values in columns.items()
     }
+
+
+def _row(values: Any, row: int, count: int) -> Any:
+    """One row of values, or the values that hold for all rows."""
+    return values[row] if np.shape(values) and len(values) == count else values

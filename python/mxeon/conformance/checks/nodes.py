@@ -3,7 +3,6 @@
 
 from dataclasses import dataclass
 
-from mxeon.shaders.library import LIBRARIES
 from mxeon.shaders.nodes import (
     EON,
     FLAG,
@@ -85,7 +84,7 @@ class Surface:
     fixed : tuple of (str, str, str)
         Name, type and value of further inputs.
     libraries : tuple of str
-        In which it is judged.
+        The libraries with which it is judged; () for all.
     """
 
     title: str
@@ -94,7 +93,7 @@ class Surface:
     color: str
     roughness: str
     fixed: tuple[tuple[str, str, str], ...] = ()
-    libraries: tuple[str, ...] = LIBRARIES
+    libraries: tuple[str, ...] = ()
 
     inputs = ()
 

@@ -6,12 +6,21 @@ both answer in the same form, so a check is written once.
 """
 
 import warnings
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
+from mxeon.conformance.checks.batch import (
+    FEW,
+    LOBE_RIM,
+    PAIRS,
+    RIM,
+    SEED,
+    Batch,
+    directions,
+    random_inputs,
+)
 from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning
@@ -19,55 +28,12 @@ from mxeon.shaders.hosts import front_lit_only, host_row
 from mxeon.shaders.plane import plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
-SEED = 1
-PAIRS = 1 << 20
-FEW = 1 << 16  # pairs of the checks that do not ask for a million
-GRAZING = 1e-6  # smallest cosine of the random pairs
-RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
-LOBE_RIM = 0.25  # of a lobe below others
-
-# Colours and roughnesses of the pictures that stand for a node on hosts that only make pictures.
+# Colors and roughnesses of the pictures that stand for a node on hosts that only make pictures.
 PICTURE_INPUTS = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
 )
 PICTURE_SIZE = 128
-
-
-@dataclass(frozen=True)
-class Batch:
-    """Pairs of directions and the node's inputs for them.
-
-    Attributes
-    ----------
-    wo, wi : ndarray, shape (N, 3)
-        Local frame; float32 numbers, so that a float32 host sees the same pairs.
-    inputs : mapping of str to array
-        Node inputs, (N, ...) or constant.
-    scene : Scene or None
-        The picture whose points these are.
-    """
-
-    wo: np.ndarray
-    wi: np.ndarray
-    inputs: Mapping
-    scene: Scene | None = None
-
-    def altered(self, **inputs):
-        """The same pairs with other inputs."""
-        return replace(self, inputs={**self.inputs, **inputs})
-
-    def first(self, count):
-        """The first pairs of the batch."""
-        inputs = {name: values[:count] for name, values in self.inputs.items()}
-        return replace(self, wo=self.wo[:count], wi=self.wi[:count], inputs=inputs)
-
-    def expected(self, model):
-        """pi f cos(theta_i) of a model or a known defect, (N, 3)."""
-        row = reference.model(model)
-        parameter = [self.inputs["roughness"]] if row.parameter else []
-        value = row.brdf(self.wo, self.wi, self.inputs["color"], *parameter)
-        return np.pi * value * self.wi[..., 2:]
 
 
 @dataclass(frozen=True)
@@ -286,28 +252,3 @@ def picture_pairs(scene):
     wo = local_directions(normal, VIEW)
     wi = wo if scene.light is None else local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
-
-
-def directions(rng, count):
-    """Random directions: cosines uniform, a quarter of them log-uniform down to GRAZING."""
-    mu = rng.random(count)
-    mu[: count // 4] = GRAZING ** rng.random(count // 4)
-    rng.shuffle(mu)
-    mu = mu.astype(np.float32).astype(np.float64)
-    radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
-    return _float32([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
-
-
-def random_inputs(rng, count, row):
-    """Random colours and roughnesses; an eighth of each lies on either end of its range."""
-    largest = row.interval[1] if row.parameter else 1.0
-    color, roughness = rng.random((count, 3)), rng.random(count)
-    color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
-    roughness = largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
-    roughness = np.minimum(roughness.astype(np.float32), np.nextafter(np.float32(largest), 0))
-    return {"color": _float32(color.T), "roughness": roughness.astype(np.float64)}
-
-
-def _float32(columns):
-    """Columns as rows of float32 numbers in float64."""
-    return np.stack(columns, axis=-1).astype(np.float32).astype(np.float64)

@@ -1,156 +1,68 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of checks: a claim, how it is measured, how wrong it may be, and what it must catch.
 
-A check passes at error <= limit. Its control is the same probe made wrong on purpose, on the same
-host; the check has to fail on it.
+A check passes at error <= tolerance. Its control is the same probe made wrong on purpose, on the same
+host; the check has to fail on it. Every tolerance is the expression that its derivation describes.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
-
-from mxeon.conformance.checks import measures
-from mxeon.conformance.checks.measures import absolute, of_mean, relative
+from mxeon.conformance.checks import measures, tolerances
+from mxeon.conformance.checks.controls import (
+    drop_changes,
+    gray,
+    scale_cosine,
+    with_inputs,
+)
+from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import FLAG
+from mxeon.conformance.checks.tolerances import Tolerance
+from mxeon.shaders.hosts import front_lit_only
 
 ANY = ("eon", "qon")
-ROUNDING = 2.0**-24  # unit roundoff of float32
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """What an error may be.
-
-    Attributes
-    ----------
-    limit : float
-    unit : str
-        What the error counts.
-    error : callable (measured, expected) -> ndarray
-        Error of each row.
-    derivation : str
-    """
-
-    limit: float
-    unit: str
-    error: Callable
-    derivation: str
 
 
 @dataclass(frozen=True)
 class Check:
-    """A row of the table.
+    """A row of the table: what is asked of a probe.
 
     Attributes
     ----------
     key, claim : str
         One word, and a sentence.
     models : tuple of str
-        What a subject has to be for this check; empty for a check of the shader twins.
-    measure : callable (probe, error) -> Measurement
+        The models that it holds for.
+    measure : callable (probe, metric) -> Measurement
     variant : str
-        What the control does wrong.
+        The error that the control makes.
     control : callable (probe) -> probe
     tolerances : dict of str to Tolerance
         By kind of probe; one that is missing cannot be asked.
+    applies : callable (subject, host) -> bool
+        Whether the check can be asked about a subject of those models on the host of a name.
     """
 
     key: str
     claim: str
     models: tuple[str, ...]
-    measure: Callable
+    measure: Callable[[Any, Metric], Measurement]
     variant: str
-    control: Callable
-    tolerances: dict
+    control: Callable[[Any], Any]
+    tolerances: Mapping[str, Tolerance]
+    applies: Callable[[Any, str], bool] = lambda subject, host: True
 
 
-@dataclass(frozen=True)
-class Altered:
-    """A probe made wrong: its batches changed on the way in, its values on the way out."""
-
-    probe: object
-    batch: Callable = lambda batch: batch
-    values: Callable = lambda batch, values: values
-
-    def __getattr__(self, name):
-        return getattr(self.probe, name)
-
-    @property
-    def batches(self):
-        """The few: a control has nothing to prove on a million."""
-        return self.probe.few
-
-    def direct(self, batch):
-        """Values of the changed batch, changed."""
-        return self.values(batch, self.probe.direct(self.batch(batch)))
-
-    def albedo(self, batch):
-        """Albedos of the changed batch, changed."""
-        return self.values(batch, self.probe.albedo(self.batch(batch)))
+def has_flag(subject: Any, host: str) -> bool:
+    """Whether a node has the flag that switches the model."""
+    return FLAG in subject.inputs
 
 
-def _inputs(**given):
-    """A control that hands the host these inputs in place of the batch's."""
-    return lambda probe: Altered(probe, batch=lambda batch: batch.altered(**given))
+def has_environment(subject: Any, host: str) -> bool:
+    """Whether a host has the subject's model for all pairs, as an environment needs."""
+    return not front_lit_only(host, subject.model)
 
-
-def _grey(probe):
-    """A control that loses the colour: every channel gets the mean of the three."""
-
-    def grey(batch):
-        mean = np.mean(batch.inputs["color"], axis=-1, keepdims=True)
-        return batch.altered(color=np.repeat(mean, 3, axis=-1))
-
-    return Altered(probe, batch=grey)
-
-
-def _untouched(probe):
-    """A control that drops every change of inputs: the host sees the first batch only."""
-    return Altered(probe, batch=lambda batch: probe.few[0])
-
-
-def _scaled(power):
-    """A control whose values carry a power of cos(theta_o) too many."""
-
-    def values(batch, values):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return values * batch.wo[:, 2:] ** power
-
-    return lambda probe: Altered(probe, values=values)
-
-
-def _rough(call):
-    """A control whose last argument, the parameter, is five per cent off."""
-    return lambda function, *arguments: call(function, *arguments[:-1], 0.95 * arguments[-1])
-
-
-VALUE = (
-    "32 roundings of float32, 2^-24 each, of numbers up to 1: three in the inputs, five in s, twelve "
-    "in the two losses, twelve in the sum"
-)
-ENVIRONMENT = "16 roundings of float32, 2^-24 each, of numbers up to 1: half of the direct branch"
-LOBE = (
-    "512 roundings of float32, 2^-24 each: 16 in the place of a pixel's point, over the square of the "
-    "smallest cosine judged, 1/4; 32 in the lobe; four in sums that other lobes make 48 times as large"
-)
-CYCLES_RAY = (
-    "float32 place of a pixel's point, 2^-24 of the camera's distance over the smallest cosine "
-    "judged, times the sensitivity of f cos to it"
-)
-NOISE = (
-    "four standard errors of the mean over a picture: 2e-3 a pixel with 256 samples of a weight "
-    "whose variance is at most 1, over the root of 12 000 pixels"
-)
-
-TESTRENDER = (
-    "half floats, 2^-11 relative; and the light's width, a thousandth of its distance, in 64 samples: "
-    "four standard errors of 1e-4"
-)
-TESTRENDER_NOISE = (
-    "half floats, 2^-11; and four standard errors of the mean over a picture: 256 samples of a weight "
-    "whose variance is at most 1, over the root of 16 384 pixels"
-)
 
 CHECKS = (
     Check(
@@ -159,11 +71,11 @@ CHECKS = (
         ANY,
         measures.value,
         "roughness is dropped",
-        _inputs(roughness=0.0),
+        with_inputs(roughness=0.0),
         {
-            "pairs": Tolerance(2e-6, "pi f cos", absolute, VALUE),
-            "pictures": Tolerance(2e-4, "relative", relative, CYCLES_RAY),
-            "planes": Tolerance(1e-3, "relative", relative, TESTRENDER),
+            "pairs": tolerances.VALUE,
+            "pictures": tolerances.CYCLES_RAY,
+            "planes": tolerances.TESTRENDER,
         },
     ),
     Check(
@@ -171,48 +83,46 @@ CHECKS = (
         "The diffuse lobe of the surface shader is the model's.",
         (*ANY, "lambert"),
         measures.value,
-        "every channel gets the mean colour",
-        _grey,
-        {"lobes": Tolerance(512 * ROUNDING, "pi f cos", absolute, LOBE)},
+        "every channel gets the mean color",
+        gray,
+        {"lobes": tolerances.LOBE},
     ),
     Check(
         "environment",
         "The environment branch gives the directional albedo in closed form.",
         ANY,
         measures.environment,
-        "every channel gets the mean colour",
-        _grey,
+        "every channel gets the mean color",
+        gray,
         {
-            "pairs": Tolerance(1e-6, "albedo", absolute, ENVIRONMENT),
-            "pictures": Tolerance(8e-5, "mean albedo", of_mean, NOISE),
-            "planes": Tolerance(2.5e-3, "mean albedo", of_mean, TESTRENDER_NOISE),
+            "pairs": tolerances.ENVIRONMENT,
+            "pictures": tolerances.CYCLES_NOISE,
+            "planes": tolerances.TESTRENDER_NOISE,
         },
+        has_environment,
     ),
     Check(
         "albedo",
-        "Values integrate to the coloured directional albedo.",
+        "Values integrate to the colored directional albedo.",
         ANY,
         measures.quadrature,
-        "every channel gets the mean colour",
-        _grey,
-        {
-            "pairs": Tolerance(
-                2e-6, "albedo", absolute, "an average of values: no worse than the worst"
-            )
-        },
+        "every channel gets the mean color",
+        gray,
+        {"pairs": tolerances.INTEGRAL},
     ),
     Check(
         "furnace",
-        "A white surface in a white surrounding cannot be seen.",
+        "A white surface in a white environment cannot be seen.",
         ("eon",),
         measures.furnace,
         "reflectance is 0.99",
-        _inputs(color=(0.99, 0.99, 0.99)),
+        with_inputs(color=(0.99, 0.99, 0.99)),
         {
-            "pairs": Tolerance(1e-6, "albedo", absolute, ENVIRONMENT),
-            "pictures": Tolerance(8e-5, "mean albedo", of_mean, NOISE),
-            "planes": Tolerance(2.5e-3, "mean albedo", of_mean, TESTRENDER_NOISE),
+            "pairs": tolerances.ENVIRONMENT,
+            "pictures": tolerances.CYCLES_NOISE,
+            "planes": tolerances.TESTRENDER_NOISE,
         },
+        has_environment,
     ),
     Check(
         "black",
@@ -220,15 +130,11 @@ CHECKS = (
         ANY,
         measures.black,
         "reflectance is 0.001",
-        _inputs(color=(0.001, 0.001, 0.001)),
+        with_inputs(color=(0.001, 0.001, 0.001)),
         {
-            "pairs": Tolerance(0.0, "pi f cos", absolute, "a product with 0 is 0 in any precision"),
-            "pictures": Tolerance(
-                0.0, "pi f cos", absolute, "a product with 0 is 0 in any precision"
-            ),
-            "planes": Tolerance(
-                0.0, "pi f cos", absolute, "a product with 0 is 0 in any precision"
-            ),
+            "pairs": tolerances.ZERO,
+            "pictures": tolerances.ZERO,
+            "planes": tolerances.ZERO,
         },
     ),
     Check(
@@ -237,8 +143,8 @@ CHECKS = (
         ANY,
         measures.reciprocity,
         "the value carries cos(theta_o) once more",
-        _scaled(1),
-        {"pairs": Tolerance(2e-6, "pi f cos cos", absolute, VALUE)},
+        scale_cosine(1),
+        {"pairs": tolerances.RECIPROCITY},
     ),
     Check(
         "lambert",
@@ -246,13 +152,11 @@ CHECKS = (
         ANY,
         measures.lambert,
         "roughness is 0.1",
-        _inputs(roughness=0.1),
+        with_inputs(roughness=0.1),
         {
-            "pairs": Tolerance(
-                5e-7, "pi f cos", absolute, "eight roundings of float32, 2^-24 each"
-            ),
-            "pictures": Tolerance(2e-4, "relative", relative, CYCLES_RAY),
-            "planes": Tolerance(1e-3, "relative", relative, TESTRENDER),
+            "pairs": tolerances.LAMBERT,
+            "pictures": tolerances.CYCLES_RAY,
+            "planes": tolerances.TESTRENDER,
         },
     ),
     Check(
@@ -261,18 +165,13 @@ CHECKS = (
         ANY,
         measures.flag,
         "the flag is dropped",
-        _inputs(**{FLAG: True}),
+        with_inputs(**{FLAG: True}),
         {
-            "pairs": Tolerance(
-                1e-5, "relative", absolute, "two values, each within its own tolerance"
-            ),
-            "pictures": Tolerance(
-                1e-3, "relative", absolute, "two values within 2e-4 of 1, over 0.4"
-            ),
-            "planes": Tolerance(
-                5e-3, "relative", absolute, "two values within 1e-3 of 1, over 0.4"
-            ),
+            "pairs": tolerances.difference_of(tolerances.VALUE),
+            "pictures": tolerances.difference_of(tolerances.CYCLES_RAY),
+            "planes": tolerances.difference_of(tolerances.TESTRENDER),
         },
+        has_flag,
     ),
     Check(
         "inputs",
@@ -280,11 +179,11 @@ CHECKS = (
         ANY,
         measures.inputs,
         "every change is dropped",
-        _untouched,
+        drop_changes,
         {
-            "pairs": Tolerance(0, "inputs", absolute, "a count"),
-            "pictures": Tolerance(0, "inputs", absolute, "a count"),
-            "planes": Tolerance(0, "inputs", absolute, "a count"),
+            "pairs": tolerances.count_of("inputs"),
+            "pictures": tolerances.count_of("inputs"),
+            "planes": tolerances.count_of("inputs"),
         },
     ),
     Check(
@@ -293,33 +192,7 @@ CHECKS = (
         ANY,
         measures.finite,
         "the value is divided by cos(theta_o)",
-        _scaled(-1),
-        {"pairs": Tolerance(0, "values", absolute, "a count")},
-    ),
-    Check(
-        "twins",
-        "The functions of the shader twins are the NumPy models.",
-        (),
-        measures.twins,
-        "the last argument is five per cent off",
-        _rough,
-        {
-            "pairs": Tolerance(2e-6, "pi f cos", absolute, VALUE),
-            "pictures": Tolerance(2e-6, "pi f cos", absolute, VALUE),
-        },
-    ),
-    Check(
-        "loss",
-        "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
-        (),
-        measures.loss,
-        "the last argument is five per cent off",
-        _rough,
-        {
-            "pairs": Tolerance(1e-5, "relative", relative, "the fit's 3e-7 and a dozen roundings"),
-            "pictures": Tolerance(
-                1e-5, "relative", relative, "the fit's 3e-7 and a dozen roundings"
-            ),
-        },
+        scale_cosine(-1),
+        {"pairs": tolerances.count_of("values")},
     ),
 )

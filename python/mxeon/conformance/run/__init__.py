@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import Any
 
 from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Run
@@ -37,7 +38,7 @@ def check(
     scheduler: str | None = None,
     wait: float = WAIT,
     policy: Policy = DEFAULT,
-    progress: Callable[[Iterable, int], Iterable] = lambda tasks, total: tasks,
+    progress: Callable[[Iterable[Any], int], Iterable[Any]] = lambda tasks, total: tasks,
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 

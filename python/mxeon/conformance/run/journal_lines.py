@@ -102,12 +102,13 @@ def _task(line: bytes, seed: str, plan: Plan, converter: cattrs.Converter) -> tu
 
 
 def _images(findings: Findings) -> list[StoredImage]:
-    return [
+    images: list[Any] = [
         image
         for picture in findings.pictures
         for image in (picture.image, picture.reference)
-        if isinstance(image, StoredImage)
+        if image is not None
     ]
+    return images
 
 
 def to_line(record: dict[str, Any], seed: str = "") -> bytes:

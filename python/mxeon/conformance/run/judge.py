@@ -6,7 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.checks.evaluate import judge_curve, judge_subject, judge_twins
+from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
+from mxeon.conformance.checks.functions import FUNCTION_CHECKS, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Surface
 from mxeon.conformance.checks.probes import SurfaceProbe, probe_type
@@ -20,7 +21,6 @@ from mxeon.conformance.run.plan import (
     HOST,
     PICTURE,
     SOURCE,
-    TWINS,
     Findings,
     Task,
     subjects,
@@ -30,7 +30,8 @@ from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.hosts import open_host
 
 ROWS = {check.key: check for check in CHECKS}
-CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
+FUNCTION_ROWS = {check.key: check for check in FUNCTION_CHECKS}
+CLAIMS = {check.key: check.claim for check in (*CHECKS, *FUNCTION_CHECKS)} | {
     HOST: "The host executes shaders here.",
     SOURCE: "The generated text was checked.",
     CURVE: "The albedo was measured over the cosine.",
@@ -110,8 +111,8 @@ class Judge:
     def _on_host(self, task: Task, host: Any) -> dict[str, Any]:
         if task.check == PICTURE:
             return self._document(task, host)
-        if task.subject == TWINS:
-            return {"results": judge_twins(host, task.library, (ROWS[task.check],))}
+        if task.check in FUNCTION_ROWS:
+            return {"results": judge_functions(host, (FUNCTION_ROWS[task.check],))}
         probe = self._probe(host, task.subject, task.library)
         if task.check == CURVE:
             return {"curves": judge_curve(probe)}

@@ -17,6 +17,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 import mxeon
+from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
 from mxeon.conformance.checks.probes import NativeProbe, PairProbe, SurfaceProbe, probe_type
@@ -30,7 +31,7 @@ from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.library import LIBRARIES, check_version, examples_folder
 
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
-TWINS, EVERY_NODE = "shader twins", "every node"
+TWINS, EVERY_NODE = functions.SUBJECT, "every node"
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ class Findings:
 
     def answer(self, task: Task) -> bool:
         """Whether these are findings of a task: there are some, and all are of its host."""
-        records = (*self.results, *self.pictures, *self.curves)
+        records: list[Result | Picture | Curve] = [*self.results, *self.pictures, *self.curves]
         location = (task.host, task.library)
         return bool(records or self.errors) and all(
             (record.host, record.library) == location for record in records
@@ -168,16 +169,15 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         yield Task(HOST, EVERY_NODE, host, library)
     if probe is None or probe is NativeProbe:
         return
-    for check in CHECKS:
-        if not check.models and probe.kind in check.tolerances:
-            yield Task(check.key, TWINS, host, library)
+    if library == "eonlib" and probe.kind in functions.KINDS:
+        yield from (Task(check.key, TWINS, host, library) for check in functions.FUNCTION_CHECKS)
     for subject in subjects(library):
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
     if row.surfaces:
         for surface in SURFACES:
-            if library in surface.libraries:
+            if library in (surface.libraries or LIBRARIES):
                 yield from _checks_of(surface, SurfaceProbe.kind, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Negative controls: the probe of a check made wrong on purpose, on which the check has to fail."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.conformance.checks.batch import Batch
+
+Array = NDArray[np.float64]
+Control = Callable[[Any], "Altered"]
+Call = Callable[..., Array]  # call(function, *arguments): values of a shader function
+
+
+@dataclass(frozen=True)
+class Altered:
+    """A probe made wrong: its batches changed on the way in, its values on the way out."""
+
+    probe: Any
+    batch: Callable[[Batch], Batch] = lambda batch: batch
+    values: Callable[[Batch, Array], Array] = lambda batch, values: values
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.probe, name)
+
+    @property
+    def batches(self) -> tuple[Batch, ...]:
+        """The few: a control has nothing to prove on a million."""
+        few: tuple[Batch, ...] = self.probe.few
+        return few
+
+    def direct(self, batch: Batch) -> Array:
+        """Values of the changed batch, changed."""
+        return self.values(batch, self.probe.direct(self.batch(batch)))
+
+    def albedo(self, batch: Batch) -> Array:
+        """Albedos of the changed batch, changed."""
+        return self.values(batch, self.probe.albedo(self.batch(batch)))
+
+
+def with_inputs(**inputs: Any) -> Control:
+    """A control that passes these inputs to the host in place of the batch's."""
+    return lambda probe: Altered(probe, batch=lambda batch: batch.altered(**inputs))
+
+
+def gray(probe: Any) -> Altered:
+    """A control that loses the color: every channel gets the mean of the three."""
+
+    def mean_color(batch: Batch) -> Batch:
+        mean = np.mean(batch.inputs["color"], axis=-1, keepdims=True)
+        return batch.altered(color=np.repeat(mean, 3, axis=-1))
+
+    return Altered(probe, batch=mean_color)
+
+
+def drop_changes(probe: Any) -> Altered:
+    """A control that drops every change of inputs: the host sees the first batch only."""
+    return Altered(probe, batch=lambda batch: probe.few[0])
+
+
+def scale_cosine(power: int) -> Control:
+    """A control whose values carry a power of cos(theta_o) too many."""
+
+    def values(batch: Batch, values: Array) -> Array:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scaled: Array = values * batch.wo[:, 2:] ** power
+        return scaled
+
+    return lambda probe: Altered(probe, values=values)
+
+
+def scale_last(call: Call) -> Call:
+    """A control whose last argument, the parameter, is five per cent off."""
+    return lambda function, *arguments: call(function, *arguments[:-1], 0.95 * arguments[-1])

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every tolerance of the checks, as the expression that its derivation describes.
+
+The tests and the benchmarks that judge the same quantities import them.
+"""
+
+import math
+from dataclasses import dataclass
+
+from mxeon.conformance.checks.batch import LOBE_RIM, RIM
+from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative
+
+ROUNDING = 2.0**-24  # unit roundoff of float32
+HALF_ROUNDING = 2.0**-11  # of float16
+LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H, see fits/
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """The largest error that passes.
+
+    Attributes
+    ----------
+    value : float
+    unit : str
+        Unit of the error.
+    metric : callable (measured, expected) -> ndarray
+        Error of each row, for checks that compare values.
+    derivation : str
+    """
+
+    value: float
+    unit: str
+    metric: Metric
+    derivation: str
+
+
+def rounded_up(value: float) -> float:
+    """The next number with one digit.
+
+    Examples
+    --------
+    >>> rounded_up(1.94e-6)
+    2e-06
+    """
+    exponent = math.floor(math.log10(value))
+    return float(f"{math.ceil(value / 10.0**exponent)}e{exponent}")
+
+
+def ray_error(rim: float) -> float:
+    """Relative error of f cos in a picture of Cycles, where both cosines are at least `rim`.
+
+    A point is a ray's origin plus its length, both at most 2: three roundings of 2^-23 together. A
+    ray that grazes divides them by its cosine, and cos(theta_i), relative to itself, by the other.
+    The profile takes a roughness below 1e-5 for 0: another 1e-5.
+    """
+    return rounded_up(3.0 * 2.0 * ROUNDING / rim**2 + 1e-5)
+
+
+def mean_noise(pixels: int) -> float:
+    """Error of the mean of so many pixels of Cycles in an environment, of 256 samples each.
+
+    Measured over seeds 0 to 15 at roughness 1 and reflectance 1: a pixel is off by 1.3e-3 rms, and
+    the mean of 3212 pixels has a standard deviation of 3.1e-5, 1.34 times that of independent ones.
+    """
+    return rounded_up(4.0 * 1.4 * 1.3e-3 / math.sqrt(pixels))
+
+
+def count_of(unit: str) -> Tolerance:
+    """Tolerance of a count, of which there must be none."""
+    return Tolerance(0.0, unit, absolute, "a count")
+
+
+def difference_of(tolerance: Tolerance) -> Tolerance:
+    """Tolerance of the difference of two values, relative to the largest such difference."""
+    derivation = f"two values, each within {tolerance.value:.2g}, over a difference of 0.4"
+    return Tolerance(rounded_up(2.0 * tolerance.value / 0.4), "relative", absolute, derivation)
+
+
+VALUE = Tolerance(
+    rounded_up(14 * 2.0 * ROUNDING + 2 * 0.5 * LOSS_FIT),
+    "pi f cos",
+    absolute,
+    "14 roundings of float32, 2^-24 each, of numbers up to 2, and two fits of H, 2.7e-7 each, times "
+    "the multiple-scattering part, at most 1/2; rounded up",
+)
+RECIPROCITY = Tolerance(VALUE.value, "pi f cos cos", absolute, VALUE.derivation)
+INTEGRAL = Tolerance(
+    VALUE.value, "albedo", absolute, "an average of values: no worse than the worst"
+)
+ENVIRONMENT = Tolerance(
+    rounded_up((12 + 2 + 2) * 1.02 * ROUNDING),
+    "albedo",
+    absolute,
+    "16 roundings of float32, 2^-24 each, of numbers up to 1.02: 12 in the longest chain, two in the "
+    "cosine, and two for the fit of H, whose 2.7e-7 enters times 0.29; rounded up",
+)
+LOSS = Tolerance(
+    rounded_up(LOSS_FIT + 12 * ROUNDING),
+    "relative",
+    relative,
+    "the fit's 2.7e-7 and 12 roundings of float32, 2^-24 each; rounded up",
+)
+LAMBERT = Tolerance(
+    rounded_up(8 * ROUNDING),
+    "pi f cos",
+    absolute,
+    "8 roundings of float32, 2^-24 each; rounded up",
+)
+ZERO = Tolerance(0.0, "pi f cos", absolute, "a product with 0 is 0 in any precision")
+LOBE = Tolerance(
+    (16 / LOBE_RIM**2 + 32 + 4 * 48) * ROUNDING,
+    "pi f cos",
+    absolute,
+    "480 roundings of float32, 2^-24 each: 16 in the position of a pixel's point, over the square of "
+    "the smallest cosine judged, 1/4; 32 in the lobe; four in sums that other lobes make 48 times as "
+    "large",
+)
+CYCLES_RAY = Tolerance(
+    ray_error(RIM),
+    "relative",
+    relative,
+    "float32 position of a pixel's point, three roundings of 2^-23, over the square of the smallest "
+    "cosine judged, 0.05; 1e-5 for the roughness that is taken for 0; rounded up",
+)
+TESTRENDER = Tolerance(
+    rounded_up(HALF_ROUNDING + 4 * 1e-4),
+    "relative",
+    relative,
+    "half floats, 2^-11; and the light's width, a thousandth of its distance, in 64 samples: four "
+    "standard errors of 1e-4; rounded up",
+)
+TESTRENDER_NOISE = Tolerance(
+    HALF_ROUNDING + 4.0 * math.sqrt(1.0 / (256 * 16384)),
+    "mean albedo",
+    of_mean,
+    "half floats, 2^-11; and four standard errors of the mean of a picture: 256 samples of a weight "
+    "whose variance is at most 1, in 16 384 pixels",
+)
+CYCLES_NOISE = Tolerance(
+    mean_noise(12_836),
+    "mean albedo",
+    of_mean,
+    "four standard errors of the mean of a picture's 12 836 pixels: 1.3e-3 a pixel with 256 samples, "
+    "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
+)
