@@ -45,7 +45,8 @@ def check(
     hosts : sequence of str
         Who is judged; `mxeon.shaders.hosts.host_names` has them.
     libraries : sequence of str
-        "eonlib", and "stock" for MaterialX as it comes.
+        "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents, which are
+        loaded before the standard libraries.
     workers : int
         Processes that share the work, of which any may crash or hang; 0 to work in this one.
     timeout : float

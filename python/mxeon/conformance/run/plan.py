@@ -30,7 +30,13 @@ from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import DocumentError, ImageError, InputError, InterfaceError, NotRun
 from mxeon.shaders.document.policy import DEFAULT, LIMITS
 from mxeon.shaders.hosts import host_names, host_row, open_host
-from mxeon.shaders.library import LIBRARIES, check_version, examples_folder
+from mxeon.shaders.library import (
+    LIBRARIES,
+    check_version,
+    examples_folder,
+    library_name,
+    load_library,
+)
 
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
 TWINS, EVERY_NODE = "shader twins", "every node"
@@ -68,9 +74,9 @@ def plan(files, hosts, libraries, policy=DEFAULT, resumable=False):
     """
     check_version()
     _known("host", hosts, host_names())
-    _known("library", libraries, LIBRARIES)
+    libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     items, documents = [], []
-    for library in dict.fromkeys(libraries):
+    for library in libraries:
         named = [Path(file) for file in files] or _examples(library)
         documents += map(str, named)
         items.append(Item(SOURCE, EVERY_NODE, SOURCE, library))
@@ -78,13 +84,14 @@ def plan(files, hosts, libraries, policy=DEFAULT, resumable=False):
             items += _on_host(host, library, named)
     items += [item for host in dict.fromkeys(hosts) for item in _native(host)]
     documents = tuple(dict.fromkeys(documents))
-    files = digests(documents, policy) if resumable else {}
+    files = digests(documents, policy, libraries) if resumable else {}
     return Plan(mxeon.__version__, _software(), tuple(items), documents, _options(policy), files)
 
 
 def subjects(library):
     """The nodes that a library has."""
-    return [subject for subject in SUBJECTS if subject.stock or library != "stock"]
+    data = load_library(library)
+    return [subject for subject in SUBJECTS if data.getMatchingNodeDefs(subject.node)]
 
 
 def not_run(item, reason):
@@ -203,7 +210,8 @@ def _on_host(host, library, files):
     if host_row(host).surfaces:
         for subject in SURFACES:
             for row in CHECKS:
-                if library in subject.libraries and applies(row, subject, SurfaceProbe.kind, host):
+                known = library if library in LIBRARIES else "eonlib"
+                if known in subject.libraries and applies(row, subject, SurfaceProbe.kind, host):
                     yield Item(row.key, subject.title, host, library)
     if host_row(host).scenes:
         yield from (Item(PICTURE, str(file), host, library) for file in files)
