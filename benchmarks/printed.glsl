@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// EON and its sampling with the operations of the paper's listings, to be timed against.
+// Functions to time the shaders against, none of which is shipped: EON and its sampling with the
+// operations of the paper's listings, and forms whose terms of the material are hoisted.
 //
 // Included after eon_sampling.glsl, whose constants and matrix it uses. H stands for albedos there:
 // printed_* keep the divisions, bounds and shared terms of [Portsmouth2025], Listings 1, 3 and 4.
@@ -70,6 +71,14 @@ vec3 printed_quartic_of(float mu_o, float mu_i, float s, vec3 scale, vec3 tint, 
     float lost_i = max(PRINTED_EPSILON, 1.0 - A * (1.0 + roughness * G_i));
     float quotient = s > 0.0 ? s / max(mu_i, mu_o) : s;
     return scale * (1.0 + roughness * quotient) + tint * lost_o * lost_i;
+}
+
+// Not shipped: eon_brdf_mu from the colors of its two lobes, which depend on the material alone and are
+// computed once for many directions: fon_scale, and fon_scale times eon_multiple_weight.
+vec3 hoisted_eon(float mu_o, float mu_i, float s, vec3 single, vec3 multiple, float roughness)
+{
+    float quotient = fon_quotient(mu_o, mu_i, s);
+    return (1.0 + roughness * quotient) * single + fon_loss(mu_o) * fon_loss(mu_i) * multiple;
 }
 
 // [Portsmouth2025], Eq. (28).

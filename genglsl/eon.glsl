@@ -124,11 +124,3 @@ vec3 eon_brdf_mu(float mu_o, float mu_i, float s, vec3 rho, float roughness)
     float single = 1.0 + roughness * fon_quotient(mu_o, mu_i, s);
     return scale * (vec3(single) + fon_loss(mu_o) * fon_loss(mu_i) * weight);
 }
-
-// eon_brdf_mu from the colors of its two lobes, which depend on the material alone and are computed
-// once for many directions: fon_scale, and fon_scale times eon_multiple_weight.
-vec3 eon_brdf_of(float mu_o, float mu_i, float s, vec3 single, vec3 multiple, float roughness)
-{
-    float quotient = fon_quotient(mu_o, mu_i, s);
-    return (1.0 + roughness * quotient) * single + fon_loss(mu_o) * fon_loss(mu_i) * multiple;
-}

@@ -14,8 +14,7 @@ import pytest
 import yaml
 from playwright.sync_api import sync_playwright
 
-from mxeon.models import albedo, inversion, sampling
-from mxeon.models import brdf as models
+from mxeon import albedo, inversion, models, sampling
 from mxeon.shaders.hosts.webgl import program
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -10,10 +10,10 @@ from docs.upstream import update as ledger
 from tests.support.availability import available
 from tests.support.tolerances import PRINTED
 
-PAGES = [defect.page for defect in ledger.DEFECTS] + list(ledger.OF_QUANTITIES)
+PAGES = [defect.page for defect in ledger.ISSUES] + list(ledger.OF_QUANTITIES)
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
 
-of_each_defect = pytest.mark.parametrize("defect", ledger.DEFECTS, ids=lambda each: each.page)
+of_each_defect = pytest.mark.parametrize("defect", ledger.ISSUES, ids=lambda each: each.page)
 
 
 @cache

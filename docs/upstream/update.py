@@ -12,8 +12,9 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.known_issues import DEFECTS, STOCK
-from mxeon.conformance.run.plan import SOURCE, Judge, plan
+from mxeon.conformance.known_issues import ISSUES, STOCK
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import SOURCE, make_plan
 from mxeon.io.files import write_text
 from mxeon.models import albedo, formulas
 from mxeon.models import brdf as models
@@ -83,15 +84,15 @@ def judged(host):
     NotRun
         If the host cannot run here.
     """
-    rows = {row for defect in DEFECTS for row in defect.rows}
-    items = plan((), () if host == SOURCE else (host,), (STOCK,)).items
+    rows = {row for issue in ISSUES for row in issue.rows}
+    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,)).tasks
     chosen = [
         each
-        for each in items
+        for each in tasks
         if each.host == host and (host == SOURCE or (each.check, each.subject) in rows)
     ]
     with closing(Judge(DEFAULT)) as judge:
-        findings = [judge.work(item) for item in chosen]
+        findings = [judge.work(task) for task in chosen]
     devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
     place = ", ".join([*devices, f"MaterialX {mx.__version__}"])
     return [result for each in findings for result in each.results], place
@@ -106,8 +107,7 @@ def shown(defect, results):
 def block(results, place):
     """Results as the table of a page, where they were measured, and what the first is named as."""
     rows = [
-        f"| {each.check} | {each.subject} "
-        f"| {each.figure:.2g} | {each.tolerance:.2g} | {each.unit} |"
+        f"| {each.check} | {each.subject} | {each.error:.2g} | {each.tolerance:.2g} | {each.unit} |"
         for each in results
     ]
     said = f"Measured with {place}.\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
@@ -191,9 +191,9 @@ def written(page):
 
 def main():
     """Write the blocks of all pages."""
-    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in DEFECTS)}
+    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in ISSUES)}
     blocks = {}
-    for each in DEFECTS:
+    for each in ISSUES:
         results, place = measured[each.host]
         blocks[each.page] = block(shown(each, results), place)
     blocks |= {page: made() for page, made in OF_QUANTITIES.items()}

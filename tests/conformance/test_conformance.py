@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon.conformance import known_issues as ledger
+from mxeon.conformance import known_issues
 from mxeon.conformance.checks.evaluate import judge_subject, judge_twins
 from mxeon.conformance.checks.nodes import SUBJECTS, Subject
 from mxeon.conformance.checks.probes import GRAZING, PAIRS, PairProbe, PictureProbe
@@ -15,12 +15,11 @@ from mxeon.conformance.checks.source import check_sources
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis import nearest_value
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
-from mxeon.conformance.run import check
-from mxeon.conformance.run import plan as items
+from mxeon.conformance.run import check, judge, plan
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
-from mxeon.shaders.hosts import HOSTS, open_host
+from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.library import examples_folder
 
 EON, QON, NODE = SUBJECTS
@@ -94,7 +93,7 @@ def test_every_control_is_caught(run):
     "key, limit", [("value", 2e-6), ("environment", 1e-6), ("loss", 1e-5), ("twins", 2e-6)]
 )
 def test_eonlib_reaches_the_accuracy_that_is_promised(run, key, limit):
-    figures = [each.figure for each in run.results if each.check == key and each.host == "gl"]
+    figures = [each.error for each in run.results if each.check == key and each.host == "gl"]
     assert figures and max(figures) <= limit
 
 
@@ -152,7 +151,7 @@ def test_a_host_that_gives_no_numbers_fails():
     host = ModelHost(reference.model("eon"))
     host.evaluate = lambda shader, wo, wi, inputs, branch: np.full(wo.shape, np.nan)
     result = judged(host)["value"]
-    assert result.verdict == FAILED and result.figure == np.inf
+    assert result.verdict == FAILED and result.error == np.inf
     assert "not finite" in result.diagnosis
 
 
@@ -162,7 +161,7 @@ def test_a_control_that_passes_makes_the_verdict_failed():
     ]
     probe = PairProbe(ModelHost(reference.model("eon")), EON, "eonlib")
     (result,) = judge_subject(probe, blind)
-    assert result.figure <= result.tolerance and result.verdict == FAILED
+    assert result.error <= result.tolerance and result.verdict == FAILED
     assert not result.control.caught
 
 
@@ -211,14 +210,12 @@ def test_a_document_that_cannot_be_read_is_an_error_and_the_others_are_judged(tm
 
 def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
     def missing(name):
-        if name == "reference":
-            return open_host(name)
         raise NotRun(f"{name}: nowhere")
 
-    monkeypatch.setattr(items, "open_host", missing)
+    monkeypatch.setattr(judge, "open_host", missing)
     run = check(EXAMPLES[:1], ["gl"])
     results = [each for each in run.results if each.host == "gl"]
-    assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), items.TWINS}
+    assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), plan.TWINS}
     assert {(each.verdict, each.reason) for each in results} == {(NOT_RUN, "gl: nowhere")}
 
 
@@ -289,7 +286,7 @@ def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pas
             replace(each, verdict=PASSED) if each.check in repaired else each
             for each in stock.results
         ]
-        return dict(map(reversed, ledger.repaired(results, {"MaterialX": "2.0"})))
+        return dict(map(reversed, known_issues.repaired(results, {"MaterialX": "2.0"})))
 
     page = "upstream/genglsl_clamped_dot.md"
     assert noted() == {}
@@ -302,12 +299,12 @@ def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pas
 )
 def test_what_follows_from_a_defect_of_stock_refers_to_its_page(library, words):
     result = Result("inputs", "claim.", QON.title, "cycles", library, FAILED)
-    assert ledger.referred(result).diagnosis == words
+    assert known_issues.with_page(result).diagnosis == words
 
 
 def test_every_page_that_a_check_refers_to_is_there():
     folder = Path(__file__).parents[2] / "docs" / "upstream"
-    assert all((folder / f"{defect.page}.md").is_file() for defect in ledger.DEFECTS)
+    assert all((folder / f"{defect.page}.md").is_file() for defect in known_issues.ISSUES)
 
 
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
@@ -322,7 +319,7 @@ def test_what_stock_materialx_has_right_passes(stock):
 
 
 def test_the_bundled_examples_leave_out_what_stock_lacks():
-    assert not any("eon_node" in Path(file).name for file in items._examples("stock"))
+    assert not any("eon_node" in Path(file).name for file in plan._examples("stock"))
 
 
 def test_a_subject_writes_a_document_with_its_flag():
@@ -335,7 +332,7 @@ def test_a_black_material_passes(tmp_path):
     path = tmp_path / "black.mtlx"
     path.write_text(SUBJECTS[0].document({"color": (0.0, 0.0, 0.0)}), encoding="utf-8")
     (result,) = [each for each in check([path]).results if each.check == "picture"]
-    assert result.verdict == PASSED and result.control.caught and result.figure == 0.0
+    assert result.verdict == PASSED and result.control.caught and result.error == 0.0
 
 
 def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path):

@@ -8,8 +8,7 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.run import check, read_run
-from mxeon.conformance.run import plan as items
+from mxeon.conformance.run import check, plan, read_run
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.journal_lines import NAME
 from mxeon.shaders.document.policy import Policy
@@ -122,9 +121,9 @@ def test_the_code_and_the_libraries_are_dependencies():
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     """A folder with a short run on the gl host, and its document."""
-    monkeypatch.setattr(items, "subjects", lambda library: SUBJECTS[:1])
-    monkeypatch.setattr(items, "SURFACES", ())
-    monkeypatch.setattr(items, "CHECKS", ())
+    monkeypatch.setattr(plan, "subjects", lambda library: SUBJECTS[:1])
+    monkeypatch.setattr(plan, "SURFACES", ())
+    monkeypatch.setattr(plan, "CHECKS", ())
     texture(tmp_path / "grid.png")
     token = '<token name="t" type="string" value="grid.png"/></materialx>'
     text = (examples_folder() / "plaster.mtlx").read_text(encoding="utf-8")
@@ -149,7 +148,7 @@ def test_an_option_that_changed_is_named(run):
         check([file], folder=folder, resume=True, **options)
 
 
-def test_a_driver_that_changed_is_named_once_its_items_go_on(run, monkeypatch):
+def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run, monkeypatch):
     folder, file = run
     interrupt(folder)
     monkeypatch.setattr(Host, "identity", lambda self: Identity("gl", "5.0", "another"))

@@ -16,17 +16,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon.conformance.results import FAILED, Control, Curve, Findings, Item, Picture, Plan, Result
+from mxeon.conformance.results import FAILED, Control, Curve, Picture, Result
 from mxeon.conformance.run import check, read_run, to_run
 from mxeon.conformance.run.journal import LOCK, PREVIOUS, Journal, read_journal
 from mxeon.conformance.run.journal_lines import NAME, to_line
+from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.library import examples_folder
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
-ITEMS = tuple(Item("value", name, "gl", "eonlib") for name in "abc")
+TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
 OPTIONS, FILES = {"--maxSize": "9"}, {"clay.mtlx": "00", "clay.png": "01"}
-PLAN = Plan("1.0", {"Python": "3"}, ITEMS, ("clay.mtlx",), OPTIONS, FILES)
+PLAN = Plan("1.0", {"Python": "3"}, TASKS, ("clay.mtlx",), OPTIONS, FILES)
 PIXELS = np.linspace(0.0, 1.0, 12, dtype=np.float32).reshape(2, 2, 3)
 FINDINGS = Findings(
     results=(
@@ -37,7 +38,7 @@ FINDINGS = Findings(
             "gl",
             "eonlib",
             FAILED,
-            figure=float("inf"),
+            error=float("inf"),
             tolerance=1.0,
             worst={"wo": [0.0, 1.0]},
             control=Control("wrong", 2.0, True),
@@ -69,7 +70,7 @@ def test_findings_come_back_as_they_were(tmp_path):
     assert replace(found[1], **plain) == replace(FINDINGS, **plain)
 
 
-def test_a_torn_last_line_is_dropped_and_its_item_done_again(tmp_path):
+def test_a_torn_last_line_is_dropped_and_its_task_done_again(tmp_path):
     with journal(tmp_path) as kept:
         kept.add(0, FINDINGS)
         kept.add(1, FINDINGS)
@@ -86,7 +87,7 @@ def test_a_run_says_what_is_missing(tmp_path):
     with journal(tmp_path) as kept:
         kept.add(1, FINDINGS)
     run = to_run(*read_journal(tmp_path))
-    assert run.missing == (str(ITEMS[0]), str(ITEMS[2]))
+    assert run.missing == (str(TASKS[0]), str(TASKS[2]))
 
 
 @pytest.mark.parametrize(
@@ -98,8 +99,8 @@ def test_a_run_says_what_is_missing(tmp_path):
         ({"options": {"--maxSize": "10"}}, "--maxSize (9, now 10)"),
         ({"files": FILES | {"clay.png": "02"}}, "clay.png"),
         ({"files": {"clay.mtlx": "00"}, "version": "2.0"}, "mxeon (1.0, now 2.0), clay.png"),
-        ({"items": (replace(ITEMS[0], host="webgl"),)}, "hosts (gl, now webgl)"),
-        ({"items": ITEMS[:1]}, "the checks"),
+        ({"tasks": (replace(TASKS[0], host="webgl"),)}, "hosts (gl, now webgl)"),
+        ({"tasks": TASKS[:1]}, "the checks"),
     ],
 )
 def test_another_run_is_not_resumed(tmp_path, change, words):
@@ -147,11 +148,11 @@ def test_one_folder_has_one_writer(tmp_path):
         journal(tmp_path).__enter__()
 
 
-@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 2}\n'])
+@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 3}\n'])
 def test_what_is_no_journal_is_one_line(tmp_path, text):
     (tmp_path / NAME).parent.mkdir()
     (tmp_path / NAME).write_text(text)
-    with pytest.raises(ValueError, match=f"{NAME}: must be a journal of format 2; ") as error:
+    with pytest.raises(ValueError, match=f"{NAME}: must be a journal of format 3; ") as error:
         read_journal(tmp_path)
     assert "\n" not in str(error.value)
 
@@ -181,7 +182,7 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize("content", DAMAGES.values(), ids=DAMAGES)
-def test_an_item_whose_picture_is_damaged_is_done_again(tmp_path, content):
+def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
     with journal(tmp_path) as kept:
         kept.add(0, FINDINGS)
         kept.add(1, replace(FINDINGS, pictures=()))
@@ -236,7 +237,7 @@ def changed_result(**values):
 
 
 FORGED = [
-    *(changed(item=item) for item in ("x", None, -1, 1_000_000_000, 1.5, True, [], {})),
+    *(changed(task=task) for task in ("x", None, -1, 1_000_000_000, 1.5, True, [], {})),
     *(changed(findings=findings) for findings in ({}, None, [], {"results": 3}, {"more": 1})),
     *(changed_result(verdict=verdict) for verdict in ("maybe", None, 1, [])),
     *(changed_result(worst=worst) for worst in ({"a": None}, {"a": "b"}, {"a": [None]}, 5, "x")),
@@ -253,11 +254,11 @@ def test_a_line_that_mxeon_does_not_write_does_not_count(tmp_path, change):
     forge(tmp_path, change)
     with pytest.warns(UserWarning, match="damaged in the journal"):
         run = read_run(tmp_path)
-    assert run.results == () and len(run.missing) == len(ITEMS)
+    assert run.results == () and len(run.missing) == len(TASKS)
 
 
 @pytest.mark.parametrize(
-    "before, after", [(b"failed", b"passed"), (b'"item": 1', b'"item": 0'), (b"0.5", b"0.25")]
+    "before, after", [(b"failed", b"passed"), (b'"task": 1', b'"task": 0'), (b"0.5", b"0.25")]
 )
 def test_an_edited_line_does_not_count(tmp_path, before, after):
     with journal(tmp_path) as kept:
@@ -271,7 +272,7 @@ def test_an_edited_line_does_not_count(tmp_path, before, after):
 
 
 @pytest.mark.parametrize(
-    "line", [b"", b"\0" * 9, b"[" * 100_000, b"1" * 5000, b"\xff", b'{"item": 0}']
+    "line", [b"", b"\0" * 9, b"[" * 100_000, b"1" * 5000, b"\xff", b'{"task": 0}']
 )
 def test_a_line_that_is_no_record_costs_no_other(tmp_path, line):
     with journal(tmp_path) as kept:

@@ -26,9 +26,10 @@ from tests.fuzz import journals, signals
 from tests.fuzz.__main__ import keep
 from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
 from tests.fuzz.documents import originals
-from tests.fuzz.found import LOBE, MATERIAL
+from tests.fuzz.found import LOBE
 from tests.fuzz.trial import judged
 from tests.fuzz.words import ATTRIBUTES, CATEGORIES, PATHS, SNIPPETS, TYPES, VALUES
+from tests.support.documents import material
 
 SEED = 1
 LIMIT = 60.0  # seconds for one case
@@ -103,7 +104,7 @@ def lines():
 
 
 def _document_case(rng, nodes):
-    return Case("document", (("base.mtlx", MATERIAL.format(nodes).encode()),), _arguments(rng))
+    return Case("document", (("base.mtlx", material(nodes).encode()),), _arguments(rng))
 
 
 def _attribute_case(rng, row):
@@ -116,7 +117,10 @@ def _attribute_case(rng, row):
 
 def _coding_case(rng, row):
     declared, used = row
-    text = f'<?xml version="1.0" encoding="{declared}"?>' + MATERIAL.format(LOBE.format(""))
+    text = (
+        f'<?xml version="1.0" encoding="{declared}"?>'
+        + material(LOBE.format("")).partition("?>")[2]
+    )
     try:
         data = text.encode(used)
     except (LookupError, UnicodeError):
@@ -128,7 +132,7 @@ def _line_case(_, row):
     command, place, word = row
     arguments = (*command[:place], word, *command[place + 1 :])
     host = ("--host", "abacus") if command[0] == "check" else ()
-    data = MATERIAL.format(LOBE.format("")).encode()
+    data = material(LOBE.format("")).encode()
     return Case(" ".join(arguments), (("base.mtlx", data), ("part.mtlx", data)), arguments + host)
 
 

@@ -36,7 +36,7 @@ def finished(folder):
 def verdicts(folder):
     """What a run found, as a set that two equal runs share."""
     return {
-        (each.check, each.subject, each.host, each.library, each.verdict, each.figure)
+        (each.check, each.subject, each.host, each.library, each.verdict, each.error)
         for each in read_run(folder).results
     }
 

@@ -17,8 +17,17 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Curve, Picture, Result, Run
-from mxeon.conformance.verdict import summarize
+from mxeon.conformance.results import (
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    Control,
+    Curve,
+    Picture,
+    Result,
+    Run,
+    summarize,
+)
 from mxeon.io.images import difference_scale, srgb_encoded
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.report.plots import SHOWN_SIZE, difference_pixels
@@ -38,7 +47,7 @@ def made_result(verdict, **changes):
         host="gl",
         library="eonlib",
         verdict=verdict,
-        figure=1.25e-7,
+        error=1.25e-7,
         unit="1/pi",
         tolerance=2e-6,
         derivation="Two roundings of 6e-8 each.",
@@ -48,12 +57,12 @@ def made_result(verdict, **changes):
     return replace(ran, **changes)
 
 
-FAILURE = made_result(FAILED, library="stock", figure=math.inf, diagnosis="nearest model: QON")
+FAILURE = made_result(FAILED, library="stock", error=math.inf, diagnosis="nearest model: QON")
 MISSING = made_result(
-    NOT_RUN, host="cycles", figure=None, control=None, worst={}, reason="Blender is not here"
+    NOT_RUN, host="cycles", error=None, control=None, worst={}, reason="Blender is not here"
 )
 ATTACK = made_result(
-    FAILED, figure=math.nan, subject=HOSTILE, diagnosis=HOSTILE, unit=HOSTILE, claim=HOSTILE,
+    FAILED, error=math.nan, subject=HOSTILE, diagnosis=HOSTILE, unit=HOSTILE, claim=HOSTILE,
     derivation=HOSTILE, worst={HOSTILE: [1.0]}, control=Control(HOSTILE, 0.0, caught=False),
 )  # fmt: skip
 
@@ -247,7 +256,7 @@ def test_page_of_an_empty_run_says_that_nothing_ran():
 
 
 def test_page_shows_a_failure_without_a_figure(run):
-    crash = made_result(FAILED, figure=None, tolerance=None, diagnosis="no image came back")
+    crash = made_result(FAILED, error=None, tolerance=None, diagnosis="no image came back")
     text = Page(page_of(replace(run, results=(crash,), pictures=(), curves=()))).text
     assert text.count("no image came back") == 2
 

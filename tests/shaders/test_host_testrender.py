@@ -16,7 +16,8 @@ import pytest
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.probes import PlaneProbe
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.conformance.run.plan import Judge, plan
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import generate
@@ -97,7 +98,7 @@ def test_the_plane_is_seen_at_all_angles():
 
 def verdicts(library, *keys):
     """Verdict and diagnosis of checks of the node with the flag, by key."""
-    items = plan([], ["testrender"], [library]).items
+    items = make_plan([], ["testrender"], [library]).tasks
     with closing(Judge(DEFAULT)) as judge:
         chosen = [each for each in items if (each.subject, each.check) in product([EON], keys)]
         results = [result for item in chosen for result in judge.work(item).results]

@@ -194,6 +194,20 @@ class Rho(float):
     __call__ = staticmethod(float)
 
 
+FLAG = {
+    "genmdl": (r"{{energy_compensation}} \? (.*) : color\(0\.0\)", r"\1"),
+    "genosl": ("{{energy_compensation}}", "1"),
+}
+
+
+@pytest.mark.parametrize("target", FLAG)
+def test_the_source_of_eon_is_that_of_oren_nayar_with_the_flag_set(target):
+    nodes = [library.load_library().getNodeDef(f"ND_{name}") for name in (OREN_NAYAR, EON)]
+    oren_nayar, eon = (node.getImplementation(target).getAttribute("sourcecode") for node in nodes)
+    flag, replacement = FLAG[target]
+    assert re.subn(flag, replacement, oren_nayar) == (eon, 1)
+
+
 def test_without_the_flag_the_mdl_tint_is_black():
     source = library.load_library().getNodeDef(NODEDEFS[0]).getImplementation("genmdl")
     assert source.getAttribute("sourcecode").endswith(" : color(0.0)))))")

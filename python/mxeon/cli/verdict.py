@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 def show_run(run: Run, options: argparse.Namespace) -> int:
     """Write the report of a run and print its verdict; return the exit status."""
     from mxeon import report
-    from mxeon.conformance.verdict import summarize
 
     page = report.write(run, options.report) if options.report else None
-    summary = summarize(run.results, run.missing, run.errors)
+    summary = run.summary
     if options.json:
         print(report.to_json(run))
     else:
@@ -40,19 +39,15 @@ def show_run(run: Run, options: argparse.Namespace) -> int:
 
 def _print_not_run(run: Run) -> None:
     """Print each reason that kept checks from running, with their number."""
-    from mxeon.conformance.verdict import place
-
     reasons = Counter(
-        (place(result), result.reason) for result in run.results if result.verdict == "not run"
+        (result.location, result.reason) for result in run.results if result.verdict == "not run"
     )
     for (where, reason), count in reasons.items():
         print(one_line(f"not run: {where}, {count} checks: {reason}"))
 
 
 def _print_failed(run: Run) -> None:
-    from mxeon.conformance.verdict import explained, place
-
     for result in run.results:
         if result.verdict == "failed":
-            where = f"{place(result)}, {result.check}, {result.subject}"
-            print(one_line(f"failed: {where}: {explained(result)}"))
+            where = f"{result.location}, {result.check}, {result.subject}"
+            print(one_line(f"failed: {where}: {result.explanation}"))

@@ -14,7 +14,6 @@ from mxeon.conformance.checks.evaluate import judge_subject
 from mxeon.conformance.checks.probes import FEW, SEED, Batch, PairProbe, directions, random_inputs
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import PASSED, Run
-from mxeon.conformance.verdict import explained
 from mxeon.errors import InputError
 from mxeon.models import table as reference
 from mxeon.shaders.hosts.base import Identity
@@ -152,7 +151,7 @@ def brdf_test(brdf, model="eon", name=None):
     @pytest.mark.parametrize("check", _checks(model), ids=lambda check: check.key)
     def test_brdf(check):
         (result,) = judge_subject(probe, (check,))
-        assert result.verdict == PASSED, f"{check.claim} {explained(result)}"
+        assert result.verdict == PASSED, f"{check.claim} {result.explanation}"
 
     return test_brdf
 

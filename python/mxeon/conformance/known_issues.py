@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known defects of stock MaterialX: the page of `docs/upstream/` that each failing check belongs to."""
+"""Known issues of stock MaterialX and Cycles: the page of `docs/upstream/` on each failing check."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from mxeon.conformance.checks.source import WITH_BSDF
-from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.results import FAILED, PASSED, Result
 
 STOCK = "stock"
 NODE = "oren_nayar_diffuse_bsdf, energy_compensation"
 
 
 @dataclass(frozen=True)
-class Defect:
-    """A page of the ledger, and the results that show its defect.
+class Issue:
+    """An issue upstream: its page, and the results that show it.
 
     Attributes
     ----------
     page : str
         Its name without suffix.
     host : str
-        Where it was found; "source" for generated text.
+        The host that shows it; "source" for generated text.
     rows : tuple of (str, str)
         Key of the check and subject of each result, all of which fail.
     also : tuple of str
@@ -35,8 +36,8 @@ class Defect:
     implied: tuple[tuple[str, str], ...] = ()
 
 
-DEFECTS = (
-    Defect(
+ISSUES = (
+    Issue(
         "genglsl_clamped_dot",
         "gl",
         (("value", f"{NODE} true"), ("albedo", f"{NODE} true"), ("lobe", "open_pbr_surface")),
@@ -47,22 +48,22 @@ DEFECTS = (
             *(("clamp", f"{NODE} true, {target}") for target in WITH_BSDF),
         ),
     ),
-    Defect(
+    Issue(
         "genglsl_qon_albedo_fit",
         "gl",
         (("environment", f"{NODE} false"),),
         ("webgl", "vulkan", "slang"),
     ),
-    Defect("genglsl_albedo_acos", "gl", (("environment", f"{NODE} true"),), ("webgl", "vulkan")),
-    Defect(
+    Issue("genglsl_albedo_acos", "gl", (("environment", f"{NODE} true"),), ("webgl", "vulkan")),
+    Issue(
         "genosl_dropped_flag",
         "source",
         (("source", f"{NODE} true, osl"), ("source", f"{NODE} false, osl")),
     ),
-    Defect("openpbr_thin_walled", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
-    Defect("openpbr_thin_walled_tint", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
-    Defect("genmdl_white_lobe", "source", (("tint", f"{NODE} true, mdl"),)),
-    Defect(
+    Issue("openpbr_thin_walled", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
+    Issue("openpbr_thin_walled_tint", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
+    Issue("genmdl_white_lobe", "source", (("tint", f"{NODE} true, mdl"),)),
+    Issue(
         "cycles_rho_cubed",
         "cycles",
         (("value", f"{NODE} true"), ("value", f"{NODE} false"), ("flag", f"{NODE} true")),
@@ -76,52 +77,52 @@ DEFECTS = (
 )
 
 
-def referred(result):
-    """A result whose diagnosis ends with the page of the ledger that explains it, if one does."""
-    pages = [
-        f"see upstream/{defect.page}.md" for defect in _found(result) if result.verdict == FAILED
-    ]
+def with_page(result: Result) -> Result:
+    """A result whose diagnosis ends with the page of the issue that explains it, if one does."""
+    pages = [f"see upstream/{issue.page}.md" for issue in _issues(result)]
     return replace(result, diagnosis="; ".join(filter(None, (result.diagnosis, *pages))))
 
 
-def repaired(results, software):
-    """Notes on defects that are gone, all of whose rows pass: a text and a page for each.
+def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """Notes on issues that are repaired, all of whose rows pass: a text and a page for each.
 
     Parameters
     ----------
     results : sequence of Result
     software : dict of str to str
-        The versions that were judged, by name.
+        The versions of the packages, by name.
 
     Returns
     -------
     tuple of (str, str)
     """
     verdicts = {
-        (each.host, each.check, each.subject): each.verdict
-        for each in results
-        if each.library == STOCK
+        (result.host, result.check, result.subject): result.verdict
+        for result in results
+        if result.library == STOCK
     }
     return tuple(
         (
-            f"repaired in {_judged(defect, software)}, so that its page can go",
-            f"upstream/{defect.page}.md",
+            f"repaired in {_software_of(issue, software)}, so that its page can go",
+            f"upstream/{issue.page}.md",
         )
-        for defect in DEFECTS
-        if all(verdicts.get((defect.host, *row)) == PASSED for row in defect.rows)
+        for issue in ISSUES
+        if all(verdicts.get((issue.host, *row)) == PASSED for row in issue.rows)
     )
 
 
-def _judged(defect, software):
-    return f"MaterialX {software['MaterialX']}" if defect.host != "cycles" else "this Blender"
+def _software_of(issue: Issue, software: Mapping[str, str]) -> str:
+    """The software that has an issue, in words."""
+    return f"MaterialX {software['MaterialX']}" if issue.host != "cycles" else "this Blender"
 
 
-def _found(result):
-    """Defects whose rows a result of the stock library is one of."""
+def _issues(result: Result) -> list[Issue]:
+    """Issues that a failed result of the stock library shows."""
+    if result.verdict != FAILED or result.library != STOCK:
+        return []
     return [
-        defect
-        for defect in DEFECTS
-        if result.library == STOCK
-        and result.host in (defect.host, *defect.also)
-        and (result.check, result.subject) in (*defect.rows, *defect.implied)
+        issue
+        for issue in ISSUES
+        if result.host in (issue.host, *issue.also)
+        and (result.check, result.subject) in (*issue.rows, *issue.implied)
     ]

@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a conformance run leaves behind: plain data, from `conformance` to `report`."""
+"""The results of a conformance run as plain data, and the verdict on them."""
 
-from dataclasses import dataclass, field
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.errors import InputError
 from mxeon.shaders.hosts.base import Identity
 
 PASSED, FAILED, NOT_RUN = "passed", "failed", "not run"
 VERDICTS = (PASSED, FAILED, NOT_RUN)
+NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 
 
 @dataclass(frozen=True)
@@ -20,15 +27,15 @@ class Control:
     Attributes
     ----------
     variant : str
-        What was made wrong.
-    figure : float
-        What the check measured on it.
+        The change that makes it wrong.
+    error : float
+        Measured by the check on it.
     caught : bool
         Whether the check failed on it, as it must.
     """
 
     variant: str
-    figure: float
+    error: float
     caught: bool
 
 
@@ -41,19 +48,19 @@ class Result:
     check, claim : str
         Key of the check's row and the sentence it tests.
     subject : str
-        What was judged: a node and its flag, or a document and its element.
+        A node and its flag, or a document and its element.
     host, library : str
-        Where it ran, and whose data library it used.
+        The host it ran on, and the data library it used.
     verdict : str
         PASSED, FAILED or NOT_RUN.
-    figure, tolerance : float or None
-        Measured and allowed, in `unit`; a check passes at figure <= tolerance.
+    error, tolerance : float or None
+        Measured and allowed, in `unit`; a check passes at error <= tolerance.
     unit, derivation : str
-        Unit of both, and where the tolerance comes from.
+        Unit of both, and the derivation of the tolerance.
     worst : dict of str to list of float
         The inputs and values at the worst point, by name.
     diagnosis : str
-        The nearest known model with its distance, or what else explains a failure.
+        The nearest known model with its distance, or another explanation of a failure.
     distances : dict of str to float
         Root-mean-square distance to each known model and defect, by title, where diagnosed.
     control : Control or None
@@ -64,7 +71,7 @@ class Result:
     Raises
     ------
     ValueError
-        If the verdict is unknown, or a figure is negative or stands without its tolerance.
+        If the verdict is unknown, or an error is negative or has no tolerance.
     """
 
     check: str
@@ -73,7 +80,7 @@ class Result:
     host: str
     library: str
     verdict: str
-    figure: float | None = None
+    error: float | None = None
     unit: str = ""
     tolerance: float | None = None
     derivation: str = ""
@@ -83,17 +90,104 @@ class Result:
     control: Control | None = None
     reason: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
             raise InputError(f"verdict must be one of {', '.join(VERDICTS)}; got {self.verdict!r}")
-        if self.figure is None:
+        if self.error is None:
             return
         if self.tolerance is None:
-            raise InputError(f"figure must have its tolerance; got {self.figure} and none")
-        if min(self.figure, self.tolerance) < 0:
+            raise InputError(f"an error must have a tolerance; got {self.error} and none")
+        if min(self.error, self.tolerance) < 0:
             raise InputError(
-                f"figure and tolerance must be at least 0; got {self.figure} and {self.tolerance}"
+                f"error and tolerance must be at least 0; got {self.error} and {self.tolerance}"
             )
+
+    @property
+    def location(self) -> str:
+        """Host and library, in words."""
+        return f"{self.host} with {self.library}"
+
+    @property
+    def excess(self) -> str:
+        """The error that is too large, or the control that passed; "" for neither."""
+        control = self.control
+        if self.error is not None and not self.error <= (self.tolerance or 0.0):
+            return f"{self.error:.3g} > {self.tolerance:.3g} {self.unit}".rstrip()
+        if control and not control.caught:
+            return f"the negative control is not caught: {control.variant}, {control.error:.3g}"
+        return ""
+
+    @property
+    def explanation(self) -> str:
+        """The reason for a failure: the excess and the diagnosis."""
+        return "; ".join(filter(None, (self.excess, self.diagnosis)))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The verdict on a whole run.
+
+    Attributes
+    ----------
+    verdict : str
+        FAILED if any check failed, else NOT_RUN if any or all did not run or the run is not
+        finished, else PASSED.
+    counts : dict of str to int
+        Number of checks that ended as PASSED, FAILED, NOT_RUN.
+    sentence : str
+        The same for a reader.
+    """
+
+    verdict: str
+    counts: dict[str, int]
+    sentence: str
+
+
+def summarize(
+    results: Sequence[Result], missing: Sequence[str] = (), errors: Sequence[str] = ()
+) -> Summary:
+    """Verdict on `results`.
+
+    Parameters
+    ----------
+    results : sequence of Result
+    missing : sequence of str
+        Tasks of an interrupted run that are not done yet.
+    errors : sequence of str
+        One line for each document that was refused.
+
+    Examples
+    --------
+    >>> summarize(()).sentence
+    'No check ran.'
+    """
+    summary = _summarize_results(results)
+    if not missing and not errors:
+        return summary
+    verdict = FAILED if summary.verdict == FAILED else NOT_RUN
+    sentence = summary.sentence
+    if missing:
+        sentence += f" The run is not finished: {len(missing)} items are missing."
+    if errors:
+        sentence += f" Refused: {len(errors)} documents."
+    return replace(summary, verdict=verdict, sentence=sentence)
+
+
+def _summarize_results(results: Sequence[Result]) -> Summary:
+    tally = Counter(result.verdict for result in results)
+    counts = {verdict: tally[verdict] for verdict in (PASSED, FAILED, NOT_RUN)}
+    total = len(results)
+    if counts[FAILED]:
+        failed = Counter(result.location for result in results if result.verdict == FAILED)
+        listed = "; ".join(f"{count} on {location}" for location, count in failed.items())
+        return Summary(FAILED, counts, f"{counts[FAILED]} of {total} checks failed: {listed}.")
+    if not counts[PASSED]:
+        return Summary(NOT_RUN, counts, "No check ran.")
+    if counts[NOT_RUN]:
+        sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} checks did not run."
+        return Summary(NOT_RUN, counts, sentence)
+    hosts = " and ".join(dict.fromkeys(result.location for result in results))
+    return Summary(PASSED, counts, f"All {total} checks passed on {hosts}.")
 
 
 @dataclass(frozen=True)
@@ -103,13 +197,13 @@ class Picture:
     Attributes
     ----------
     document, element, host, library, scene : str
-        What is shown, by whom, under which light.
+        The material, the host that rendered it, and the light.
     image : ndarray, shape (size, size, 3), float32
         Linear radiance; see `mxeon.shaders.scene` for its scale.
     reference : ndarray or None
         The same from the NumPy models, or None where the material has other lobes.
     metadata : dict of str to str
-        What made it: version, host, device, library, document, element, scene.
+        Its origin: version, host, device, library, document, element, scene.
     """
 
     document: str
@@ -117,9 +211,22 @@ class Picture:
     host: str
     library: str
     scene: str
-    image: np.ndarray
-    reference: np.ndarray | None
+    image: NDArray[Any]
+    reference: NDArray[Any] | None
     metadata: dict[str, str]
+
+
+def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
+    """File names for pictures, without suffix: ASCII, and different whatever the case."""
+    names, uses = [], Counter[str]()
+    for picture in pictures:
+        words = (Path(picture.document).stem, picture.element, picture.host, picture.library)
+        words = tuple(NOT_PLAIN.sub("_", word)[:40] for word in (*words, picture.scene))
+        name = "-".join(words)
+        uses[name.lower()] += 1
+        # A counter is a sixth word, which no other name has.
+        names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
+    return tuple(names)
 
 
 @dataclass(frozen=True)
@@ -129,7 +236,6 @@ class Curve:
     Attributes
     ----------
     subject, host, library : str
-        What was measured, where.
     rho : tuple of 3 floats
     roughness : float
     mu : ndarray, shape (N,)
@@ -141,77 +247,9 @@ class Curve:
     library: str
     rho: tuple[float, float, float]
     roughness: float
-    mu: np.ndarray
-    measured: np.ndarray
-    expected: np.ndarray
-
-
-@dataclass(frozen=True)
-class Item:
-    """One independent piece of a run: a check of one subject on one host with one library.
-
-    Attributes
-    ----------
-    check : str
-        Key of a row of `mxeon.conformance.checks.table.CHECKS`, or "host", "source", "curve" or "picture".
-    subject : str
-        Title of a node, path of a document, or "shader twins".
-    host, library : str
-    """
-
-    check: str
-    subject: str
-    host: str
-    library: str
-
-    def __str__(self):
-        return f"{self.host}, {self.check}, {self.subject}, {self.library}"
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What a run consists of; two runs are the same if their plans are.
-
-    Attributes
-    ----------
-    version : str
-        Of mxeon.
-    software : dict of str to str
-        Versions of what takes part (Python, NumPy, MaterialX, ...).
-    items : tuple of Item
-    documents : tuple of str
-        Their paths.
-    options : dict of str to str
-        What the documents may do, by the option of the command.
-    files : dict of str to str
-        SHA-256 of each file that the findings depend on, by path; "" where it cannot be read.
-        Empty where the run is not kept.
-    """
-
-    version: str
-    software: dict[str, str]
-    items: tuple[Item, ...]
-    documents: tuple[str, ...]
-    options: dict[str, str] = field(default_factory=dict)
-    files: dict[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Findings:
-    """What the work on one item found; see Run."""
-
-    results: tuple[Result, ...] = ()
-    pictures: tuple[Picture, ...] = ()
-    curves: tuple[Curve, ...] = ()
-    notes: tuple[tuple[str, str], ...] = ()
-    errors: tuple[str, ...] = ()
-    hosts: tuple[Identity, ...] = ()
-
-    def answer(self, item):
-        """Whether these are findings of an item: there are some, and all are of its place."""
-        records = (*self.results, *self.pictures, *self.curves)
-        place = (item.host, item.library)
-        return bool(records or self.errors) and all((r.host, r.library) == place for r in records)
+    mu: NDArray[np.float64]
+    measured: NDArray[np.float64]
+    expected: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -234,11 +272,11 @@ class Run:
         One line for each document that could not be judged.
     documents : tuple of Path
     missing : tuple of str
-        Items that are not done yet, where the run was interrupted.
+        Tasks that are not done yet, where the run was interrupted.
     """
 
     version: str
-    software: dict
+    software: dict[str, str]
     hosts: tuple[Identity, ...]
     results: tuple[Result, ...]
     pictures: tuple[Picture, ...] = ()
@@ -247,3 +285,13 @@ class Run:
     errors: tuple[str, ...] = ()
     documents: tuple[Path, ...] = ()
     missing: tuple[str, ...] = ()
+
+    @cached_property
+    def summary(self) -> Summary:
+        """The verdict on this run."""
+        return summarize(self.results, self.missing, self.errors)
+
+    @cached_property
+    def image_names(self) -> tuple[str, ...]:
+        """File names for the pictures, without suffix: ASCII, and different whatever the case."""
+        return image_names(self.pictures)

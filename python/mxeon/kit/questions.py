@@ -136,25 +136,25 @@ def answer(question, views, images, depth, place, obstacle=""):
     ]
     models = [expected(reference.model(view.material.model), view, depth) for view in asked]
     found = _tiles(cases, models)
-    figure = _ratio(found)
+    error = _ratio(found)
     wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in asked]))
     noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in found])))
-    if max(figure, wrong) <= 1.0:
+    if max(error, wrong) <= 1.0:
         reason = f"too noisy to notice if {question.variant}: {noise:.2g} rms a pixel; more samples"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
     ranking = candidates(cases, depth) if question.key == "model" else []
     words = named(ranking) if ranking else ""
-    if question.key == "setup" and figure > 1.0:
+    if question.key == "setup" and error > 1.0:
         words = _fault(cases[0], models[0], images)
     return Result(
         **place,
-        verdict=PASSED if figure <= 1.0 < wrong else FAILED,
-        figure=figure,
+        verdict=PASSED if error <= 1.0 < wrong else FAILED,
+        error=error,
         unit=UNIT,
         tolerance=1.0,
         derivation=DERIVATION,
         worst={"noise of a pixel, rms": [noise]},
-        diagnosis=words if figure > 1.0 else "",
+        diagnosis=words if error > 1.0 else "",
         distances={each.title: each.distance for each in ranking},
         control=Control(question.variant, wrong, wrong > 1.0),
     ), words

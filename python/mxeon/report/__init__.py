@@ -3,12 +3,11 @@
 
 import json
 import math
-import re
-from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
-from mxeon.conformance.verdict import summarize
+from mxeon.conformance.records import make_converter
+from mxeon.conformance.results import image_names
 from mxeon.errors import PackageError
 from mxeon.io.files import replacing, write_text
 from mxeon.io.images import difference, write_exr, write_png
@@ -47,7 +46,7 @@ def to_json(run):
           beside the JSON file; largest_difference from the reference, or null without one.
         - curves: objects with the fields of `mxeon.conformance.results.Curve`.
     """
-    summary = summarize(run.results, run.missing, run.errors)
+    summary = run.summary
     hosts = [vars(identity) for identity in run.hosts]
     data = {
         "format": JSON_FORMAT,
@@ -61,21 +60,17 @@ def to_json(run):
         "documents": [str(path) for path in run.documents],
         "notes": run.notes,
         "hosts": hosts,
-        "results": [_result_fields(result) for result in run.results],
-        "pictures": _picture_fields(run.pictures),
+        "results": make_converter().unstructure(run.results),
+        "pictures": _picture_fields(run),
         "curves": [vars(curve) for curve in run.curves],
     }
     return json.dumps(_plain(data), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
 
 
-def _result_fields(result):
-    return vars(result) | {"control": result.control and vars(result.control)}
-
-
-def _picture_fields(pictures):
+def _picture_fields(run):
     keys = ("document", "element", "host", "library", "scene")
     fields = []
-    for picture, stem in zip(pictures, _stems(pictures), strict=True):
+    for picture, stem in zip(run.pictures, run.image_names, strict=True):
         largest = None
         if picture.reference is not None:
             largest = difference(picture.image, picture.reference).max()
@@ -127,7 +122,7 @@ def write(run, folder):
     write_text(folder / "results.json", to_json(run))
     write_text(folder / "junit.xml", to_junit(run))
     pictures = _with_references(run.pictures)
-    for picture, stem in zip(pictures, _stems(pictures), strict=True):
+    for picture, stem in zip(pictures, image_names(pictures), strict=True):
         path = folder / "pictures" / stem
         write_exr(f"{path}.exr", picture.image, picture.metadata)
         write_png(f"{path}.png", picture.image, picture.metadata)
@@ -157,21 +152,8 @@ def html(run):
             remedy = "pip install 'mxeon[report]'"
             raise PackageError(f"report.html needs {error.name}: {remedy}") from error
         raise
-    files = {id(each): stem for each, stem in zip(run.pictures, _stems(run.pictures), strict=True)}
+    files = {id(each): stem for each, stem in zip(run.pictures, run.image_names, strict=True)}
     return render(run, lambda picture: f"pictures/{files[id(picture)]}.png")
-
-
-def _stems(pictures):
-    """File names for `pictures`, without suffix: ASCII, and different whatever the case."""
-    stems, uses = [], Counter()
-    for picture in pictures:
-        words = (Path(picture.document).stem, picture.element, picture.host, picture.library)
-        words = [re.sub(r"[^A-Za-z0-9]+", "_", word)[:40] for word in (*words, picture.scene)]
-        stem = "-".join(words)
-        uses[stem.lower()] += 1
-        # A counter is a sixth word, which no other name has.
-        stems.append(stem if uses[stem.lower()] == 1 else f"{stem}-{uses[stem.lower()]}")
-    return stems
 
 
 def _with_references(pictures):

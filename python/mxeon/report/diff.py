@@ -163,7 +163,7 @@ def _results(before, after):
         elif old.verdict != new.verdict:
             worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
             yield Change(WORSE if worse else BETTER, place, _told(old), _told(new))
-        elif _apart(old.figure, new.figure):
+        elif _apart(old.error, new.error):
             yield Change(OTHER, place, _told(old), _told(new))
 
 
@@ -196,7 +196,7 @@ def _apart(old, new):
 
 
 def _told(result):
-    return result.verdict + ("" if result.figure is None else f" at {_number(result.figure)}")
+    return result.verdict + ("" if result.error is None else f" at {_number(result.error)}")
 
 
 def _number(value):

@@ -4,8 +4,7 @@
 import re
 from xml.etree import ElementTree
 
-from mxeon.conformance.results import FAILED, NOT_RUN
-from mxeon.conformance.verdict import excess, place, summarize
+from mxeon.conformance.results import FAILED, NOT_RUN, summarize
 
 # What XML 1.0 cannot hold, escaped or not (section 2.2, production Char).
 NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -26,8 +25,8 @@ def to_junit(run):
     str
     """
     root = ElementTree.Element("testsuites", name="mxeon")
-    for name in dict.fromkeys(place(result) for result in run.results):
-        results = [result for result in run.results if place(result) == name]
+    for name in dict.fromkeys(result.location for result in run.results):
+        results = [result for result in run.results if result.location == name]
         suite = ElementTree.SubElement(root, "testsuite", name=_xml(name), **_totals(results))
         properties = ElementTree.SubElement(suite, "properties")
         for key, value in _properties(run, results[0].host).items():
@@ -81,7 +80,7 @@ def _add_case(suite, result):
     if result.verdict == NOT_RUN:
         ElementTree.SubElement(case, "skipped", message=_xml(result.reason))
     if result.verdict == FAILED:
-        message = f"{result.claim} {excess(result)}"
+        message = f"{result.claim} {result.excess}"
         failure = ElementTree.SubElement(
             case, "failure", type=_xml(result.check), message=_xml(message)
         )

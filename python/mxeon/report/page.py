@@ -13,7 +13,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
-from mxeon.conformance.verdict import explained, summarize
 from mxeon.io.images import difference, difference_scale, srgb_encoded
 from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
 
@@ -56,7 +55,7 @@ class Check:
     @property
     def tightest(self):
         """The result closest to its tolerance or furthest beyond, None if none ran."""
-        ran = [result for result in self.results if result.figure is not None]
+        ran = [result for result in self.results if result.error is not None]
         return max(ran, key=share, default=None)
 
     @property
@@ -65,7 +64,7 @@ class Check:
         found = {}
         for one in self.results:
             if one.verdict == FAILED:
-                words = one.diagnosis if one.figure is None or share(one) > 1.0 else explained(one)
+                words = one.diagnosis if one.error is None or share(one) > 1.0 else one.explanation
                 found.setdefault(words, []).append(one.subject)
         return found
 
@@ -77,11 +76,11 @@ class Check:
 
 def share(result):
     """Figure over tolerance; infinite where the figure is no finite number."""
-    if not math.isfinite(result.figure):
+    if not math.isfinite(result.error):
         return math.inf
     if not result.tolerance:
-        return math.inf if result.figure > 0.0 else 0.0
-    return result.figure / result.tolerance
+        return math.inf if result.error > 0.0 else 0.0
+    return result.error / result.tolerance
 
 
 def number(value, digits=3):
@@ -227,7 +226,7 @@ def render(run, file_of):
     environment.filters |= {"share": share, "look": LOOKS.__getitem__, "nearest": nearest}
     return environment.get_template("report.html.jinja").generate(
         run=run,
-        summary=summarize(run.results, run.missing, run.errors),
+        summary=run.summary,
         script=Markup(script),
         script_hash=b64encode(sha256(script.encode()).digest()).decode(),
         places=places,

@@ -97,21 +97,21 @@ def _judge(check, probe, tolerance, place, diagnose):
         return Result(check.key, check.claim, **place, verdict=NOT_RUN, reason=str(reason))
     except ShaderError as error:
         return Result(check.key, check.claim, **place, verdict=FAILED, diagnosis=str(error))
-    right, caught = found.figure <= tolerance.limit, wrong.figure > tolerance.limit
+    right, caught = found.error <= tolerance.limit, wrong.error > tolerance.limit
     diagnosis = Diagnosis() if right else diagnose(check, probe)
     return Result(
         check.key,
         check.claim,
         **place,
         verdict=PASSED if right and caught else FAILED,
-        figure=found.figure,
+        error=found.error,
         unit=tolerance.unit,
         tolerance=tolerance.limit,
         derivation=tolerance.derivation,
         worst=found.worst,
         diagnosis=diagnosis.text,
         distances=diagnosis.distances,
-        control=Control(check.variant, wrong.figure, caught),
+        control=Control(check.variant, wrong.error, caught),
     )
 
 

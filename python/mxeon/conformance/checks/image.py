@@ -129,7 +129,7 @@ def _judge_finite(place, images, reason):
         FINITE,
         **place,
         verdict=PASSED if bad == 0 < caught else FAILED,
-        figure=bad,
+        error=bad,
         unit="pixels",
         tolerance=0,
         derivation="a count",
@@ -144,7 +144,7 @@ def _not_finite(images):
 
 def _judge_match(place, cases, tolerance, front_lit):
     limit, derivation = tolerance
-    figure, worst, light = max(
+    error, worst, light = max(
         ((*_worst_pixel(*case, front_lit), case[0].name) for case in cases),
         key=lambda found: found[0],
     )
@@ -154,13 +154,13 @@ def _judge_match(place, cases, tolerance, front_lit):
         "picture",
         MATCH,
         **place,
-        verdict=PASSED if figure <= limit < brighter else FAILED,
-        figure=figure,
+        verdict=PASSED if error <= limit < brighter else FAILED,
+        error=error,
         unit=UNIT,
         tolerance=limit,
         derivation=derivation,
         worst=worst,
-        diagnosis="" if figure <= limit else f"most in the picture of the scene {light}",
+        diagnosis="" if error <= limit else f"most in the picture of the scene {light}",
         control=Control("the picture is brighter by three tolerances", brighter, brighter > limit),
     )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the checks measure: each takes a probe and gives its worst figure and where it was found."""
+"""What the checks measure: each takes a probe and gives its worst error and where it was found."""
 
 from dataclasses import dataclass, replace
 from itertools import product
@@ -33,16 +33,16 @@ QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
 @dataclass(frozen=True)
 class Measurement:
-    """The worst figure of a check, and where it was found.
+    """The worst error of a check, and where it was found.
 
     Attributes
     ----------
-    figure : float
+    error : float
     worst : dict of str to list of float
         Inputs and values at the worst point, by name.
     """
 
-    figure: float
+    error: float
     worst: dict
 
 
@@ -228,7 +228,7 @@ def _worst(error, cases):
     for batch, measured, expected in cases:
         errors = error(measured, expected)
         row = int(np.argmax(errors))
-        if errors[row] > found.figure:
+        if errors[row] > found.error:
             expected = np.broadcast_to(expected, measured.shape)
             values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
             found = Measurement(float(errors[row]), {**_point(batch, row), **values})

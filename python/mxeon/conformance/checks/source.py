@@ -108,19 +108,19 @@ def _tints(subject, library):
 
 def _result(key, claim, place, found, unless, control):
     """Result of counting what must not be there; `unless` says what it means if it is."""
-    (subject, library), (figure, unit) = place, found
+    (subject, library), (error, unit) = place, found
     return Result(
         check=key,
         claim=claim,
         subject=subject,
         host="source",
         library=library,
-        verdict=PASSED if figure == 0 and control.caught else FAILED,
-        figure=figure,
+        verdict=PASSED if error == 0 and control.caught else FAILED,
+        error=error,
         unit=unit,
         tolerance=0,
         derivation="a count",
-        diagnosis=unless if figure else "",
+        diagnosis=unless if error else "",
         control=control,
     )
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of checks: a claim, how it is measured, how wrong it may be, and what it must catch.
 
-A check passes at figure <= limit. Its control is the same probe made wrong on purpose, on the same
+A check passes at error <= limit. Its control is the same probe made wrong on purpose, on the same
 host; the check has to fail on it.
 """
 
@@ -20,13 +20,13 @@ ROUNDING = 2.0**-24  # unit roundoff of float32
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What a figure may be.
+    """What an error may be.
 
     Attributes
     ----------
     limit : float
     unit : str
-        What the figure counts.
+        What the error counts.
     error : callable (measured, expected) -> ndarray
         Error of each row.
     derivation : str

@@ -1,41 +1,44 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Conformance: hosts and libraries judged by the table of checks, and documents by their pictures.
+"""A conformance run: tasks are planned, worked on in processes, and kept in a journal."""
 
-The only place that sees both chains, the shaders and the models.
-"""
-
-from contextlib import closing, contextmanager, nullcontext
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from functools import lru_cache, partial
 from pathlib import Path
 
 from mxeon.conformance.known_issues import repaired
-from mxeon.conformance.results import Findings, Run
+from mxeon.conformance.results import Run
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
-from mxeon.conformance.run.plan import Judge, not_run, plan
+from mxeon.conformance.run.judge import Judge, not_run
+from mxeon.conformance.run.plan import Findings, Plan, Task, make_plan
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
 from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
-from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.library import untested
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
+Executor = Callable[[Sequence[Task]], Iterable[tuple[int, pool.Outcome]]]
+Note = tuple[str, str]  # a text, and the place that it is about
+
 
 def check(
-    files=(),
-    hosts=("gl",),
-    libraries=("eonlib",),
+    files: Sequence[str | os.PathLike[str]] = (),
+    hosts: Sequence[str] = ("gl",),
+    libraries: Sequence[str] = ("eonlib",),
     *,
-    workers=0,
-    timeout=TIMEOUT,
-    folder=None,
-    resume=False,
-    scheduler=None,
-    wait=WAIT,
-    policy=DEFAULT,
-    progress=lambda items, total: items,
-):
+    workers: int = 0,
+    timeout: float = TIMEOUT,
+    folder: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    scheduler: str | None = None,
+    wait: float = WAIT,
+    policy: Policy = DEFAULT,
+    progress: Callable[[Iterable, int], Iterable] = lambda tasks, total: tasks,
+) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
     Parameters
@@ -43,27 +46,27 @@ def check(
     files : sequence of path-like
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
-        Who is judged; `mxeon.shaders.hosts.host_names` has them.
+        Hosts to judge; `mxeon.shaders.hosts.host_names` lists them.
     libraries : sequence of str
         "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents, which are
         loaded before the standard libraries.
     workers : int
-        Processes that share the work, of which any may crash or hang; 0 to work in this one.
+        Processes that share the work, each of which may crash or hang; 0 to work in this one.
     timeout : float
-        Seconds that one item may take in a worker.
+        Seconds that one task may take in a worker.
     folder : path-like or None
-        Where what is finished is kept, pictures included, so that an interrupted run can be
-        resumed; None to keep it in memory.
+        Folder of the journal, pictures included, from which an interrupted run can be resumed;
+        None to keep it in memory.
     resume : bool
-        Go on with the run that `folder` holds.
+        Continue the run in `folder`.
     scheduler : str or None
         Address of a Dask scheduler whose workers do the work instead.
     wait : float
         Seconds that its cluster may be without a worker that fits.
     policy : Policy
-        What the documents may do, and how large they may be.
+        Permissions and limits of documents.
     progress : callable (iterable, int) -> iterable
-        Goes through the items that are to be done, whose number it is told; a progress bar, say.
+        Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
 
     Returns
     -------
@@ -79,24 +82,24 @@ def check(
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """
-    planned = plan(files, hosts, libraries, policy, resumable=folder is not None)
-    # Who cannot work must not touch what the folder holds.
+    planned = make_plan(files, hosts, libraries, policy, resumable=folder is not None)
+    # An executor that cannot work must not touch the folder.
     with (
-        _crew(policy, workers, timeout, scheduler, wait) as crew,
+        _executor(policy, workers, timeout, scheduler, wait) as executor,
         _open_journal(folder, planned, resume) as journal,
     ):
-        places = [place for place in range(len(planned.items)) if place not in journal.findings]
-        waiting = [planned.items[place] for place in places]
+        numbers = [n for n in range(len(planned.tasks)) if n not in journal.findings]
+        waiting = [planned.tasks[number] for number in numbers]
         # A farm's machines may differ from each other.
-        known = {} if scheduler else _identities(journal.findings.values())
-        for number, findings in progress(_done(waiting, crew), len(waiting)):
-            _assert_same_hosts(folder, known, _identities([findings]))
-            journal.add(places[number], findings)
+        identities = {} if scheduler else _identities(journal.findings.values())
+        for position, findings in progress(_outcomes(waiting, executor), len(waiting)):
+            _assert_same_hosts(folder, identities, _identities([findings]))
+            journal.add(numbers[position], findings)
         return to_run(planned, journal.findings)
 
 
-def read_run(folder):
-    """What the run in a folder has found so far.
+def read_run(folder: str | os.PathLike[str]) -> Run:
+    """The run in a folder, as far as it is done.
 
     Raises
     ------
@@ -106,58 +109,57 @@ def read_run(folder):
     return to_run(*read_journal(folder))
 
 
-def work(policy, item):
-    """Findings of an item, by this process's judge: what workers run.
+def work(policy: Policy, task: Task) -> Findings:
+    """Findings of a task, by this process's judge; runs in workers.
 
     Raises
     ------
     NotRun
         If the host cannot be opened here.
     """
-    return _judge(policy).work(item)
+    return _judge(policy).work(task)
 
 
-def settled(policy, item):
-    """Findings of an item whatever is missing: what cannot be done here is not run."""
-    return _settled(_judge(policy), item)
+def work_or_not_run(policy: Policy, task: Task) -> Findings:
+    """Findings of a task; those that say "not run" where the host cannot be opened here."""
+    return _work_or_not_run(_judge(policy), task)
 
 
-def to_run(planned, findings):
-    """A run from its plan and the findings of the items that are done, by their places."""
-    done = [findings[place] for place in sorted(findings)]
-    found = {
-        name: tuple(each for part in done for each in getattr(part, name))
-        for name in vars(Findings())
-    }
+def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
+    """A run from its plan and the findings of the tasks that are done, by their numbers."""
+    done = [findings[number] for number in sorted(findings)]
+    results = tuple(result for part in done for result in part.results)
+    notes = tuple(note for part in done for note in part.notes)
+    notes += repaired(results, planned.software) + _untested(planned.software)
     return Run(
         version=planned.version,
         software=planned.software,
+        hosts=tuple(dict.fromkeys(host for part in done for host in part.hosts)),
+        results=results,
+        pictures=tuple(picture for part in done for picture in part.pictures),
+        curves=tuple(curve for part in done for curve in part.curves),
+        notes=_grouped(notes),
+        errors=tuple(dict.fromkeys(error for part in done for error in part.errors)),
         documents=tuple(map(Path, planned.documents)),
-        missing=tuple(str(i) for place, i in enumerate(planned.items) if place not in findings),
-        **found
-        | {
-            "notes": _grouped(
-                found["notes"]
-                + repaired(found["results"], planned.software)
-                + _untested(planned.software)
-            ),
-            "errors": tuple(dict.fromkeys(found["errors"])),
-            "hosts": tuple(dict.fromkeys(found["hosts"])),
-        },
+        missing=tuple(
+            str(task) for number, task in enumerate(planned.tasks) if number not in findings
+        ),
     )
 
 
-def _identities(findings):
+def _identities(findings: Iterable[Findings]) -> dict[str, str]:
     """Version and device of each host that findings are of, by its name."""
     return {host.name: f"{host.version}, {host.device}" for part in findings for host in part.hosts}
 
 
-def _assert_same_hosts(folder, known, found):
-    """Raise ValueError if a host of a run that is resumed has another version or device."""
+def _assert_same_hosts(
+    folder: str | os.PathLike[str] | None, before: Mapping[str, str], now: Mapping[str, str]
+) -> None:
+    """Raise InputError if a host of a run that is resumed has another version or device."""
     differences = [
-        f"host {name} ({known[name]}, now {found[name]})"
-        for name in known.keys() & found.keys()
-        if known[name] != found[name]
+        f"host {name} ({before[name]}, now {now[name]})"
+        for name in before.keys() & now.keys()
+        if before[name] != now[name]
     ]
     if differences:
         raise InputError(refusal(folder, differences))
@@ -166,65 +168,74 @@ def _assert_same_hosts(folder, known, found):
 class InMemoryJournal:
     """In-memory stand-in for Journal."""
 
-    def __init__(self):
-        self.findings = {}
-        self.add = self.findings.__setitem__
+    def __init__(self) -> None:
+        self.findings: dict[int, Findings] = {}
+
+    def add(self, number: int, findings: Findings) -> None:
+        """Keep the findings of a task."""
+        self.findings[number] = findings
 
 
-def _open_journal(folder, planned, resume):
+def _open_journal(
+    folder: str | os.PathLike[str] | None, planned: Plan, resume: bool
+) -> AbstractContextManager[Journal | InMemoryJournal]:
     return nullcontext(InMemoryJournal()) if folder is None else Journal(folder, planned, resume)
 
 
 @contextmanager
-def _crew(policy, workers, timeout, scheduler, wait):
-    """Who works: a function from items to their outcomes."""
+def _executor(
+    policy: Policy, workers: int, timeout: float, scheduler: str | None, wait: float
+) -> Iterator[Executor]:
+    """The executor: maps tasks to their outcomes."""
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
     check_timeout(timeout)
     if scheduler:
-        with cluster.connect(scheduler, wait) as found:
-            at_work = partial(work, policy)
-            yield partial(cluster.run, at_work, workers=found, timeout=timeout, unavailable=NotRun)
+        with cluster.connect(scheduler, wait) as remote:
+            job = partial(work, policy)
+            yield partial(cluster.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:
-        yield partial(pool.run, partial(settled, policy), workers=workers, timeout=timeout)
+        yield partial(pool.run, partial(work_or_not_run, policy), workers=workers, timeout=timeout)
     else:
-        yield partial(_here, policy)
+        yield partial(_run_inline, policy)
 
 
-def _done(items, crew):
-    """Findings of the items as they come, each with its place."""
-    for place, outcome in crew(items):
+def _outcomes(tasks: Sequence[Task], executor: Executor) -> Iterator[tuple[int, Findings]]:
+    """Findings of the tasks as they come, each with its position."""
+    for position, outcome in executor(tasks):
         failed = outcome.value is None
-        yield place, not_run(items[place], outcome.failure) if failed else outcome.value
+        yield position, not_run(tasks[position], outcome.failure) if failed else outcome.value
 
 
-def _here(policy, items):
+def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:
+    """Outcomes of tasks in this process."""
     with closing(Judge(policy)) as judge:
-        for place, item in enumerate(items):
-            yield place, pool.Outcome(_settled(judge, item))
+        for position, task in enumerate(tasks):
+            yield position, pool.Outcome(_work_or_not_run(judge, task))
 
 
-def _settled(judge, item):
+def _work_or_not_run(judge: Judge, task: Task) -> Findings:
     try:
-        return judge.work(item)
+        return judge.work(task)
     except NotRun as reason:
-        return not_run(item, str(reason))
+        return not_run(task, str(reason))
 
 
 @lru_cache(maxsize=1)
-def _judge(policy):
+def _judge(policy: Policy) -> Judge:
     return Judge(policy)
 
 
-def _untested(software):
+def _untested(software: Mapping[str, str]) -> tuple[Note, ...]:
     """A note on a version of MaterialX that mxeon has not been tested with."""
     version = software.get("MaterialX")
-    return ((untested(version), "every result"),) if version and untested(version) else ()
+    warning = untested(version) if version else None
+    return ((warning, "every result"),) if warning else ()
 
 
-def _grouped(notes):
+def _grouped(notes: Iterable[Note]) -> tuple[str, ...]:
     """One line for each text, with all its places."""
-    places = {}
+    places: dict[str, list[str]] = {}
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).append(place)
-    return tuple(f"{text}: {', '.join(found)}" for text, found in places.items())
+    return tuple(f"{text}: {', '.join(listed)}" for text, listed in places.items())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files that the findings of a run depend on, so that a run is resumed with the same ones.
+"""Digests of the files that the findings of a run depend on, so that it is resumed with the same.
 
 Documents are not parsed as MaterialX does, since that may end the process: each attribute that can
 name a file is taken as if it did, so a file too many may be listed, but none too few.

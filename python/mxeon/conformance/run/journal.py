@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run has finished, on disk as it ends: one line an item, so that any end can be survived.
+"""The journal of a run: the findings of each task, on disk as soon as it ends.
 
 The folder of a run holds a folder `journal`: its file `items.jsonl`, whose first line is the plan of
-the run and each further one the findings of an item, and the pictures as NumPy files, called by
-their SHA-256. A line that is not what was written, or whose pictures are not, does not count: its
-item is done again. So damage costs the items that it hits, and no more.
+the run and each further one the findings of a task, and the pictures as NumPy files, named by
+their SHA-256. A line that is not as it was written, or whose pictures are not, does not count: its
+task is done again. So damage costs the tasks that it hits, and no more.
 """
 
 import hashlib
@@ -12,23 +12,25 @@ import json
 import os
 import shutil
 import warnings
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
 from filelock import FileLock, Timeout
 
+from mxeon.conformance.records import StoredImage, make_converter
 from mxeon.conformance.run.journal_lines import (
     FORMAT,
     NAME,
     PLAN,
-    StoredImage,
-    json_converter,
     read_lines,
     to_line,
 )
+from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import replacing
 
@@ -44,16 +46,16 @@ class Journal:
     Parameters
     ----------
     folder : path-like
-        Made if need be.
+        Created if it does not exist.
     plan : Plan
     resume : bool
-        Whether to go on with the run that the folder holds, if one was begun. If not, an earlier
+        Whether to continue the run that the folder holds, if one was begun. If not, an earlier
         journal is kept beside with its pictures, as PREVIOUS.
 
     Attributes
     ----------
     findings : dict of int to Findings
-        Those finished so far, by the place of the item in the plan.
+        Those finished so far, by the number of the task in the plan.
 
     Raises
     ------
@@ -64,13 +66,13 @@ class Journal:
         On entry, if the folder cannot be written.
     """
 
-    def __init__(self, folder, plan, resume=False):
+    def __init__(self, folder: str | os.PathLike[str], plan: Plan, resume: bool = False) -> None:
         self._folder, self._plan, self._resume = Path(folder), plan, resume
         self._path = self._folder / NAME
         self._exit = ExitStack()
-        self.findings = {}
+        self.findings: dict[int, Findings] = {}
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         with ExitStack() as stack:
             stack.enter_context(_locked(self._folder))
             lines = self._continue() if self._resume and self._path.exists() else self._begin()
@@ -80,11 +82,11 @@ class Journal:
             self._exit = stack.pop_all()
         return self
 
-    def __exit__(self, *error):
+    def __exit__(self, *error: object) -> None:
         self._exit.close()
 
-    def add(self, place, findings):
-        """Keep the findings of an item: on disk when this returns, the pictures first.
+    def add(self, number: int, findings: Findings) -> None:
+        """Keep the findings of a task: on disk when this returns, the pictures first.
 
         Raises
         ------
@@ -92,26 +94,30 @@ class Journal:
             If there is no room; the journal is then as it was before.
         """
         pictures = tuple(
-            replace(each, image=self._store(each.image), reference=self._store(each.reference))
-            for each in findings.pictures
+            replace(
+                picture,
+                image=self._store(picture.image),
+                reference=None if picture.reference is None else self._store(picture.reference),
+            )
+            for picture in findings.pictures
         )
         if pictures:
             _sync(self._path.parent)
         findings = replace(findings, pictures=pictures)
-        record = {"item": place, "findings": json_converter(self._folder).unstructure(findings)}
+        record = {"task": number, "findings": self._to_json(findings)}
         self._append(to_line(record, self._seed))
-        self.findings[place] = findings
+        self.findings[number] = findings
 
-    def _begin(self):
+    def _begin(self) -> dict[int, bytes]:
         """Lines of a new journal; an earlier one makes room."""
         if self._path.exists():
             shutil.rmtree(self._folder / PREVIOUS, ignore_errors=True)
             os.replace(self._path.parent, self._folder / PREVIOUS)
-        header = {"format": FORMAT} | json_converter(self._folder).unstructure(self._plan)
+        header = {"format": FORMAT} | self._to_json(self._plan)
         return self._write({PLAN: to_line(header)})
 
-    def _continue(self):
-        """Lines of the journal that is there, without those that do not count."""
+    def _continue(self) -> dict[int, bytes]:
+        """Valid lines of the journal that is there."""
         contents = read_lines(self._folder)
         if contents.plan != self._plan:
             raise InputError(refusal(self._folder, _differences(contents.plan, self._plan)))
@@ -119,27 +125,28 @@ class Journal:
         self.findings = contents.findings
         return self._write(contents.lines)
 
-    def _write(self, lines):
+    def _to_json(self, record: Plan | Findings) -> Any:
+        return make_converter(self._path.parent).unstructure(record)
+
+    def _write(self, lines: dict[int, bytes]) -> dict[int, bytes]:
         with replacing(self._path) as beside:
             beside.write_bytes(b"".join(lines.values()))
         _sync(self._path.parent)
         _sync(self._folder)
         return lines
 
-    def _append(self, line):
-        size, line = os.fstat(self._file).st_size, memoryview(line)
+    def _append(self, line: bytes) -> None:
+        size, rest = os.fstat(self._file).st_size, memoryview(line)
         try:
-            while line:
-                line = line[os.write(self._file, line) :]
+            while rest:
+                rest = rest[os.write(self._file, rest) :]
             os.fsync(self._file)
         except OSError as error:
             os.ftruncate(self._file, size)
             raise OSError(error.errno, error.strerror, str(self._path)) from None
 
-    def _store(self, image):
-        """An image in a file of the folder, or None for none."""
-        if image is None:
-            return None
+    def _store(self, image: Any) -> Any:
+        """An image in a file of the folder."""
         pixels = BytesIO()
         np.save(pixels, np.asarray(image, np.float32))
         name = hashlib.sha256(pixels.getbuffer()).hexdigest()
@@ -149,10 +156,10 @@ class Journal:
         return StoredImage(path)
 
 
-def read_journal(folder):
-    """The plan of the run in a folder, and what it has finished.
+def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findings]]:
+    """The plan of the run in a folder, and the findings of the tasks that are done.
 
-    Warns of what is damaged, which counts as not done.
+    Warns of damaged lines and pictures, whose tasks count as not done.
 
     Parameters
     ----------
@@ -172,14 +179,14 @@ def read_journal(folder):
     return contents.plan, contents.findings
 
 
-def refusal(folder, differences):
-    """Why the run in a folder is not resumed: one line that lists what differs."""
+def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
+    """The reason for not resuming the run in a folder: one line that lists what differs."""
     listed = _listed(differences)
     return f"{folder}: --resume must go on with the same run; these differ: {listed}"
 
 
 @contextmanager
-def _locked(folder):
+def _locked(folder: Path) -> Iterator[None]:
     folder.mkdir(parents=True, exist_ok=True)
     try:
         with FileLock(folder / LOCK, timeout=0):
@@ -188,17 +195,16 @@ def _locked(folder):
         raise InputError(f"{folder}: must have one writer; another run writes there") from None
 
 
-def _warn(folder, damaged):
+def _warn(folder: str | os.PathLike[str], damaged: Sequence[str]) -> None:
     if damaged:
-        what = _listed(damaged)
         warnings.warn(
-            f"{folder}: damaged in the journal, so that --resume does it again: {what}",
+            f"{folder}: damaged in the journal, so that --resume does it again: {_listed(damaged)}",
             stacklevel=2,
         )
 
 
-def _differences(before, after):
-    """What two plans do not share: values as they were and are, and names of files."""
+def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
+    """The differences of two plans: values before and now, and names of files."""
     old, new = _facts(before), _facts(after)
     facts = [
         f"{name} ({old.get(name, 'none')}, now {new.get(name, 'none')})"
@@ -209,23 +215,23 @@ def _differences(before, after):
     return (*facts, *sorted(files)) or ("the checks",)
 
 
-def _facts(plan):
-    """What a plan says, but for its files, by names that a reader knows."""
+def _facts(plan: Plan) -> dict[str, str]:
+    """The values of a plan, except its files, by names for a reader."""
     hosts, libraries = (
-        ", ".join(dict.fromkeys(getattr(item, name) for item in plan.items))
+        ", ".join(dict.fromkeys(getattr(task, name) for task in plan.tasks))
         for name in ("host", "library")
     )
     facts = {"mxeon": plan.version} | plan.software | plan.options
     return facts | {"hosts": hosts, "libraries": libraries, "documents": _listed(plan.documents)}
 
 
-def _listed(names):
+def _listed(names: Sequence[str]) -> str:
     more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
     return ", ".join(names[:LISTED]) + more
 
 
-def _sync(folder):
-    """Have the names in a folder on disk."""
+def _sync(folder: Path) -> None:
+    """Flush the names in a folder to disk."""
     file = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(file)

@@ -1,68 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The lines of a journal: what each holds, and whether it is as it was written.
+"""The lines of a journal, and a check that each is as it was written.
 
-The first line is the plan of a run, each further one the place of an item in it and its findings.
-Each has a digest of itself and of the plan, so that findings stay with their item and their run.
+The first line is the plan of a run, each further one the number of a task in it and its findings.
+Each has a digest of itself and of the plan, so that findings stay with their task and their run.
 """
 
 import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-import numpy as np
-from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn, override
+import cattrs
 
-from mxeon.conformance.records import ERRORS, make_converter
-from mxeon.conformance.results import Findings, Picture, Plan
+from mxeon.conformance.records import ERRORS, StoredImage, make_converter
+from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import regular
 
-FORMAT = 2
+FORMAT = 3
 NAME = "journal/items.jsonl"
-PLAN = -1  # place of the plan among the lines
-
-
-@dataclass(frozen=True)
-class StoredImage:
-    """Pixels in a file, read anew by every `np.asarray`, so that a run holds none of them.
-
-    Attributes
-    ----------
-    path : Path
-        Its stem is the SHA-256 of the file.
-    """
-
-    path: Path
-
-    def __array__(self, dtype=None, copy=None):
-        return np.asarray(np.load(self.path), dtype=dtype)
-
-    @property
-    def whole(self):
-        """Whether the file is there, and as it was written."""
-        try:
-            with open(self.path, "rb", opener=regular) as file:
-                digest = hashlib.file_digest(file, "sha256").hexdigest()
-            # Mapped, not read: a header may declare any number of pixels.
-            pixels = digest == self.path.stem and np.lib.format.open_memmap(self.path, mode="r")
-        except (OSError, ValueError, OverflowError):
-            return False
-        return pixels is not False and (pixels.ndim, pixels.dtype) == (3, np.float32)
+PLAN = -1  # number of the plan among the lines
 
 
 @dataclass(frozen=True)
 class Contents:
-    """A journal as it was read.
+    """The contents of a journal file.
 
     Attributes
     ----------
     plan : Plan
     lines : dict of int to bytes
-        The lines that count, by the place of the item; that of the plan by PLAN.
+        The valid lines, by the number of the task; that of the plan by PLAN.
     findings : dict of int to Findings
     damaged : tuple of str
-        What does not count: an item, or the number of a line that says of none.
+        What is not valid: the pictures of a task, or the number of a line.
     """
 
     plan: Plan
@@ -71,7 +43,7 @@ class Contents:
     damaged: tuple[str, ...]
 
 
-def read_lines(folder):
+def read_lines(folder: Path) -> Contents:
     """The Contents of the journal in a folder.
 
     Raises
@@ -79,34 +51,37 @@ def read_lines(folder):
     ValueError
         If there is none, or none that this version reads.
     """
-    path, converter = folder / NAME, json_converter(folder)
+    path = folder / NAME
+    converter = make_converter(path.parent)
     try:
         with open(path, "rb", opener=regular) as file:
             header, *lines = list(file) or [b""]
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {NAME} of a run; there is none") from None
     plan, seed = _header(header, path, converter)
-    counting, findings, damaged = {PLAN: header}, {}, []
+    valid = {PLAN: header}
+    findings: dict[int, Findings] = {}
+    damaged = []
     for number, line in enumerate(lines, 2):
         if not line.endswith(b"\n"):  # torn by the end of the last run
             break
         try:
-            place, found = _item(line, seed, plan, converter)
+            task, part = _task(line, seed, plan, converter)
         except ERRORS:
             damaged.append(f"line {number}")
             continue
-        if all(image.whole for image in _images(found)):
-            counting[place], findings[place] = line, found
+        if all(image.whole for image in _images(part)):
+            valid[task], findings[task] = line, part
         else:
-            damaged.append(f"pictures of {plan.items[place]}")
-    return Contents(plan, counting, findings, tuple(damaged))
+            damaged.append(f"pictures of {plan.tasks[task]}")
+    return Contents(plan, valid, findings, tuple(damaged))
 
 
-def _header(line, path, converter):
+def _header(line: bytes, path: Path, converter: cattrs.Converter) -> tuple[Plan, str]:
     """The plan that the first line holds, and its digest."""
     try:
-        if (written := json.loads(line)["format"]) != FORMAT:
-            raise InputError(f"it has format {written!r}")
+        if (version := json.loads(line)["format"]) != FORMAT:
+            raise InputError(f"it has format {version!r}")
         record, seed = _checked(line)
         del record["format"]
         return converter.structure(record, Plan), seed
@@ -115,32 +90,32 @@ def _header(line, path, converter):
         raise InputError(f"{path}: must be a journal of format {FORMAT}; {reason}") from None
 
 
-def _item(line, seed, plan, converter):
-    """Place and findings of an item; one of ERRORS, if the line is not what was written."""
+def _task(line: bytes, seed: str, plan: Plan, converter: cattrs.Converter) -> tuple[int, Findings]:
+    """Number and findings of a task. Raise one of ERRORS if the line is not as it was written."""
     record, _ = _checked(line, seed)
-    place, findings = record["item"], converter.structure(record["findings"], Findings)
-    if type(place) is not int or not 0 <= place < len(plan.items):
-        raise InputError(f"item must be one of {len(plan.items)}; got {place!r}")
-    if not findings.answer(plan.items[place]):
-        raise InputError(f"findings must be those of {plan.items[place]}")
-    return place, findings
+    number, findings = record["task"], converter.structure(record["findings"], Findings)
+    if type(number) is not int or not 0 <= number < len(plan.tasks):
+        raise InputError(f"task must be one of {len(plan.tasks)}; got {number!r}")
+    if not findings.answer(plan.tasks[number]):
+        raise InputError(f"findings must be those of {plan.tasks[number]}")
+    return number, findings
 
 
-def _images(findings):
+def _images(findings: Findings) -> list[StoredImage]:
     return [
         image
-        for each in findings.pictures
-        for image in (each.image, each.reference)
-        if image is not None
+        for picture in findings.pictures
+        for image in (picture.image, picture.reference)
+        if isinstance(image, StoredImage)
     ]
 
 
-def to_line(record, seed=""):
+def to_line(record: dict[str, Any], seed: str = "") -> bytes:
     """A record as a line, with a digest of it and of the plan's line, whose digest is `seed`."""
     return (json.dumps(record | {"digest": _digest(record, seed)}) + "\n").encode()
 
 
-def _checked(line, seed=""):
+def _checked(line: bytes, seed: str = "") -> tuple[dict[str, Any], str]:
     """The record of a line, and its digest."""
     record = json.loads(line)
     digest = record.pop("digest")
@@ -149,28 +124,5 @@ def _checked(line, seed=""):
     return record, digest
 
 
-def _digest(record, seed):
+def _digest(record: dict[str, Any], seed: str) -> str:
     return hashlib.sha256((seed + json.dumps(record)).encode()).hexdigest()
-
-
-def json_converter(folder):
-    """A converter to and from JSON for the journal in a folder; images stay in their files."""
-    converter = make_converter()
-
-    def stored(name):
-        return StoredImage((folder / NAME).with_name(name))
-
-    fields = {
-        "image": override(unstruct_hook=_name, struct_hook=lambda name, _: stored(name)),
-        "reference": override(
-            unstruct_hook=_name, struct_hook=lambda name, _: None if name is None else stored(name)
-        ),
-    }
-    to_json = make_dict_unstructure_fn(Picture, converter, **fields)
-    converter.register_unstructure_hook(Picture, to_json)
-    converter.register_structure_hook(Picture, make_dict_structure_fn(Picture, converter, **fields))
-    return converter
-
-
-def _name(image):
-    return None if image is None else image.path.name

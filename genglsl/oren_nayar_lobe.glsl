@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Response of a rough diffuse lobe, shared by the entry points of the nodes: EON with
+// energy_compensation, qualitative Oren-Nayar without. The models are in eon.glsl.
+//
+// Inputs are not clamped: outside [0, 1] the formulas go on, and give finite numbers for a
+// roughness in [-1, 10] and colors up to 1. A negative weight counts as 0.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
+#include "eon.glsl"
+
+void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float roughness,
+                     vec3 N, bool energy_compensation, inout BSDF bsdf)
+{
+    bsdf.throughput = vec3(0.0);
+
+    // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
+    if (weight <= 0.0)
+    {
+        return;
+    }
+
+    vec3 wo = closureData.V;
+    vec3 wi = closureData.L;
+    N = mx_forward_facing_normal(N, wo);
+
+    // Unit vectors give cosines above 1 by a rounding, of which the albedo takes a square root.
+    float mu_o = min(dot(N, wo), 1.0);
+
+    if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
+    {
+        // Light from below the horizon has the cosine 0, and with it the response.
+        float mu_i = clamp(dot(N, wi), 0.0, 1.0);
+        float s = dot(wo, wi) - mu_o * mu_i;
+        vec3 brdf = energy_compensation ? eon_brdf_mu(mu_o, mu_i, s, color, roughness)
+                                        : qon_brdf_mu(mu_o, mu_i, s, color, roughness);
+        bsdf.response = brdf * mu_i * weight * closureData.occlusion;
+    }
+    else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
+    {
+        vec3 albedo = energy_compensation ? eon_albedo_dir(mu_o, color, roughness)
+                                          : color * qon_albedo_dir(mu_o, roughness);
+        bsdf.response = albedo * mx_environment_irradiance(N) * weight;
+    }
+}

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The judge: works on tasks, one after the other, and keeps the hosts it opens."""
+
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from mxeon.conformance.checks.evaluate import judge_curve, judge_subject, judge_twins
+from mxeon.conformance.checks.image import MATCH, judge_document
+from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Surface
+from mxeon.conformance.checks.probes import SurfaceProbe, probe_type
+from mxeon.conformance.checks.source import check_sources
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.results import NOT_RUN, Result
+from mxeon.conformance.run.plan import (
+    CURVE,
+    HOST,
+    PICTURE,
+    SOURCE,
+    TWINS,
+    Findings,
+    Task,
+    subjects,
+)
+from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.hosts import open_host
+
+ROWS = {check.key: check for check in CHECKS}
+CLAIMS = {key: check.claim for key, check in ROWS.items()} | {
+    HOST: "The host executes shaders here.",
+    SOURCE: "The generated text was checked.",
+    CURVE: "The albedo was measured over the cosine.",
+    PICTURE: MATCH,
+}
+
+
+def not_run(task: Task, reason: str) -> Findings:
+    """Findings of a task that could not be worked on."""
+    claim = CLAIMS[task.check]
+    result = Result(
+        task.check, claim, task.subject, task.host, task.library, NOT_RUN, reason=reason
+    )
+    return Findings(results=(result,))
+
+
+class Judge:
+    """Works on tasks, one after the other, and keeps the hosts it opens.
+
+    Parameters
+    ----------
+    policy : Policy
+        Permissions and limits of documents.
+    """
+
+    def __init__(self, policy: Policy) -> None:
+        self._policy = policy
+        self._hosts: dict[str, Any] = {}  # a host, or the NotRun that tells why there is none
+        self._reference = Reference()
+        self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
+
+    def work(self, task: Task) -> Findings:
+        """Findings of a task.
+
+        Parameters
+        ----------
+        task : Task
+
+        Returns
+        -------
+        Findings
+            A document that cannot be read is among its errors.
+
+        Raises
+        ------
+        NotRun
+            If the host cannot be opened here.
+        """
+        try:
+            return _with_pages(Findings(**self._findings(task)))
+        except InterfaceError as reason:
+            return not_run(task, str(reason))
+
+    def close(self) -> None:
+        """Close the hosts."""
+        for host in self._hosts.values():
+            if not isinstance(host, NotRun):
+                host.close()
+
+    def _host(self, name: str) -> Any:
+        """The host of that name; it is opened, or its absence noticed, once."""
+        if name not in self._hosts:
+            try:
+                self._hosts[name] = open_host(name)
+            except NotRun as reason:
+                self._hosts[name] = reason
+        if isinstance(self._hosts[name], NotRun):
+            raise self._hosts[name]
+        return self._hosts[name]
+
+    def _findings(self, task: Task) -> dict[str, Any]:
+        if task.check == SOURCE:
+            return {"results": check_sources(subjects(task.library), task.library)}
+        host = self._host(task.host)
+        return self._on_host(task, host) | {"hosts": (host.identity(),)}
+
+    def _on_host(self, task: Task, host: Any) -> dict[str, Any]:
+        if task.check == PICTURE:
+            return self._document(task, host)
+        if task.subject == TWINS:
+            return {"results": judge_twins(host, task.library, (ROWS[task.check],))}
+        probe = self._probe(host, task.subject, task.library)
+        if task.check == CURVE:
+            return {"curves": judge_curve(probe)}
+        return {"results": judge_subject(probe, (ROWS[task.check],))}
+
+    def _document(self, task: Task, host: Any) -> dict[str, Any]:
+        path = Path(task.subject)
+        try:
+            records = judge_document(path, host, self._reference, task.library, self._policy)
+        except (DocumentError, ImageError) as error:
+            return {"errors": (str(error),)}
+        return dict(zip(("results", "pictures", "notes"), records, strict=True))
+
+
+def _with_pages(findings: Findings) -> Findings:
+    """Findings whose failures name the pages of their known issues."""
+    return replace(findings, results=tuple(map(with_page, findings.results)))
+
+
+def _probe(host: Any, title: str, library: str) -> Any:
+    """The probe of a subject on a host."""
+    subject = next(row for row in SUBJECTS + NATIVE + SURFACES if row.title == title)
+    kind = SurfaceProbe if isinstance(subject, Surface) else probe_type(host.name)
+    return kind(host, subject, library)
