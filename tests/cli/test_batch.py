@@ -2,7 +2,10 @@
 """Jobs in worker processes: results in order, whatever becomes of the processes."""
 
 import os
+import subprocess
+import sys
 import warnings
+from pathlib import Path
 
 import pytest
 
@@ -84,3 +87,13 @@ def test_the_host_of_a_picture_closes_whatever_happens(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match="--element must name one of"):
         picture(CLAY, "reference", "side", None, 4, None, "eonlib", DEFAULT)
     assert len(closed) == 1
+
+
+def test_a_bug_in_a_worker_prints_its_traceback():
+    code = "from tests.support.faults import misbehave; from mxeon.cli.batch import run_batch\n"
+    code += "[result] = run_batch(misbehave, ['raise'], 1, 60.0); print(result.error)"
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+    assert done.stdout.startswith("raise: RuntimeError: no light; last output:")
+    assert done.stderr.startswith("bug in a worker process\n") and "in misbehave" in done.stderr

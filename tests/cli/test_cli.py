@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -12,11 +13,15 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.cli import generate, library, main
+from mxeon.cli import generate, library, main, parser
 from mxeon.cli.batch import BatchResult, WorkerCrashed
 from mxeon.errors import FAILED, MISUSE, NOT_RUN, PASSED, InputError, NotRun, ShaderError
+from mxeon.jobs.timeouts import TIMEOUT
 from mxeon.models.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.shaders.generation import TARGETS
+from mxeon.shaders.hosts import host_names
 from mxeon.shaders.library import eonlib_folder, examples_folder
+from mxeon.shaders.scene import SCENES
 from tests.support.documents import material
 
 CLAY = str(examples_folder() / "clay.mtlx")
@@ -56,6 +61,11 @@ def test_check_passes_and_writes_a_report(tmp_path, capsys):
 def test_check_of_stock_fails_and_names_the_defects(capsys):
     assert main(["check", PLASTER, "--library", "stock"]) == FAILED
     assert "EON with clamped dot(wo, wi)" in capsys.readouterr().out
+
+
+def test_check_takes_a_folder_as_library(capsys):
+    assert main(["check", PLASTER, "--library", str(eonlib_folder())]) == PASSED
+    assert "checks passed" in capsys.readouterr().out
 
 
 def test_check_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys):
@@ -349,6 +359,23 @@ def test_a_reader_who_has_enough_is_no_error():
     command = f"{sys.executable} -m mxeon library --verify | head -1"
     ended = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
     assert ended.stderr == ""
+
+
+def test_help_names_every_choice(capsys):
+    for command, choices in {
+        "check": host_names(),
+        "generate": TARGETS,
+        "render": [scene.name for scene in SCENES],
+    }.items():
+        with pytest.raises(SystemExit):
+            parser().parse_args([command, "--help"])
+        words = set(re.findall(r"[\w-]+", capsys.readouterr().out))
+        assert set(choices) <= words
+
+
+def test_a_limit_is_a_timeout():
+    old, new = (parser().parse_args(["check", f"--{name}", "7"]) for name in ("limit", "timeout"))
+    assert old.timeout == new.timeout == 7.0 and parser().parse_args(["check"]).timeout == TIMEOUT
 
 
 def test_help_loads_no_shader_generator():

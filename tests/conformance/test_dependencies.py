@@ -161,3 +161,9 @@ def interrupt(folder):
     """Take the last item from a journal."""
     path = folder / NAME
     path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
+
+
+def test_a_folder_that_is_a_library_is_a_dependency(tmp_path):
+    source = texture(tmp_path / "library" / "genglsl" / "brick.glsl")
+    found = digests([], Policy(), ["eonlib", str(tmp_path / "library")])
+    assert found.keys() - digests([], Policy(), ["eonlib"]).keys() == {str(source)}

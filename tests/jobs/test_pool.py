@@ -13,7 +13,7 @@ from pebble import CONSTS
 
 from mxeon.jobs import pool
 from mxeon.jobs.pool import ATTEMPTS, LOCK, Outcome, in_order, run
-from tests.support.faults import Tar, misbehave, once, square
+from tests.support.faults import Tar, misbehave, need, once, square
 
 NUMBERS = [1, 2, 3, 4]
 
@@ -39,6 +39,17 @@ def test_a_fault_costs_its_item_alone_and_is_named(fault, end):
     )
     assert found.pop(2) == Outcome(None, end, ATTEMPTS)
     assert sorted(outcome.value for outcome in found.values()) == [1, 4, 9, 16]
+
+
+def test_a_bug_in_a_worker_shows_its_traceback_once(caplog):
+    list(run(misbehave, ["raise"], 1, 60.0))
+    assert caplog.text.count("Traceback") > 0 and "in misbehave" in caplog.text
+    assert [record.message for record in caplog.records] == ["bug in a worker process"]
+
+
+def test_an_error_with_words_for_the_user_is_no_bug(caplog):
+    outcomes = dict(run(need, ["MOON"], 1, 60.0))
+    assert outcomes[0].failure.startswith("NotRun: MOON: missing") and not caplog.records
 
 
 def test_processes_that_hang_before_they_begin_are_given_up(monkeypatch):

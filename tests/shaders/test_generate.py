@@ -253,7 +253,10 @@ def test_one_element_is_made_by_its_name_or_path():
     [
         ({"target": "hlsl"}, f"target must be one of {', '.join(TARGETS)}; got 'hlsl'"),
         ({"element": "none"}, "element must be one of look; got 'none'"),
-        ({"library": "none"}, "library must be one of eonlib, stock; got 'none'"),
+        (
+            {"library": "none"},
+            "library must be one of eonlib, stock, or a folder that holds MaterialX documents; got 'none'",
+        ),
         ({"profile": "none"}, "profile must be one of cycles; got 'none'"),
     ],
 )

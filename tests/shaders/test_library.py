@@ -10,13 +10,14 @@ from pathlib import Path
 import MaterialX as mx
 import pytest
 
+from mxeon.errors import InputError
 from mxeon.models.albedo import fon_albedo_avg
 from mxeon.shaders import library
-from mxeon.shaders.generation import TARGETS
+from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
-from tests.support.documents import lobe, material
+from tests.support.documents import connected, lobe, material
 from tests.support.tolerances import MDL_TINT
 
 SCRIPTS = Path(mx.__file__).parent / "_scripts"
@@ -116,7 +117,10 @@ def test_a_library_is_loaded_once():
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        (("mine",), "library must be one of eonlib, stock; got 'mine'"),
+        (
+            ("mine",),
+            "library must be one of eonlib, stock, or a folder that holds MaterialX documents; got 'mine'",
+        ),
         (("eonlib", "arnold"), "profile must be one of cycles; got 'arnold'"),
     ],
 )
@@ -245,3 +249,35 @@ def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
         f"found {node} {definitions}" for node in NODEDEFS
     ]
     assert "MaterialX" not in done.stderr
+
+
+# --- folders as libraries -------------------------------------------------------------------------
+
+BRICK = """<materialx version="1.39">
+  <nodedef name="ND_brick" node="brick"><output name="out" type="color3"/></nodedef>
+  <nodegraph name="NG_brick" nodedef="ND_brick">
+    <constant name="red" type="color3"><input name="value" type="color3" value="0.8, 0.2, 0.1"/>
+    </constant><output name="out" type="color3" nodename="red"/>
+  </nodegraph>
+</materialx>"""
+BRICKS = '<brick name="bricks" type="color3"/>' + connected(color='nodename="bricks"')
+
+
+def test_a_folder_is_loaded_before_the_standard_libraries(tmp_path):
+    (tmp_path / "brick.mtlx").write_text(BRICK)
+    [shader] = generate(material(BRICKS), "glsl", library=tmp_path)
+    assert "0.8" in shader.stages["pixel"]
+    found = library.implementations(library.load_library(str(tmp_path)))
+    assert not any(one.ours for one in found)
+
+
+def test_the_folder_of_eonlib_is_eonlib():
+    assert library.implementations(library.load_library(OURS)) == library.implementations(
+        library.load_library()
+    )
+
+
+def test_a_folder_with_a_broken_document_is_one_line(tmp_path):
+    (tmp_path / "brick.mtlx").write_text("<materialx")
+    with pytest.raises(InputError, match=f"^library {tmp_path}: "):
+        library.load_library(str(tmp_path))

@@ -48,14 +48,7 @@ def add_report(command: argparse.ArgumentParser) -> None:
 
 def add_library(command: argparse.ArgumentParser) -> None:
     """Add --library, of which there may be one."""
-    command.add_argument("--library", type=library, default="eonlib", metavar="NAME", help=LIBRARY)
-
-
-def library(name: str) -> str:
-    """Name of a data library; that of a folder as an absolute path."""
-    return (
-        os.path.abspath(name) if os.path.isdir(name) and name not in ("eonlib", "stock") else name
-    )
+    command.add_argument("--library", default="eonlib", metavar="NAME", help=LIBRARY)
 
 
 def add_workers(command: argparse.ArgumentParser) -> None:

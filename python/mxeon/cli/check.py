@@ -28,7 +28,6 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument(
         "--library",
         action="append",
-        type=arguments.library,
         metavar="NAME",
         help=f"{arguments.LIBRARY}; may be repeated",
     )

@@ -130,7 +130,7 @@ def generate(
     element : str or None
         Name or name path of one renderable element; None for all.
     library : str
-        "eonlib", or "stock" for MaterialX as it comes.
+        "eonlib", "stock" for MaterialX as it comes, or a folder; see `load_library`.
     profile : str or None
         "cycles" for osl that Blender's Cycles compiles.
     lights : bool

@@ -8,6 +8,7 @@ No version of MaterialX is refused by its number: the methods that mxeon needs a
 and generated code is checked against the closure interface of eonlib's sources.
 """
 
+import os
 import re
 import warnings
 from dataclasses import dataclass
@@ -93,15 +94,34 @@ def standard_folders() -> list[Path]:
 
 
 def _folders(library: str, profile: str | None) -> list[str]:
-    """Library folders in load order: the profile's, eonlib's, MaterialX's own."""
-    if library not in LIBRARIES:
-        raise InputError(f"library must be one of {', '.join(LIBRARIES)}; got {library!r}")
+    """Library folders in load order: the profile's, the library's, MaterialX's own."""
+    library = library_name(library)
     if profile is not None and profile not in PROFILES:
         raise InputError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
-    ours = [] if library == "stock" else [eonlib_folder()]
-    if profile is not None and library != "stock":
-        ours.insert(0, profile_folder(profile))
-    return [str(folder) for folder in ours] + list(mx.getDefaultDataLibraryFolders())
+    if library == "eonlib":
+        folders = [profile_folder(profile)] if profile is not None else []
+        folders.append(eonlib_folder())
+    else:
+        folders = [] if library == "stock" else [library]
+    return [str(folder) for folder in folders] + list(mx.getDefaultDataLibraryFolders())
+
+
+def library_name(library: str | os.PathLike[str]) -> str:
+    """Name of a data library, or absolute path of the folder that is loaded as one.
+
+    Raises
+    ------
+    InputError
+        If it is neither a name nor a folder that holds MaterialX documents.
+    """
+    if library in LIBRARIES:
+        return str(library)
+    if not any(Path(library).rglob("*.mtlx")):
+        raise InputError(
+            f"library must be one of {', '.join(LIBRARIES)}, or a folder that holds MaterialX "
+            f"documents; got {str(library)!r}"
+        )
+    return os.path.abspath(library)
 
 
 @cache
@@ -113,9 +133,10 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
     Parameters
     ----------
     library : str
-        "eonlib", or "stock" for MaterialX as it comes.
+        "eonlib", "stock" for MaterialX as it comes, or a folder of MaterialX documents, which are
+        loaded before the standard libraries.
     profile : str or None
-        "cycles" for the OSL implementations for Blender's Cycles.
+        "cycles" for the OSL implementations that eonlib has for Blender's Cycles.
 
     Returns
     -------
@@ -139,7 +160,10 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
     if note := untested(mx.getVersionString()):
         warnings.warn(UntestedVersionWarning(note), stacklevel=2)
     document = mx.createDocument()
-    mx.loadLibraries(_folders(library, profile), mx.getDefaultDataSearchPath(), document)
+    try:
+        mx.loadLibraries(_folders(library, profile), mx.getDefaultDataSearchPath(), document)
+    except (mx.Exception, mx.ExceptionParseError) as error:
+        raise InputError(f"library {library}: {error}") from None
     if library == "eonlib":
         assert_ours(document)
     return document

@@ -37,11 +37,6 @@ class Subject:
     names: tuple[str, ...] = tuple(INPUT_TYPES)
 
     @property
-    def stock(self):
-        """Whether MaterialX has this node as it comes."""
-        return self.node != EON
-
-    @property
     def title(self):
         """How reports call it."""
         flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"

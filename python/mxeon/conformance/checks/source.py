@@ -35,7 +35,7 @@ def check_sources(subjects, library):
 
 def _checks_of_text(subject, library):
     """Those that apply: QON's text may hold the other model's, which the flag leaves out."""
-    applies = {_does_not_clamp: subject.model == "eon", _is_ours: library != "stock"}
+    applies = {_does_not_clamp: subject.model == "eon", _is_ours: library == "eonlib"}
     return [check for check, does in applies.items() if does]
 
 

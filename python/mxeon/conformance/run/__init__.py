@@ -49,7 +49,8 @@ def check(
     hosts : sequence of str
         Hosts to judge; `mxeon.shaders.hosts.host_names` lists them.
     libraries : sequence of str
-        "eonlib", and "stock" for MaterialX as it comes.
+        "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents, which are
+        loaded before the standard libraries.
     workers : int
         Processes that share the work, each of which may crash or hang; 0 to work in this one.
     timeout : float

@@ -18,14 +18,14 @@ from mxeon.errors import DocumentError, InputError
 from mxeon.io.files import regular
 from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.references import inside
-from mxeon.shaders.library import data_folder, eonlib_folder, standard_folders
+from mxeon.shaders.library import LIBRARIES, data_folder, eonlib_folder, standard_folders
 
 INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
 # A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
 OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
 
-def digests(documents, policy):
+def digests(documents, policy, libraries=()):
     """SHA-256 of every file that findings on documents depend on.
 
     Parameters
@@ -33,6 +33,8 @@ def digests(documents, policy):
     documents : sequence of path-like
     policy : Policy
         Files that a document may not name are not looked at.
+    libraries : sequence of str
+        Of which folders are looked through; see `mxeon.shaders.library.load_library`.
 
     Returns
     -------
@@ -46,6 +48,8 @@ def digests(documents, policy):
         for path in (str(document), *_named(Path(document), policy)):
             if path not in found:
                 found[path] = _digest(path)
+    for library in set(libraries) - set(LIBRARIES):
+        found |= {str(path): _digest(path) for path in Path(library).rglob("*") if path.is_file()}
     return found | _installed()
 
 

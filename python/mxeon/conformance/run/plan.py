@@ -28,7 +28,13 @@ from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.hosts import host_names, host_row
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.library import LIBRARIES, check_version, examples_folder
+from mxeon.shaders.library import (
+    LIBRARIES,
+    check_version,
+    examples_folder,
+    library_name,
+    load_library,
+)
 
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
 TWINS, EVERY_NODE = functions.SUBJECT, "every node"
@@ -135,11 +141,11 @@ def make_plan(
     """
     check_version()
     _assert_known("host", hosts, host_names())
-    _assert_known("library", libraries, LIBRARIES)
+    libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
     tasks: list[Task] = []
     documents: list[str] = []
-    for library in dict.fromkeys(libraries):
+    for library in libraries:
         paths = [Path(file) for file in files] or _examples(library)
         documents += map(str, paths)
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
@@ -153,13 +159,14 @@ def make_plan(
         tasks=tuple(tasks),
         documents=tuple(dict.fromkeys(documents)),
         options=_options(policy),
-        files=digests(dict.fromkeys(documents), policy) if resumable else {},
+        files=digests(dict.fromkeys(documents), policy, libraries) if resumable else {},
     )
 
 
 def subjects(library: str) -> list[Subject]:
     """The nodes that a library has."""
-    return [subject for subject in SUBJECTS if subject.stock or library != "stock"]
+    data = load_library(library)
+    return [subject for subject in SUBJECTS if data.getMatchingNodeDefs(subject.node)]
 
 
 def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
@@ -177,7 +184,7 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
             yield Task(CURVE, subject.title, host, library)
     if row.surfaces:
         for surface in SURFACES:
-            if library in (surface.libraries or LIBRARIES):
+            if (library if library in LIBRARIES else "eonlib") in (surface.libraries or LIBRARIES):
                 yield from _checks_of(surface, SurfaceProbe.kind, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
