@@ -58,7 +58,7 @@ class StoredImage:
             pixels = np.lib.format.open_memmap(self.path, mode="r")
         except (OSError, ValueError, OverflowError):
             return False
-        return (pixels.ndim, pixels.dtype) == (3, np.float32)
+        return bool(pixels.ndim == 3 and pixels.dtype == np.float32)
 
 
 def make_converter(folder: Path | None = None) -> cattrs.Converter:
@@ -85,8 +85,8 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
     converter.register_unstructure_hook(float, spelled)
     converter.register_structure_hook_func(_is_array, lambda rows, _: np.array(rows, dtype=float))
     converter.register_unstructure_hook_func(_is_array, lambda array: array.tolist())
-    for kind in (Control, Result):
-        _register(converter, kind, FIGURE)
+    for record in (Control, Result):
+        _register(converter, record, FIGURE)
     if folder is not None:
         _register(converter, Picture, _image_fields(folder))
     return converter
@@ -123,7 +123,7 @@ def _is_array(kind: object) -> bool:
 
 def _register(converter: cattrs.Converter, kind: type, fields: dict[str, Any]) -> None:
     """Convert some fields of a dataclass in another way than their types say."""
-    to_json = make_dict_unstructure_fn(kind, converter, **fields)
+    to_json: Callable[[Any], dict[str, Any]] = make_dict_unstructure_fn(kind, converter, **fields)
     converter.register_unstructure_hook(kind, to_json)
     converter.register_structure_hook(kind, make_dict_structure_fn(kind, converter, **fields))
 

@@ -220,9 +220,9 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
     """File names for pictures, without suffix: ASCII, and different whatever the case."""
     names, uses = [], Counter[str]()
     for picture in pictures:
-        words = (Path(picture.document).stem, picture.element, picture.host, picture.library)
-        words = tuple(NOT_PLAIN.sub("_", word)[:40] for word in (*words, picture.scene))
-        name = "-".join(words)
+        document = Path(picture.document).stem
+        words = (document, picture.element, picture.host, picture.library, picture.scene)
+        name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
         uses[name.lower()] += 1
         # A counter is a sixth word, which no other name has.
         names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")

@@ -2,7 +2,9 @@
 """Checks of generated text, for every target, also those that nothing here can run."""
 
 import re
+from collections.abc import Callable, Iterable
 
+from mxeon.conformance.checks.nodes import Subject
 from mxeon.conformance.results import FAILED, PASSED, Control, Result
 from mxeon.shaders.generation import TARGETS, generate
 
@@ -15,13 +17,14 @@ WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; r
 FUNCTION = {"eon": "eon_brdf_mu", "qon": "qon_brdf_mu"}
 
 
-def check_sources(subjects, library):
+def check_sources(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]:
     """Results of the text checks for every subject and target.
 
     Returns
     -------
     tuple of Result
     """
+    subjects = list(subjects)
     used = [_uses_inputs(each, target, library) for each in subjects for target in TARGETS]
     tinted = [_tints(each, library) for each in subjects if each.model == "eon"]
     inside = [
@@ -33,13 +36,13 @@ def check_sources(subjects, library):
     return tuple(used + tinted + inside)
 
 
-def _checks_of_text(subject, library):
+def _checks_of_text(subject: Subject, library: str) -> list[Callable[[Subject, str, str], Result]]:
     """Those that apply: QON's text may hold the other model's, which the flag leaves out."""
     applies = {_does_not_clamp: subject.model == "eon", _is_ours: library == "eonlib"}
     return [check for check, does in applies.items() if does]
 
 
-def _uses_inputs(subject, target, library):
+def _uses_inputs(subject: Subject, target: str, library: str) -> Result:
     """Every input of the node has to occur in the source beyond its declaration."""
     text, variables = _source(subject, target, library)
     unused = _unused(text, variables)
@@ -59,7 +62,7 @@ def _uses_inputs(subject, target, library):
     )
 
 
-def _does_not_clamp(subject, target, library):
+def _does_not_clamp(subject: Subject, target: str, library: str) -> Result:
     """The cosine between the directions has to keep its sign: back-lit pairs need it."""
     text, _ = _source(subject, target, library)
     clamps, planted = (len(CLAMP.findall(each)) for each in (text, text + STOCK_LINE))
@@ -73,7 +76,7 @@ def _does_not_clamp(subject, target, library):
     )
 
 
-def _is_ours(subject, target, library):
+def _is_ours(subject: Subject, target: str, library: str) -> Result:
     """The model's function has to be defined in the text, or another implementation was found."""
     text, _ = _source(subject, target, library)
     definition = re.compile(rf"\b(?:vec3|float3) {FUNCTION[subject.model]}\(")
@@ -90,7 +93,7 @@ def _is_ours(subject, target, library):
     )
 
 
-def _tints(subject, library):
+def _tints(subject: Subject, library: str) -> Result:
     """MDL's multiple-scattering lobe has to carry the colour: white light leaves black surfaces."""
     text, variables = _source(subject, "mdl", library)
     white, planted = (
@@ -125,23 +128,23 @@ def _result(key, claim, place, found, unless, control):
     )
 
 
-def _tinted(text, variables):
+def _tinted(text: str, variables: dict[str, str]) -> bool:
     found = TINT.search(text)
     return bool(found) and variables["color"] in found[0]
 
 
-def _source(subject, target, library):
+def _source(subject: Subject, target: str, library: str) -> tuple[str, dict[str, str]]:
     """Text of the pixel stage, and the variable that carries each input of the node."""
     shader = generate(subject.document({"normal": (0.0, 0.6, 0.8)}), target, library=library)[0]
     return shader.stages["pixel"], {name: f"lobe_{name}" for name in subject.inputs}
 
 
-def _without_use(text, word):
+def _without_use(text: str, word: str) -> str:
     """The text with a variable declared, and not used."""
     declared, name, rest = text.partition(word)
     return declared + name + re.sub(rf"\b{word}\b", "x", rest)
 
 
-def _unused(text, variables):
+def _unused(text: str, variables: dict[str, str]) -> list[str]:
     """Inputs whose variable does not occur twice: once declared, once used."""
     return [name for name, word in variables.items() if len(re.findall(rf"\b{word}\b", text)) < 2]

@@ -204,8 +204,8 @@ def _executor(
 def _outcomes(tasks: Sequence[Task], executor: Executor) -> Iterator[tuple[int, Findings]]:
     """Findings of the tasks as they come, each with its position."""
     for position, outcome in executor(tasks):
-        failed = outcome.value is None
-        yield position, not_run(tasks[position], outcome.failure) if failed else outcome.value
+        findings: Any = outcome.value
+        yield position, findings or not_run(tasks[position], outcome.failure)
 
 
 def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:

@@ -9,6 +9,7 @@ import glob
 import hashlib
 import os
 import re
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from xml.parsers import expat
@@ -17,6 +18,7 @@ import mxeon
 from mxeon.errors import DocumentError, InputError
 from mxeon.io.files import regular
 from mxeon.shaders.document.encoding import decode, strict
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
 from mxeon.shaders.library import LIBRARIES, data_folder, eonlib_folder, standard_folders
 
@@ -25,7 +27,9 @@ INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
 OPEN_PART = re.compile(r"<[^<>]*>|\[[^][]*\]|\{[^{}]*\}")
 
 
-def digests(documents, policy, libraries=()):
+def digests(
+    documents: Iterable[str | os.PathLike[str]], policy: Policy, libraries: Iterable[str] = ()
+) -> dict[str, str]:
     """SHA-256 of every file that findings on documents depend on.
 
     Parameters
@@ -53,7 +57,7 @@ def digests(documents, policy, libraries=()):
     return found | _installed()
 
 
-def _named(document, policy):
+def _named(document: Path, policy: Policy) -> list[str]:
     """The files that a document includes and names, and those that the included ones do."""
     home, waiting, seen = Path(os.path.realpath(document)).parent, [document], set()
     while waiting:
@@ -70,7 +74,7 @@ def _named(document, policy):
     return sorted(seen)
 
 
-def _text(path, policy):
+def _text(path: Path | str, policy: Policy) -> str:
     """Text of a document, or "" of one that is too large or cannot be read."""
     with suppress(OSError, DocumentError), open(path, "rb", opener=regular) as file:
         data = file.read(policy.size + 1)
@@ -78,11 +82,12 @@ def _text(path, policy):
     return ""
 
 
-def _names(text, elements):
+def _names(text: str, elements: int) -> list[tuple[str, str]]:
     """Attributes of a document that may name files, with their prefix: as far as it may be read."""
-    names, prefixes = [], [""]
+    names: list[tuple[str, str]] = []
+    prefixes = [""]
 
-    def start(_, attributes):
+    def start(_: str, attributes: dict[str, str]) -> None:
         if len(names) > 2 * len(NAMING) * elements:
             refuse()
         prefixes.append(attributes.get("fileprefix", prefixes[-1]))
@@ -90,7 +95,7 @@ def _names(text, elements):
             if value := attributes.get(key):
                 names.extend((key, name) for name in {value, prefixes[-1] + value})
 
-    def refuse(*_):
+    def refuse(*_: object) -> None:
         raise InputError("no document that is refused has findings of its files")
 
     parser = expat.ParserCreate()
@@ -101,7 +106,7 @@ def _names(text, elements):
     return names
 
 
-def _paths(name, folders):
+def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
     """The regular files that a name may mean, by their real paths."""
     for folder in folders:
         paths = [str(folder / name)]
@@ -110,7 +115,7 @@ def _paths(name, folders):
         yield from map(os.path.realpath, filter(os.path.isfile, paths))
 
 
-def _installed():
+def _installed() -> dict[str, str]:
     """Digests of mxeon's code and of the data libraries, by names that hold on any machine."""
     folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", eonlib_folder())]
     folders += [
@@ -125,7 +130,7 @@ def _installed():
     }
 
 
-def _digest(path):
+def _digest(path: str | os.PathLike[str]) -> str:
     with suppress(OSError), open(path, "rb", opener=regular) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
     return ""
