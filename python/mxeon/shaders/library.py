@@ -102,7 +102,7 @@ def _folders(library: str, profile: str | None) -> list[str]:
         folders = [profile_folder(profile)] if profile is not None else []
         folders.append(eonlib_folder())
     else:
-        folders = [] if library == "stock" else [library]
+        folders = [] if library == "stock" else [Path(library)]
     return [str(folder) for folder in folders] + list(mx.getDefaultDataLibraryFolders())
 
 
