@@ -14,10 +14,11 @@ from mxeon.conformance.run import check
 from mxeon.errors import Unsupported
 from mxeon.models import table
 from mxeon.shaders import hosts
+from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import base
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import SIDE
-from mxeon.shaders.targets import CLASSES, generate
+from mxeon.shaders.targets import CLASSES
 
 VERBS = {
     "picture": (None, SIDE),
