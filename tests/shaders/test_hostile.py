@@ -14,7 +14,7 @@ import pytest
 
 from mxeon import cli
 from mxeon.conformance.reference import Host as Reference
-from mxeon.errors import DocumentError
+from mxeon.errors import MISUSE, PASSED, DocumentError
 from mxeon.io import images
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.document.reading import read_document
@@ -152,13 +152,13 @@ def test_generating_reports_code_and_running_it_needs_the_option(home, capsys):
     path = str(written(home, material(INLINE)))
     out = str(home / "out")
     with warnings.catch_warnings(action="default"):
-        assert cli.main(["generate", path, "--target", "glsl", "--outputPath", out]) == cli.PASSED
+        assert cli.main(["generate", path, "--target", "glsl", "--outputPath", out]) == PASSED
     assert "warning: " in capsys.readouterr().err
     render = ["render", path, "--size", "4", "--output", f"{out}/a.png"]
-    assert cli.main(render) == cli.MISUSE
+    assert cli.main(render) == MISUSE
     assert "pass --allowCode to permit it" in capsys.readouterr().err
     with warnings.catch_warnings(action="default"):
-        assert cli.main([*render, "--allowCode"]) == cli.PASSED
+        assert cli.main([*render, "--allowCode"]) == PASSED
 
 
 # --- limits -------------------------------------------------------------------------------------
@@ -231,9 +231,9 @@ def test_a_document_that_includes_itself_is_refused_at_once(tmp_path):
 def test_an_option_moves_a_limit(tmp_path, capsys):
     arguments = ["generate", str(written(tmp_path, SMALL)), "--target", "osl"]
     arguments += ["--outputPath", str(tmp_path / "out"), "--maxElements"]
-    assert cli.main([*arguments, "5"]) == cli.MISUSE
+    assert cli.main([*arguments, "5"]) == MISUSE
     assert "raise it with --maxElements" in capsys.readouterr().err
-    assert cli.main([*arguments, "6"]) == cli.PASSED
+    assert cli.main([*arguments, "6"]) == PASSED
 
 
 @pytest.mark.parametrize("name", LIMITS)
