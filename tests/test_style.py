@@ -22,7 +22,7 @@ def test_the_code_passes(tool):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_a_package_that_is_listed_is_checked_for_types(tmp_path):
+def test_a_function_without_types_is_refused(tmp_path):
     (tmp_path / "untyped.py").write_text("def untyped(x): return x\n")
     configuration = ["--config-file", str(ROOT / "pyproject.toml"), "untyped.py"]
     command = [sys.executable, "-m", "mypy", "--no-incremental", *configuration]

@@ -305,6 +305,12 @@ def test_row_knows_the_interval_of_its_parameter(row):
 
 def test_lambert_has_no_interval():
     assert model("lambert").interval is None
+    assert model("lambert").largest == 1.0
+
+
+def test_a_model_without_a_closed_form_of_its_albedo_refuses_to_give_one():
+    with pytest.raises(ValueError, match="closed form of its albedo; got 'oren_nayar'"):
+        _ = model("oren_nayar").closed_albedo_dir
 
 
 # --- known wrong variants --------------------------------------------------------------------

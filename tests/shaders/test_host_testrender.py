@@ -92,7 +92,7 @@ def test_its_identity_says_that_no_real_build_has_run(host):
 
 
 def test_the_plane_is_seen_at_all_angles():
-    scene = PlaneProbe.lit[1]
+    scene = PlaneProbe.scenes[1]
     wo, wi = plane_pairs(scene)
     assert wo[:, 2].min() < 0.1 and wo[:, 2].max() > 0.8
     np.testing.assert_allclose(np.linalg.norm(wo, axis=1), 1.0, atol=1e-12)

@@ -69,9 +69,7 @@ def nearest_albedo(probe: Any) -> Diagnosis:
 
 def _albedo(row: Model, batch: Batch) -> Array:
     parameter = [batch.inputs["roughness"]] if row.parameter else []
-    assert row.albedo_dir is not None
-    albedo: Array = row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], *parameter)
-    return albedo
+    return row.closed_albedo_dir(batch.wo[:, 2], batch.inputs["color"], *parameter)
 
 
 def _clipped(batch: Batch) -> Batch:

@@ -15,7 +15,7 @@ from mxeon.figures.claims import sampling as claims_sampling
 from mxeon.figures.claims import specification as claims_specification
 from mxeon.figures.sheet import Sheet, styled
 from mxeon.io.files import write_text
-from mxeon.shaders.hosts import open_host
+from mxeon.shaders.hosts.gl import Host
 
 # In the order of the paper.
 FIGURES = (
@@ -68,7 +68,7 @@ def figures(
         If OpenGL is not available; the pictures are traced on it.
     """
     folder = Path(folder)
-    sheet = replace(Sheet(folder / "figures", open_host("gl")), **work)
+    sheet = replace(Sheet(folder / "figures", Host()), **work)
     page = folder / "paper_checked.md"
     with styled():
         for step in progress((*FIGURES, claims.page)):

@@ -67,7 +67,7 @@ def comparison(sheet: Sheet) -> None:
             for each in MODELS:
                 if each.name == INDISTINGUISHABLE:
                     continue
-                parameter = [0.5 * each.interval[1]] if each.parameter else []
+                parameter = [0.5 * each.largest] if each.parameter else []
                 value = each.brdf(wo, wi, 0.8, *parameter)[:, 0] * wi[2]
                 columns[f"{each.name} theta_i={theta_i:g} phi={phi:g}"] = value
                 axes[row, column].plot(DEGREES, value, label=label(each.name))

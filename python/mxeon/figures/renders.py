@@ -44,7 +44,7 @@ def look(name: str, part: float = 1.0) -> dict[str, Any]:
     if not row.parameter:
         return {"model": name, "parameter": 0.0, "sampler": "cosine"}
     sampler = "eon" if name in ("eon", "eon_approx") else "eon_cltc"
-    return {"model": name, "parameter": part * row.interval[1], "sampler": sampler}
+    return {"model": name, "parameter": part * row.largest, "sampler": sampler}
 
 
 def title(sheet: Sheet) -> None:
@@ -96,7 +96,8 @@ def furnaces(sheet: Sheet) -> None:
 def _contrast(image: NDArray[np.float32]) -> NDArray[Any]:
     """The brighter part of the lit pixels, stretched from black to white."""
     low, high = np.quantile(image[image.max(axis=-1) > 0.02], (0.3, 0.995))
-    return (image - low) / (high - low)
+    stretched: NDArray[Any] = (image - low) / (high - low)
+    return stretched
 
 
 def lobes(sheet: Sheet) -> None:

@@ -138,4 +138,5 @@ def trace(
     uniforms["tracer_frame"] = picture.height, picture.half_width, picture.size
     text, size = program(picture.model, picture.sampler), (picture.size, picture.size)
     total = host.accumulate(text, uniforms, size, progress(range(picture.samples)))
-    return total[::-1, :, :3] / np.float32(picture.samples)
+    mean: NDArray[np.float32] = total[::-1, :, :3] / np.float32(picture.samples)
+    return mean

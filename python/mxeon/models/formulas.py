@@ -8,7 +8,7 @@ channels on the first axis, so that it broadcasts against the rest.
 
 import numpy as np
 
-from mxeon.models.arrays import Array
+from mxeon.models.arrays import Array, Number
 
 # FON loses r c1 / (1 + c1 r) at normal incidence and r (c1 - c2) / (1 + c1 r) on average:
 # [Portsmouth2025], Eqs. (10), (15), (29).
@@ -80,12 +80,12 @@ def fon_scale(rho: Array, roughness: Array) -> Array:
     return rho / np.pi * fon_a(roughness)
 
 
-def qon_a(sigma: Array, constant: float = 0.33) -> Array:
+def qon_a(sigma: Number, constant: float = 0.33) -> Number:
     """A_q: [Portsmouth2025], below Eq. (1)."""
     return 1.0 - 0.5 * sigma**2 / (sigma**2 + constant)
 
 
-def qon_b(sigma: Array) -> Array:
+def qon_b(sigma: Number) -> Number:
     """B_q: [Portsmouth2025], below Eq. (1)."""
     return 0.45 * sigma**2 / (sigma**2 + 0.09)
 

@@ -45,6 +45,24 @@ class Model:
         low, high, _ = RANGES[self.parameter]
         return low, high
 
+    @property
+    def largest(self) -> float:
+        """Largest value of the parameter; 1 without one."""
+        return self.interval[1] if self.interval else 1.0
+
+    @property
+    def closed_albedo_dir(self) -> Callable[..., Array]:
+        """`albedo_dir`, where it must be known.
+
+        Raises
+        ------
+        ValueError
+            If no closed form is known.
+        """
+        if self.albedo_dir is None:
+            raise ValueError(f"model must have a closed form of its albedo; got {self.name!r}")
+        return self.albedo_dir
+
 
 def model(name: str) -> Model:
     """The row of `MODELS` or `KNOWN_DEFECTS` with this name.

@@ -5,6 +5,7 @@ import base64
 import io
 import re
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -25,6 +26,7 @@ CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
 TEXT_COLOR = "#010203"
 # Without these, matplotlib adds a description of itself, with addresses, to each plot.
 NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+NO_SOFTWARE: dict[str, Any] = {"Software": None}
 STYLE = {
     "svg.fonttype": "none",
     "svg.hashsalt": "mxeon",
@@ -57,7 +59,7 @@ def picture_uri(pixels: NDArray[np.uint8]) -> str:
     """
     step = -(-len(pixels) // SHOWN_SIZE)
     buffer = io.BytesIO()
-    imsave(buffer, pixels[::step, ::step], format="png", metadata={"Software": None})
+    imsave(buffer, pixels[::step, ::step], format="png", metadata=NO_SOFTWARE)
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
 
 

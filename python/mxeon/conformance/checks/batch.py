@@ -70,11 +70,10 @@ def directions(rng: np.random.Generator, count: int) -> Array:
 
 def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
     """Random colors and roughnesses; an eighth of each lies on either end of its range."""
-    largest = row.interval[1] if row.parameter else 1.0
     color, roughness = rng.random((count, 3)), rng.random(count)
     color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
-    roughness = largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
-    roughness = np.minimum(roughness.astype(np.float32), np.nextafter(np.float32(largest), 0))
+    roughness = row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
+    roughness = np.minimum(roughness.astype(np.float32), np.nextafter(np.float32(row.largest), 0))
     return {"color": _float32(color.T), "roughness": roughness.astype(np.float64)}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of checks applied: a node on a host, with its controls and, on failure, a diagnosis."""
+"""Results of the table of checks: measurement, control and, on failure, a diagnosis."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,20 +19,20 @@ CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
 
 def applies(check: Check, subject: Any, kind: str, host: str) -> bool:
-    """Whether a row of the table can be asked about a subject, by a kind of probe, on a host."""
+    """Whether a check applies to a subject, with a kind of probe, on a host."""
     return (
         subject.model in check.models and kind in check.tolerances and check.applies(subject, host)
     )
 
 
 def judge_subject(probe: Any, checks: Sequence[Check] = CHECKS) -> tuple[Result, ...]:
-    """Results of the checks that apply to a node, as its host can be asked.
+    """Results of the checks that apply to a node on its host.
 
     Parameters
     ----------
     probe : PairProbe, PictureProbe or CallableProbe
     checks : sequence of Check
-        The rows to go through.
+        Rows of the table.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def judge_measurements(
 
 
 def not_measured(fields: dict[str, Any], error: NotRun | ShaderError) -> Result:
-    """The result of a check that was not measured: not run, or failed by a shader error."""
+    """The result of a check without a measurement: not run, or failed by a shader error."""
     if isinstance(error, NotRun):
         return Result(**fields, verdict=NOT_RUN, reason=str(error))
     return Result(**fields, verdict=FAILED, diagnosis=str(error))

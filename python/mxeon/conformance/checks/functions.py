@@ -66,7 +66,7 @@ def measure_functions(call: Call) -> Measurement:
 
 def measure_loss(call: Call) -> Measurement:
     """1 - E of FON, relative, down to grazing: as H(mu), which the shader functions compute."""
-    mu = np.float32(np.geomspace(GRAZING, 1.0, PAIRS)).astype(np.float64)
+    mu = np.geomspace(GRAZING, 1.0, PAIRS).astype(np.float32).astype(np.float64)
     error = relative(call("fon_loss", mu), np.reshape(albedo.fon_loss(mu), (-1, 1)))
     return Measurement(float(error.max()), {"mu": [float(mu[error.argmax()])]})
 

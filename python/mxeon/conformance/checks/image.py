@@ -2,8 +2,12 @@
 """Materials from documents: their pictures on a host against the reference's, pixel by pixel."""
 
 import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.checks.measures import absolute
@@ -12,10 +16,14 @@ from mxeon.conformance.checks.tolerances import ROUNDING, Tolerance
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
-from mxeon.shaders.document.policy import DEFAULT
-from mxeon.shaders.generation import ApproximationWarning, CodeWarning
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
 from mxeon.shaders.hosts import host_row
-from mxeon.shaders.scene import sphere
+from mxeon.shaders.hosts.base import Host
+from mxeon.shaders.scene import Scene, sphere
+
+Pixels: TypeAlias = NDArray[Any]
+Case: TypeAlias = tuple[Scene, Pixels, Pixels]  # with the host's picture and the reference's
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 UNIT = "pi f cos, times cos(theta_o)"
@@ -37,141 +45,163 @@ MATCH = "The picture is the reference's in every pixel."
 FINITE = "No pixel is infinite or not a number."
 
 
-def judge_document(file, host, judge, library, policy=DEFAULT):
-    """Pictures of every material of a document on a host, and whether they are the reference's.
+def judge_document(
+    file: Path, host: Host, judge: Host, library: str, policy: Policy = DEFAULT
+) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[tuple[str, str], ...]]:
+    """Pictures of every material of a document on a host, judged against the reference's.
 
     Parameters
     ----------
-    file : path-like
-    host, judge : host
-        Who is judged, and the reference.
+    file : Path
+    host, judge : Host
+        The host to judge, and the reference.
     library : str
         Name of the data library.
     policy : Policy
-        What the document may do, and how large it may be.
+        Limits of the document: the files it may name, and its size.
 
     Returns
     -------
     tuple of Result, tuple of Picture, tuple of (str, str)
-        The last are what the host approximates, and where.
+        The last are notes and their locations, such as what the host approximates.
 
     Raises
     ------
     DocumentError
         If no shader can be made from the document.
     """
-    with warnings.catch_warnings(record=True) as caught:
+    with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
         shaders = host.compile(file, library=library, policy=policy)
-    said = [each.message for each in caught]
-    approximations = [each for each in said if isinstance(each, ApproximationWarning)]
-    approximated = {each.element: each.approximation for each in approximations}
-    results, pictures = [], []
+    messages = [record.message for record in records]
+    approximations = {
+        message.element: message.approximation
+        for message in messages
+        if isinstance(message, ApproximationWarning)
+    }
+    results: list[Result] = []
+    pictures: list[Picture] = []
     for shader in shaders:
-        front_lit = shader.element in approximated
-        result, shown = _judge_material(file, shader, host, judge, library, front_lit)
+        front_lit = shader.element in approximations
+        result, images = _judge_material(file, shader, host, judge, library, front_lit)
         results.append(result)
-        pictures += shown
-    notes = [(text, f"{file.name}: {place}") for place, text in approximated.items()]
+        pictures += images
+    notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
     others = (CodeWarning, DocumentWarning)
-    notes += [(str(each), file.name) for each in said if isinstance(each, others)]
+    notes += [(str(message), file.name) for message in messages if isinstance(message, others)]
     return tuple(results), tuple(pictures), tuple(notes)
 
 
-def _judge_material(file, shader, host, judge, library, front_lit):
+def _judge_material(
+    file: Path, shader: Shader, host: Host, judge: Host, library: str, front_lit: bool
+) -> tuple[Result, tuple[Picture, ...]]:
     """One material; `front_lit` where the host has its model for s >= 0 only."""
     scenes = host_row(host.name).scenes
     subject = f"{file.name}: {shader.element}"
-    place = {"subject": subject, "host": host.name, "library": library}
+    fields: dict[str, Any] = {"subject": subject, "host": host.name, "library": library}
     try:
         images = [host.picture(shader, scene) for scene in scenes]
     except NotRun as reason:
-        return Result("picture", MATCH, **place, verdict=NOT_RUN, reason=str(reason)), ()
+        return Result("picture", MATCH, **fields, verdict=NOT_RUN, reason=str(reason)), ()
     except ShaderError as error:
-        return Result("picture", MATCH, **place, verdict=FAILED, diagnosis=str(error)), ()
+        return Result("picture", MATCH, **fields, verdict=FAILED, diagnosis=str(error)), ()
+    references: list[Pixels | None] = [None] * len(scenes)
     try:
-        references = [judge.picture(shader, scene) for scene in scenes]
+        expected = [judge.picture(shader, scene) for scene in scenes]
     except OutsideModel as reason:
-        return Result("picture", MATCH, **place, verdict=NOT_RUN, reason=str(reason)), ()
+        return Result("picture", MATCH, **fields, verdict=NOT_RUN, reason=str(reason)), ()
     except NotRun as reason:
-        references = [None] * len(scenes)
-        result = _judge_finite(place, images, str(reason))
+        result = _judge_finite(fields, images, str(reason))
     else:
-        cases = list(zip(scenes, images, references, strict=True))
-        result = _judge_match(place, cases, TEXTURED if _textured(shader) else PLAIN, front_lit)
-    identity = host.identity()
-    made = {"version": mxeon.__version__, "host": f"{host.name} {identity.version}"}
-    made |= {"device": identity.device, "library": library, "document": str(file)}
+        references = [*expected]
+        cases = list(zip(scenes, images, expected, strict=True))
+        result = _judge_match(fields, cases, TEXTURED if _textured(shader) else PLAIN, front_lit)
     return result, tuple(
-        Picture(
-            file.name,
-            shader.element,
-            host.name,
-            library,
-            scene.name,
-            image,
-            reference,
-            made | {"element": shader.element, "scene": scene.name},
-        )
-        for scene, image, reference in zip(scenes, images, references, strict=True)
+        _picture(file, shader, host, library, case)
+        for case in zip(scenes, images, references, strict=True)
     )
 
 
-def _textured(shader):
-    return any(each.type == "filename" and each.value for each in shader.inputs)
+def _picture(
+    file: Path,
+    shader: Shader,
+    host: Host,
+    library: str,
+    case: tuple[Scene, Pixels, Pixels | None],
+) -> Picture:
+    """The record of a picture, with its origin."""
+    scene, image, reference = case
+    identity = host.identity()
+    metadata = {
+        "version": mxeon.__version__,
+        "host": f"{host.name} {identity.version}",
+        "device": identity.device,
+        "library": library,
+        "document": str(file),
+        "element": shader.element,
+        "scene": scene.name,
+    }
+    names = (file.name, shader.element, host.name, library, scene.name)
+    return Picture(*names, image, reference, metadata)
 
 
-def _judge_finite(place, images, reason):
-    """A material that the models do not cover: all one can ask is numbers."""
-    planted = [np.where(np.arange(3) == 0, np.nan, images[0])]
-    bad, caught = _not_finite(images), _not_finite(planted)
+def _textured(shader: Shader) -> bool:
+    """Whether a shader reads an image."""
+    return any(port.type == "filename" and port.value for port in shader.inputs)
+
+
+def _judge_finite(fields: dict[str, Any], images: Sequence[Pixels], reason: str) -> Result:
+    """Result for a material that the models do not cover: its pixels have to be numbers."""
+    control = [np.where(np.arange(3) == 0, np.nan, images[0])]
+    error, control_error = _not_finite(images), _not_finite(control)
     return Result(
         "finite",
         FINITE,
-        **place,
-        verdict=PASSED if bad == 0 < caught else FAILED,
-        error=bad,
+        **fields,
+        verdict=PASSED if error == 0 < control_error else FAILED,
+        error=error,
         unit="pixels",
         tolerance=0,
         derivation="a count",
         diagnosis=reason,
-        control=Control("one channel is not a number", caught, caught > 0),
+        control=Control("one channel is not a number", control_error, control_error > 0),
     )
 
 
-def _not_finite(images):
+def _not_finite(images: Sequence[Pixels]) -> float:
+    """Number of pixels that are infinite or not a number."""
     return float(sum((~np.isfinite(image)).any(axis=-1).sum() for image in images))
 
 
-def _judge_match(place, cases, tolerance, front_lit):
-    error, worst, light = max(
-        ((*_worst_pixel(*case, front_lit), case[0].name) for case in cases),
-        key=lambda found: found[0],
-    )
-    scene, image, expected = cases[0]
-    brighter, _ = _worst_pixel(
-        scene, image + np.float32(3.0 * tolerance.value), expected, front_lit
-    )
+def _judge_match(
+    fields: dict[str, Any], cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
+) -> Result:
+    """Result for a material that the models cover: its pixels have to be the reference's."""
+    errors = [(*_worst_pixel(case, front_lit), case[0].name) for case in cases]
+    error, worst, scene = max(errors, key=lambda entry: entry[0])
+    first, image, expected = cases[0]
+    brighter = image + np.float32(3.0 * tolerance.value)
+    control_error, _ = _worst_pixel((first, brighter, expected), front_lit)
+    caught = control_error > tolerance.value
     return Result(
         "picture",
         MATCH,
-        **place,
-        verdict=PASSED if error <= tolerance.value < brighter else FAILED,
+        **fields,
+        verdict=PASSED if error <= tolerance.value and caught else FAILED,
         error=error,
         unit=tolerance.unit,
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
         worst=worst,
-        diagnosis="" if error <= tolerance.value else f"most in the picture of the scene {light}",
-        control=Control(
-            "the picture is brighter by three tolerances", brighter, brighter > tolerance.value
-        ),
+        diagnosis="" if error <= tolerance.value else f"most in the picture of the scene {scene}",
+        control=Control("the picture is brighter by three tolerances", control_error, caught),
     )
 
 
-def _worst_pixel(scene, image, reference, front_lit):
-    """Largest error times cos(theta_o), and the pixel where it is."""
+def _worst_pixel(case: Case, front_lit: bool) -> tuple[float, dict[str, list[float]]]:
+    """Largest error times cos(theta_o), and its pixel."""
+    scene, image, reference = case
     mask = sphere(scene.size).mask
     wo, wi, _ = picture_pairs(scene)
     error = absolute(image[mask], reference[mask]) * wo[:, 2]

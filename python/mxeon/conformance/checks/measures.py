@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The measurements of the checks: the worst error of a probe, and the point where it is."""
+"""Measurements of the checks: the worst error of a probe, and its point."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.checks.batch import Array, Batch
-from mxeon.conformance.checks.nodes import FLAG
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.shaders.hosts import front_lit_only
+from mxeon.shaders.nodes import FLAG
 
 CHANGES = {
     "weight": 0.5,
@@ -77,7 +77,9 @@ def environment(probe: Any, metric: Metric) -> Measurement:
             (
                 batch,
                 probe.albedo(batch),
-                row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], batch.inputs["roughness"]),
+                row.closed_albedo_dir(
+                    batch.wo[:, 2], batch.inputs["color"], batch.inputs["roughness"]
+                ),
             )
             for batch in probe.cosines
         ),
@@ -112,7 +114,7 @@ def integrated(
     mu, color = np.atleast_1d(mu), np.array(color)
     row = reference.model(probe.subject.model)
     measured = albedo_dir_quadrature(brdf, mu, color, roughness, nodes=QUADRATURE_NODES)
-    return measured, row.albedo_dir(mu, color, roughness)
+    return measured, row.closed_albedo_dir(mu, color, roughness)
 
 
 def black(probe: Any, metric: Metric) -> Measurement:
@@ -132,9 +134,9 @@ def reciprocity(probe: Any, metric: Metric) -> Measurement:
     cases = []
     for batch in probe.few:
         swapped = replace(batch, wo=batch.wi, wi=batch.wo)
-        there = probe.direct(batch) * batch.wo[:, 2:]
-        back = probe.direct(swapped) * batch.wi[:, 2:]
-        cases.append((batch, there, back))
+        forward = probe.direct(batch) * batch.wo[:, 2:]
+        backward = probe.direct(swapped) * batch.wi[:, 2:]
+        cases.append((batch, forward, backward))
     return _worst(metric, cases)
 
 
@@ -147,29 +149,29 @@ def lambert(probe: Any, metric: Metric) -> Measurement:
 
 
 def flag(probe: Any, _: Metric) -> Measurement:
-    """The change that the flag makes, against the one it has to make, relative to the largest."""
+    """The change that the flag makes, against the models' difference, relative to the largest."""
     error = largest = 0.0
     for batch in probe.few:
         batch = batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
-        judged = slice(None)
+        rows = slice(None)
         if front_lit_only(probe.host.name, "qon"):
-            judged = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
+            rows = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
         on, off = (probe.direct(batch.altered(**{FLAG: state})) for state in (True, False))
         models = batch.expected("eon") - batch.expected("qon")
-        error = np.maximum(error, absolute(on - off, models)[judged].max(initial=0.0))
-        largest = max(largest, np.abs(models[judged]).max(initial=0.0))
+        error = np.maximum(error, absolute(on - off, models)[rows].max(initial=0.0))
+        largest = max(largest, np.abs(models[rows]).max(initial=0.0))
     return Measurement(float(error / largest), {"expected": [float(largest)]})
 
 
 def inputs(probe: Any, _: Metric) -> Measurement:
     """Number of inputs of the node that change nothing."""
     batch = probe.few[0]
-    before = probe.direct(batch)
+    values = probe.direct(batch)
     changes = {**CHANGES, FLAG: not probe.subject.flag}
     dead = [
         name
         for name in probe.subject.inputs
-        if np.array_equal(before, probe.direct(batch.altered(**{name: changes[name]})))
+        if np.array_equal(values, probe.direct(batch.altered(**{name: changes[name]})))
     ]
     return Measurement(len(dead), {name: [0.0] for name in dead})
 

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is judged: the rough diffuse nodes, each with the model it has to be."""
+"""Subjects of the checks: the rough diffuse nodes, each with the model it has to be."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from mxeon.shaders.nodes import (
     EON,
@@ -17,7 +19,7 @@ from mxeon.shaders.nodes import (
 
 @dataclass(frozen=True)
 class Subject:
-    """A node as it is judged: with the flag it is used with and the model it has to be.
+    """A node with its flag and the model it has to be.
 
     Attributes
     ----------
@@ -37,22 +39,22 @@ class Subject:
     names: tuple[str, ...] = tuple(INPUT_TYPES)
 
     @property
-    def title(self):
-        """How reports call it."""
+    def title(self) -> str:
+        """Name in reports."""
         flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
         return self.node + flag
 
     @property
-    def inputs(self):
+    def inputs(self) -> tuple[str, ...]:
         """Names of the node's inputs."""
         return tuple(name for name in self.names if self.flag is not None or name != FLAG)
 
-    def with_flag(self, inputs):
+    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
         """Inputs with the subject's flag, unless they set it."""
         return inputs if self.flag is None else {FLAG: self.flag, **inputs}
 
-    def document(self, inputs=None):
-        """MaterialX text of a material that is this node alone, with the inputs given."""
+    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+        """MaterialX text of a material that is this node alone, with these inputs."""
         return material_text(self.node, self.with_flag(inputs or {}), self.node)
 
 
@@ -67,13 +69,13 @@ SUBJECTS = (
 class Surface:
     """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
 
-    What lies over the lobe depends on the directions alone, so that pictures of other colours
+    What lies over the lobe depends on the directions alone, so that pictures of other colors
     tell the lobe apart; see `mxeon.conformance.checks.probes.SurfaceProbe`.
 
     Attributes
     ----------
     title, node, model : str
-        As reports call it, its category, and what its specification says it has to be.
+        Name in reports, node category, and the model that its specification asks for.
     color, roughness : str
         Names of the inputs of the lobe; "" for no roughness.
     fixed : tuple of (str, str, str)
@@ -90,14 +92,14 @@ class Surface:
     fixed: tuple[tuple[str, str, str], ...] = ()
     libraries: tuple[str, ...] = ()
 
-    inputs = ()
+    inputs: ClassVar[tuple[str, ...]] = ()
 
-    def document(self, inputs):
+    def document(self, inputs: Mapping[str, Any]) -> str:
         """MaterialX text of a material that is this shader alone."""
         values = [(self.color, "color3", inputs["color"]), *self.fixed]
         if self.roughness:
             values.append((self.roughness, "float", inputs["roughness"]))
-        ports = "".join(input_text(*each) for each in values)
+        ports = "".join(input_text(name, kind, value) for name, kind, value in values)
         return document_text(node_text(self.node, "surfaceshader", "shading", ports))
 
 

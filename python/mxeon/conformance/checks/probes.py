@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a check asks of a host: values and albedos of one node over batches of pairs.
+"""Probes: values and albedos of one node on a host, over batches of pairs.
 
-A host that evaluates gets free pairs, a host that only makes pictures gets the points of a sphere;
+A host that evaluates takes any pairs, a host that only makes pictures takes the points of a sphere;
 both answer in the same form, so a check is written once.
 """
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.checks.batch import (
     FEW,
@@ -17,69 +20,74 @@ from mxeon.conformance.checks.batch import (
     PAIRS,
     RIM,
     SEED,
+    Array,
     Batch,
     directions,
     random_inputs,
 )
 from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.models import table as reference
-from mxeon.shaders.generation import ApproximationWarning
+from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only, host_row
+from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.plane import plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 # Colors and roughnesses of the pictures that stand for a node on hosts that only make pictures.
-PICTURE_INPUTS = (
+PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
 )
 PICTURE_SIZE = 128
+
+Mask: TypeAlias = NDArray[np.bool_]
+Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 
 
 @dataclass(frozen=True)
 class PairProbe:
     """A node on a host that evaluates any pairs."""
 
-    kind = "pairs"
+    kind: ClassVar[str] = "pairs"
 
-    host: object
+    host: Host
     subject: Subject
     library: str
 
     @cached_property
-    def _shader(self):
+    def _shader(self) -> Shader:
         return self.host.compile(self.subject.document(), library=self.library)[0]
 
     @cached_property
-    def batches(self):
+    def batches(self) -> tuple[Batch, ...]:
         """One batch of PAIRS random pairs; a quarter of each direction grazes the surface."""
         rng = np.random.default_rng(SEED)
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
         return (Batch(wo, wi, random_inputs(rng, PAIRS, reference.model(self.subject.model))),)
 
     @cached_property
-    def few(self):
-        """FEW of them."""
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of the pairs."""
         return tuple(batch.first(FEW) for batch in self.batches)
 
     @property
-    def cosines(self):
-        """Directions for the environment branch, which takes no heed of `wi`."""
+    def cosines(self) -> tuple[Batch, ...]:
+        """Directions for the environment branch, which does not depend on `wi`."""
         return self.few
 
-    def direct(self, batch):
+    def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""
         return np.pi * self._evaluate(batch, "direct")
 
-    def albedo(self, batch):
-        """What the environment branch makes of a uniform surrounding of radiance 1, (N, 3)."""
+    def albedo(self, batch: Batch) -> Array:
+        """Values of the environment branch in a uniform environment of radiance 1, (N, 3)."""
         return self._evaluate(batch, "environment")
 
-    def call(self, function, *arguments):
-        """A function of the shader twins."""
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a function of the shader twins."""
         return self.host.call(function, *arguments)
 
-    def _evaluate(self, batch, branch):
+    def _evaluate(self, batch: Batch, branch: str) -> Array:
         inputs = self.subject.with_flag(batch.inputs)
         values = self.host.evaluate(self._shader, batch.wo, batch.wi, inputs, branch)
         return values.astype(np.float64)
@@ -89,69 +97,71 @@ class PairProbe:
 class PictureProbe:
     """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
 
-    kind = "pictures"
-    lit = (SIDE, FRONT, BACK)
-    size = PICTURE_SIZE
+    kind: ClassVar[str] = "pictures"
+    scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
+    size: ClassVar[int] = PICTURE_SIZE
 
-    host: object
+    host: Host
     subject: Subject | Surface
     library: str
 
     @cached_property
-    def batches(self):
+    def batches(self) -> tuple[Batch, ...]:
         """The lit points away from rim and terminator, for each light and PICTURE_INPUTS."""
         batches = (
             self._batch(replace(scene, size=self.size), inputs)
-            for scene in self.lit
+            for scene in self.scenes
             for inputs in PICTURE_INPUTS
         )
         return tuple(batch for batch in batches if len(batch.wo))
 
     @property
-    def few(self):
+    def few(self) -> tuple[Batch, ...]:
         """The same: they are few."""
         return self.batches
 
     @cached_property
-    def cosines(self):
-        """The points in a white surrounding."""
+    def cosines(self) -> tuple[Batch, ...]:
+        """The points in a white environment."""
         scene = replace(FURNACE, size=self.size)
         return tuple(self._batch(scene, inputs) for inputs in PICTURE_INPUTS)
 
-    def direct(self, batch):
+    def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""
         return self._picture(batch)
 
     albedo = direct
 
-    def call(self, function, *arguments):
-        """A function of the shader twins."""
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a function of the shader twins."""
         return self.host.call(function, *arguments)
 
-    def _batch(self, scene, inputs):
-        wo, wi, chosen = self._points(scene)
-        return Batch(wo[chosen], wi[chosen], inputs, scene)
+    def _batch(self, scene: Scene, inputs: Mapping[str, Any]) -> Batch:
+        wo, wi, mask = self._points(scene)
+        return Batch(wo[mask], wi[mask], inputs, scene)
 
-    def _points(self, scene):
-        """Directions at the points of a picture, and which points are judged."""
-        wo, wi, chosen = picture_pairs(scene)
-        return wo, wi, chosen & self._judged(wo, wi)
+    def _points(self, scene: Scene) -> Pairs:
+        """Directions at the points of a picture, and the mask of the points to judge."""
+        wo, wi, mask = picture_pairs(scene)
+        return wo, wi, mask & self._mask(wo, wi)
 
-    def _judged(self, wo, wi):
-        """Pairs to judge: those for which the host has a closure that can be the model."""
+    def _mask(self, wo: Array, wi: Array) -> Mask:
+        """Mask of the pairs for which the host has a closure that can be the model."""
         if not front_lit_only(self.host.name, self.subject.model):
             return np.ones(len(wo), dtype=bool)
         return wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1] >= 0.0
 
-    def _picture(self, batch):
-        values = self._shown(self._shader(batch.inputs), batch.scene)
-        return values[self._points(batch.scene)[2]].astype(np.float64)
+    def _picture(self, batch: Batch) -> Array:
+        """Values at the points of a batch."""
+        scene = _scene(batch)
+        values = self._radiance(self._shader(batch.inputs), scene)
+        return values[self._points(scene)[2]].astype(np.float64)
 
-    def _shader(self, inputs):
-        return _compiled(self.host, self.subject.document(inputs), self.library)
+    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
+        return _compile(self.host, self.subject.document(inputs), self.library)
 
-    def _shown(self, shader, scene):
-        """What the host shows at all points."""
+    def _radiance(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """The host's values at all points of a picture."""
         return self.host.picture(shader, scene)[sphere(scene.size).mask]
 
 
@@ -163,44 +173,49 @@ class SurfaceProbe(PictureProbe):
     model, shows how much of the light reaches the lobe and comes back.
     """
 
-    kind = "lobes"
-    size = PICTURE_SIZE // 4  # the shaders are long
+    kind: ClassVar[str] = "lobes"
+    size: ClassVar[int] = PICTURE_SIZE // 4  # the shaders are long
 
-    def _judged(self, wo, wi):
-        """Pairs to judge: those far from the rim, where an error in place is divided twice."""
-        return np.minimum(wo[:, 2], wi[:, 2]) >= LOBE_RIM
+    subject: Surface
 
-    def _picture(self, batch):
+    def _mask(self, wo: Array, wi: Array) -> Mask:
+        """Mask of the pairs far from the rim, where an error in position is divided twice."""
+        mask: Mask = np.minimum(wo[:, 2], wi[:, 2]) >= LOBE_RIM
+        return mask
+
+    def _picture(self, batch: Batch) -> Array:
         picture = super()._picture
         others = picture(batch.altered(color=(0.0, 0.0, 0.0)))
         lambert = picture(batch.altered(color=(1.0, 1.0, 1.0), roughness=0.0)) - others
         return (picture(batch) - others) / lambert * batch.wi[:, 2:]
 
-    def _shader(self, inputs):
+    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
         """One shader for all inputs: long as it is, it is compiled once."""
         shader = super()._shader(PICTURE_INPUTS[0])
-        given = {self.subject.color: inputs["color"], self.subject.roughness: inputs["roughness"]}
-        values = [given.get(each.path.rsplit("/", 1)[-1], each.value) for each in shader.inputs]
-        changed = map(lambda each, value: replace(each, value=value), shader.inputs, values)
-        return replace(shader, inputs=tuple(changed))
+        values = {self.subject.color: inputs["color"], self.subject.roughness: inputs["roughness"]}
+        ports = (
+            replace(port, value=values.get(port.path.rsplit("/", 1)[-1], port.value))
+            for port in shader.inputs
+        )
+        return replace(shader, inputs=tuple(ports))
 
 
 @dataclass(frozen=True)
 class PlaneProbe(PictureProbe):
     """A node on a plane: every pixel is another direction of view."""
 
-    kind = "planes"
-    lit = tuple(
+    kind: ClassVar[str] = "planes"
+    scenes: ClassVar[tuple[Scene, ...]] = tuple(
         Scene(f"plane{degrees}", light=(np.sin(polar), 0.0, np.cos(polar)))
         for degrees in (20, 75)
         for polar in [np.radians(degrees)]
     )
 
-    def _points(self, scene):
+    def _points(self, scene: Scene) -> Pairs:
         wo, wi = plane_pairs(scene)
         return wo, wi, np.ones(len(wo), dtype=bool)
 
-    def _shown(self, shader, scene):
+    def _radiance(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         return self.host.plane(shader, scene)
 
 
@@ -208,15 +223,16 @@ class PlaneProbe(PictureProbe):
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
-    def _picture(self, batch):
-        color, roughness = (batch.inputs[name] for name in ("color", "roughness"))
-        image = self.host.node(self.subject.node, color, roughness, batch.scene)
-        return image[sphere(batch.scene.size).mask][picture_pairs(batch.scene)[2]].astype(
-            np.float64
-        )
+    subject: Subject
+
+    def _picture(self, batch: Batch) -> Array:
+        scene, inputs = _scene(batch), batch.inputs
+        image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
+        values = image[sphere(scene.size).mask]
+        return values[picture_pairs(scene)[2]].astype(np.float64)
 
 
-PROBES = {
+PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "pairs": PairProbe,
     "pictures": PictureProbe,
     "planes": PlaneProbe,
@@ -224,28 +240,34 @@ PROBES = {
 }
 
 
-def probe_type(host):
-    """The class of probe that asks the host of a name, or None where only text is checked."""
+def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
+    """Class of the probes of the host of a name, or None where only text is checked."""
     return PROBES.get(host_row(host).probe)
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
-def _compiled(host, text, library):
-    with warnings.catch_warnings():  # what is approximated is not judged: see _judged
+def _compile(host: Host, text: str, library: str) -> Shader:
+    with warnings.catch_warnings():  # approximations are not judged: see _mask
         warnings.simplefilter("ignore", ApproximationWarning)
         return host.compile(text, library=library)[0]
 
 
+def _scene(batch: Batch) -> Scene:
+    """The picture of a batch of a probe that makes pictures."""
+    assert batch.scene is not None
+    return batch.scene
+
+
 @lru_cache(maxsize=8)
-def picture_pairs(scene):
-    """Directions at the points of the sphere, and which points are judged.
+def picture_pairs(scene: Scene) -> Pairs:
+    """Directions at the points of the sphere, and the mask of the points to judge.
 
     Returns
     -------
     wo, wi : ndarray, shape (N, 3)
         One row per pixel on the sphere; wi is wo where there is no distant light.
-    chosen : ndarray of bool, shape (N,)
-        Both cosines at least RIM.
+    mask : ndarray of bool, shape (N,)
+        True where both cosines are at least RIM.
     """
     points = sphere(scene.size)
     normal = points.normal[points.mask]

@@ -25,63 +25,64 @@ def check_sources(subjects: Iterable[Subject], library: str) -> tuple[Result, ..
     tuple of Result
     """
     subjects = list(subjects)
-    used = [_uses_inputs(each, target, library) for each in subjects for target in TARGETS]
-    tinted = [_tints(each, library) for each in subjects if each.model == "eon"]
-    inside = [
-        check(each, target, library)
-        for each in subjects
+    inputs = [_uses_inputs(subject, target, library) for subject in subjects for target in TARGETS]
+    tints = [_tints(subject, library) for subject in subjects if subject.model == "eon"]
+    texts = [
+        check(subject, target, library)
+        for subject in subjects
         for target in WITH_BSDF
-        for check in _checks_of_text(each, library)
+        for check in _checks_of_text(subject, library)
     ]
-    return tuple(used + tinted + inside)
+    return tuple(inputs + tints + texts)
 
 
 def _checks_of_text(subject: Subject, library: str) -> list[Callable[[Subject, str, str], Result]]:
-    """Those that apply: QON's text may hold the other model's, which the flag leaves out."""
+    """The checks that apply: QON's text may hold the other model's, which the flag leaves out."""
     applies = {_does_not_clamp: subject.model == "eon", _is_ours: library == "eonlib"}
     return [check for check, does in applies.items() if does]
 
 
 def _uses_inputs(subject: Subject, target: str, library: str) -> Result:
-    """Every input of the node has to occur in the source beyond its declaration."""
+    """Check that every input of the node occurs in the source beyond its declaration."""
     text, variables = _source(subject, target, library)
     unused = _unused(text, variables)
-    noticed = [
+    notices = [
         name
         for name, word in variables.items()
         if name in _unused(_without_use(text, word), variables)
     ]
-    caught = len(noticed) == len(variables)
+    caught = len(notices) == len(variables)
     return _result(
         "source",
         "Every input of the node is used by the generated source.",
         (f"{subject.title}, {target}", library),
         (len(unused), "inputs"),
         f"never used: {', '.join(unused)}",
-        Control("the uses of each input in turn are taken out", len(noticed), caught),
+        Control("the uses of each input in turn are taken out", len(notices), caught),
     )
 
 
 def _does_not_clamp(subject: Subject, target: str, library: str) -> Result:
-    """The cosine between the directions has to keep its sign: back-lit pairs need it."""
+    """Check that the cosine between the directions keeps its sign: back-lit pairs need it."""
     text, _ = _source(subject, target, library)
-    clamps, planted = (len(CLAMP.findall(each)) for each in (text, text + STOCK_LINE))
+    clamps, control = (len(CLAMP.findall(source)) for source in (text, text + STOCK_LINE))
     return _result(
         "clamp",
         "The cosine between the two directions is not clamped in the generated source.",
         (f"{subject.title}, {target}", library),
         (clamps, "clamps"),
         "s is wrong for back-lit pairs",
-        Control("the stock node's line is put into the text", planted, planted > clamps),
+        Control("the stock node's line is put into the text", control, control > clamps),
     )
 
 
 def _is_ours(subject: Subject, target: str, library: str) -> Result:
-    """The model's function has to be defined in the text, or another implementation was found."""
+    """Check that the text defines the model's function, and not another implementation."""
     text, _ = _source(subject, target, library)
     definition = re.compile(rf"\b(?:vec3|float3) {FUNCTION[subject.model]}\(")
-    missing, renamed = (
-        float(not definition.search(each)) for each in (text, definition.sub("vec3 another(", text))
+    missing, control = (
+        float(not definition.search(source))
+        for source in (text, definition.sub("vec3 another(", text))
     )
     return _result(
         "ours",
@@ -89,29 +90,40 @@ def _is_ours(subject: Subject, target: str, library: str) -> Result:
         (f"{subject.title}, {target}", library),
         (missing, "missing functions"),
         f"{FUNCTION[subject.model]} is not defined",
-        Control("the function is defined by another name", renamed, renamed > 0.0),
+        Control("the function is defined by another name", control, control > 0.0),
     )
 
 
 def _tints(subject: Subject, library: str) -> Result:
-    """MDL's multiple-scattering lobe has to carry the colour: white light leaves black surfaces."""
+    """Check that MDL's multiple-scattering lobe carries the color, or black surfaces reflect."""
     text, variables = _source(subject, "mdl", library)
-    white, planted = (
-        float(not _tinted(each, variables)) for each in (text, re.sub(TINT, "color(1.0)", text))
+    white, control = (
+        float(not _tinted(source, variables)) for source in (text, re.sub(TINT, "color(1.0)", text))
     )
     return _result(
         "tint",
-        "The multiple-scattering lobe is tinted by the colour, so black stays black.",
+        "The multiple-scattering lobe is tinted by the color, so black stays black.",
         (f"{subject.title}, mdl", library),
         (white, "untinted lobes"),
         WHITE_LOBE,
-        Control("the tint is white", planted, planted > 0.0),
+        Control("the tint is white", control, control > 0.0),
     )
 
 
-def _result(key, claim, place, found, unless, control):
-    """Result of counting what must not be there; `unless` says what it means if it is."""
-    (subject, library), (error, unit) = place, found
+def _result(
+    key: str,
+    claim: str,
+    location: tuple[str, str],
+    count: tuple[float, str],
+    meaning: str,
+    control: Control,
+) -> Result:
+    """Result of a count, which must be 0.
+
+    `location` is subject and library, `count` the number and its unit, and `meaning` the diagnosis
+    of another count.
+    """
+    (subject, library), (error, unit) = location, count
     return Result(
         check=key,
         claim=claim,
@@ -123,14 +135,15 @@ def _result(key, claim, place, found, unless, control):
         unit=unit,
         tolerance=0,
         derivation="a count",
-        diagnosis=unless if error else "",
+        diagnosis=meaning if error else "",
         control=control,
     )
 
 
 def _tinted(text: str, variables: dict[str, str]) -> bool:
-    found = TINT.search(text)
-    return bool(found) and variables["color"] in found[0]
+    """Whether the text tints the lobe by the node's color."""
+    tint = TINT.search(text)
+    return tint is not None and variables["color"] in tint[0]
 
 
 def _source(subject: Subject, target: str, library: str) -> tuple[str, dict[str, str]]:
@@ -140,11 +153,11 @@ def _source(subject: Subject, target: str, library: str) -> tuple[str, dict[str,
 
 
 def _without_use(text: str, word: str) -> str:
-    """The text with a variable declared, and not used."""
-    declared, name, rest = text.partition(word)
-    return declared + name + re.sub(rf"\b{word}\b", "x", rest)
+    """The text with the declaration of a variable, and without its uses."""
+    head, name, rest = text.partition(word)
+    return head + name + re.sub(rf"\b{word}\b", "x", rest)
 
 
 def _unused(text: str, variables: dict[str, str]) -> list[str]:
-    """Inputs whose variable does not occur twice: once declared, once used."""
+    """Inputs whose variable does not occur twice: in its declaration and in a use."""
     return [name for name, word in variables.items() if len(re.findall(rf"\b{word}\b", text)) < 2]

@@ -17,9 +17,9 @@ from mxeon.conformance.checks.controls import (
     with_inputs,
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
-from mxeon.conformance.checks.nodes import FLAG
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.shaders.hosts import front_lit_only
+from mxeon.shaders.nodes import FLAG
 
 ANY = ("eon", "qon")
 

@@ -88,7 +88,6 @@ def _furnace(mu: NDArray[Any], radiance: float) -> Lobe:
     """Lobe in a uniform environment: its directional albedo."""
 
     def lobe(name: str, rho: ArrayLike, parameter: ArrayLike) -> NDArray[np.float64]:
-        albedo: NDArray[np.float64] = table.model(name).albedo_dir(mu, rho, parameter)
-        return radiance * albedo
+        return radiance * table.model(name).closed_albedo_dir(mu, rho, parameter)
 
     return lobe

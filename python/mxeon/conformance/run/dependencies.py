@@ -59,7 +59,8 @@ def digests(
 
 def _named(document: Path, policy: Policy) -> list[str]:
     """The files that a document includes and names, and those that the included ones do."""
-    home, waiting, seen = Path(os.path.realpath(document)).parent, [document], set()
+    home, seen = Path(os.path.realpath(document)).parent, set[str]()
+    waiting: list[str | Path] = [document]
     while waiting:
         text_file = waiting.pop()
         for key, name in _names(_text(text_file, policy), policy.elements):

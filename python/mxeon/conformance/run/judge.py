@@ -9,8 +9,8 @@ from typing import Any
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
 from mxeon.conformance.checks.functions import FUNCTION_CHECKS, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Surface
-from mxeon.conformance.checks.probes import SurfaceProbe, probe_type
+from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
+from mxeon.conformance.checks.probes import PROBES, PairProbe, PictureProbe, SurfaceProbe
 from mxeon.conformance.checks.source import check_sources
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_page
@@ -27,7 +27,8 @@ from mxeon.conformance.run.plan import (
 )
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.hosts import open_host
+from mxeon.shaders.hosts import host_row, open_host
+from mxeon.shaders.hosts.base import Host
 
 ROWS = {check.key: check for check in CHECKS}
 FUNCTION_ROWS = {check.key: check for check in FUNCTION_CHECKS}
@@ -59,7 +60,7 @@ class Judge:
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
-        self._hosts: dict[str, Any] = {}  # a host, or the NotRun that tells why there is none
+        self._hosts: dict[str, Host | NotRun] = {}  # or the reason why there is none
         self._reference = Reference()
         self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
 
@@ -91,16 +92,17 @@ class Judge:
             if not isinstance(host, NotRun):
                 host.close()
 
-    def _host(self, name: str) -> Any:
+    def _host(self, name: str) -> Host:
         """The host of that name; it is opened, or its absence noticed, once."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = open_host(name)
             except NotRun as reason:
                 self._hosts[name] = reason
-        if isinstance(self._hosts[name], NotRun):
-            raise self._hosts[name]
-        return self._hosts[name]
+        host = self._hosts[name]
+        if isinstance(host, NotRun):
+            raise host
+        return host
 
     def _findings(self, task: Task) -> dict[str, Any]:
         if task.check == SOURCE:
@@ -108,7 +110,7 @@ class Judge:
         host = self._host(task.host)
         return self._on_host(task, host) | {"hosts": (host.identity(),)}
 
-    def _on_host(self, task: Task, host: Any) -> dict[str, Any]:
+    def _on_host(self, task: Task, host: Host) -> dict[str, Any]:
         if task.check == PICTURE:
             return self._document(task, host)
         if task.check in FUNCTION_ROWS:
@@ -118,7 +120,7 @@ class Judge:
             return {"curves": judge_curve(probe)}
         return {"results": judge_subject(probe, (ROWS[task.check],))}
 
-    def _document(self, task: Task, host: Any) -> dict[str, Any]:
+    def _document(self, task: Task, host: Host) -> dict[str, Any]:
         path = Path(task.subject)
         try:
             records = judge_document(path, host, self._reference, task.library, self._policy)
@@ -132,8 +134,10 @@ def _with_pages(findings: Findings) -> Findings:
     return replace(findings, results=tuple(map(with_page, findings.results)))
 
 
-def _probe(host: Any, title: str, library: str) -> Any:
+def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
     """The probe of a subject on a host."""
-    subject = next(row for row in SUBJECTS + NATIVE + SURFACES if row.title == title)
-    kind = SurfaceProbe if isinstance(subject, Surface) else probe_type(host.name)
-    return kind(host, subject, library)
+    surfaces = {surface.title: surface for surface in SURFACES}
+    if title in surfaces:
+        return SurfaceProbe(host, surfaces[title], library)
+    subject = next(row for row in SUBJECTS + NATIVE if row.title == title)
+    return PROBES[host_row(host.name).probe](host, subject, library)

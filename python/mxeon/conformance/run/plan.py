@@ -211,7 +211,7 @@ def _software() -> dict[str, str]:
         "MaterialX": mx.getVersionString(),
         "numpy": np.__version__,
         "OpenImageIO": oiio.__version__,
-        "moderngl": moderngl.__version__,
+        "moderngl": moderngl.__version__,  # type: ignore[attr-defined]
     }
 
 

@@ -27,8 +27,9 @@ def moments(
     value, pdf = eon_brdf(wo, wi, 1.0, roughness)[:, 0], PDF[name](wo, wi, roughness)
     drawn = pdf > 0.0
     value, cosine, pdf, projected = value[drawn], wi[drawn, 2], pdf[drawn], projected[drawn]
-    mean = projected @ value
-    return projected @ (value * value * cosine / pdf) - mean**2, np.max(value * cosine / pdf), mean
+    mean = float(projected @ value)
+    variance = float(projected @ (value * value * cosine / pdf)) - mean**2
+    return variance, float(np.max(value * cosine / pdf)), mean
 
 
 def over_angles(name: str, roughness: float) -> np.ndarray:

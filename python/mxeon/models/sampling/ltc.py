@@ -191,7 +191,7 @@ def ltc_c(mu: Array, roughness: Array) -> Array:
     return 1.0 + roughness * (0.20013 + (-0.506373 + 0.261777 * mu) * mu)
 
 
-def ltc_d(mu: Array, roughness: Array) -> Array:
+def ltc_d(mu: Array, roughness: Array | float) -> Array:
     """Entry d of M."""
     d = 0.540852 + (-1.01625 + 0.475392 * mu) * mu
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu)

@@ -112,7 +112,7 @@ class Host(base.Host):
         uniforms: Mapping[str, Any],
         size: tuple[int, int],
         passes: Iterable[int],
-    ) -> NDArray[Any]:
+    ) -> NDArray[np.float32]:
         """Sum over passes of what a fragment shader draws; the uniform `tracer_pass` counts them.
 
         Parameters
@@ -147,7 +147,9 @@ class Host(base.Host):
             triangle.render()
             context.finish()
         context.disable(context.BLEND)
-        image = np.frombuffer(frame.read(components=4, dtype="f4"), dtype=np.float32)
+        image: NDArray[np.float32] = np.frombuffer(
+            frame.read(components=4, dtype="f4"), dtype=np.float32
+        )
         return image.reshape(size[1], size[0], 4)
 
     def close(self) -> None:
