@@ -94,14 +94,14 @@ def _is_ours(subject: Subject, target: str, library: str) -> Result:
 
 
 def _tints(subject: Subject, library: str) -> Result:
-    """MDL's multiple-scattering lobe has to carry the colour: white light leaves black surfaces."""
+    """MDL's multiple-scattering lobe has to carry the color: white light leaves black surfaces."""
     text, variables = _source(subject, "mdl", library)
     white, planted = (
         float(not _tinted(each, variables)) for each in (text, re.sub(TINT, "color(1.0)", text))
     )
     return _result(
         "tint",
-        "The multiple-scattering lobe is tinted by the colour, so black stays black.",
+        "The multiple-scattering lobe is tinted by the color, so black stays black.",
         (f"{subject.title}, mdl", library),
         (white, "untinted lobes"),
         WHITE_LOBE,
