@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the brick images of this folder: `python make_textures.py [FOLDER]`.
 
-Colours are chosen as sRGB code values, as in a paint program. Only sums, products and square
+Colors are chosen as sRGB code values, as in a paint program. Only sums, products and square
 roots of seeded random numbers enter, which IEEE 754 rounds alike everywhere, so that the
 pixels are the same on every machine. Both images tile. They are twice as wide as high, which
 keeps bricks in shape under a latitude-longitude mapping.

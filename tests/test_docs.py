@@ -7,7 +7,9 @@ import runpy
 import subprocess
 import sys
 from html.parser import HTMLParser
+from importlib.util import find_spec
 from pathlib import Path
+from pkgutil import resolve_name
 from urllib.parse import unquote, urldefrag
 
 import pytest
@@ -15,6 +17,7 @@ import yaml
 from playwright.sync_api import sync_playwright
 
 from mxeon import albedo, inversion, models, sampling
+from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.hosts.webgl import program
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -23,6 +26,18 @@ QUIET = os.environ | {"NO_MKDOCS_2_WARNING": "1"}
 # Attributes whose files a browser loads by itself.
 LOADED = {"script": "src", "img": "src", "iframe": "src", "source": "src", "link": "href"}
 LINK = re.compile(r"\]\(([^)\s]+)\)")
+FOLDERS = "docs|tests|fits|benchmarks|examples|genglsl|genosl|python|profiles|libraries"
+PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s]*[^`<\s:.])(?::\d+)?`")  # without placeholders
+SCRIPT = re.compile(r"python -m ((?:tests|fits|benchmarks|docs)[\w.]*\w)")
+NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
+UPSTREAM = ("libraries/pbrlib", "libraries/bxdf")  # of MaterialX
+
+
+def prose():
+    """Text of all pages, by their file; the changelog names what is gone."""
+    files = [ROOT / name for name in PROSE if name != "CHANGELOG.md"]
+    files += sorted((ROOT / "docs").rglob("*.md"))
+    return {file: file.read_text(encoding="utf-8") for file in files}
 
 
 def build(configuration, site):
@@ -137,6 +152,32 @@ def test_every_link_of_the_prose_leads_to_a_file(name):
     links = LINK.findall((ROOT / name).read_text(encoding="utf-8"))
     files = {urldefrag(link)[0] for link in links if not is_remote(link)} - {""}
     assert [link for link in files if not (ROOT / name).parent.joinpath(link).exists()] == []
+
+
+def test_every_path_that_the_prose_names_exists():
+    paths = {path for text in prose().values() for path in PATH.findall(text)}
+    assert len(paths) > 50
+    ours = sorted(path for path in paths if not path.startswith(UPSTREAM))
+    assert [path for path in ours if not any(ROOT.glob(path))] == []
+
+
+def test_every_module_that_the_prose_names_exists():
+    text = "\n".join(prose().values())
+    scripts, names = set(SCRIPT.findall(text)), set(NAME.findall(text))
+    assert "tests.fuzz" in scripts and "mxeon.models" in names
+    assert [script for script in scripts if find_spec(script) is None] == []
+    assert all(resolve_name(name) for name in names)
+
+
+def test_the_page_on_hosts_says_what_each_host_is_asked():
+    lines = (ROOT / "docs" / "hosts.md").read_text(encoding="utf-8").splitlines()
+    rows = {line.split("`")[1]: line for line in lines if line.startswith("| `")}  # the last one
+    for host in HOSTS:
+        if host.module:
+            scenes = ", ".join(f"`{scene.name}`" for scene in host.scenes) or "none"
+            assert f"`{host.target}`" in rows[host.name]
+            assert scenes in rows[host.name].rsplit("|", 2)[1]
+            assert ("surface shaders" in rows[host.name]) == host.surfaces
 
 
 def test_the_python_example_of_the_readme_runs(tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Imports: the floors of the house, and what an import loads."""
+"""Imports: the floors of the package, and what an import loads."""
 
 import json
 import subprocess

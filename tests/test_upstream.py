@@ -56,7 +56,7 @@ def of_this_driver(defect):
     """Skip the test of a page about a driver that is not the one here."""
     place = judged(defect.host)[1]
     if defect.page in ledger.OF_DRIVERS and place not in ledger.written(defect.page):
-        pytest.skip(f"upstream/{defect.page}.md is about another driver than {place}")
+        pytest.skip(f"docs/upstream/{defect.page}.md is about another driver than {place}")
 
 
 @of_each_defect
@@ -64,7 +64,7 @@ def test_no_defect_has_been_repaired_upstream(defect):
     of_this_driver(defect)
     results = ledger.shown(defect, judged(defect.host)[0])
     repaired = [each for each in results if each.verdict == "passed"]
-    assert not repaired, f"upstream/{defect.page}.md is out of date: the defect is repaired"
+    assert not repaired, f"docs/upstream/{defect.page}.md is out of date: the defect is repaired"
 
 
 @of_each_defect

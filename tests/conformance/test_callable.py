@@ -40,8 +40,8 @@ def grazing(wo, wi, rho, roughness):
         return eon_brdf(wo, wi, rho, roughness) / wo[:, 2:] ** 2
 
 
-def grey(wo, wi, rho, roughness):
-    """EON that leaves the inputs' colour and roughness alone."""
+def gray(wo, wi, rho, roughness):
+    """EON that leaves the inputs' color and roughness alone."""
     return eon_brdf(wo, wi, 0.5 + 0.0 * rho, 0.5)
 
 
@@ -50,7 +50,7 @@ def test_values_that_are_not_finite_or_not_reciprocal_are_found():
 
 
 def test_inputs_without_effect_are_found():
-    assert {"inputs", "black", "lambert"} <= failed(mxeon.check_brdf(grey))
+    assert {"inputs", "black", "lambert"} <= failed(mxeon.check_brdf(gray))
 
 
 def test_a_control_that_is_not_caught_is_said_to_be():

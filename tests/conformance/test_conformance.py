@@ -259,7 +259,7 @@ def stock():
         ("gl", "lobe", "open_pbr_surface, thin-walled", "QON tinted twice"),
         ("source", "source", f"{EON.title}, osl", "never used: energy_compensation"),
         ("source", "clamp", f"{EON.title}, glsl", "s is wrong for back-lit pairs"),
-        ("gl", "flag", QON.title, "; see upstream/genglsl_clamped_dot.md"),
+        ("gl", "flag", QON.title, "; see docs/upstream/genglsl_clamped_dot.md"),
         ("source", "tint", f"{EON.title}, mdl", "FON + white lobe"),
     ],
 )
@@ -270,7 +270,7 @@ def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, 
         if (each.host, each.check, each.subject) == (host, key, subject)
     ]
     assert result.verdict == FAILED and words in result.diagnosis
-    assert "; see upstream/" in result.diagnosis
+    assert "; see docs/upstream/" in result.diagnosis
 
 
 def test_the_text_of_the_other_model_is_not_held_against_qon(stock):
@@ -294,14 +294,14 @@ def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pas
         ]
         return dict(map(reversed, known_issues.repaired(results, {"MaterialX": "2.0"})))
 
-    page = "upstream/genglsl_clamped_dot.md"
+    page = "docs/upstream/genglsl_clamped_dot.md"
     assert noted() == {}
     assert page not in noted("value", "albedo")
     assert noted("value", "albedo", "lobe")[page].startswith("repaired in MaterialX 2.0")
 
 
 @pytest.mark.parametrize(
-    "library, words", [("stock", "see upstream/cycles_rho_cubed.md"), ("eonlib", "")]
+    "library, words", [("stock", "see docs/upstream/cycles_rho_cubed.md"), ("eonlib", "")]
 )
 def test_what_follows_from_a_defect_of_stock_refers_to_its_page(library, words):
     result = Result("inputs", "claim.", QON.title, "cycles", library, FAILED)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """testrender as a host: what is missing is said, and its scenes are what its source says they are.
 
-OSL's programs are in no registry. Programs that read and write the same files stand in for them.
+Programs that read and write the same files stand in for those of OSL, which were not run.
 """
 
 import sys

@@ -79,7 +79,7 @@ ISSUES = (
 
 def with_page(result: Result) -> Result:
     """A result whose diagnosis ends with the page of the issue that explains it, if one does."""
-    pages = [f"see upstream/{issue.page}.md" for issue in _issues(result)]
+    pages = [f"see docs/upstream/{issue.page}.md" for issue in _issues(result)]
     return replace(result, diagnosis="; ".join(filter(None, (result.diagnosis, *pages))))
 
 
@@ -104,7 +104,7 @@ def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tu
     return tuple(
         (
             f"repaired in {_software_of(issue, software)}, so that its page can go",
-            f"upstream/{issue.page}.md",
+            f"docs/upstream/{issue.page}.md",
         )
         for issue in ISSUES
         if all(verdicts.get((issue.host, *row)) == PASSED for row in issue.rows)

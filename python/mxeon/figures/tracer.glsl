@@ -28,7 +28,7 @@ uniform float tracer_roughness; // of the sampler
 uniform vec3 tracer_light; // Unit, towards a distant light of irradiance pi; zero for none.
 uniform float tracer_environment; // Radiance from everywhere beyond the objects.
 uniform vec3 tracer_eye; // Unit, towards the viewer.
-uniform vec3 tracer_frame; // Height of the picture's centre, half of its width, its pixels.
+uniform vec3 tracer_frame; // Height of the picture's center, half of its width, its pixels.
 uniform float tracer_floor; // Reflectance of a Lambertian floor; no floor below 0.
 uniform bool tracer_opened; // A shell cut open around a core, on a foot; else the ball alone.
 

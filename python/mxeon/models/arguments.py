@@ -12,7 +12,7 @@ import numpy as np
 from mxeon.models.arrays import ArrayLike, Numbers
 from mxeon.models.tiling import blocks, channels_first
 
-# Closed ranges of the quantities of the house, by name: least, largest, as printed.
+# Closed ranges of the quantities, by name: least, largest, as printed.
 RANGES = {
     "mu": (0.0, 1.0, "[0, 1]"),
     "rho": (0.0, 1.0, "[0, 1]"),

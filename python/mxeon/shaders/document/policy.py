@@ -42,7 +42,8 @@ class Policy:
     code : bool
         Whether it may bring shader code of its own, in text or in files.
     path : tuple of str
-        Folders, searched after its own, in which it may name files too; by default those of the environment variable MATERIALX_SEARCH_PATH.
+        Folders, searched after its own, in which it may name files too; by default those of the
+        environment variable MATERIALX_SEARCH_PATH.
     size : int
         Bytes of the document and all that it includes.
     length : int

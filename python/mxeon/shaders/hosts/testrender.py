@@ -4,8 +4,8 @@
 Its sphere is a mesh and its camera a perspective one, so the picture is of a plane, on which every
 pixel is a pair of directions that is known exactly.
 
-Not verified against a real build: OSL's programs are in no package registry, and only programs that
-imitate them have run here. Options and scene format are those of OSL 1.14's sources.
+Not verified against a real build of OSL: only programs that imitate oslc and testrender were run.
+Options and scene format are those of OSL 1.14's sources.
 """
 
 from __future__ import annotations
