@@ -66,7 +66,7 @@ def test_the_help_names_every_host(capsys):
     with suppress(SystemExit):
         main(["check", "--help"])
     text = " ".join(capsys.readouterr().out.split())
-    assert f"gl (the default), {', '.join(hosts.host_names()[1:])}, all" in text
+    assert f"gl (the default), {', '.join(hosts.host_names()[1:])}, or all" in text
 
 
 @pytest.mark.parametrize("verb", VERBS)
