@@ -342,9 +342,9 @@ def test_a_black_material_passes(tmp_path):
 
 
 def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path):
-    check(EXAMPLES[:1], folder=tmp_path)
+    check(EXAMPLES[:1], ["msl"], folder=tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     for wrong in ({"workers": -1}, {"timeout": 0.0}, {"scheduler": "tcp://127.0.0.1:9"}):
         with pytest.raises(ValueError, match=r"^(workers|timeout|scheduler) must be "):
-            check(EXAMPLES[:1], folder=tmp_path, **wrong)
+            check(EXAMPLES[:1], ["msl"], folder=tmp_path, **wrong)
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
