@@ -121,6 +121,7 @@ def test_generate_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_p
         (["invert", "0.5", "0.5", "--roughness", "1"], "required: B"),
         (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
         (["invert", "1", "0", "0", "--roughness", "nan"], "roughness must lie in [0, 1]"),
+        (["generate", CLAY, "--target", "osl", "--outputPath", "\0"], "no null character"),
         (["frobnicate"], "invalid choice"),
         ([], "required"),
     ],

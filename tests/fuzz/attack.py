@@ -23,7 +23,7 @@ from tqdm import tqdm
 
 from mxeon.jobs import pool
 from tests.fuzz import journals, signals
-from tests.fuzz.__main__ import keep
+from tests.fuzz.__main__ import FIGURES, keep
 from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
 from tests.fuzz.documents import originals
 from tests.fuzz.found import LOBE
@@ -214,7 +214,8 @@ def main(arguments=None):
     figures = measure(options.families or FAMILIES, options.cases, options.workers)
     print(json.dumps(figures, indent=1))
     if options.keep:
-        keep("attack", figures)
+        kept = json.loads(FIGURES.read_text(encoding="utf-8")).get("attack", {})
+        keep("attack", kept | figures)
     return 1 if any(each.get("faults") for each in figures.values()) else 0
 
 

@@ -58,7 +58,7 @@ def _run(tried):
         with contextlib.chdir(home):
             status, out, err = _called(tried.arguments)
         judging = set(tried.arguments[:1]) & set(JUDGING)
-        named = tuple(os.path.normpath(home / each) for each in _outputs(tried.arguments))
+        named = tuple(os.path.realpath(home / each) for each in _outputs(tried.arguments))
         allowed = 0 if status == 1 and judging else status
         return status, "; ".join(_faults(root, named, before, allowed, out, err))
 

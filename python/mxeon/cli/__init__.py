@@ -85,3 +85,5 @@ def _check_encoding(arguments: Sequence[str]) -> None:
             argument.encode()
         except UnicodeEncodeError:
             raise InputError(f"arguments must be UTF-8, file names too; got {argument!r}") from None
+        if "\0" in argument:  # from Python alone: no shell passes it on
+            raise InputError(f"arguments must have no null character; got {argument!r}")
