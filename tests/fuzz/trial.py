@@ -66,7 +66,7 @@ def _run(tried):
 def _outputs(arguments):
     """Where a command line asks for something to be written."""
     if arguments[:2] == ("report", "make"):  # a run's report is written beside its journal
-        return arguments[2:3]
+        return [path for path in arguments[2:3] if "\0" not in path]
     pairs = itertools.pairwise(arguments)
     return [path for option, path in pairs if option in OUTPUTS and "\0" not in path]
 

@@ -261,6 +261,16 @@ def test_entities_are_refused(text):
     assert "must have no document type" in refusal(text)
 
 
+@pytest.mark.parametrize("kind", ["filename", "geomname"])
+@pytest.mark.parametrize("outer", ["{}", '<nodegraph name="graph">{}</nodegraph>'])
+def test_a_token_that_would_end_the_process_is_refused(kind, outer):
+    token = outer.format(f'<token name="odd" type="{kind}" value="a"/>')
+    message = refusal(SMALL.replace("</materialx>", f"{token}</materialx>"))
+    assert (
+        f"must not have the type {kind}, which ends MaterialX: give it the type string" in message
+    )
+
+
 def test_a_type_of_the_libraries_gets_no_members():
     members = '<typedef name="float"><member name="a" type="float"/></typedef>'
     assert refusal(SMALL.replace("</materialx>", members + "</materialx>")) == (

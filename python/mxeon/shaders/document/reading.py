@@ -99,6 +99,7 @@ def read_document(
         _Reader(policy, Path(source).resolve().parent).read_file(content, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
+    _check_tokens(content)
     _resolve_files(content, [folder(content), *map(Path, policy.path)])
     content.setDataLibrary(data)
     _check(content, policy)
@@ -112,6 +113,16 @@ def _is_text(source: AnyPath) -> TypeGuard[str]:
     """Whether a source is XML text; the path of a file is not, even if it begins with `<`."""
     starts = isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<")
     return starts and not os.path.isfile(source)
+
+
+def _check_tokens(document: mx.Document) -> None:
+    """Raise DocumentError for tokens of names: MaterialX resolves them by themselves, for ever."""
+    for element in document.traverseTree():
+        if element.isA(mx.Token) and element.getType() in ("filename", "geomname"):
+            raise DocumentError(
+                f"{location(element)} must not have the type {element.getType()}, which ends "
+                "MaterialX: give it the type string"
+            )
 
 
 def _resolve_files(document: mx.Document, folders: list[Path]) -> None:
