@@ -66,6 +66,12 @@ def processor_seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def _ticks(seconds):
+    """Times of at least one tick of the processor's clock, which a small picture may not take."""
+    tick = 1.0 / os.sysconf("SC_CLK_TCK")
+    return [max(each, tick) for each in seconds]
+
+
 def measure(rounds=5, size=SIZE, samples=SAMPLES):
     """The `Group` of both closures."""
     figures, checks = [], []
@@ -80,7 +86,7 @@ def measure(rounds=5, size=SIZE, samples=SAMPLES):
         seconds = interleave(runs, rounds, partial(processor_seconds, host.worker.pid))
         for count in samples:
             off = {name: error(runs[name, count](), name) for name in made}
-            time = {name: less(seconds[name, count], seconds[name, 1]) for name in made}
+            time = {name: _ticks(less(seconds[name, count], seconds[name, 1])) for name in made}
             figures += compared(count, off, time)
             mean = {name: np.abs(each.mean(axis=0)).max() for name, each in off.items()}
             checks += [
