@@ -100,7 +100,7 @@ def test_search_works_from_a_folder_without_a_network(site):
         page.on("request", lambda request: requests.append(request.url))
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.goto((site / "index.html").as_uri())
-        page.locator("input[name=query]").fill("albedo")
+        page.locator("input[name=query]").press_sequentially("albedo")  # listens to keys
         page.wait_for_selector(".md-search-result__item")
         browser.close()
     assert [url for url in requests if not url.startswith(("file:", "data:"))] == []
