@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`."""
+
+import tomllib
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+TABLE = Path(__file__).with_name("table")
+ROOT = Path(__file__).resolve().parents[2]
+FOLDERS = ("libraries", "genglsl", "genosl", "profiles")  # that hold eonlib
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One wrong library.
+
+    Attributes
+    ----------
+    name : str
+        Unique in the table.
+    group : str
+        Title of the implementation that it belongs to.
+    file : str
+        Path from the root of the repository.
+    old, new : str
+        The text that occurs once in the file, and what takes its place.
+    reason : str
+        Why it is wrong, or the proof that it is equivalent.
+    host : str
+        The cheapest host that can see it; "text" where no host is needed.
+    equivalent : bool
+        Whether it computes the same function on the whole valid domain.
+    """
+
+    name: str
+    group: str
+    file: str
+    old: str
+    new: str
+    reason: str
+    host: str
+    equivalent: bool
+
+    def text(self) -> str:
+        """Text of the mutated file.
+
+        Raises
+        ------
+        ValueError
+            If the old text does not occur once.
+        """
+        text = (ROOT / self.file).read_text(encoding="utf-8")
+        if text.count(self.old) != 1:
+            raise ValueError(
+                f"{self.name}: the old text must occur once in {self.file}; "
+                f"got {text.count(self.old)} times"
+            )
+        return text.replace(self.old, self.new)
+
+    @property
+    def digest(self) -> str:
+        """Digest of the mutated file."""
+        return sha256(self.text().encode()).hexdigest()[:16]
+
+
+def read_table() -> tuple[Mutant, ...]:
+    """All mutants, in the order of the page."""
+    files = [tomllib.loads(path.read_text(encoding="utf-8")) for path in TABLE.glob("*.toml")]
+    return tuple(
+        Mutant(name, group["title"], part["file"], old, new, reason, group["host"], equivalent)
+        for group in sorted(files, key=lambda group: group["order"])
+        for part in group["files"]
+        for key, equivalent in (("mutants", False), ("equivalents", True))
+        for name, old, new, reason in part.get(key, ())
+    )

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""docs/mutants.md from the JSON."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from benchmarks.mutants.mutant import Mutant
+from mxeon.io.files import write_text
+
+LENGTH = 160  # characters of a change that are shown
+CHEAP = ("gl", "text")  # hosts that need no other renderer
+
+
+def write(file: Path, mutants: Sequence[Mutant], trials: Mapping[str, Any]) -> None:
+    """Write the page of the mutants that were tried."""
+    environment = Environment(
+        loader=PackageLoader("benchmarks.mutants", "."),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"cell": cell, "code": code}
+    rows = [(mutant, trials[mutant.name]) for mutant in mutants if mutant.name in trials]
+    template = environment.get_template("mutants.md.jinja")
+    write_text(file, template.render(rows=rows, groups=groups(rows), change=change))
+
+
+def groups(rows: Sequence[tuple[Mutant, Any]]) -> list[dict[str, Any]]:
+    """Title and counts of each implementation."""
+    titles = dict.fromkeys(mutant.group for mutant, _ in rows)
+    return [{"title": title} | counts([r for r in rows if r[0].group == title]) for title in titles]
+
+
+def counts(rows: Sequence[tuple[Mutant, Any]]) -> dict[str, int]:
+    """Numbers of mutants: those that count, killed, killed on gl or by text, and equivalent."""
+    wrong = [trial for mutant, trial in rows if not mutant.equivalent]
+    killed = [trial for trial in wrong if trial["verdict"] == "killed"]
+    return {
+        "total": len(wrong),
+        "killed": len(killed),
+        "cheap": sum(trial["host"] in CHEAP for trial in killed),
+        "equivalent": len(rows) - len(wrong),
+    }
+
+
+def change(mutant: Mutant) -> tuple[str, str]:
+    """Old and new text without what both begin and end with, but for whole words."""
+    old, new = mutant.old, mutant.new
+    start = end = 0
+    while start < min(len(old), len(new)) and old[start] == new[start]:
+        start += 1
+    while end < min(len(old), len(new)) - start and old[-1 - end] == new[-1 - end]:
+        end += 1
+    start, end = _word_start(old, start), _word_start(old[::-1], end)
+    return old[start : len(old) - end], new[start : len(new) - end]
+
+
+def _word_start(text: str, place: int) -> int:
+    """The place of a change, moved back to a space."""
+    while place and not text[place - 1].isspace():
+        place -= 1
+    return place
+
+
+def cell(text: str) -> str:
+    """Text for a cell of a table."""
+    return " ".join(text.split()).replace("|", "\\|").replace("<", "&lt;")
+
+
+def code(text: str) -> str:
+    """Code for a cell of a table, cut where it is long."""
+    line = " ".join(text.split())
+    if not line:
+        return "nothing"
+    line = line if len(line) <= LENGTH else f"{line[: LENGTH - 4]} ..."
+    return f"`{line}`".replace("|", "\\|")

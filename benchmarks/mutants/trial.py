@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first."""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from functools import cache
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.results import FAILED, PASSED, Result
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import CURVE, PICTURE, SOURCE, Task, make_plan
+from mxeon.errors import MxeonError
+from mxeon.shaders import generators, library
+from mxeon.shaders.generation import generate
+
+KILLED, SURVIVED = "killed", "survived"
+TEXT = "text"
+
+NOISY = ("environment", "furnace")  # checks that take Cycles longest
+# Files that no shader for gl holds: there the gl host has nothing to see.
+NOT_ON_GL = ("genosl/", "profiles/", "libraries/eonlib_genosl", "libraries/eonlib_genmdl")
+# Files of the implementations, and the target whose text has to differ.
+CHANGED = {
+    "genglsl/oren_nayar_lobe.glsl": "glsl",
+    "genglsl/oren_nayar_diffuse_bsdf.glsl": "glsl",
+    "genglsl/eon_diffuse_bsdf.glsl": "glsl",
+    "genglsl/eon.glsl": "glsl",
+    "libraries/eonlib_genglsl_impl.mtlx": "glsl",
+    "libraries/eonlib_genosl_impl.mtlx": "osl",
+    "libraries/eonlib_genmdl_impl.mtlx": "mdl",
+}
+
+
+def trial(mutant: Mutant, judge: Judge, quick: bool = False) -> dict[str, Any]:
+    """Verdict on a mutant and the failures that it caused, on the first host that saw any.
+
+    Parameters
+    ----------
+    mutant : Mutant
+    judge : Judge
+    quick : bool
+        Whether only text and nodes are judged, and neither surface shaders nor documents.
+
+    Returns
+    -------
+    dict
+        verdict, KILLED or SURVIVED; host; failures: check, subject, excess and diagnosis of each,
+        the largest excess first; or refusal: the message that ended the command.
+    """
+    with copy_of_eonlib() as folder:
+        (folder / mutant.file).write_text(mutant.text(), encoding="utf-8")
+        try:
+            assert_changed(mutant, folder)
+            for host, stage in islice(stages(mutant, folder), 1 if quick else None):
+                failures = [each for task in stage for each in failures_of(task, judge)]
+                if failures:
+                    return {"verdict": KILLED, "host": host, "failures": ordered(failures)}
+        except MxeonError as error:
+            return {"verdict": KILLED, "host": TEXT, "refusal": shorten(str(error), folder)}
+        return {"verdict": SURVIVED}
+
+
+@contextmanager
+def copy_of_eonlib() -> Iterator[Path]:
+    """A folder with a copy of eonlib, which no cache knows."""
+    with TemporaryDirectory(prefix="mxeon-mutant-") as base:
+        for name in FOLDERS:
+            shutil.copytree(ROOT / name, Path(base, name))
+        try:
+            yield Path(base)
+        finally:
+            library.load_library.cache_clear()
+            generators._library_generator.cache_clear()
+
+
+def stages(mutant: Mutant, folder: Path) -> Iterator[tuple[str, list[Task]]]:
+    """Hosts and tasks that can see a mutant, the cheapest first; only the first is always needed.
+
+    The text and the nodes come first, then surface shaders, then pictures of documents one by one.
+    """
+    path = str(folder / "libraries")
+    tasks = [task for task in make_plan((), ["gl"], [path]).tasks if task.check != CURVE]
+    if mutant.file.startswith(NOT_ON_GL):
+        yield TEXT, [task for task in tasks if task.host == SOURCE]
+    else:
+        nodes = [task for task in tasks if task.check not in ("lobe", PICTURE)]
+        yield "gl", nodes
+        yield "gl", [task for task in tasks if task.check == "lobe"]
+        yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
+    if mutant.file.startswith(("genosl/", "profiles/")):
+        yield from _on_cycles(folder)
+
+
+def _on_cycles(folder: Path) -> Iterator[tuple[str, list[Task]]]:
+    """Tasks on Cycles, one by one; a library is one folder, so eonlib lies below the profile."""
+    profile = folder / "profiles" / "cycles"
+    shutil.copytree(folder / "libraries", profile / "libraries")
+    tasks = make_plan((), ["cycles"], [str(profile)]).tasks
+    tasks = [task for task in tasks if task.host == "cycles" and task.check != PICTURE]
+    for task in sorted(tasks, key=lambda task: task.check in NOISY):
+        yield "cycles", [task]
+
+
+def failures_of(task: Task, judge: Judge) -> list[Result]:
+    """Results of a task that did not pass."""
+    return [each for each in judge.work(task).results if each.verdict != PASSED]
+
+
+def ordered(failures: list[Result]) -> list[dict[str, str]]:
+    """Failures as plain data, those with the largest error in tolerances first."""
+    return [
+        {
+            "check": each.check,
+            "subject": Path(each.subject).name if each.subject.startswith("/") else each.subject,
+            "host": each.host,
+            "excess": each.excess,
+            "diagnosis": first_line(each.diagnosis if each.verdict == FAILED else each.reason),
+        }
+        for each in sorted(failures, key=_ratio, reverse=True)
+    ]
+
+
+def _ratio(result: Result) -> float:
+    """Error in tolerances; infinite where a shader does not compile."""
+    if result.error is None:
+        return float("inf")
+    return result.error / max(result.tolerance or 0.0, 1e-9)
+
+
+def assert_changed(mutant: Mutant, folder: Path) -> None:
+    """Raise RuntimeError unless the generated text has the change, where text must have it."""
+    target = CHANGED.get(mutant.file)
+    if target is None:
+        return
+    with suppress(MxeonError):
+        mutated = _texts(target, str(folder / "libraries"))
+        if mutated == _original(target):
+            raise RuntimeError(f"{mutant.name}: the generated text for {target} is the same")
+
+
+@cache
+def _original(target: str) -> list[str]:
+    return _texts(target, "eonlib")
+
+
+def _texts(target: str, name: str) -> list[str]:
+    documents = [subject.document() for subject in SUBJECTS]
+    return [generate(text, target, library=name)[0].stages["pixel"] for text in documents]
+
+
+def first_line(text: str) -> str:
+    """The first line of a text, where compilers print many."""
+    return text.strip().splitlines()[0] if text.strip() else ""
+
+
+def shorten(text: str, folder: Path) -> str:
+    """A message without the path of the copy."""
+    return first_line(text.replace(f"{folder}/", ""))
