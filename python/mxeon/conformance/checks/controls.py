@@ -40,6 +40,10 @@ class Altered:
         """Albedos of the changed batch, changed."""
         return self.values(batch, self.probe.albedo(self.batch(batch)))
 
+    def throughput(self, batch: Batch, branch: str) -> Array:
+        """Throughputs of the changed batch, changed."""
+        return self.values(batch, self.probe.throughput(self.batch(batch), branch))
+
 
 def with_inputs(**inputs: Any) -> Control:
     """A control that passes these inputs to the host in place of the batch's."""
@@ -54,6 +58,11 @@ def gray(probe: Any) -> Altered:
         return batch.altered(color=np.repeat(mean, 3, axis=-1))
 
     return Altered(probe, batch=mean_color)
+
+
+def take_response(probe: Any) -> Altered:
+    """A control that takes the response for another output."""
+    return Altered(probe, values=lambda batch, values: probe.direct(batch))
 
 
 def drop_changes(probe: Any) -> Altered:

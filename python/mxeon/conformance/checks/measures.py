@@ -22,6 +22,7 @@ CHANGES = {
     "normal": (0.0, 0.6, 0.8),
 }
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
+BRANCHES = ("direct", "environment", "transmission", "emission")
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
@@ -121,6 +122,19 @@ def black(probe: Any, metric: Metric) -> Measurement:
     """Values of a black surface against 0."""
     batches = [batch.altered(color=BLACK) for batch in probe.few]
     return _worst(metric, ((batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
+
+
+def throughput(probe: Any, metric: Metric) -> Measurement:
+    """Throughput of an opaque node against 0, in every branch and for every weight."""
+    batches = [batch.altered(weight=weight) for weight in (0.0, 0.5, 1.0) for batch in probe.few]
+    return _worst(
+        metric,
+        (
+            (batch, probe.throughput(batch, branch), np.zeros((1, 3)))
+            for branch in BRANCHES
+            for batch in batches
+        ),
+    )
 
 
 def furnace(probe: Any, metric: Metric) -> Measurement:

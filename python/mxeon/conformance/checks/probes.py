@@ -83,13 +83,17 @@ class PairProbe:
         """Values of the environment branch in a uniform environment of radiance 1, (N, 3)."""
         return self._evaluate(batch, "environment")
 
+    def throughput(self, batch: Batch, branch: str) -> Array:
+        """The share of the light from below that passes the node, in one of BRANCHES, (N, 3)."""
+        return self._evaluate(batch, branch, output="throughput")
+
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a function of the shader twins."""
         return self.host.call(function, *arguments)
 
-    def _evaluate(self, batch: Batch, branch: str) -> Array:
+    def _evaluate(self, batch: Batch, branch: str, **options: Any) -> Array:
         inputs = self.subject.with_flag(batch.inputs)
-        values = self.host.evaluate(self._shader, batch.wo, batch.wi, inputs, branch)
+        values = self.host.evaluate(self._shader, batch.wo, batch.wi, inputs, branch, **options)
         return values.astype(np.float64)
 
 

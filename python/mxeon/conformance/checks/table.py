@@ -14,6 +14,7 @@ from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
     scale_cosine,
+    take_response,
     with_inputs,
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
@@ -136,6 +137,15 @@ CHECKS = (
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
         },
+    ),
+    Check(
+        "throughput",
+        "No light from below passes: the throughput is 0 in every branch and for every weight.",
+        ANY,
+        measures.throughput,
+        "the response is taken for the throughput",
+        take_response,
+        {"pairs": tolerances.OPAQUE},
     ),
     Check(
         "reciprocity",

@@ -108,6 +108,7 @@ LAMBERT = Tolerance(
     "8 roundings of float32, 2^-24 each; rounded up",
 )
 ZERO = Tolerance(0.0, "pi f cos", absolute, "a product with 0 is 0 in any precision")
+OPAQUE = Tolerance(0.0, "throughput", absolute, "a constant has no roundings")
 LOBE = Tolerance(
     (16 / LOBE_RIM**2 + 32 + 4 * 48) * ROUNDING,
     "pi f cos",
