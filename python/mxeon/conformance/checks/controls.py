@@ -36,9 +36,9 @@ class Altered:
         """Values of the changed batch, changed."""
         return self.values(batch, self.probe.direct(self.batch(batch)))
 
-    def albedo(self, batch: Batch) -> Array:
+    def albedo(self, batch: Batch, *irradiance: Array) -> Array:
         """Albedos of the changed batch, changed."""
-        return self.values(batch, self.probe.albedo(self.batch(batch)))
+        return self.values(batch, self.probe.albedo(self.batch(batch), *irradiance))
 
     def throughput(self, batch: Batch, branch: str) -> Array:
         """Throughputs of the changed batch, changed."""

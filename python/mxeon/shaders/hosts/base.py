@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import Unsupported
@@ -16,6 +17,11 @@ from mxeon.shaders.scene import Scene
 
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
+
+
+# Matrix by which shaders turn a direction before they look it up in an environment, as generated
+# GLSL has it: the middle of a latitude-longitude map faces the viewer.
+TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -117,7 +123,7 @@ class Host(ABC):
             "response"; or "throughput", the share of the light from below that passes the BSDF.
         irradiance : ndarray, shape (rows, columns, 3), or None
             Irradiance over pi of the environment for every normal, as a latitude-longitude map with
-            row 0 upwards (+y); None for a uniform environment of radiance 1.
+            row 0 upwards (+y) and its middle towards +z; None for a uniform environment of radiance 1.
 
         Returns
         -------

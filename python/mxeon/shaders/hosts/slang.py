@@ -18,7 +18,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment
-from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.base import TURN, Identity
 
 try:
     import slangpy
@@ -205,7 +205,7 @@ class Host(base.Host):
         if irradiance is not None:
             tinted = {"tex": self._texture(irradiance), "sampler": sampler}
         values = {"u_envRadiance": white, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
-        return {"pixelCB": {**values, "u_envMatrix": slangpy.float4x4.identity()}}
+        return {"pixelCB": {**values, "u_envMatrix": slangpy.float4x4(TURN.astype(np.float32))}}
 
 
 def _kernel_text(names: Iterable[str], body: Sequence[str]) -> str:

@@ -24,7 +24,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment
-from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.base import TURN, Identity
 
 try:
     import wgpu
@@ -49,7 +49,7 @@ DECLARATION = re.compile(
 )
 
 # Values of block members that must not be 0.
-UNIFORMS = {"u_envMatrix": tuple(np.eye(4).ravel()), "u_envLightIntensity": (1.0,)}
+UNIFORMS = {"u_envMatrix": tuple(TURN.ravel()), "u_envLightIntensity": (1.0,)}
 STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
 STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
 BLOCK_SIZE = 1 << 14

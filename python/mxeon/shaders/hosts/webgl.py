@@ -26,7 +26,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment, raster
-from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.base import TURN, Identity
 from mxeon.shaders.scene import Scene
 
 try:
@@ -50,7 +50,7 @@ UNIFORMS = {
     "u_worldMatrix": IDENTITY,
     "u_viewProjectionMatrix": IDENTITY,
     "u_worldInverseTransposeMatrix": IDENTITY,
-    "u_envMatrix": IDENTITY,
+    "u_envMatrix": TURN.ravel().tolist(),
     "u_envLightIntensity": 1.0,
 }
 IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
