@@ -13,8 +13,8 @@ from mxeon.conformance.checks.evaluate import judge_subject
 from mxeon.conformance.checks.functions import FUNCTION_CHECKS, judge_functions
 from mxeon.conformance.checks.nodes import SUBJECTS, Subject
 from mxeon.conformance.checks.probes import PairProbe, PictureProbe
-from mxeon.conformance.checks.source import check_sources
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.checks.text import check_texts
 from mxeon.conformance.diagnosis import nearest_value
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.conformance.run import check, judge, plan
@@ -192,7 +192,7 @@ def test_a_run_says_version_and_device_of_its_hosts(run):
 
 
 def test_the_sources_of_every_target_use_every_input():
-    results = check_sources(SUBJECTS, "eonlib")
+    results = check_texts(SUBJECTS, "eonlib")
     assert len([each for each in results if each.check == "source"]) == 3 * len(TARGETS)
     assert {each.verdict for each in results} == {PASSED}
     assert all(each.control.caught for each in results)
@@ -260,7 +260,8 @@ def stock():
         ("source", "source", f"{EON.title}, osl", "never used: energy_compensation"),
         ("source", "clamp", f"{EON.title}, glsl", "s is wrong for back-lit pairs"),
         ("gl", "flag", QON.title, "; see docs/upstream/genglsl_clamped_dot.md"),
-        ("source", "tint", f"{EON.title}, mdl", "FON + white lobe"),
+        ("source", "closure", f"{EON.title}, mdl", "FON + white lobe"),
+        ("source", "closure", f"{EON.title}, osl", "energy_compensation is not the node's"),
     ],
 )
 def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, subject, words):

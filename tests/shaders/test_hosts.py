@@ -11,6 +11,7 @@ from mxeon.conformance.checks.probes import PairProbe
 from mxeon.errors import ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
+from mxeon.shaders.hosts import fragment
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_VALUE
 
 HOSTS = ("gl", "webgl", "vulkan", "slang")
@@ -77,10 +78,34 @@ def test_what_the_compiler_refuses_is_a_shader_error(host):
         host.evaluate(shader, PAIR, PAIR, {}, "direct")
 
 
-def test_an_unknown_branch_is_refused(host):
+@pytest.mark.parametrize("word", ["branch", "output"])
+def test_an_unknown_branch_or_output_is_refused(host, word):
     shader = generate(SUBJECTS[2].document(), host.target)[0]
-    with pytest.raises(ValueError, match="branch must be one of direct, environment; got 'both'"):
-        host.evaluate(shader, PAIR, PAIR, {}, "both")
+    options = {"branch": "direct", word: "both"}
+    with pytest.raises(ValueError, match=f"{word} must be one of .*; got 'both'"):
+        host.evaluate(shader, PAIR, PAIR, {}, **options)
+
+
+@pytest.mark.parametrize("branch", fragment.CLOSURES)
+def test_an_opaque_lobe_lets_no_light_through_in_any_branch(host, branch):
+    shader = generate(SUBJECTS[2].document(), host.target, lights=True)[0]
+    assert not host.evaluate(shader, PAIR, PAIR, {}, branch, output="throughput").any()
+    leaks = shader.stages["pixel"].replace("bsdf.throughput = ", "bsdf.response = ")
+    leaky = replace(shader, stages={**shader.stages, "pixel": leaks})
+    assert (host.evaluate(leaky, PAIR, PAIR, {}, branch, output="throughput") == 1.0).all()
+
+
+def test_the_environment_is_looked_up_at_the_normal(host):
+    shader = generate(SUBJECTS[2].document(), host.target, lights=True)[0]
+    rows = np.linspace(0.0, 1.0, 8)[:, np.newaxis, np.newaxis]
+    sky = np.broadcast_to(rows, (8, 16, 3)).astype(np.float32)  # brighter downwards
+    inputs = {"color": np.ones((1, 3)), "roughness": np.zeros(1)}
+    for up, expected in ((0.9, slice(0.0, 0.25)), (-0.9, slice(0.75, 1.0))):
+        normal = np.array([[np.sqrt(1.0 - up * up), up, 0.0]])
+        values = host.evaluate(
+            shader, normal, normal, {**inputs, "normal": normal}, "environment", irradiance=sky
+        )
+        assert (expected.start <= values).all() and (values <= expected.stop).all()
 
 
 def test_an_unknown_function_is_refused(host):

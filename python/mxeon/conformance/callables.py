@@ -3,7 +3,7 @@
 
 import platform
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 import mxeon
 from mxeon.conformance.checks.batch import (
-    FEW,
+    PAIRS,
     SEED,
     Array,
     Batch,
@@ -20,6 +20,7 @@ from mxeon.conformance.checks.batch import (
     random_inputs,
 )
 from mxeon.conformance.checks.evaluate import judge_check
+from mxeon.conformance.checks.special import special_pairs
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.results import PASSED, Run
 from mxeon.errors import InputError
@@ -74,10 +75,12 @@ class CallableProbe:
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """One batch of FEW random pairs."""
-        rng = np.random.default_rng(SEED)
-        wo, wi = directions(rng, FEW), directions(rng, FEW)
-        return (Batch(wo, wi, random_inputs(rng, FEW, reference.model(self.subject.model))),)
+        """PAIRS random pairs, and special ones."""
+        rng, row = np.random.default_rng(SEED), reference.model(self.subject.model)
+        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
+        special = special_pairs(rng, row)
+        inputs = {name: special.inputs[name] for name in self.subject.inputs}
+        return Batch(wo, wi, random_inputs(rng, PAIRS, row)), replace(special, inputs=inputs)
 
     @property
     def few(self) -> tuple[Batch, ...]:

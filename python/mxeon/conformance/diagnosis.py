@@ -63,13 +63,8 @@ def nearest_albedo(probe: Any) -> Diagnosis:
     return _nearest(
         rows,
         [probe.albedo(batch) for batch in batches],
-        lambda row: [_albedo(row, batch) for batch in batches],
+        lambda row: [batch.albedo(row.name) for batch in batches],
     )
-
-
-def _albedo(row: Model, batch: Batch) -> Array:
-    parameter = [batch.inputs["roughness"]] if row.parameter else []
-    return row.closed_albedo_dir(batch.wo[:, 2], batch.inputs["color"], *parameter)
 
 
 def _clipped(batch: Batch) -> Batch:

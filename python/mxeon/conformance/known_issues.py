@@ -4,7 +4,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from mxeon.conformance.checks.source import WITH_BSDF
+from mxeon.conformance.checks.text.sources import WITH_BSDF
 from mxeon.conformance.results import FAILED, PASSED, Result
 
 STOCK = "stock"
@@ -59,10 +59,11 @@ ISSUES = (
         "genosl_dropped_flag",
         "source",
         (("source", f"{NODE} true, osl"), ("source", f"{NODE} false, osl")),
+        implied=(("closure", f"{NODE} true, osl"),),
     ),
     Issue("openpbr_thin_walled", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
     Issue("openpbr_thin_walled_tint", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
-    Issue("genmdl_white_lobe", "source", (("tint", f"{NODE} true, mdl"),)),
+    Issue("genmdl_white_lobe", "source", (("closure", f"{NODE} true, mdl"),)),
     Issue(
         "cycles_rho_cubed",
         "cycles",

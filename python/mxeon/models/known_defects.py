@@ -228,11 +228,11 @@ def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Ar
     Returns
     -------
     ndarray, shape (..., C), float64
-        Dimensionless; off by up to 0.063 at rho 1.
+        Dimensionless, in [0, 1]; off by up to 0.068 at rho 1.
 
     Notes
     -----
-    Coefficients of MaterialX 1.39.5, `mx_microfacet_diffuse.glsl`.
+    Coefficients of MaterialX 1.39.5, `mx_microfacet_diffuse.glsl`, which clamps the quotient to 1.
 
     Examples
     --------
@@ -242,7 +242,7 @@ def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Ar
     mu, sigma = np.asarray(mu, np.float64), np.asarray(sigma, np.float64)
     over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma**2
     under = 1.0 - 0.6076 * sigma - 0.4993 * mu * sigma + 2.0315 * sigma**2
-    white: Array = over / under
+    white: Array = np.minimum(over / under, 1.0)
     return white[..., np.newaxis] * np.asarray(rho, np.float64)
 
 

@@ -77,9 +77,19 @@ def eonlib_folder() -> Path:
     return installed if installed.is_dir() else data_folder() / "libraries"
 
 
-def profile_folder(profile: str) -> Path:
-    """Folder of a profile's MaterialX documents, to be loaded before eonlib's."""
-    return data_folder() / "profiles" / profile
+def source_folder(library: str) -> Path:
+    """Folder that holds a library, its profiles and its shader functions: for a folder, its parent."""
+    return data_folder() if library in LIBRARIES else Path(library).parent
+
+
+def profile_folder(profile: str, library: str = "eonlib") -> Path:
+    """Folder of a profile's MaterialX documents, to be loaded before the library's."""
+    return source_folder(library) / "profiles" / profile
+
+
+def has_profile(library: str, profile: str) -> bool:
+    """Whether a library has implementations of its own for a profile."""
+    return library != "stock" and profile_folder(profile, library).is_dir()
 
 
 def examples_folder() -> Path:
@@ -98,11 +108,11 @@ def _folders(library: str, profile: str | None) -> list[str]:
     library = library_name(library)
     if profile is not None and profile not in PROFILES:
         raise InputError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
-    if library == "eonlib":
-        folders = [profile_folder(profile)] if profile is not None else []
-        folders.append(eonlib_folder())
-    else:
-        folders = [] if library == "stock" else [Path(library)]
+    folders = (
+        [] if library == "stock" else [eonlib_folder() if library == "eonlib" else Path(library)]
+    )
+    if profile is not None and has_profile(library, profile):
+        folders.insert(0, profile_folder(profile, library))
     return [str(folder) for folder in folders] + list(mx.getDefaultDataLibraryFolders())
 
 

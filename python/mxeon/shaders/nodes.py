@@ -13,6 +13,9 @@ EON = "eon_diffuse_bsdf"
 DIFFUSE_NODES = (OREN_NAYAR, EON)
 NODEDEFS = tuple(f"ND_{category}" for category in DIFFUSE_NODES)
 
+# Nodes of eonlib that compute a color: the reflectance with which EON has the color given.
+INVERSIONS = ("eon_rho_from_albedo_normal", "eon_rho_from_albedo_avg")
+
 FLAG = "energy_compensation"  # which the first alone has: EON if true, else QON
 INPUT_TYPES = {
     "weight": "float",

@@ -13,8 +13,8 @@ from mxeon.models.table import Model
 from mxeon.shaders.scene import Scene
 
 SEED = 1
-PAIRS = 1 << 20
-FEW = 1 << 16  # pairs of the checks that do not ask for a million
+PAIRS = 1 << 16
+FEW = 1 << 14  # pairs of the checks that do not ask for all
 GRAZING = 1e-6  # smallest cosine of the random pairs
 RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's place is uncertain
 LOBE_RIM = 0.25  # of a lobe below others
@@ -29,17 +29,21 @@ class Batch:
     Attributes
     ----------
     wo, wi : ndarray, shape (N, 3)
-        Local frame; float32 numbers, so that a float32 host sees the same pairs.
+        Local frame; float32 numbers, so that a float32 host sees the same pairs. `wo` is on or above
+        the horizon.
     inputs : mapping of str to array
-        Node inputs, (N, ...) or constant.
+        Node inputs and "occlusion", (N, ...) or constant. The normal is in world space.
     scene : Scene or None
         The picture whose points these are.
+    frame : ndarray, shape (N, 3, 3), or None
+        World axes of the local frames, as columns; None where they are the same.
     """
 
     wo: Array
     wi: Array
     inputs: Mapping[str, Any]
     scene: Scene | None = None
+    frame: Array | None = None
 
     def altered(self, **inputs: Any) -> "Batch":
         """The same pairs with other inputs."""
@@ -47,15 +51,52 @@ class Batch:
 
     def first(self, count: int) -> "Batch":
         """The first pairs of the batch."""
-        inputs = {name: values[:count] for name, values in self.inputs.items()}
-        return replace(self, wo=self.wo[:count], wi=self.wi[:count], inputs=inputs)
+        return self.where(slice(count))
+
+    def where(self, rows: Any) -> "Batch":
+        """Some pairs of the batch: a slice, a mask or indices of them."""
+        count = len(self.wo)
+        inputs = {
+            name: values[rows] if np.shape(values)[:1] == (count,) else values
+            for name, values in self.inputs.items()
+        }
+        frame = None if self.frame is None else self.frame[rows]
+        return replace(self, wo=self.wo[rows], wi=self.wi[rows], inputs=inputs, frame=frame)
+
+    def world(self, local: Array) -> Array:
+        """Local directions (N, 3) in world space, as float32 numbers."""
+        if self.frame is None:
+            return local
+        return rounded((self.frame @ local[:, :, np.newaxis])[:, :, 0].T)
+
+    @property
+    def normal(self) -> Array:
+        """Normals on the viewer's side, in world space, (N, 3)."""
+        return self.world(np.broadcast_to([0.0, 0.0, 1.0], self.wo.shape))
+
+    @property
+    def strength(self) -> Array:
+        """Factor of an albedo, (N, 1) or (1, 1): the weight; a negative one counts as 0."""
+        return np.maximum(np.reshape(self.inputs.get("weight", 1.0), (-1, 1)), 0.0)
 
     def expected(self, model: str) -> Array:
-        """pi f cos(theta_i) of a model or a known defect, (N, 3)."""
+        """pi f cos(theta_i) of a model or a known defect with weight and occlusion, (N, 3).
+
+        It is 0 for light from below the horizon.
+        """
         row = reference.model(model)
         parameter = [self.inputs["roughness"]] if row.parameter else []
-        value: Array = row.brdf(self.wo, self.wi, self.inputs["color"], *parameter)
-        return np.pi * value * self.wi[..., 2:]
+        above = self.wi * np.where(self.wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
+        value: Array = row.brdf(self.wo, above, self.inputs["color"], *parameter)
+        occlusion = np.reshape(self.inputs.get("occlusion", 1.0), (-1, 1))
+        return np.pi * value * np.clip(self.wi[:, 2:], 0.0, 1.0) * (self.strength * occlusion)
+
+    def albedo(self, model: str) -> Array:
+        """Directional albedo of a model or a known defect with weight, (N, 3)."""
+        row = reference.model(model)
+        parameter = [self.inputs["roughness"]] if row.parameter else []
+        mu = np.minimum(self.wo[:, 2], 1.0)
+        return self.strength * row.closed_albedo_dir(mu, self.inputs["color"], *parameter)
 
 
 def directions(rng: np.random.Generator, count: int) -> Array:
@@ -65,7 +106,7 @@ def directions(rng: np.random.Generator, count: int) -> Array:
     rng.shuffle(mu)
     mu = mu.astype(np.float32).astype(np.float64)
     radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
-    return _float32([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+    return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
 
 
 def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
@@ -74,9 +115,9 @@ def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str,
     color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
     roughness = row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
     roughness = np.minimum(roughness.astype(np.float32), np.nextafter(np.float32(row.largest), 0))
-    return {"color": _float32(color.T), "roughness": roughness.astype(np.float64)}
+    return {"color": rounded(color.T), "roughness": roughness.astype(np.float64)}
 
 
-def _float32(columns: Iterable[Array]) -> Array:
+def rounded(columns: Iterable[Array]) -> Array:
     """Columns as rows of float32 numbers in float64."""
     return np.stack(list(columns), axis=-1).astype(np.float32).astype(np.float64)

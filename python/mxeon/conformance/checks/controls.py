@@ -36,9 +36,13 @@ class Altered:
         """Values of the changed batch, changed."""
         return self.values(batch, self.probe.direct(self.batch(batch)))
 
-    def albedo(self, batch: Batch) -> Array:
+    def albedo(self, batch: Batch, *irradiance: Array) -> Array:
         """Albedos of the changed batch, changed."""
-        return self.values(batch, self.probe.albedo(self.batch(batch)))
+        return self.values(batch, self.probe.albedo(self.batch(batch), *irradiance))
+
+    def throughput(self, batch: Batch, branch: str) -> Array:
+        """Throughputs of the changed batch, changed."""
+        return self.values(batch, self.probe.throughput(self.batch(batch), branch))
 
 
 def with_inputs(**inputs: Any) -> Control:
@@ -54,6 +58,11 @@ def gray(probe: Any) -> Altered:
         return batch.altered(color=np.repeat(mean, 3, axis=-1))
 
     return Altered(probe, batch=mean_color)
+
+
+def take_response(probe: Any) -> Altered:
+    """A control that takes the response for another output."""
+    return Altered(probe, values=lambda batch, values: probe.direct(batch))
 
 
 def drop_changes(probe: Any) -> Altered:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.checks.batch import Array, Batch
+from mxeon.conformance.checks.sky import sky, sky_map
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.shaders.hosts import front_lit_only
@@ -22,6 +23,7 @@ CHANGES = {
     "normal": (0.0, 0.6, 0.8),
 }
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
+BRANCHES = ("direct", "environment", "transmission", "emission")
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
@@ -70,20 +72,28 @@ def value(probe: Any, metric: Metric) -> Measurement:
 
 def environment(probe: Any, metric: Metric) -> Measurement:
     """The environment branch against the closed form of the directional albedo."""
-    row = reference.model(probe.subject.model)
+    model = probe.subject.model
+    return _worst(
+        metric, ((batch, probe.albedo(batch), batch.albedo(model)) for batch in probe.cosines)
+    )
+
+
+def frame(probe: Any, metric: Metric) -> Measurement:
+    """Values in turned frames, of which half have a normal that faces away, against those in none."""
+    batch = probe.turned
+    local = replace(batch.altered(normal=(0.0, 0.0, 1.0)), frame=None)
     return _worst(
         metric,
-        (
-            (
-                batch,
-                probe.albedo(batch),
-                row.closed_albedo_dir(
-                    batch.wo[:, 2], batch.inputs["color"], batch.inputs["roughness"]
-                ),
-            )
-            for batch in probe.cosines
-        ),
+        ((batch, output(batch), output(local)) for output in (probe.direct, probe.albedo)),
     )
+
+
+def surroundings(probe: Any, metric: Metric) -> Measurement:
+    """The environment branch under an uneven sky, over that in a uniform one, against the sky."""
+    batch = probe.turned.altered(color=WHITE)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        measured = probe.albedo(batch, sky_map()) / probe.albedo(batch)
+    return _worst(metric, [(batch, measured, sky(batch.normal))])
 
 
 def quadrature(probe: Any, metric: Metric) -> Measurement:
@@ -123,9 +133,22 @@ def black(probe: Any, metric: Metric) -> Measurement:
     return _worst(metric, ((batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
 
 
+def throughput(probe: Any, metric: Metric) -> Measurement:
+    """Throughput of an opaque node against 0, in every branch and for every weight."""
+    batches = [batch.altered(weight=weight) for weight in (0.0, 0.5, 1.0) for batch in probe.few]
+    return _worst(
+        metric,
+        (
+            (batch, probe.throughput(batch, branch), np.zeros((1, 3)))
+            for branch in BRANCHES
+            for batch in batches
+        ),
+    )
+
+
 def furnace(probe: Any, metric: Metric) -> Measurement:
     """Albedo of a white surface against 1."""
-    batches = [batch.altered(color=WHITE) for batch in probe.cosines]
+    batches = [batch.altered(color=WHITE, weight=1.0) for batch in probe.cosines]
     return _worst(metric, ((batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
 
 

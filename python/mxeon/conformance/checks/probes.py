@@ -26,7 +26,14 @@ from mxeon.conformance.checks.batch import (
     random_inputs,
 )
 from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.checks.special import (
+    node_inputs,
+    outside_pairs,
+    special_pairs,
+    turned_pairs,
+)
 from mxeon.models import table as reference
+from mxeon.models.table import Model
 from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only, host_row
 from mxeon.shaders.hosts.base import Host
@@ -36,9 +43,10 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_d
 # Colors and roughnesses of the pictures that stand for a node on hosts that only make pictures.
 PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
-    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
 PICTURE_SIZE = 128
+TURNED = 1 << 12  # pairs in frames of their own
 
 Mask: TypeAlias = NDArray[np.bool_]
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
@@ -58,38 +66,58 @@ class PairProbe:
     def _shader(self) -> Shader:
         return self.host.compile(self.subject.document(), library=self.library)[0]
 
+    @property
+    def _model(self) -> Model:
+        return reference.model(self.subject.model)
+
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """One batch of PAIRS random pairs; a quarter of each direction grazes the surface."""
+        """PAIRS random pairs, a quarter of each direction grazing; special ones; and outside ones."""
         rng = np.random.default_rng(SEED)
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
-        return (Batch(wo, wi, random_inputs(rng, PAIRS, reference.model(self.subject.model))),)
+        inputs = {**random_inputs(rng, PAIRS, self._model), **node_inputs(rng, PAIRS)}
+        return (
+            Batch(wo, wi, inputs),
+            special_pairs(rng, self._model),
+            outside_pairs(rng, self._model),
+        )
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of the pairs."""
-        return tuple(batch.first(FEW) for batch in self.batches)
+        """FEW of the random pairs and the special ones; both directions are above the horizon."""
+        pairs, special, _ = self.batches
+        return pairs.first(FEW), special
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
         """Directions for the environment branch, which does not depend on `wi`."""
-        return self.few
+        return (*self.few, self.batches[-1])
+
+    @cached_property
+    def turned(self) -> Batch:
+        """TURNED pairs in frames of their own."""
+        return turned_pairs(np.random.default_rng(SEED), TURNED, self._model)
 
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""
         return np.pi * self._evaluate(batch, "direct")
 
-    def albedo(self, batch: Batch) -> Array:
-        """Values of the environment branch in a uniform environment of radiance 1, (N, 3)."""
-        return self._evaluate(batch, "environment")
+    def albedo(self, batch: Batch, irradiance: Array | None = None) -> Array:
+        """Values of the environment branch, (N, 3); the environment is uniform unless given."""
+        return self._evaluate(batch, "environment", irradiance=irradiance)
+
+    def throughput(self, batch: Batch, branch: str) -> Array:
+        """The share of the light from below that passes the node, in one of BRANCHES, (N, 3)."""
+        return self._evaluate(batch, branch, output="throughput")
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a function of the shader twins."""
         return self.host.call(function, *arguments)
 
-    def _evaluate(self, batch: Batch, branch: str) -> Array:
+    def _evaluate(self, batch: Batch, branch: str, **options: Any) -> Array:
         inputs = self.subject.with_flag(batch.inputs)
-        values = self.host.evaluate(self._shader, batch.wo, batch.wi, inputs, branch)
+        wo, wi = batch.world(batch.wo), batch.world(batch.wi)
+        values = self.host.evaluate(self._shader, wo, wi, inputs, branch, **options)
         return values.astype(np.float64)
 
 
@@ -111,7 +139,7 @@ class PictureProbe:
         batches = (
             self._batch(replace(scene, size=self.size), inputs)
             for scene in self.scenes
-            for inputs in PICTURE_INPUTS
+            for inputs in self._inputs
         )
         return tuple(batch for batch in batches if len(batch.wo))
 
@@ -124,7 +152,7 @@ class PictureProbe:
     def cosines(self) -> tuple[Batch, ...]:
         """The points in a white environment."""
         scene = replace(FURNACE, size=self.size)
-        return tuple(self._batch(scene, inputs) for inputs in PICTURE_INPUTS)
+        return tuple(self._batch(scene, inputs) for inputs in self._inputs)
 
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""
@@ -135,6 +163,15 @@ class PictureProbe:
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a function of the shader twins."""
         return self.host.call(function, *arguments)
+
+    @property
+    def _inputs(self) -> list[dict[str, Any]]:
+        """PICTURE_INPUTS without a weight where the node has none."""
+        names = {"color", "roughness", *self.subject.inputs}
+        return [
+            {name: value for name, value in inputs.items() if name in names}
+            for inputs in PICTURE_INPUTS
+        ]
 
     def _batch(self, scene: Scene, inputs: Mapping[str, Any]) -> Batch:
         wo, wi, mask = self._points(scene)

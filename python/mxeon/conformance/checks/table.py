@@ -14,6 +14,7 @@ from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
     scale_cosine,
+    take_response,
     with_inputs,
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
@@ -136,6 +137,33 @@ CHECKS = (
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
         },
+    ),
+    Check(
+        "frame",
+        "The value depends on the angles to the normal alone, which is turned to the viewer.",
+        ANY,
+        measures.frame,
+        "the node's normal is dropped",
+        with_inputs(normal=(0.0, 0.0, 1.0)),
+        {"pairs": tolerances.FRAME},
+    ),
+    Check(
+        "surroundings",
+        "An uneven environment is looked up at the normal, which is turned to the viewer.",
+        ANY,
+        measures.surroundings,
+        "the node's normal is dropped",
+        with_inputs(normal=(0.0, 0.0, 1.0)),
+        {"pairs": tolerances.SURROUNDINGS},
+    ),
+    Check(
+        "throughput",
+        "No light from below passes: the throughput is 0 in every branch and for every weight.",
+        ANY,
+        measures.throughput,
+        "the response is taken for the throughput",
+        take_response,
+        {"pairs": tolerances.OPAQUE},
     ),
     Check(
         "reciprocity",

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative
+from mxeon.conformance.checks.sky import ROWS, SLOPE
+from mxeon.conformance.checks.special import TURNED
 
 ROUNDING = 2.0**-24  # unit roundoff of float32
 HALF_ROUNDING = 2.0**-11  # of float16
@@ -101,6 +103,21 @@ LOSS = Tolerance(
     relative,
     "the fit's 2.7e-7 and 12 roundings of float32, 2^-24 each; rounded up",
 )
+FRAME = Tolerance(
+    rounded_up(2 * 14 * 2.0 * ROUNDING + 2 * 5 * (1.0 / TURNED[0] + 3.0 + 2.0) * ROUNDING),
+    "pi f cos or albedo",
+    absolute,
+    "two values of 14 roundings each, 2^-24 of numbers up to 2; and in each of two cosines of at "
+    "least 1/4 and at most 0.95 five more, two in unit vectors and three in a product, which enter "
+    "times 4 by s / t, times 3 by a sine, and times 2 by s and the cosine itself; rounded up",
+)
+SURROUNDINGS = Tolerance(
+    SLOPE * math.sqrt(2.0) * math.pi / ROWS + HALF_ROUNDING,
+    "irradiance",
+    absolute,
+    "a texel of the map, pi / 128 high and wide, whatever filter reads it, times the largest slope, "
+    "1/2; and half floats, 2^-11",
+)
 LAMBERT = Tolerance(
     rounded_up(8 * ROUNDING),
     "pi f cos",
@@ -108,6 +125,7 @@ LAMBERT = Tolerance(
     "8 roundings of float32, 2^-24 each; rounded up",
 )
 ZERO = Tolerance(0.0, "pi f cos", absolute, "a product with 0 is 0 in any precision")
+OPAQUE = Tolerance(0.0, "throughput", absolute, "a constant has no roundings")
 LOBE = Tolerance(
     (16 / LOBE_RIM**2 + 32 + 4 * 48) * ROUNDING,
     "pi f cos",

@@ -60,8 +60,25 @@ class Host(base.Host):
         wi: NDArray[Any],
         inputs: Mapping[str, Any],
         branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[np.float64]:
-        """Values of the document's one lobe; see `mxeon.shaders.hosts.base.Host`."""
+        """Values of the document's one lobe; see `mxeon.shaders.hosts.base.Host`.
+
+        Raises
+        ------
+        NotRun
+            Unless the response to a light or to a uniform environment is asked for.
+        """
+        if (
+            output != "response"
+            or irradiance is not None
+            or branch not in ("direct", "environment")
+        ):
+            raise NotRun(
+                "reference: only the response to a light or a uniform environment is known"
+            )
         lobe = _furnace(wo[:, 2], 1.0) if branch == "environment" else _lit(wo, wi, 1.0)
         values: NDArray[np.float64] = Graph(shader.document, None, lobe, inputs).element(
             shader.element

@@ -11,8 +11,8 @@ from mxeon.conformance.checks.functions import FUNCTION_CHECKS, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.probes import PROBES, PairProbe, PictureProbe, SurfaceProbe
-from mxeon.conformance.checks.source import check_sources
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.checks.text import check_texts
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import NOT_RUN, Result
@@ -106,7 +106,7 @@ class Judge:
 
     def _findings(self, task: Task) -> dict[str, Any]:
         if task.check == SOURCE:
-            return {"results": check_sources(subjects(task.library), task.library)}
+            return {"results": check_texts(subjects(task.library), task.library)}
         host = self._host(task.host)
         return self._on_host(task, host) | {"hosts": (host.identity(),)}
 

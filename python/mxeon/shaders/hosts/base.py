@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import Unsupported
@@ -16,6 +17,11 @@ from mxeon.shaders.scene import Scene
 
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
+
+
+# Matrix by which shaders turn a direction before they look it up in an environment, as generated
+# GLSL has it: the middle of a latitude-longitude map faces the viewer.
+TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -97,6 +103,9 @@ class Host(ABC):
         wi: NDArray[Any],
         inputs: Mapping[str, Any],
         branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values of a shader's one BSDF for pairs of directions.
 
@@ -104,23 +113,29 @@ class Host(ABC):
         ----------
         shader : Shader
         wo, wi : ndarray, shape (N, 3)
-            Unit vectors in the local frame, normal +z.
+            Unit vectors in world space. The surface has the normal +z.
         inputs : mapping of str to array
-            Node inputs by name, (N, ...) or constant.
+            Node inputs by name, (N, ...) or constant, and "occlusion", 1 unless given. The node's
+            normal is that of the surface unless given.
         branch : str
-            "direct", or "environment" for a uniform environment of radiance 1.
+            "direct", "environment", "transmission" or "emission": what the shader asks of its BSDF.
+        output : str
+            "response"; or "throughput", the share of the light from below that passes the BSDF.
+        irradiance : ndarray, shape (rows, columns, 3), or None
+            Irradiance over pi of the environment for every normal, as a latitude-longitude map with
+            row 0 upwards (+y) and its middle towards +z; None for a uniform environment of radiance 1.
 
         Returns
         -------
         ndarray, shape (N, 3)
-            f cos(theta_i) in 1/sr, or the directional albedo.
+            The response is f cos(theta_i) in 1/sr, or the directional albedo times the irradiance.
 
         Raises
         ------
         Unsupported
             If the host has no such verb.
         ValueError
-            If the shader does not call exactly one BSDF, or the branch is unknown.
+            If the shader does not call exactly one BSDF, or branch or output is unknown.
         ShaderError
             If the host's compiler refuses the shader.
         """

@@ -19,7 +19,15 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import InputError
 from mxeon.shaders.generation import Input, Shader
 
-CLOSURES = {"direct": "CLOSURE_TYPE_REFLECTION", "environment": "CLOSURE_TYPE_INDIRECT"}
+# By branch: the closure type of the call that is repeated, and the one that takes its place. A BSDF
+# that only reflects is called in the first two branches alone.
+CLOSURES = {
+    "direct": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_REFLECTION"),
+    "environment": ("CLOSURE_TYPE_INDIRECT", "CLOSURE_TYPE_INDIRECT"),
+    "transmission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_TRANSMISSION"),
+    "emission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_EMISSION"),
+}
+OUTPUTS = ("response", "throughput")
 FETCH = {
     "float": "float {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).x;",
     "boolean": "bool {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).x > 0.5;",
@@ -28,6 +36,7 @@ FETCH = {
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
 SCALARS = ("float", "boolean")
 NORMAL = (0.0, 0.0, 1.0)
+ASKED = "throughput_asked"  # variable of an evaluation
 WIDTH = 1024  # pixels in a row of an evaluation
 
 Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
@@ -109,19 +118,25 @@ class Call:
     ----------
     statements : str
         Statements of the shader's main up to the call.
-    result : str
-        Variable that receives the result.
+    value : str
+        Expression of the output that is asked for, a color. It is the same for every output, so
+        that they share a program.
     arguments : dict of str to (str, array_like)
-        Type and values of every variable that the statements read, but P and occlusion.
+        Type and values of every variable that the statements and the expression read, but P.
     """
 
     statements: str
-    result: str
+    value: str
     arguments: Arguments
 
 
 def bsdf_call(
-    shader: Shader, wo: ArrayLike, wi: ArrayLike, inputs: Mapping[str, Any], branch: str
+    shader: Shader,
+    wo: ArrayLike,
+    wi: ArrayLike,
+    inputs: Mapping[str, Any],
+    branch: str,
+    output: str = OUTPUTS[0],
 ) -> Call:
     """Call of a shader's BSDF, with the values of its arguments.
 
@@ -129,7 +144,7 @@ def bsdf_call(
     ----------
     shader : Shader
         Of a rasterized target.
-    wo, wi, inputs, branch
+    wo, wi, inputs, branch, output
         As in `mxeon.shaders.hosts.base.Host.evaluate`.
 
     Returns
@@ -139,20 +154,30 @@ def bsdf_call(
     Raises
     ------
     ValueError
-        If the shader does not call exactly one BSDF, or the branch is unknown.
+        If the shader does not call exactly one BSDF, or branch or output is unknown.
     """
-    if branch not in CLOSURES:
-        raise InputError(f"branch must be one of {', '.join(CLOSURES)}; got {branch!r}")
-    statements, result, names = _find_call(shader.stages["pixel"], CLOSURES[branch], shader.element)
+    for rule, word, known in (("branch", branch, tuple(CLOSURES)), ("output", output, OUTPUTS)):
+        if word not in known:
+            raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
+    called, closure = CLOSURES[branch]
+    statements, result, names = _find_call(shader.stages["pixel"], called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
+    arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
+    arguments[ASKED] = ("boolean", output == "throughput")
     ports = {port.name: port for port in shader.inputs}
     for name in names:
         arguments[name] = _argument(ports.get(name), inputs)
-    return Call(statements, result, arguments)
+    value = f"{ASKED} ? {result}.throughput : {result}.response"
+    return Call(statements.replace(called, closure), value, arguments)
 
 
 def bsdf_evaluation(
-    shader: Shader, wo: ArrayLike, wi: ArrayLike, inputs: Mapping[str, Any], branch: str
+    shader: Shader,
+    wo: ArrayLike,
+    wi: ArrayLike,
+    inputs: Mapping[str, Any],
+    branch: str,
+    output: str = OUTPUTS[0],
 ) -> tuple[str, Columns]:
     """Pixel stage that evaluates the one BSDF of a generated shader, and its arguments.
 
@@ -160,7 +185,7 @@ def bsdf_evaluation(
     ----------
     shader : Shader
         Of a target in DIALECTS.
-    wo, wi, inputs, branch
+    wo, wi, inputs, branch, output
         As in `mxeon.shaders.hosts.base.Host.evaluate`.
 
     Returns
@@ -171,14 +196,13 @@ def bsdf_evaluation(
     Raises
     ------
     ValueError
-        If the shader does not call exactly one BSDF, or the branch is unknown.
+        If the shader does not call exactly one BSDF, or branch or output is unknown.
     """
     dialect = DIALECTS[shader.target]
-    call = bsdf_call(shader, wo, wi, inputs, branch)
+    call = bsdf_call(shader, wo, wi, inputs, branch, output)
     version, text = shader.stages["pixel"].split("\n", 1)
-    output = re.findall(r"\bout vec4 (\w+);", text)[0]
-    body = ["vec3 P = vec3(0.0);", "float occlusion = 1.0;", call.statements]
-    body.append(f"{output} = vec4({call.result}.response, 1.0);")
+    pixel = re.findall(r"\bout vec4 (\w+);", text)[0]
+    body = ["vec3 P = vec3(0.0);", call.statements, f"{pixel} = vec4({call.value}, 1.0);"]
     head = f"{version}\n{dialect.prelude}{RENAME}"
     main, texels = _main(dialect, call.arguments, body)
     return f"{head}{text}#undef main\n{main}", texels

@@ -92,10 +92,13 @@ class Host(base.Host):
         wi: NDArray[Any],
         inputs: Mapping[str, Any],
         branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
-        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
-        return self._evaluate(shader.stages["vertex"], pixel, arguments)
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
+        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
 
     @_current
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
@@ -158,12 +161,16 @@ class Host(base.Host):
         self._context.release()
 
     def _evaluate(
-        self, vertex: str, pixel: str, arguments: Mapping[str, NDArray[Any]]
+        self,
+        vertex: str,
+        pixel: str,
+        arguments: Mapping[str, NDArray[Any]],
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= raster.ENVIRONMENT
+        textures |= raster.environment(irradiance)
         program = self._program(vertex, pixel)
         return self._draw(program, textures, raster.triangle(), size).reshape(-1, 3)[:count]
 

@@ -21,7 +21,6 @@ VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axi
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
 # Vertices by attribute, and the indices of their triangles.
 Mesh: TypeAlias = tuple[dict[str, NDArray[np.float32]], NDArray[np.uint32]]
-ENVIRONMENT = {"u_envRadiance": WHITE, "u_envIrradiance": WHITE}
 
 
 def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
@@ -33,6 +32,14 @@ def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
         if port.type == "filename" and port.value
     }
     return images | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
+
+
+def environment(irradiance: NDArray[Any] | None) -> dict[str, NDArray[Any]]:
+    """Texels of the environment of an evaluation; see `mxeon.shaders.hosts.base.Host.evaluate`."""
+    return {
+        "u_envRadiance": WHITE,
+        "u_envIrradiance": WHITE if irradiance is None else irradiance,
+    }
 
 
 def inputs(shader: Shader) -> dict[str, Any]:

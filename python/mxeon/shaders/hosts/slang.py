@@ -7,6 +7,7 @@ the text calls its BSDF. Arguments arrive in buffers, one row per thread.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -17,7 +18,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment
-from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.base import TURN, Identity
 
 try:
     import slangpy
@@ -62,13 +63,17 @@ KINDS = {"boolean": "bool"}
 DEVICES = ("vulkan", "cpu")  # the first that works
 
 # The CPU device fills no texture but from a kernel.
-WHITE = f"""RWTexture2D<float4> mxeon_white;
+FILL = f"""RWTexture2D<float4> mxeon_texture;
+StructuredBuffer<float> mxeon_texels;
+uniform uint mxeon_width;
 
 [shader("compute")]
 [numthreads(1, 1, 1)]
-void {ENTRY}()
+void {ENTRY}(uint3 mxeon_thread : SV_DispatchThreadID)
 {{
-    mxeon_white[uint2(0)] = float4(1.0);
+    uint first = 3 * (mxeon_thread.y * mxeon_width + mxeon_thread.x);
+    mxeon_texture[mxeon_thread.xy] = float4(
+        mxeon_texels[first], mxeon_texels[first + 1], mxeon_texels[first + 2], 1.0);
 }}
 """
 
@@ -91,9 +96,10 @@ class Host(base.Host):
         slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
         for device in DEVICES:
             self._kernels: dict[str, Any] = {}
+            self._names = itertools.count()
             try:
                 self._device = slangpy.Device(type=slangpy.DeviceType[device])
-                self._white = self._texture()
+                self._white = self._texture(np.ones((1, 1, 3)))
                 return
             except RuntimeError as error:
                 reason = _reason(error)
@@ -111,12 +117,16 @@ class Host(base.Host):
         wi: NDArray[Any],
         inputs: Mapping[str, Any],
         branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
-        call = fragment.bsdf_call(shader, wo, wi, inputs, branch)
-        body = ["float3 P = float3(0.0);", "float occlusion = 1.0;", call.statements]
-        body.append(f"float3 mxeon_value = {call.result}.response;")
-        return self._evaluate(shader.stages["pixel"], call.arguments, body, self._environment())
+        call = fragment.bsdf_call(shader, wo, wi, inputs, branch, output)
+        body = ["float3 P = float3(0.0);", call.statements]
+        body.append(f"float3 mxeon_value = {call.value};")
+        environment = self._environment(irradiance)
+        return self._evaluate(shader.stages["pixel"], call.arguments, body, environment)
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a GLSL shader function compiled as Slang; see `mxeon.shaders.hosts.base.Host`."""
@@ -159,7 +169,7 @@ class Host(base.Host):
         """Kernel of a text, compiled once."""
         if text not in self._kernels:
             try:
-                name = f"mxeon_{len(self._kernels)}"
+                name = f"mxeon_{next(self._names)}"  # a text that does not compile keeps its own
                 module = self._device.load_module_from_source(name, text)
                 program = self._device.link_program([module], [module.entry_point(ENTRY)])
                 self._kernels[text] = self._device.create_compute_kernel(program)
@@ -172,22 +182,30 @@ class Host(base.Host):
         usage = slangpy.BufferUsage.shader_resource
         return self._device.create_buffer(data=data, struct_size=4, usage=usage)
 
-    def _texture(self) -> Any:
-        """One white texel."""
+    def _texture(self, texels: NDArray[Any]) -> Any:
+        """A texture of float32 texels (height, width, 3)."""
+        height, width, _ = texels.shape
         texture = self._device.create_texture(
             type=slangpy.TextureType.texture_2d,
             format=slangpy.Format.rgba32_float,
+            width=width,
+            height=height,
             usage=slangpy.TextureUsage.shader_resource | slangpy.TextureUsage.unordered_access,
         )
-        values = {"mxeon_white": texture}
-        self._kernel(WHITE).dispatch(thread_count=[1, 1, 1], vars=values)
+        rows = self._buffer(texels.reshape(-1, 3).astype(np.float32), width * height)
+        values = {"mxeon_texture": texture, "mxeon_texels": rows, "mxeon_width": width}
+        self._kernel(FILL).dispatch(thread_count=[width, height, 1], vars=values)
         return texture
 
-    def _environment(self) -> dict[str, Any]:
-        """Uniforms of a white environment."""
-        white = {"tex": self._white, "sampler": self._device.create_sampler()}
-        values = {"u_envRadiance": white, "u_envIrradiance": white, "u_envLightIntensity": 1.0}
-        return {"pixelCB": {**values, "u_envMatrix": slangpy.float4x4.identity()}}
+    def _environment(self, irradiance: NDArray[Any] | None) -> dict[str, Any]:
+        """Uniforms of an environment; a white one where there is no irradiance."""
+        sampler = self._device.create_sampler()
+        white = {"tex": self._white, "sampler": sampler}
+        tinted = white
+        if irradiance is not None:
+            tinted = {"tex": self._texture(irradiance), "sampler": sampler}
+        values = {"u_envRadiance": white, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
+        return {"pixelCB": {**values, "u_envMatrix": slangpy.float4x4(TURN.astype(np.float32))}}
 
 
 def _kernel_text(names: Iterable[str], body: Sequence[str]) -> str:

@@ -74,8 +74,8 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
     rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
     blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
     coarse = blocks.mean(axis=(1, 3)).reshape(rows * columns, -1)
-    incoming, solid_angle = _directions(rows, columns)
-    normals, _ = _directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
+    incoming, solid_angle = latlong_directions(rows, columns)
+    normals, _ = latlong_directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
     weights = np.maximum(0.0, normals @ incoming.T) * solid_angle
     weights /= weights.sum(axis=1, keepdims=True)
     pixels = (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1)
@@ -83,7 +83,7 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
     return irradiance
 
 
-def _directions(rows: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def latlong_directions(rows: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Directions and solid angles of a latitude-longitude map's pixels, as MaterialX maps them."""
     polar = np.pi * (np.arange(rows) + 0.5) / rows
     azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5)

@@ -24,7 +24,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment
-from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.base import TURN, Identity
 
 try:
     import wgpu
@@ -49,12 +49,13 @@ DECLARATION = re.compile(
 )
 
 # Values of block members that must not be 0.
-UNIFORMS = {"u_envMatrix": tuple(np.eye(4).ravel()), "u_envLightIntensity": (1.0,)}
+UNIFORMS = {"u_envMatrix": tuple(TURN.ravel()), "u_envLightIntensity": (1.0,)}
 STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
 STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
 BLOCK_SIZE = 1 << 14
 
 CORNERS = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
+FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filtered
 FLOATS = {1: "r32float", 4: "rgba32float"}  # components -> format
 WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
 
@@ -97,10 +98,14 @@ class Host(base.Host):
         wi: NDArray[Any],
         inputs: Mapping[str, Any],
         branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
-        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
-        return self._evaluate(pixel, arguments)
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
+        environment = {"u_envIrradiance": irradiance} if irradiance is not None else {}
+        return self._evaluate(pixel, arguments, environment)
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
@@ -115,12 +120,17 @@ class Host(base.Host):
         """Release the device."""
         self._device.destroy()
 
-    def _evaluate(self, pixel: str, arguments: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
+    def _evaluate(
+        self,
+        pixel: str,
+        arguments: Mapping[str, NDArray[Any]],
+        environment: Mapping[str, NDArray[Any]] = {},
+    ) -> NDArray[Any]:
         """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         texels = [fragment.texels(rows, size) for rows in arguments.values()]
         sets = (
-            self._generated(pixel),
+            self._generated(pixel, environment),
             {0: (SAMPLER, self._device.create_sampler())},
             {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
         )
@@ -170,10 +180,11 @@ class Host(base.Host):
             raise ShaderError(f"vulkan: {str(error).strip()}") from None
         return {"module": module, "entry_point": "main"}
 
-    def _generated(self, text: str) -> Bindings:
-        """Bindings that generated text declares: white textures, and blocks of UNIFORMS."""
+    def _generated(self, text: str, textures: Mapping[str, NDArray[Any]]) -> Bindings:
+        """Bindings that generated text declares: textures, white ones unless given, and blocks."""
+        halves = {name: texels.astype(np.float16) for name, texels in textures.items()}
         return {
-            int(match["number"]): (FILTERED, self._texture(WHITE))
+            int(match["number"]): (FILTERED, self._texture(halves.get(match["texture"], WHITE)))
             if match["texture"]
             else (BLOCK, self._block(match["block"]))
             for match in DECLARATION.finditer(text)
@@ -192,11 +203,11 @@ class Host(base.Host):
         return layout, self._device.create_bind_group(layout=layout, entries=entries)
 
     def _texture(self, texels: NDArray[Any]) -> Any:
-        """A texture of 8-bit or float32 texels, the latter of one component or of three."""
+        """A texture of 8-bit, float16 or float32 texels, of one component, of three or of four."""
         height, width, components = texels.shape
         if components == 3:  # there are no textures of three
             texels = np.pad(texels, ((0, 0), (0, 0), (0, 1)))
-        form = "rgba8unorm" if texels.dtype == np.uint8 else FLOATS[texels.shape[2]]
+        form = FORMATS.get(texels.dtype.name) or FLOATS[texels.shape[2]]
         size = (width, height, 1)
         usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
         texture = self._device.create_texture(size=size, format=form, usage=usage)

@@ -26,7 +26,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base, fragment, raster
-from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.base import TURN, Identity
 from mxeon.shaders.scene import Scene
 
 try:
@@ -50,7 +50,7 @@ UNIFORMS = {
     "u_worldMatrix": IDENTITY,
     "u_viewProjectionMatrix": IDENTITY,
     "u_worldInverseTransposeMatrix": IDENTITY,
-    "u_envMatrix": IDENTITY,
+    "u_envMatrix": TURN.ravel().tolist(),
     "u_envLightIntensity": 1.0,
 }
 IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
@@ -110,10 +110,13 @@ class Host(base.Host):
         wi: NDArray[Any],
         inputs: Mapping[str, Any],
         branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
-        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch)
-        return self._evaluate(shader.stages["vertex"], pixel, arguments)
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
+        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
@@ -129,12 +132,16 @@ class Host(base.Host):
         self._thread.submit(self._stop).result()
 
     def _evaluate(
-        self, vertex: str, pixel: str, arguments: Mapping[str, NDArray[Any]]
+        self,
+        vertex: str,
+        pixel: str,
+        arguments: Mapping[str, NDArray[Any]],
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= raster.ENVIRONMENT
+        textures |= raster.environment(irradiance)
         stages = {"vertex": vertex, "pixel": pixel}
         frame = self._draw(stages, UNIFORMS, textures, raster.triangle(), size)
         return frame.reshape(-1, 3)[:count]

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pairs and inputs that random ones miss: exact directions, edges of ranges, turned frames."""
+
+from itertools import product
+
+import numpy as np
+
+from mxeon.conformance.checks.batch import Array, Batch, directions, random_inputs, rounded
+from mxeon.models.table import Model
+
+EACH = 256  # pairs of each kind
+GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines
+AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
+ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors, by a rounding of float32
+HORIZON = 0.1  # least cosine of the other direction where one is at the horizon or below it
+TURNED = (0.25, 0.95)  # cosines in turned frames, where a cosine has roundings
+POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
+TINY = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel
+SMOOTH = (0.0, 1e-6, 1e-3, 1.0)  # roughness, in units of the largest
+WEIGHTS = (-0.5, 0.0, 1e-3, 0.01, 0.5)
+OCCLUSIONS = (0.0, 1e-3, 0.5)
+
+
+def special_pairs(rng: np.random.Generator, row: Model) -> Batch:
+    """Exact directions, above the horizon or on it, with inputs of which many lie on an edge.
+
+    A grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths; and with a random
+    other direction: exact retro-reflection, the mirror direction, the viewer or the light along the
+    normal, the viewer or the light on the horizon.
+    """
+    mu_o, mu_i, azimuth = np.array(list(product(GRID, GRID, AZIMUTHS))).T
+    free, other = directions(rng, EACH), directions(rng, EACH)
+    high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
+    rim = _directions(np.zeros(EACH), 2.0 * np.pi * rng.random(EACH))
+    normal = np.broadcast_to([0.0, 0.0, 1.0], free.shape)
+    pairs = (
+        (_directions(mu_o, 0.0 * mu_o), _directions(mu_i, azimuth)),
+        (free, free),
+        (free, free * [-1.0, -1.0, 1.0]),
+        (normal, free),
+        (free, normal),
+        (normal[:1], normal[:1]),
+        (rim, high),
+        (high, rim),
+        (free, other),
+    )
+    wo, wi = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    count = len(wo)
+    inputs = random_inputs(rng, count, row)
+    inputs["color"] = _sprinkled(rng, inputs["color"], TINY)
+    inputs["roughness"] = _sprinkled(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
+    inputs["roughness"] = np.minimum(inputs["roughness"], np.nextafter(np.float32(row.largest), 0))
+    return Batch(wo, wi, {**inputs, **node_inputs(rng, count)})
+
+
+def outside_pairs(rng: np.random.Generator, row: Model) -> Batch:
+    """Pairs that no model has: light from below the horizon, a viewer whose cosine exceeds 1."""
+    below = directions(rng, EACH) * [1.0, 1.0, -1.0]
+    high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
+    straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
+    wo = np.concatenate([high, straight])
+    wi = np.concatenate([below, directions(rng, EACH)])
+    return Batch(wo, wi, {**random_inputs(rng, len(wo), row), **node_inputs(rng, len(wo))})
+
+
+def turned_pairs(rng: np.random.Generator, count: int, row: Model) -> Batch:
+    """Pairs in random frames; for half of them the node's normal faces away from the viewer."""
+    axes, _ = np.linalg.qr(rng.standard_normal((count, 3, 3)))
+    axes = axes[np.abs(axes[:, 1, 2]) <= POLE]
+    count = len(axes)
+    low, high = TURNED
+    wo, wi = (
+        _directions(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
+        for _ in range(2)
+    )
+    facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
+    normal = facing * rounded(axes[:, :, 2].T)
+    return Batch(wo, wi, {**random_inputs(rng, count, row), "normal": normal}, frame=axes)
+
+
+def node_inputs(rng: np.random.Generator, count: int) -> dict[str, Array]:
+    """Random weights and occlusions: 1 for half of the pairs, an edge for many others."""
+    return {
+        name: np.where(rng.random(count) < 0.5, 1.0, _sprinkled(rng, rng.random(count), edges))
+        for name, edges in (("weight", WEIGHTS), ("occlusion", OCCLUSIONS))
+    }
+
+
+def _sprinkled(rng: np.random.Generator, values: Array, edges: object) -> Array:
+    """Values of which half are replaced by random edges, as float32 numbers."""
+    picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
+    mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)
+    return mixed.astype(np.float32).astype(np.float64)
+
+
+def _directions(mu: Array, azimuth: Array) -> Array:
+    """Directions of given cosines, float32 numbers, and azimuths."""
+    mu = np.asarray(mu, np.float32).astype(np.float64)
+    radius = np.sqrt(1.0 - mu * mu)
+    return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of text: definitions of nodes, generated sources and functions, none of them executed."""
+
+from collections.abc import Iterable
+
+from mxeon.conformance.checks.nodes import Subject
+from mxeon.conformance.checks.text.closures import check_closures
+from mxeon.conformance.checks.text.definitions import check_definitions
+from mxeon.conformance.checks.text.sources import check_sources
+from mxeon.conformance.results import Result
+
+
+def check_texts(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]:
+    """Results of all checks of text for the nodes of a library.
+
+    Parameters
+    ----------
+    subjects : iterable of Subject
+        The nodes that it has.
+    library : str
+
+    Returns
+    -------
+    tuple of Result
+    """
+    subjects = tuple(subjects)
+    return (
+        *check_definitions(library),
+        *check_sources(subjects, library),
+        *check_closures(subjects, library),
+    )

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results of the checks of text: counts of faults, each of which must be 0."""
+
+from dataclasses import dataclass
+
+from mxeon.conformance.results import FAILED, PASSED, Control, Result
+
+HOST = "source"  # in reports, for what no host has to run
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A check of text.
+
+    Attributes
+    ----------
+    key, sentence : str
+        One word, and what has to be true.
+    unit : str
+        What is counted.
+    variant : str
+        The error that the control makes.
+    """
+
+    key: str
+    sentence: str
+    unit: str
+    variant: str
+
+
+def counted(
+    claim: Claim, subject: str, library: str, count: float, control: float, meaning: str
+) -> Result:
+    """Result of a count, which must be 0, and of its control, which must not be 0.
+
+    Parameters
+    ----------
+    claim : Claim
+    subject, library : str
+    count, control : float
+        Of the text, and of the text made wrong.
+    meaning : str
+        Diagnosis of a count that is not 0.
+    """
+    caught = control > 0 and control >= count
+    return Result(
+        check=claim.key,
+        claim=claim.sentence,
+        subject=subject,
+        host=HOST,
+        library=library,
+        verdict=PASSED if count == 0 and caught else FAILED,
+        error=count,
+        unit=claim.unit,
+        tolerance=0,
+        derivation="a count",
+        diagnosis=meaning if count else "",
+        control=Control(claim.variant, control, caught),
+    )
