@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="benchmarks.mutants", description=__doc__.splitlines()[0])
     parser.add_argument("--only", default="", metavar="PATTERN", help="in 'GROUP: NAME'")
     parser.add_argument("--resume", action="store_true", help="leave out what has been tried")
-    parser.add_argument("--quick", action="store_true", help="judge text and nodes alone")
+    parser.add_argument("--quick", action="store_true", help="text and nodes, to the first failure")
     parser.add_argument("--output", type=Path, default=DOCS, help="folder of JSON and page")
     parser.add_argument("--page", action="store_true", help="make the page alone")
     options = parser.parse_args(arguments)

@@ -2,7 +2,7 @@
 """The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first."""
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
 from itertools import islice
@@ -45,7 +45,7 @@ def trial(mutant: Mutant, judge: Judge, quick: bool = False) -> dict[str, Any]:
     mutant : Mutant
     judge : Judge
     quick : bool
-        Whether only text and nodes are judged, and neither surface shaders nor documents.
+        Whether only text and nodes are judged, up to the first failure.
 
     Returns
     -------
@@ -58,8 +58,7 @@ def trial(mutant: Mutant, judge: Judge, quick: bool = False) -> dict[str, Any]:
         try:
             assert_changed(mutant, folder)
             for host, stage in islice(stages(mutant, folder), 1 if quick else None):
-                failures = [each for task in stage for each in failures_of(task, judge)]
-                if failures:
+                if failures := failures_of(stage, judge, first=quick):
                     return {"verdict": KILLED, "host": host, "failures": ordered(failures)}
         except MxeonError as error:
             return {"verdict": KILLED, "host": TEXT, "refusal": shorten(str(error), folder)}
@@ -90,7 +89,7 @@ def stages(mutant: Mutant, folder: Path) -> Iterator[tuple[str, list[Task]]]:
         yield TEXT, [task for task in tasks if task.host == SOURCE]
     else:
         nodes = [task for task in tasks if task.check not in ("lobe", PICTURE)]
-        yield "gl", nodes
+        yield "gl", sorted(nodes, key=lambda task: task.host == SOURCE)
         yield "gl", [task for task in tasks if task.check == "lobe"]
         yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
     if mutant.file.startswith(("genosl/", "profiles/")):
@@ -107,9 +106,14 @@ def _on_cycles(folder: Path) -> Iterator[tuple[str, list[Task]]]:
         yield "cycles", [task]
 
 
-def failures_of(task: Task, judge: Judge) -> list[Result]:
-    """Results of a task that did not pass."""
-    return [each for each in judge.work(task).results if each.verdict != PASSED]
+def failures_of(tasks: Sequence[Task], judge: Judge, first: bool = False) -> list[Result]:
+    """Results that did not pass, of all tasks or of the first that has any."""
+    failures: list[Result] = []
+    for task in tasks:
+        failures += [each for each in judge.work(task).results if each.verdict != PASSED]
+        if failures and first:
+            break
+    return failures
 
 
 def ordered(failures: list[Result]) -> list[dict[str, str]]:
