@@ -93,14 +93,12 @@ def stages(mutant: Mutant, folder: Path) -> Iterator[tuple[str, list[Task]]]:
         yield "gl", [task for task in tasks if task.check == "lobe"]
         yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
     if mutant.file.startswith(("genosl/", "profiles/")):
-        yield from _on_cycles(folder)
+        yield from _on_cycles(path)
 
 
-def _on_cycles(folder: Path) -> Iterator[tuple[str, list[Task]]]:
-    """Tasks on Cycles, one by one; a library is one folder, so eonlib lies below the profile."""
-    profile = folder / "profiles" / "cycles"
-    shutil.copytree(folder / "libraries", profile / "libraries")
-    tasks = make_plan((), ["cycles"], [str(profile)]).tasks
+def _on_cycles(path: str) -> Iterator[tuple[str, list[Task]]]:
+    """Tasks on Cycles, one by one."""
+    tasks = make_plan((), ["cycles"], [path]).tasks
     tasks = [task for task in tasks if task.host == "cycles" and task.check != PICTURE]
     for task in sorted(tasks, key=lambda task: task.check in NOISY):
         yield "cycles", [task]

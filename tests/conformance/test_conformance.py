@@ -10,7 +10,7 @@ import pytest
 from mxeon.conformance import known_issues
 from mxeon.conformance.checks.batch import GRAZING, PAIRS
 from mxeon.conformance.checks.evaluate import judge_subject
-from mxeon.conformance.checks.functions import FUNCTION_CHECKS, judge_functions
+from mxeon.conformance.checks.functions import FUNCTION_CHECKS, FunctionProbe, judge_functions
 from mxeon.conformance.checks.nodes import SUBJECTS, Subject
 from mxeon.conformance.checks.probes import PairProbe, PictureProbe
 from mxeon.conformance.checks.table import CHECKS
@@ -170,8 +170,11 @@ def test_what_does_not_run_is_never_passed(error, verdict):
     def evaluate(*arguments):
         raise error("0:1(1): error: here")
 
-    host.evaluate = host.call = evaluate
-    results = [*judge_subject(PairProbe(host, EON, "eonlib")), *judge_functions(host)]
+    host.evaluate = host.execute = evaluate
+    results = [
+        *judge_subject(PairProbe(host, EON, "eonlib")),
+        *judge_functions(FunctionProbe(host, "eonlib")),
+    ]
     assert {result.verdict for result in results} == {verdict}
     assert all("0:1(1): error" in result.reason + result.diagnosis for result in results)
 

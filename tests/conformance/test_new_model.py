@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 import mxeon
-from mxeon.conformance.checks.functions import measure_functions
-from mxeon.conformance.checks.tolerances import VALUE
+from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.models import table
 from mxeon.models.brdf import eon_brdf, lambert_brdf
 from mxeon.models.table import Model
@@ -38,7 +37,8 @@ def test_a_diagnosis_names_it():
 
 
 def test_the_checks_of_shader_functions_leave_it_out(hosts):
-    assert measure_functions(hosts("gl").call).error <= VALUE.value
+    results = judge_functions(FunctionProbe(hosts("gl"), "eonlib"))
+    assert {result.verdict for result in results} == {"passed"}
 
 
 def test_the_shader_functions_hold_all_models_of_the_table_that_ships():

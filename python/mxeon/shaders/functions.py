@@ -2,17 +2,23 @@
 """Shader functions as text, in GLSL and in OSL, and their signatures."""
 
 import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 
-from mxeon.errors import InputError
-from mxeon.shaders.library import data_folder
+from mxeon.errors import InputError, ShaderError
+from mxeon.shaders.library import source_folder
 
 LANGUAGES = ("glsl", "osl")
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # includes all the others
+STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
 INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
+SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
+EACH = "mxeon_each"  # the function that `dispatched` adds
+TYPES = {"glsl": ("float", "vec3"), "osl": ("float", "color", "vector")}
 
 
-def source(language: str, stem: str = ALL) -> str:
+def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
     """Text of a file of shader functions, its includes expanded.
 
     Parameters
@@ -21,28 +27,47 @@ def source(language: str, stem: str = ALL) -> str:
         "glsl" or "osl".
     stem : str
         File name without its ending.
+    library : str
+        "eonlib", or the folder of a library that brings such files; see `has_functions`.
 
     Returns
     -------
     str
     """
-    folder = data_folder() / f"gen{language}"
-    text = (folder / f"{stem}.{language}").read_text(encoding="utf-8")
-    return INCLUDE.sub(lambda include: source(language, include[1].split(".")[0]), text)
+    return expanded(_path(language, stem, library))
+
+
+def has_functions(library: str, language: str = "glsl") -> bool:
+    """Whether a library brings shader functions of its own: eonlib, or a folder beside them."""
+    return library != "stock" and _path(language, ALL, library).is_file()
+
+
+def expanded(path: Path) -> str:
+    """Text of a file with its includes in their places."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ShaderError(f"{path}: {error.strerror}") from None
+    return INCLUDE.sub(lambda include: expanded(path.parent / include[1]), text)
 
 
 def names(language: str) -> tuple[str, ...]:
     """Names of all shader functions of a language."""
-    return tuple(_parameters(language))
+    return tuple(signatures(source(language)))
 
 
 def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
-    """Parameter types and names of a shader function, in order.
+    """Parameter types and names of a shader function of eonlib, in order; see `parameters`."""
+    return parameters(source(language), function)
+
+
+def parameters(text: str, function: str) -> tuple[tuple[str, str], ...]:
+    """Parameter types and names of a function that a text defines, in order.
 
     Parameters
     ----------
-    language : str
-        "glsl" or "osl".
+    text : str
+        Shader functions.
     function : str
 
     Returns
@@ -55,13 +80,72 @@ def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
     ValueError
         If there is no such function; lists the known ones.
     """
-    parameters = _parameters(language)
-    if function not in parameters:
-        raise InputError(f"function must be one of {', '.join(parameters)}; got {function!r}")
-    pairs = (each.rpartition(" ") for each in parameters[function].split(", "))
+    known = signatures(text)
+    if function not in known:
+        raise InputError(f"function must be one of {', '.join(known)}; got {function!r}")
+    return known[function]
+
+
+def signatures(text: str) -> Mapping[str, tuple[tuple[str, str], ...]]:
+    """Parameter types and names of each function that a text defines, in order."""
+    return {match[1]: _parameters(match[2]) for match in SIGNATURE.finditer(text)}
+
+
+def uses(text: str) -> Mapping[str, frozenset[str]]:
+    """Functions that each function of a text calls, directly or through others."""
+    matches = list(SIGNATURE.finditer(text))
+    ends = [match.start() for match in matches[1:]] + [len(text)]
+    known: dict[str, frozenset[str]] = {}
+    for match, end in zip(matches, ends, strict=True):
+        words = set(re.findall(r"\w+", text[match.end() : end])) & known.keys()
+        known[match[1]] = frozenset(words).union(*(known[word] for word in words))
+    return known
+
+
+def dispatched(text: str, functions: Iterable[str], language: str) -> str:
+    """The text with one function more, which calls one of `functions` by its number.
+
+    Its parameters are that number as a float, and for each type as many as a function has at most,
+    the first of them for the first parameter of that type. So a host compiles one program for all.
+    """
+    known, types = signatures(text), TYPES[language]
+    slots = {kind: 0 for kind in types}
+    calls = []
+    for number, function in enumerate(functions):
+        kinds = [kind for kind, _ in known[function]]
+        calls.append(
+            f"    if (which > {number - 0.5:.1f} && which < {number + 0.5:.1f})\n"
+            f"        result = {types[1]}({function}({', '.join(slot_names(kinds))}));\n"
+        )
+        slots = {kind: max(count, kinds.count(kind)) for kind, count in slots.items()}
+    every = slot_names([kind for kind in types for _ in range(slots[kind])])
+    listed = ["float which", *(f"{name.partition('_')[0]} {name}" for name in every)]
+    return (
+        f"{text}\n{types[1]} {EACH}({', '.join(listed)})\n{{\n"
+        f"    {types[1]} result = {types[1]}(0.0);\n{''.join(calls)}    return result;\n}}\n"
+    )
+
+
+def slot_names(kinds: Iterable[str]) -> list[str]:
+    """Names of the parameters of `dispatched` that carry parameters of these types.
+
+    Examples
+    --------
+    >>> slot_names(["vec3", "float", "vec3"])
+    ['vec3_0', 'float_0', 'vec3_1']
+    """
+    seen: dict[str, int] = {}
+    result = []
+    for kind in kinds:
+        seen[kind] = seen.get(kind, -1) + 1
+        result.append(f"{kind}_{seen[kind]}")
+    return result
+
+
+def _path(language: str, stem: str, library: str) -> Path:
+    return source_folder(library) / f"gen{language}" / f"{stem}.{language}"
+
+
+def _parameters(text: str) -> tuple[tuple[str, str], ...]:
+    pairs = (" ".join(each.split()).rpartition(" ") for each in text.split(","))
     return tuple((kind, name) for kind, _, name in pairs)
-
-
-def _parameters(language: str) -> dict[str, str]:
-    """Text of the parameters of each function, by its name."""
-    return dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))

@@ -82,6 +82,12 @@ def source_folder(library: str) -> Path:
     return data_folder() if library in LIBRARIES else Path(library).parent
 
 
+def library_folders(library: str) -> list[Path]:
+    """A folder that is loaded as a library, and those beside it that it may take sources from."""
+    beside = (source_folder(library) / name for name in ("genglsl", "genosl", "profiles"))
+    return [Path(library), *(folder for folder in beside if folder.is_dir())]
+
+
 def profile_folder(profile: str, library: str = "eonlib") -> Path:
     """Folder of a profile's MaterialX documents, to be loaded before the library's."""
     return source_folder(library) / "profiles" / profile

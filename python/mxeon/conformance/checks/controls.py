@@ -12,7 +12,6 @@ from mxeon.conformance.checks.batch import Batch
 
 Array = NDArray[np.float64]
 Control = Callable[[Any], "Altered"]
-Call = Callable[..., Array]  # call(function, *arguments): values of a shader function
 
 
 @dataclass(frozen=True)
@@ -79,8 +78,3 @@ def scale_cosine(power: int) -> Control:
         return scaled
 
     return lambda probe: Altered(probe, values=values)
-
-
-def scale_last(call: Call) -> Call:
-    """A control whose last argument, the parameter, is five per cent off."""
-    return lambda function, *arguments: call(function, *arguments[:-1], 0.95 * arguments[-1])

@@ -79,6 +79,17 @@ def difference_of(tolerance: Tolerance) -> Tolerance:
     return Tolerance(rounded_up(2.0 * tolerance.value / 0.4), "relative", absolute, derivation)
 
 
+def direction_of(sine_error: float) -> Tolerance:
+    """Tolerance of sampled directions on an engine whose own sine is off by so much."""
+    return Tolerance(
+        rounded_up(48 * ROUNDING + 4.0 * sine_error),
+        CONDITIONED,
+        absolute,
+        f"48 roundings of float32, 2^-24 each, and four times the error of the engine's own sine and "
+        f"cosine, {sine_error:.1e}, which turn a direction twice; rounded up",
+    )
+
+
 VALUE = Tolerance(
     rounded_up(14 * 2.0 * ROUNDING + 2 * 0.5 * LOSS_FIT),
     "pi f cos",
@@ -117,6 +128,27 @@ SURROUNDINGS = Tolerance(
     absolute,
     "a texel of the map, pi / 128 high and wide, whatever filter reads it, times the largest slope, "
     "1/2; and half floats, 2^-11",
+)
+CONDITIONED = "over 1, the value, and its change with each argument"
+PART = Tolerance(
+    rounded_up(48 * ROUNDING),
+    CONDITIONED,
+    absolute,
+    "48 roundings of float32, 2^-24 each: an inverse fourth power takes the 8 of an entry of a matrix "
+    "four times, and 16 beside them; rounded up",
+)
+INVERSION = Tolerance(
+    rounded_up(3 * 5e-7 + 12 * ROUNDING),
+    "reflectance",
+    absolute,
+    "three constants of six decimals, 5e-7 each, and 12 roundings of float32, 2^-24 each, of numbers "
+    "up to 1; rounded up",
+)
+ROUND_TRIP = Tolerance(
+    2.0 * INVERSION.value,
+    "albedo",
+    absolute,
+    "an albedo grows at most twice as fast as the reflectance",
 )
 LAMBERT = Tolerance(
     rounded_up(8 * ROUNDING),

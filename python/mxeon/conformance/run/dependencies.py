@@ -20,7 +20,13 @@ from mxeon.io.files import regular
 from mxeon.shaders.document.encoding import decode, strict
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.references import inside
-from mxeon.shaders.library import LIBRARIES, data_folder, eonlib_folder, standard_folders
+from mxeon.shaders.library import (
+    LIBRARIES,
+    data_folder,
+    eonlib_folder,
+    library_folders,
+    standard_folders,
+)
 
 INCLUDE, NAMING = "href", ("value", "file", "href")  # attributes
 # A part of a file's name that is filled in later: <UDIM>, [token], {frame}.
@@ -53,7 +59,8 @@ def digests(
             if path not in found:
                 found[path] = _digest(path)
     for library in set(libraries) - set(LIBRARIES):
-        found |= {str(path): _digest(path) for path in Path(library).rglob("*") if path.is_file()}
+        for folder in library_folders(library):
+            found |= {str(path): _digest(path) for path in folder.rglob("*") if path.is_file()}
     return found | _installed()
 
 

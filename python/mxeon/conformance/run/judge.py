@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
-from mxeon.conformance.checks.functions import FUNCTION_CHECKS, judge_functions
+from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
+from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.probes import PROBES, PairProbe, PictureProbe, SurfaceProbe
 from mxeon.conformance.checks.table import CHECKS
@@ -18,7 +19,9 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import NOT_RUN, Result
 from mxeon.conformance.run.plan import (
     CURVE,
+    FUNCTIONS,
     HOST,
+    INVERSION,
     PICTURE,
     SOURCE,
     Findings,
@@ -31,10 +34,11 @@ from mxeon.shaders.hosts import host_row, open_host
 from mxeon.shaders.hosts.base import Host
 
 ROWS = {check.key: check for check in CHECKS}
-FUNCTION_ROWS = {check.key: check for check in FUNCTION_CHECKS}
-CLAIMS = {check.key: check.claim for check in (*CHECKS, *FUNCTION_CHECKS)} | {
+CLAIMS = {check.key: check.claim for check in CHECKS} | {
     HOST: "The host executes shaders here.",
     SOURCE: "The generated text was checked.",
+    INVERSION: "The node is the NumPy function of its name.",
+    FUNCTIONS: "The shader functions are those of NumPy.",
     CURVE: "The albedo was measured over the cosine.",
     PICTURE: MATCH,
 }
@@ -113,8 +117,10 @@ class Judge:
     def _on_host(self, task: Task, host: Host) -> dict[str, Any]:
         if task.check == PICTURE:
             return self._document(task, host)
-        if task.check in FUNCTION_ROWS:
-            return {"results": judge_functions(host, (FUNCTION_ROWS[task.check],))}
+        if task.check == INVERSION:
+            return {"results": judge_inversion(InversionProbe(host, task.subject, task.library))}
+        if task.check == FUNCTIONS:
+            return {"results": judge_functions(FunctionProbe(host, task.library))}
         probe = self._probe(host, task.subject, task.library)
         if task.check == CURVE:
             return {"curves": judge_curve(probe)}

@@ -26,6 +26,7 @@ from mxeon.conformance.results import Curve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
+from mxeon.shaders.functions import has_functions
 from mxeon.shaders.hosts import host_names, host_row
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.library import (
@@ -35,8 +36,10 @@ from mxeon.shaders.library import (
     library_name,
     load_library,
 )
+from mxeon.shaders.nodes import INVERSIONS
 
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
+FUNCTIONS, INVERSION = "twins", "inversion"
 TWINS, EVERY_NODE = functions.SUBJECT, "every node"
 
 
@@ -47,7 +50,8 @@ class Task:
     Attributes
     ----------
     check : str
-        Key of a row of `mxeon.conformance.checks.table`, or HOST, SOURCE, CURVE or PICTURE.
+        Key of a row of `mxeon.conformance.checks.table`, or HOST, SOURCE, CURVE,
+        PICTURE, FUNCTIONS or INVERSION.
     subject : str
         Title of a node, path of a document, or TWINS.
     host, library : str
@@ -169,6 +173,12 @@ def subjects(library: str) -> list[Subject]:
     return [subject for subject in SUBJECTS if data.getMatchingNodeDefs(subject.node)]
 
 
+def inversions(library: str) -> list[str]:
+    """The inversion nodes that a library has."""
+    data = load_library(library)
+    return [node for node in INVERSIONS if data.getMatchingNodeDefs(node)]
+
+
 def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
     """Tasks of one host with one library."""
     probe, row = probe_type(host), host_row(host)
@@ -176,8 +186,11 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         yield Task(HOST, EVERY_NODE, host, library)
     if probe is None or probe is NativeProbe:
         return
-    if library == "eonlib" and probe.kind in functions.KINDS:
-        yield from (Task(check.key, TWINS, host, library) for check in functions.FUNCTION_CHECKS)
+    language = "osl" if row.target == "osl" else "glsl"
+    if probe.kind in functions.KINDS and has_functions(library, language):
+        yield Task(FUNCTIONS, TWINS, host, library)
+    if probe is PairProbe:
+        yield from (Task(INVERSION, node, host, library) for node in inversions(library))
     for subject in subjects(library):
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import Unsupported
+from mxeon.shaders import functions
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.scene import Scene
 
@@ -51,6 +52,7 @@ class Host(ABC):
     name: ClassVar[str]
     target: ClassVar[str]
     profile: ClassVar[str | None] = None
+    language: ClassVar[str] = "glsl"  # of the shader functions that it executes
 
     @abstractmethod
     def identity(self) -> Identity:
@@ -141,11 +143,13 @@ class Host(ABC):
         """
         raise self._unsupported("values for pairs of directions", "gl")
 
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a shader function of eonlib.
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a function that a text defines.
 
         Parameters
         ----------
+        source : str
+            Functions in the host's language, without includes.
         function : str
         *arguments : array_like, shape (N, 3) for a vector or color, (N,) for a float
             Taken as float32; what is the same for all N may have one row.
@@ -161,8 +165,14 @@ class Host(ABC):
             If the host has no such verb.
         ValueError
             If there is no such function.
+        ShaderError
+            If the host's compiler refuses the text.
         """
         raise self._unsupported("calls of a shader function", "gl")
+
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a shader function of eonlib; see `execute`."""
+        return self.execute(functions.source(self.language), function, *arguments)
 
     def plane(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         """Radiance of a plane with a shader on it.

@@ -101,10 +101,9 @@ class Host(base.Host):
         return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
 
     @_current
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
-        parameters = functions.signature("glsl", function)
-        source = functions.source("glsl")
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
         pixel, texels = fragment.function_evaluation(source, function, parameters, arguments)
         return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, texels)
 

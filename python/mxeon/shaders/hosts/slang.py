@@ -128,14 +128,14 @@ class Host(base.Host):
         environment = self._environment(irradiance)
         return self._evaluate(shader.stages["pixel"], call.arguments, body, environment)
 
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a GLSL shader function compiled as Slang; see `mxeon.shaders.hosts.base.Host`."""
-        parameters = functions.signature("glsl", function)
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function compiled as Slang; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
         values = {
             name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
         }
         body = [f"float3 mxeon_value = float3({function}({', '.join(values)}));"]
-        return self._evaluate(GLSL + functions.source("glsl"), values, body, {})
+        return self._evaluate(GLSL + source, values, body, {})
 
     def close(self) -> None:
         """Release the device."""

@@ -107,10 +107,9 @@ class Host(base.Host):
         environment = {"u_envIrradiance": irradiance} if irradiance is not None else {}
         return self._evaluate(pixel, arguments, environment)
 
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
-        parameters = functions.signature("glsl", function)
-        source = functions.source("glsl")
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
         pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )

@@ -118,10 +118,9 @@ class Host(base.Host):
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
         return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
 
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a GLSL shader function; see `mxeon.shaders.hosts.base.Host`."""
-        parameters = functions.signature("glsl", function)
-        source = functions.source("glsl")
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function; see `mxeon.shaders.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
         pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )

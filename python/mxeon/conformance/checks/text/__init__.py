@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from mxeon.conformance.checks.nodes import Subject
 from mxeon.conformance.checks.text.closures import check_closures
 from mxeon.conformance.checks.text.definitions import check_definitions
+from mxeon.conformance.checks.text.languages import check_languages
 from mxeon.conformance.checks.text.sources import check_sources
 from mxeon.conformance.results import Result
 
@@ -28,4 +29,5 @@ def check_texts(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]
         *check_definitions(library),
         *check_sources(subjects, library),
         *check_closures(subjects, library),
+        *check_languages(library),
     )

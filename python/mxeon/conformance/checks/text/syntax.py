@@ -75,7 +75,7 @@ def function_table(text: str) -> Mapping[str, Function]:
     functions = {}
     for match in FUNCTION.finditer(text):
         parameters = tuple(_parameter(each) for each in match[2].split(",") if each.strip())
-        functions[match[1]] = Function(match[1], parameters, _braces(text, match.end()))
+        functions[match[1]] = Function(match[1], parameters, braces(text, match.end()))
     return functions
 
 
@@ -101,7 +101,7 @@ def _parameter(text: str) -> tuple[str, str]:
     return kind, name
 
 
-def _braces(text: str, start: int) -> str:
+def braces(text: str, start: int) -> str:
     """Text between the brace at `start` and the one that closes it."""
     depth = 0
     for position in range(start, len(text)):

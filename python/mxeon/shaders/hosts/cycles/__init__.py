@@ -8,7 +8,6 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -19,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.io.images import read_image, write_image
+from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
@@ -71,6 +71,7 @@ class Host(base.Host):
     name = "cycles"
     target = "osl"
     profile = "cycles"
+    language = "osl"
 
     def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
         python = interpreter()
@@ -152,19 +153,7 @@ class Host(base.Host):
         return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a function of the OSL sources.
-
-        Parameters
-        ----------
-        function : str
-            Its name.
-        *arguments : array_like, shape (N, 3) for a vector or color, (N,) for a float
-            Taken as float32; what is the same for all N may come once.
-
-        Returns
-        -------
-        ndarray, shape (N, 3), float32
-            A float in all three columns.
+        """Values of a function of the OSL sources; see `execute`.
 
         Raises
         ------
@@ -173,7 +162,11 @@ class Host(base.Host):
         NotRun
             If the process fails.
         """
-        source, types = self._signature(function)
+        return self.execute(functions.expanded(self._file(function)), function, *arguments)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of an OSL function; see `mxeon.shaders.hosts.base.Host`."""
+        types = [kind for kind, _ in functions.parameters(source, function)]
         if len(types) != len(arguments):
             raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
         columns = [_columns(*pair) for pair in zip(types, arguments, strict=True)]
@@ -181,13 +174,15 @@ class Host(base.Host):
         size = max(4, math.isqrt(count - 1) + 1)  # Blender renders no smaller picture.
         names = [f"argument{index}" for index in range(len(types))]
         with self._folder() as folder:
+            path = Path(folder, "functions.osl")
+            path.write_text(source, encoding="utf-8")
             reads = []
             for kind, name, column in zip(types, names, columns, strict=True):
                 image = Path(folder, f"{name}.exr")
                 _write(image, np.broadcast_to(column, (count, column.shape[1])), size)
                 reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
             text = CALL.format(
-                source=source.as_posix(),
+                source=path.as_posix(),
                 reads="\n".join(reads),
                 function=function,
                 names=", ".join(names),
@@ -200,13 +195,11 @@ class Host(base.Host):
         """Folder for the files of one request."""
         return TemporaryDirectory(dir=self._temporary.name)
 
-    def _signature(self, function: str) -> tuple[Path, list[str]]:
-        """File that defines a function, and the types of its parameters."""
-        pattern = rf"^(?:color|vector|float)\s+{function}\s*\(([^)]*)\)\s*{{"
-        for source in sorted(self._sources.glob("*.osl")):
-            match = re.search(pattern, source.read_text(), re.MULTILINE)
-            if match:
-                return source, [part.split()[0] for part in match[1].split(",")]
+    def _file(self, function: str) -> Path:
+        """File that defines a function."""
+        for path in sorted(self._sources.glob("*.osl")):
+            if function in functions.signatures(path.read_text(encoding="utf-8")):
+                return path
         raise InputError(f"function must be defined in {self._sources}; got {function!r}")
 
     def _render(self, folder: Path, text: str, **frame: Any) -> NDArray[Any]:
