@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of mutants: single textual changes of eonlib's sources, read from `table/*.toml`."""
 
+import re
 import tomllib
 from dataclasses import dataclass
 from hashlib import sha256
@@ -42,26 +43,33 @@ class Mutant:
     host: str
     equivalent: bool
 
-    def text(self) -> str:
-        """Text of the mutated file.
+    def texts(self) -> dict[str, str]:
+        """Text of each mutated file, by its path: of the functions in GLSL, that in OSL as well.
 
         Raises
         ------
         ValueError
             If the old text does not occur once.
         """
-        text = (ROOT / self.file).read_text(encoding="utf-8")
-        if text.count(self.old) != 1:
+        texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
+        twin = Path("genosl", Path(self.file).with_suffix(".osl").name).as_posix()
+        if self.file.startswith("genglsl/") and (ROOT / twin).is_file():
+            old = re.sub(r"\bvec3\b", "(?:color|vector)", re.escape(self.old))
+            texts[twin] = self._replaced(twin, old, re.sub(r"\bvec3\b", "color", self.new))
+        return texts
+
+    def _replaced(self, file: str, old: str, new: str) -> str:
+        text, count = re.subn(old, lambda _: new, (ROOT / file).read_text(encoding="utf-8"))
+        if count != 1:
             raise ValueError(
-                f"{self.name}: the old text must occur once in {self.file}; "
-                f"got {text.count(self.old)} times"
+                f"{self.name}: the old text must occur once in {file}; got {count} times"
             )
-        return text.replace(self.old, self.new)
+        return text
 
     @property
     def digest(self) -> str:
-        """Digest of the mutated file."""
-        return sha256(self.text().encode()).hexdigest()[:16]
+        """Digest of the mutated files."""
+        return sha256("".join(self.texts().values()).encode()).hexdigest()[:16]
 
 
 def read_table() -> tuple[Mutant, ...]:

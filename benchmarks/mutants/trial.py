@@ -53,38 +53,44 @@ def trial(mutant: Mutant, judge: Judge, quick: bool = False) -> dict[str, Any]:
         verdict, KILLED or SURVIVED; host; failures: check, subject, excess and diagnosis of each,
         the largest excess first; or refusal: the message that ended the command.
     """
-    with copy_of_eonlib() as folder:
-        (folder / mutant.file).write_text(mutant.text(), encoding="utf-8")
+    with wrong_library(mutant) as path:
         try:
-            assert_changed(mutant, folder)
-            for host, stage in islice(stages(mutant, folder), 1 if quick else None):
+            assert_changed(mutant, path)
+            for host, stage in islice(stages(mutant, path), 1 if quick else None):
                 if failures := failures_of(stage, judge, first=quick):
                     return {"verdict": KILLED, "host": host, "failures": ordered(failures)}
         except MxeonError as error:
-            return {"verdict": KILLED, "host": TEXT, "refusal": shorten(str(error), folder)}
+            message = first_line(str(error).replace(f"{Path(path).parent}/", ""))
+            return {"verdict": KILLED, "host": TEXT, "refusal": message}
         return {"verdict": SURVIVED}
 
 
 @contextmanager
-def copy_of_eonlib() -> Iterator[Path]:
-    """A folder with a copy of eonlib, which no cache knows."""
+def wrong_library(mutant: Mutant) -> Iterator[str]:
+    """Path of a library that is eonlib with one change, in a folder that no cache knows."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         for name in FOLDERS:
             shutil.copytree(ROOT / name, Path(base, name))
+        for file, text in mutant.texts().items():
+            Path(base, file).write_text(text, encoding="utf-8")
         try:
-            yield Path(base)
+            yield str(Path(base, "libraries"))
         finally:
             library.load_library.cache_clear()
             generators._library_generator.cache_clear()
 
 
-def stages(mutant: Mutant, folder: Path) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts and tasks that can see a mutant, the cheapest first; only the first is always needed.
+def tasks_on_gl(path: str) -> list[Task]:
+    """Tasks of `mxeon check --library` that judge something, on the first host."""
+    return [task for task in make_plan((), ["gl"], [path]).tasks if task.check != CURVE]
+
+
+def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
+    """Hosts and tasks that can see a mutant, the cheapest first.
 
     The text and the nodes come first, then surface shaders, then pictures of documents one by one.
     """
-    path = str(folder / "libraries")
-    tasks = [task for task in make_plan((), ["gl"], [path]).tasks if task.check != CURVE]
+    tasks = tasks_on_gl(path)
     if mutant.file.startswith(NOT_ON_GL):
         yield TEXT, [task for task in tasks if task.host == SOURCE]
     else:
@@ -135,14 +141,13 @@ def _ratio(result: Result) -> float:
     return result.error / max(result.tolerance or 0.0, 1e-9)
 
 
-def assert_changed(mutant: Mutant, folder: Path) -> None:
+def assert_changed(mutant: Mutant, path: str) -> None:
     """Raise RuntimeError unless the generated text has the change, where text must have it."""
     target = CHANGED.get(mutant.file)
     if target is None:
         return
     with suppress(MxeonError):
-        mutated = _texts(target, str(folder / "libraries"))
-        if mutated == _original(target):
+        if _texts(target, path) == _original(target):
             raise RuntimeError(f"{mutant.name}: the generated text for {target} is the same")
 
 
@@ -159,8 +164,3 @@ def _texts(target: str, name: str) -> list[str]:
 def first_line(text: str) -> str:
     """The first line of a text, where compilers print many."""
     return text.strip().splitlines()[0] if text.strip() else ""
-
-
-def shorten(text: str, folder: Path) -> str:
-    """A message without the path of the copy."""
-    return first_line(text.replace(f"{folder}/", ""))
