@@ -47,8 +47,10 @@ def counts(rows: Sequence[tuple[Mutant, Any]]) -> dict[str, int]:
 
 
 def change(mutant: Mutant) -> tuple[str, str]:
-    """Old and new text without what both begin and end with, but for whole words."""
+    """Old and new text; of long ones, without the words that both begin and end with."""
     old, new = mutant.old, mutant.new
+    if len(old) + len(new) <= LENGTH:
+        return old, new
     start = end = 0
     while start < min(len(old), len(new)) and old[start] == new[start]:
         start += 1
