@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 
 from mxeon.conformance import known_issues
-from mxeon.conformance.checks.batch import GRAZING, PAIRS
+from mxeon.conformance.checks.batch import GRAZING, PAIRS, Batch
 from mxeon.conformance.checks.evaluate import judge_subject
 from mxeon.conformance.checks.functions import FUNCTION_CHECKS, FunctionProbe, judge_functions
 from mxeon.conformance.checks.nodes import SUBJECTS, Subject
 from mxeon.conformance.checks.probes import PairProbe, PictureProbe
+from mxeon.conformance.checks.sky import sky
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_texts
-from mxeon.conformance.diagnosis import nearest_value
+from mxeon.conformance.diagnosis import of_value
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.conformance.run import check, judge, plan
 from mxeon.errors import NotRun, ShaderError
@@ -41,14 +42,26 @@ class ModelHost(Host):
     def identity(self):
         return Identity(self.name, "1", "device")
 
-    def evaluate(self, shader, wo, wi, inputs, branch):
+    def evaluate(self, shader, wo, wi, inputs, branch, *, output="response", irradiance=None):
+        if output == "throughput":
+            return np.zeros(wo.shape)
         wo, wi, inputs = self._change(wo, wi, inputs)
-        roughness = np.minimum(np.broadcast_to(inputs["roughness"], len(wo)), 1.0)
-        parameter = [roughness] if self._row.parameter else []
-        color = np.broadcast_to(inputs["color"], wo.shape)
+        normal = np.broadcast_to(inputs.get("normal", (0.0, 0.0, 1.0)), wo.shape)
+        normal = normal * np.where((normal * wo).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+        roughness = np.minimum(inputs["roughness"], 1.0)
+        batch = Batch(local(normal, wo), local(normal, wi), {**inputs, "roughness": roughness})
         if branch == "environment":
-            return reference.model("eon").albedo_dir(wo[:, 2], color, roughness)
-        return self._row.brdf(wo, wi, color, *parameter) * wi[:, 2:]
+            return batch.albedo("eon") * (1.0 if irradiance is None else sky(normal))
+        return batch.expected(self._row.name) / np.pi
+
+
+def local(normal, direction):
+    """Directions in frames around normals; those of +z stay as they are."""
+    helper = np.where(np.abs(normal[:, :1]) < 0.5, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    tangent = helper - normal * (helper * normal).sum(axis=1, keepdims=True)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    axes = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    return (axes @ direction[:, :, np.newaxis])[:, :, 0]
 
 
 @pytest.fixture(scope="module")
@@ -63,14 +76,39 @@ def judged(host, subject=EON):
 # --- the domain and the table -------------------------------------------------------------------
 
 
-def test_pairs_are_a_million_with_back_lit_and_grazing_ones():
-    (batch,) = PairProbe(None, EON, "eonlib").batches
-    assert len(batch.wo) == PAIRS >= 1_000_000
+def test_pairs_are_many_with_back_lit_and_grazing_ones():
+    batch, *_ = PairProbe(None, EON, "eonlib").batches
+    assert len(batch.wo) == PAIRS >= 1 << 16
     assert np.mean(np.sum(batch.wo * batch.wi, axis=1) < 0.0) > 0.2
     for directions in (batch.wo, batch.wi):
         assert GRAZING <= directions[:, 2].min() < 2.0 * GRAZING
     for values in batch.inputs.values():
-        assert values.min() == 0.0 and values.max() > 0.999999
+        assert values.min() <= 0.0 and values.max() > 0.999999
+
+
+def test_special_pairs_are_exact():
+    _, special, outside = PairProbe(None, EON, "eonlib").batches
+    mu_o, mu_i = special.wo[:, 2], special.wi[:, 2]
+    for exact in (
+        (special.wo == special.wi).all(axis=1),
+        (special.wo == special.wi * [-1.0, -1.0, 1.0]).all(axis=1),
+        mu_o == 1.0,
+        mu_i == 1.0,
+        mu_o == 0.0,
+        mu_i == 0.0,
+        np.maximum(mu_o, mu_i) < 1e-6,
+        special.inputs["weight"] == np.float32(1e-3),
+        special.inputs["occlusion"] == 0.0,
+        special.inputs["roughness"] == np.float32(1e-3),
+        outside.wi[:, 2] < 0.0,
+        outside.wo[:, 2] > 1.0,
+        outside.wi[:, 2] > 1.0,
+    ):
+        assert exact.any()
+    for batch in (special, outside):
+        for directions in (batch.wo, batch.wi):
+            assert np.array_equal(directions, directions.astype(np.float32))
+            assert np.abs((directions**2).sum(axis=1) - 1.0).max() < 1e-6
 
 
 @pytest.mark.parametrize("row", CHECKS, ids=lambda row: row.key)
@@ -147,7 +185,7 @@ def test_a_defect_fails_the_check_made_for_it(key, change):
 
 def test_a_host_that_gives_no_numbers_fails():
     host = ModelHost(reference.model("eon"))
-    host.evaluate = lambda shader, wo, wi, inputs, branch: np.full(wo.shape, np.nan)
+    host.evaluate = lambda shader, wo, *_, **options: np.full(wo.shape, np.nan)
     result = judged(host)["value"]
     assert result.verdict == FAILED and result.error == np.inf
     assert "not finite" in result.diagnosis
@@ -167,7 +205,7 @@ def test_a_control_that_passes_makes_the_verdict_failed():
 def test_what_does_not_run_is_never_passed(error, verdict):
     host = ModelHost(reference.model("eon"))
 
-    def evaluate(*arguments):
+    def evaluate(*arguments, **options):
         raise error("0:1(1): error: here")
 
     host.evaluate = host.execute = evaluate
@@ -180,7 +218,7 @@ def test_what_does_not_run_is_never_passed(error, verdict):
 
 
 def test_the_nearest_model_comes_with_the_next_one():
-    words = nearest_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
+    words = of_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
     assert words.startswith("nearest known model: Fujii Oren-Nayar (FON) (rms ")
     assert ", then EON with rho^3 (0.0" in words
 
@@ -320,7 +358,7 @@ def test_every_page_that_a_check_refers_to_is_there():
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
 def test_stock_materialx_in_cycles_is_called_by_its_name(hosts, subject):
     probe = PictureProbe(hosts("cycles"), subject, "stock")
-    assert "nearest known model: EON with rho^3 (rms " in nearest_value(probe).text
+    assert "nearest known model: EON with rho^3 (rms " in of_value(probe).text
 
 
 def test_what_stock_materialx_has_right_passes(stock):

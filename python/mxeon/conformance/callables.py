@@ -63,7 +63,7 @@ class Claim:
     flag = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CallableProbe:
     """A function evaluated for pairs."""
 

@@ -1,25 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The diagnosis of a failure: the known model, or known defect, that is nearest to the values."""
+"""The diagnosis of a failure: the known model, defect or fault that explains it, or its place."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from functools import lru_cache
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import Array, Batch
+from mxeon.conformance.checks.batch import FEW, Array, Batch
+from mxeon.conformance.checks.measures import Case, albedo_cases, value_cases
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.checks.tolerances import ALBEDOS, VALUES, Tolerance
+from mxeon.conformance.faults import DIRECT, ENVIRONMENT, Fault, scaled_by
+from mxeon.conformance.regions import Mask, smallest
 from mxeon.models import table as reference
 from mxeon.models.table import Model
+from mxeon.shaders.nodes import FLAG
+
+# Share of the distance to any other explanation up to which one explains all, and up to which it is
+# called the nearest.
+SAME, NEAR = 0.03, 0.3
+INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
+LIT = 1e-3
+
+Output: TypeAlias = Callable[[Batch, str], Array]  # values that a model gives for a batch
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The models nearest to some values.
+    """The explanation of some values.
 
     Attributes
     ----------
     text : str
-        The nearest model and the next one, with their distances.
+        The model, defect or fault that explains them; or where they are wrong.
     distances : dict of str to float
         Root-mean-square distance to every model and defect, by title, in units of pi f cos.
     """
@@ -45,42 +60,123 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
     return f"nearest known model: {first} (rms {least:.2g}), then {second} ({next_least:.2g})"
 
 
-def nearest_value(probe: Any) -> Diagnosis:
-    """The model nearest to the probe's values."""
-    batches = [_clipped(batch) for batch in probe.few]
+@lru_cache(maxsize=2)  # several checks of a subject fail for one reason
+def of_value(probe: Any) -> Diagnosis:
+    """The explanation of the probe's values for pairs of directions."""
+    cases = list(value_cases(probe))
     rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
-    return _nearest(
-        rows.values(),
-        [probe.direct(batch) for batch in batches],
-        lambda row: [batch.expected(row.name) for batch in batches],
-    )
+    return _explained(probe, cases, rows.values(), DIRECT, Batch.expected, VALUES[probe.kind])
 
 
-def nearest_albedo(probe: Any) -> Diagnosis:
-    """The model whose directional albedo is nearest to the probe's environment branch."""
-    batches = [_clipped(batch) for batch in probe.cosines]
+@lru_cache(maxsize=2)
+def of_albedo(probe: Any) -> Diagnosis:
+    """The explanation of the probe's environment branch."""
+    cases = list(albedo_cases(probe))
     rows = [row for row in reference.MODELS + reference.KNOWN_DEFECTS if row.albedo_dir]
-    return _nearest(
-        rows,
-        [probe.albedo(batch) for batch in batches],
-        lambda row: [batch.albedo(row.name) for batch in batches],
+    return _explained(probe, cases, rows, ENVIRONMENT, Batch.albedo, ALBEDOS[probe.kind])
+
+
+def _explained(
+    probe: Any,
+    cases: Sequence[Case],
+    rows: Iterable[Model],
+    faults: Sequence[Fault],
+    output: Output,
+    tolerance: Tolerance,
+) -> Diagnosis:
+    """The explanation of cases, by models and by faults on the way to the subject's model."""
+    unbounded = not_finite(cases)
+    if unbounded:
+        return Diagnosis(unbounded)
+    short = [Case(batch.first(FEW), *(each[:FEW] for each in rest)) for batch, *rest in cases]
+    models = {row.title: _distance(short, row, Fault(""), output) for row in rows}
+    own = reference.model(probe.subject.model)
+    ranking = sorted(models.items(), key=lambda item: item[1])
+    if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
+        faults = (*faults, scaled_by(_factor(short)))
+        distances = {fault.text: _distance(short, own, fault, output) for fault in faults}
+        text = _fault(distances, models, own.title, tolerance.value)
+        if text:
+            return Diagnosis(text, models)
+    return Diagnosis(_model(probe, cases, ranking, tolerance), models)
+
+
+def _distance(cases: Sequence[Case], row: Model, fault: Fault, output: Output) -> float:
+    """Root-mean-square distance of the measured values from those of a model with a fault.
+
+    A roughness above 1 is left out, which not every model takes; and light up to LIT, where factors of
+    the cosine cannot be told apart.
+    """
+    errors = []
+    for case in cases:
+        batch = fault.batch(case.batch)
+        roughness = np.minimum(batch.inputs["roughness"], row.largest)
+        values = fault.values(case.batch, output(batch.altered(roughness=roughness), row.name))
+        kept = (case.batch.inputs["roughness"] <= np.float64(1.0)) & (case.batch.wi[:, 2] > LIT)
+        errors.append((case.measured - values)[kept])
+    return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
+
+
+def _factor(cases: Sequence[Case]) -> float:
+    """The factor by which the expected values come nearest to the measured ones."""
+    squares = sum(float(np.sum(case.expected**2)) for case in cases)
+    products = sum(float(np.sum(case.expected * case.measured)) for case in cases)
+    return products / squares if squares else 1.0
+
+
+def _fault(faults: dict[str, float], models: dict[str, float], own: str, enough: float) -> str:
+    """The one fault that explains all, up to a distance that is enough; "" if there is none."""
+    (text, least), *others = sorted(faults.items(), key=lambda item: item[1])
+    rival = min([*models.values(), *(distance for _, distance in others)])
+    if least > SAME * models[own] or least > max(SAME * rival, enough):
+        return ""
+    return f"fault: {text} (rms {least:.2g})"
+
+
+def _flag(probe: Any, title: str) -> str:
+    """Words on the flag, where the title is that of the model with the other one."""
+    for subject in SUBJECTS:
+        other = subject.node == getattr(probe.subject, "node", None) and subject != probe.subject
+        if other and reference.model(subject.model).title == title:
+            return f", as with {FLAG} {str(subject.flag).lower()}"
+    return ""
+
+
+def _model(
+    probe: Any, cases: Sequence[Case], ranking: Sequence[tuple[str, float]], tolerance: Tolerance
+) -> str:
+    """The nearest model, the region that is wrong, or that no model is near."""
+    own = reference.model(probe.subject.model).title
+    errors = (tolerance.metric(case.measured, case.expected) for case in cases)
+    wrong: list[Mask] = [error > tolerance.value for error in errors]
+    (first, least), (_, rival) = ranking[:2]
+    if first != own and least <= max(tolerance.value, SAME * rival):
+        return sentence(ranking) + _flag(probe, first)
+    place = region([case.batch for case in cases], wrong)
+    if place or not any(map(np.any, wrong)):
+        return place or "every value is right by itself"
+    if first == own and least <= INEXACT * tolerance.value:
+        return f"the model is right, {own} (rms {least:.2g}), but not as exact as it has to be"
+    if first != own and least <= NEAR * rival:
+        return sentence(ranking)
+    share = 100.0 * np.concatenate(wrong).mean()
+    return (
+        f"no known model is near: {first} has the distance rms {least:.2g}; "
+        f"{share:.2g} % of the pairs are wrong"
     )
 
 
-def _clipped(batch: Batch) -> Batch:
-    """The batch with roughness in [0, 1], where every model takes it."""
-    return batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
+def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
+    """The share of the pairs that are wrong and the region of all of them; "" without a region."""
+    name = smallest(batches, wrong) if any(map(np.any, wrong)) else ""
+    count, total = sum(map(np.count_nonzero, wrong)), sum(map(len, wrong))
+    return f"right but for {count} of {total} pairs, all of them {name}" if name else ""
 
 
-def _nearest(
-    rows: Iterable[Model], measured: Sequence[Array], expected: Callable[[Model], list[Array]]
-) -> Diagnosis:
-    values = np.concatenate(measured)
-    if not np.isfinite(values).all():
-        return Diagnosis("values that are not finite: no model is near")
-    distances = {
-        row.title: float(np.sqrt(np.mean((values - np.concatenate(expected(row))) ** 2)))
-        for row in rows
-    }
-    ranking = sorted(distances.items(), key=lambda item: item[1])
-    return Diagnosis(sentence(ranking), distances)
+def not_finite(cases: Sequence[Case]) -> str:
+    """Where values are not finite; "" if all are."""
+    wrong = [np.asarray(~np.isfinite(case.measured).all(axis=1)) for case in cases]
+    if not any(map(np.any, wrong)):
+        return ""
+    name = smallest([case.batch for case in cases], wrong)
+    return f"values that are not finite {name}" if name else "values that are not finite"

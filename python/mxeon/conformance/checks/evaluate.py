@@ -9,11 +9,10 @@ import numpy as np
 from mxeon.conformance.checks.measures import Measurement, integrated
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.checks.tolerances import Tolerance
-from mxeon.conformance.diagnosis import Diagnosis, nearest_albedo, nearest_value
+from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
 from mxeon.errors import NotRun, ShaderError
 
-OF_ALBEDO = ("environment", "furnace")  # checks whose failures are diagnosed by the albedo
 CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
@@ -133,9 +132,5 @@ def judge_check(check: Check, probe: Any) -> Result:
         wrong = check.measure(check.control(probe), tolerance.metric)
     except (NotRun, ShaderError) as error:
         return not_measured(fields, error)
-    diagnosis = Diagnosis() if right.error <= tolerance.value else _diagnose(check, probe)
+    diagnosis = Diagnosis() if right.error <= tolerance.value else check.diagnose(probe)
     return judge_measurements(fields, tolerance, right, check.variant, wrong, diagnosis)
-
-
-def _diagnose(check: Check, probe: Any) -> Diagnosis:
-    return nearest_albedo(probe) if check.key in OF_ALBEDO else nearest_value(probe)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of the checks: the worst error of a probe, and its point."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +28,14 @@ WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
 Metric = Callable[[Array, Any], Array]  # of measured and expected values: error of each row
-Case = tuple[Batch, Array, Array]  # with measured and expected values
+
+
+class Case(NamedTuple):
+    """A batch with measured and expected values."""
+
+    batch: Batch
+    measured: Array
+    expected: Array
 
 
 @dataclass(frozen=True)
@@ -64,36 +71,50 @@ def of_mean(measured: Array, expected: Array) -> Array:
 
 def value(probe: Any, metric: Metric) -> Measurement:
     """Values against the model's, over all pairs of the probe."""
-    model = probe.subject.model
-    return _worst(
-        metric, ((batch, probe.direct(batch), batch.expected(model)) for batch in probe.batches)
-    )
+    return _worst(metric, value_cases(probe))
+
+
+def value_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `value`."""
+    for batch in probe.batches:
+        yield Case(batch, probe.direct(batch), batch.expected(probe.subject.model))
 
 
 def environment(probe: Any, metric: Metric) -> Measurement:
     """The environment branch against the closed form of the directional albedo."""
-    model = probe.subject.model
-    return _worst(
-        metric, ((batch, probe.albedo(batch), batch.albedo(model)) for batch in probe.cosines)
-    )
+    return _worst(metric, albedo_cases(probe))
+
+
+def albedo_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `environment`."""
+    for batch in probe.cosines:
+        yield Case(batch, probe.albedo(batch), batch.albedo(probe.subject.model))
 
 
 def frame(probe: Any, metric: Metric) -> Measurement:
     """Values in turned frames, of which half have a normal that faces away, against those in none."""
+    return _worst(metric, frame_cases(probe))
+
+
+def frame_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `frame`."""
     batch = probe.turned
     local = replace(batch.altered(normal=(0.0, 0.0, 1.0)), frame=None)
-    return _worst(
-        metric,
-        ((batch, output(batch), output(local)) for output in (probe.direct, probe.albedo)),
-    )
+    for output in (probe.direct, probe.albedo):
+        yield Case(batch, output(batch), output(local))
 
 
 def surroundings(probe: Any, metric: Metric) -> Measurement:
     """The environment branch under an uneven sky, over that in a uniform one, against the sky."""
+    return _worst(metric, [surroundings_case(probe)])
+
+
+def surroundings_case(probe: Any) -> Case:
+    """The case of `surroundings`."""
     batch = probe.turned.altered(color=WHITE)
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = probe.albedo(batch, sky_map()) / probe.albedo(batch)
-    return _worst(metric, [(batch, measured, sky(batch.normal))])
+    return Case(batch, measured, sky(batch.normal))
 
 
 def quadrature(probe: Any, metric: Metric) -> Measurement:
@@ -102,7 +123,7 @@ def quadrature(probe: Any, metric: Metric) -> Measurement:
     for mu, color, roughness in product((0.1, 0.3, 0.6, 0.95), COLORS, (0.25, 1.0)):
         wo = np.array([[np.sqrt(1.0 - mu * mu), 0.0, mu]])
         batch = Batch(wo, wo, {"color": color, "roughness": roughness})
-        cases.append((batch, *integrated(probe, mu, color, roughness)))
+        cases.append(Case(batch, *integrated(probe, mu, color, roughness)))
     return _worst(metric, cases)
 
 
@@ -130,36 +151,35 @@ def integrated(
 def black(probe: Any, metric: Metric) -> Measurement:
     """Values of a black surface against 0."""
     batches = [batch.altered(color=BLACK) for batch in probe.few]
-    return _worst(metric, ((batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
+    return _worst(metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
 
 
 def throughput(probe: Any, metric: Metric) -> Measurement:
     """Throughput of an opaque node against 0, in every branch and for every weight."""
-    batches = [batch.altered(weight=weight) for weight in (0.0, 0.5, 1.0) for batch in probe.few]
-    return _worst(
-        metric,
-        (
-            (batch, probe.throughput(batch, branch), np.zeros((1, 3)))
-            for branch in BRANCHES
-            for batch in batches
-        ),
-    )
+    return _worst(metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch)))
+
+
+def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
+    """The cases of `throughput` in one of BRANCHES."""
+    for batch in probe.few:
+        yield Case(batch, probe.throughput(batch, branch), np.zeros((len(batch.wo), 3)))
 
 
 def furnace(probe: Any, metric: Metric) -> Measurement:
     """Albedo of a white surface against 1."""
     batches = [batch.altered(color=WHITE, weight=1.0) for batch in probe.cosines]
-    return _worst(metric, ((batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
+    return _worst(metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
 
 
 def reciprocity(probe: Any, metric: Metric) -> Measurement:
     """f(wo, wi) against f(wi, wo), both times both cosines."""
-    cases = []
+    cases: list[Case] = []
     for batch in probe.few:
         swapped = replace(batch, wo=batch.wi, wi=batch.wo)
-        forward = probe.direct(batch) * batch.wo[:, 2:]
-        backward = probe.direct(swapped) * batch.wi[:, 2:]
-        cases.append((batch, forward, backward))
+        with np.errstate(invalid="ignore"):  # inf x 0 is no number, which `absolute` notices
+            forward = probe.direct(batch) * batch.wo[:, 2:]
+            backward = probe.direct(swapped) * batch.wi[:, 2:]
+        cases.append(Case(batch, forward, backward))
     return _worst(metric, cases)
 
 
@@ -167,7 +187,7 @@ def lambert(probe: Any, metric: Metric) -> Measurement:
     """Values at roughness 0 against Lambert's."""
     batches = [batch.altered(roughness=0.0) for batch in probe.few]
     return _worst(
-        metric, ((batch, probe.direct(batch), batch.expected("lambert")) for batch in batches)
+        metric, (Case(batch, probe.direct(batch), batch.expected("lambert")) for batch in batches)
     )
 
 
@@ -188,19 +208,31 @@ def flag(probe: Any, _: Metric) -> Measurement:
 
 def inputs(probe: Any, _: Metric) -> Measurement:
     """Number of inputs of the node that change nothing."""
+    dead = dead_inputs(probe)
+    return Measurement(len(dead), {name: [0.0] for name in dead})
+
+
+def dead_inputs(probe: Any) -> list[str]:
+    """The inputs of `inputs`."""
     batch = probe.few[0]
     values = probe.direct(batch)
     changes = {**CHANGES, FLAG: not probe.subject.flag}
-    dead = [
+    return [
         name
         for name in probe.subject.inputs
         if np.array_equal(values, probe.direct(batch.altered(**{name: changes[name]})))
     ]
-    return Measurement(len(dead), {name: [0.0] for name in dead})
 
 
 def finite(probe: Any, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
+    batch, values, _expected = edge_case(probe)
+    bad = ~np.isfinite(values).all(axis=1)
+    return Measurement(int(bad.sum()), _point(batch, int(bad.argmax())) if bad.any() else {})
+
+
+def edge_case(probe: Any) -> Case:
+    """Values and albedos at the edges of the domain, beside 0."""
     cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
     rows = product(cosine, cosine, [0.0, 1.0, 2.0, np.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
     mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
@@ -209,8 +241,7 @@ def finite(probe: Any, _: Metric) -> Measurement:
     wi = np.stack([S_i * np.cos(azimuth), S_i * np.sin(azimuth), mu_i], axis=-1)
     batch = Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
     values = np.concatenate([probe.direct(batch), probe.albedo(batch)], axis=1)
-    bad = ~np.isfinite(values).all(axis=1)
-    return Measurement(int(bad.sum()), _point(batch, int(bad.argmax())) if bad.any() else {})
+    return Case(batch, values, np.zeros_like(values))
 
 
 def _worst(metric: Metric, cases: Iterable[Case]) -> Measurement:

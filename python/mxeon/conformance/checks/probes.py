@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mxeon.conformance.checks.batch import (
     FEW,
@@ -52,7 +52,7 @@ Mask: TypeAlias = NDArray[np.bool_]
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PairProbe:
     """A node on a host that evaluates any pairs."""
 
@@ -110,10 +110,6 @@ class PairProbe:
         """The share of the light from below that passes the node, in one of BRANCHES, (N, 3)."""
         return self._evaluate(batch, branch, output="throughput")
 
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a function of the shader twins."""
-        return self.host.call(function, *arguments)
-
     def _evaluate(self, batch: Batch, branch: str, **options: Any) -> Array:
         inputs = self.subject.with_flag(batch.inputs)
         wo, wi = batch.world(batch.wo), batch.world(batch.wi)
@@ -121,7 +117,7 @@ class PairProbe:
         return values.astype(np.float64)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PictureProbe:
     """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
 
@@ -159,10 +155,6 @@ class PictureProbe:
         return self._picture(batch)
 
     albedo = direct
-
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a function of the shader twins."""
-        return self.host.call(function, *arguments)
 
     @property
     def _inputs(self) -> list[dict[str, Any]]:
@@ -202,7 +194,7 @@ class PictureProbe:
         return self.host.picture(shader, scene)[sphere(scene.size).mask]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SurfaceProbe(PictureProbe):
     """The diffuse lobe of a surface shader, told apart from what lies over it.
 
@@ -237,7 +229,7 @@ class SurfaceProbe(PictureProbe):
         return replace(shader, inputs=tuple(ports))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlaneProbe(PictureProbe):
     """A node on a plane: every pixel is another direction of view."""
 
@@ -256,7 +248,7 @@ class PlaneProbe(PictureProbe):
         return self.host.plane(shader, scene)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 

@@ -54,12 +54,12 @@ def special_pairs(rng: np.random.Generator, row: Model) -> Batch:
 
 
 def outside_pairs(rng: np.random.Generator, row: Model) -> Batch:
-    """Pairs that no model has: light from below the horizon, a viewer whose cosine exceeds 1."""
+    """Pairs that no model has: light from below the horizon, and cosines that exceed 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
     high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
     straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
-    wo = np.concatenate([high, straight])
-    wi = np.concatenate([below, directions(rng, EACH)])
+    wo = np.concatenate([high, straight, directions(rng, EACH)])
+    wi = np.concatenate([below, directions(rng, EACH), straight])
     return Batch(wo, wi, {**random_inputs(rng, len(wo), row), **node_inputs(rng, len(wo))})
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from mxeon.conformance import diagnosis, wiring
 from mxeon.conformance.checks import measures, tolerances
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -19,6 +20,7 @@ from mxeon.conformance.checks.controls import (
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.tolerances import Tolerance
+from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
@@ -43,6 +45,8 @@ class Check:
         By kind of probe; one that is missing cannot be asked.
     applies : callable (subject, host) -> bool
         Whether the check can be asked about a subject of those models on the host of a name.
+    diagnose : callable (probe) -> Diagnosis
+        Explanation of a failure.
     """
 
     key: str
@@ -53,6 +57,7 @@ class Check:
     control: Callable[[Any], Any]
     tolerances: Mapping[str, Tolerance]
     applies: Callable[[Any, str], bool] = lambda subject, host: True
+    diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -73,11 +78,7 @@ CHECKS = (
         measures.value,
         "roughness is dropped",
         with_inputs(roughness=0.0),
-        {
-            "pairs": tolerances.VALUE,
-            "pictures": tolerances.CYCLES_RAY,
-            "planes": tolerances.TESTRENDER,
-        },
+        {kind: tolerance for kind, tolerance in tolerances.VALUES.items() if kind != "lobes"},
     ),
     Check(
         "lobe",
@@ -95,12 +96,9 @@ CHECKS = (
         measures.environment,
         "every channel gets the mean color",
         gray,
-        {
-            "pairs": tolerances.ENVIRONMENT,
-            "pictures": tolerances.CYCLES_NOISE,
-            "planes": tolerances.TESTRENDER_NOISE,
-        },
+        tolerances.ALBEDOS,
         has_environment,
+        diagnosis.of_albedo,
     ),
     Check(
         "albedo",
@@ -118,12 +116,9 @@ CHECKS = (
         measures.furnace,
         "reflectance is 0.99",
         with_inputs(color=(0.99, 0.99, 0.99)),
-        {
-            "pairs": tolerances.ENVIRONMENT,
-            "pictures": tolerances.CYCLES_NOISE,
-            "planes": tolerances.TESTRENDER_NOISE,
-        },
+        tolerances.ALBEDOS,
         has_environment,
+        diagnosis.of_albedo,
     ),
     Check(
         "black",
@@ -146,6 +141,7 @@ CHECKS = (
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
         {"pairs": tolerances.FRAME},
+        diagnose=wiring.of_frame,
     ),
     Check(
         "surroundings",
@@ -155,6 +151,7 @@ CHECKS = (
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
         {"pairs": tolerances.SURROUNDINGS},
+        diagnose=wiring.of_surroundings,
     ),
     Check(
         "throughput",
@@ -164,6 +161,7 @@ CHECKS = (
         "the response is taken for the throughput",
         take_response,
         {"pairs": tolerances.OPAQUE},
+        diagnose=wiring.of_throughput,
     ),
     Check(
         "reciprocity",
@@ -200,6 +198,7 @@ CHECKS = (
             "planes": tolerances.difference_of(tolerances.TESTRENDER),
         },
         has_flag,
+        wiring.of_flag,
     ),
     Check(
         "inputs",
@@ -213,6 +212,7 @@ CHECKS = (
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
         },
+        diagnose=wiring.of_inputs,
     ),
     Check(
         "finite",
@@ -222,5 +222,6 @@ CHECKS = (
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
         {"pairs": tolerances.count_of("values")},
+        diagnose=wiring.of_finite,
     ),
 )

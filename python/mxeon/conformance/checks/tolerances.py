@@ -194,3 +194,7 @@ CYCLES_NOISE = Tolerance(
     "four standard errors of the mean of a picture's 12 836 pixels: 1.3e-3 a pixel with 256 samples, "
     "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
 )
+
+# By kind of probe: those of a value, and of an albedo.
+VALUES = {"pairs": VALUE, "pictures": CYCLES_RAY, "planes": TESTRENDER, "lobes": LOBE}
+ALBEDOS = {"pairs": ENVIRONMENT, "pictures": CYCLES_NOISE, "planes": TESTRENDER_NOISE}

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Diagnoses of what surrounds a model: the flag, the throughput, the frame and the environment."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.checks.batch import Array, Batch
+from mxeon.conformance.checks.measures import (
+    BRANCHES,
+    absolute,
+    dead_inputs,
+    edge_case,
+    frame_cases,
+    surroundings_case,
+    throughput_cases,
+)
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.checks.sky import sky
+from mxeon.conformance.checks.tolerances import FRAME, OPAQUE, SURROUNDINGS
+from mxeon.conformance.diagnosis import Diagnosis, not_finite, of_value, region
+from mxeon.conformance.faults import normal_ignored
+from mxeon.conformance.regions import smallest
+from mxeon.shaders.nodes import FLAG
+
+UNKNOWN = "no known fault explains it"
+UP = (0.0, 0.0, 1.0)
+
+# The irradiance that a wrong look-up finds, by what it does.
+LOOKUPS: dict[str, Callable[[Batch], Array]] = {
+    "at the opposite of the normal": lambda batch: sky(-batch.normal),
+    "at the direction to the viewer": lambda batch: sky(batch.world(batch.wo)),
+    "at the opposite of the direction to the viewer": lambda batch: sky(-batch.world(batch.wo)),
+    "at the direction to the light": lambda batch: sky(batch.world(batch.wi)),
+    "at the mirror direction": lambda batch: sky(batch.world(batch.wo * [-1.0, -1.0, 1.0])),
+    "at the surface's normal, not the node's": lambda batch: sky(_constant(batch, UP)),
+    "at the surface's normal, turned to the viewer, not at the node's": lambda batch: sky(
+        np.where(batch.world(batch.wo)[:, 2:] < 0.0, -1.0, 1.0) * _constant(batch, UP)
+    ),
+    "at a normal that is not turned to the viewer": lambda batch: sky(batch.inputs["normal"]),
+    "in the map of radiances": lambda batch: np.ones_like(batch.wo),
+    "nowhere: it is black": lambda batch: np.zeros_like(batch.wo),
+}
+
+
+def of_flag(probe: Any) -> Diagnosis:
+    """The explanation of the values with the flag and of those without it."""
+    states: dict[str, list[str]] = {}
+    for subject in SUBJECTS:
+        if subject.node == probe.subject.node:
+            other = probe if subject == probe.subject else replace(probe, subject=subject)
+            text = of_value(other).text
+            states.setdefault(text, []).append(str(subject.flag).lower())
+    texts = (f"{FLAG} {' and '.join(flags)}: {text}" for text, flags in states.items())
+    return Diagnosis("; ".join(texts), of_value(probe).distances)
+
+
+def of_inputs(probe: Any) -> Diagnosis:
+    """The inputs that change nothing."""
+    return Diagnosis(f"without effect: {', '.join(dead_inputs(probe))}")
+
+
+def of_finite(probe: Any) -> Diagnosis:
+    """Where values at the edges are not finite."""
+    return Diagnosis(not_finite([edge_case(probe)]))
+
+
+def of_throughput(probe: Any) -> Diagnosis:
+    """The branches whose throughput is not 0, with its value."""
+    branches: dict[str, list[str]] = {}
+    for branch in BRANCHES:
+        cases = list(throughput_cases(probe, branch))
+        wrong = [absolute(case.measured, case.expected) > OPAQUE.value for case in cases]
+        values = np.concatenate(
+            [case.measured[bad] for case, bad in zip(cases, wrong, strict=True)]
+        )
+        if len(values):
+            number = f"{values.flat[0]:.3g}" if np.ptp(values) == 0.0 else "not 0"
+            place = smallest([case.batch for case in cases], wrong)
+            branches.setdefault(f"{number} {place}".rstrip(), []).append(branch)
+    return Diagnosis(
+        "; ".join(
+            f"throughput {text} (branches: {', '.join(names)})" for text, names in branches.items()
+        )
+    )
+
+
+def of_frame(probe: Any) -> Diagnosis:
+    """Whether the normal is dropped or not turned, in the first branch that is wrong."""
+    for case, branch in zip(frame_cases(probe), ("direct", "environment"), strict=True):
+        wrong = absolute(case.measured, case.expected) > FRAME.value
+        if not wrong.any():
+            continue
+        expected = Batch.expected if branch == "direct" else Batch.albedo
+        dropped = expected(normal_ignored(case.batch), probe.subject.model)
+        if absolute(case.measured, dropped).max() <= FRAME.value:
+            text = "the node's normal is ignored: the surface's takes its place"
+        else:
+            text = not_finite([case]) or region([case.batch], [wrong]) or UNKNOWN
+        return Diagnosis(f"branch {branch}: {text}")
+    return Diagnosis(UNKNOWN)
+
+
+def of_surroundings(probe: Any) -> Diagnosis:
+    """The direction at which the environment is looked up."""
+    case = surroundings_case(probe)
+    for words, found in LOOKUPS.items():
+        if np.sqrt(np.mean((case.measured - found(case.batch)) ** 2)) <= SURROUNDINGS.value:
+            return Diagnosis(f"the environment is looked up {words}")
+    wrong = absolute(case.measured, case.expected) > SURROUNDINGS.value
+    return Diagnosis(not_finite([case]) or region([case.batch], [wrong]) or UNKNOWN)
+
+
+def _constant(batch: Batch, vector: tuple[float, float, float]) -> Array:
+    return np.broadcast_to(vector, batch.wo.shape)
