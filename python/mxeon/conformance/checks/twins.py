@@ -71,11 +71,14 @@ def arguments(function: str, columns: Columns) -> list[Array]:
 
 
 def numbers(function: str) -> list[str]:
-    """Names of the columns of a function's parameters that are floats."""
+    """Names of the columns of a function's parameters that are floats, but for divisors.
+
+    A quotient is off in proportion to itself; and beside a divisor of 0, where it is 0, it is huge.
+    """
     return [
         "gray" if name == "rho" else name
         for kind, name in functions.signature("glsl", function)
-        if kind == "float"
+        if kind == "float" and name != "divisor"
     ]
 
 
@@ -140,9 +143,16 @@ def random_columns() -> Columns:
             "x": np.cos(elevation),
             "y": np.sin(elevation),
             "value": 2.0 * _unit(rng) - 1.0,
-            "divisor": _unit(rng),
+            "divisor": _divisors(rng),
         }.items()
     }
+
+
+def _divisors(rng: np.random.Generator) -> Array:
+    """Numbers in [0, 1), a quarter of them log-uniform down to 1e-36: a shader takes 1e-37 for 0."""
+    divisors = _unit(rng)
+    divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
+    return divisors
 
 
 def _unit(rng: np.random.Generator) -> Array:

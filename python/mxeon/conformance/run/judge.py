@@ -6,6 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
+from mxeon.conformance.checks.documents import generate_document
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
 from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
@@ -19,6 +21,7 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import NOT_RUN, Result
 from mxeon.conformance.run.plan import (
     CURVE,
+    DOCUMENT,
     FUNCTIONS,
     HOST,
     INVERSION,
@@ -37,6 +40,7 @@ ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {check.key: check.claim for check in CHECKS} | {
     HOST: "The host executes shaders here.",
     SOURCE: "The generated text was checked.",
+    DOCUMENT: DOCUMENT_CLAIM,
     INVERSION: "The node is the NumPy function of its name.",
     FUNCTIONS: "The shader functions are those of NumPy.",
     CURVE: "The albedo was measured over the cosine.",
@@ -111,6 +115,8 @@ class Judge:
     def _findings(self, task: Task) -> dict[str, Any]:
         if task.check == SOURCE:
             return {"results": check_texts(subjects(task.library), task.library)}
+        if task.check == DOCUMENT:
+            return self._generate(task)
         host = self._host(task.host)
         return self._on_host(task, host) | {"hosts": (host.identity(),)}
 
@@ -125,6 +131,13 @@ class Judge:
         if task.check == CURVE:
             return {"curves": judge_curve(probe)}
         return {"results": judge_subject(probe, (ROWS[task.check],))}
+
+    def _generate(self, task: Task) -> dict[str, Any]:
+        try:
+            records = generate_document(Path(task.subject), task.host, task.library, self._policy)
+        except DocumentError as error:
+            return {"errors": (str(error),)}
+        return dict(zip(("results", "notes"), records, strict=True))
 
     def _document(self, task: Task, host: Host) -> dict[str, Any]:
         path = Path(task.subject)

@@ -39,7 +39,7 @@ from mxeon.shaders.library import (
 from mxeon.shaders.nodes import INVERSIONS
 
 HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
-FUNCTIONS, INVERSION = "twins", "inversion"
+FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
 TWINS, EVERY_NODE = functions.SUBJECT, "every node"
 
 
@@ -51,7 +51,7 @@ class Task:
     ----------
     check : str
         Key of a row of `mxeon.conformance.checks.table`, or HOST, SOURCE, CURVE,
-        PICTURE, FUNCTIONS or INVERSION.
+        PICTURE, FUNCTIONS, INVERSION or DOCUMENT.
     subject : str
         Title of a node, path of a document, or TWINS.
     host, library : str
@@ -154,6 +154,8 @@ def make_plan(
         documents += map(str, paths)
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
         for host in hosts:
+            if files and not host_row(host).scenes:
+                tasks += [Task(DOCUMENT, str(file), host, library) for file in files]
             tasks += _on_host(host, library, paths)
     for host in hosts:
         tasks += _native(host)

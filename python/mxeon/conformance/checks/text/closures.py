@@ -32,6 +32,10 @@ CLAIM = Claim(
     "faults",
     "the weight of the lobe is dropped",
 )
+TINTS = {
+    "eon": "that of EON, rho^2 <E> / (1 - rho (1 - <E>))",
+    "qon": "black, as without energy_compensation",
+}
 WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
 DEFINITION = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 FILLED = re.compile(r"\b(\w+)\(([^;]*), lobe_out\);")
@@ -131,9 +135,28 @@ def _argument_faults(
         expected["multiscatter_tint"] = _tint(subject, inputs)
     else:
         expected[FLAG] = inputs[FLAG]
-    yield from _difference("weight", closure.weight, inputs["weight"], inputs)
+    expected["weight"] = inputs["weight"]
+    arguments = {**closure.arguments, "weight": closure.weight}
     for name, value in expected.items():
-        yield from _difference(name, closure.arguments[name], value, inputs)
+        wanted = TINTS[subject.model] if name == "multiscatter_tint" else f"the node's {name}"
+        error = float(np.abs(arguments[name] - value).max())
+        if not error <= ROUNDED:
+            instead = _instead(name, arguments[name], value, inputs)
+            yield f"{name} is not {wanted}{instead}: off by up to {error:.2g}"
+
+
+def _instead(name: str, measured: Array, expected: Array, inputs: Inputs) -> str:
+    """The value that an argument has instead of the one that it has to have, where it is known."""
+    if np.ptp(measured, axis=0).max() <= ROUNDED:
+        return f", but {float(measured.flat[0]):.3g}"
+    for other, value in inputs.items():
+        if other != name and _equal(measured, value):
+            return f", but {other}"
+    for words, factor in (("missing", measured * inputs["color"]), ("too many", measured)):
+        right = expected if words == "missing" else expected * inputs["color"]
+        if _equal(factor, right):
+            return f": one factor of the color is {words}"
+    return ""
 
 
 def _tint(subject: Subject, inputs: Inputs) -> Array:
@@ -143,18 +166,6 @@ def _tint(subject: Subject, inputs: Inputs) -> Array:
     rho, r = inputs["color"], inputs["roughness"]
     average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
     return rho**2 * average / (1.0 - rho * (1.0 - average))
-
-
-def _difference(name: str, measured: Array, expected: Array, inputs: Inputs) -> Iterator[str]:
-    """A fault unless an argument is what it has to be, with what it is instead where that is known."""
-    error = float(np.abs(measured - expected).max())
-    if not error <= ROUNDED:
-        others = {each: value for each, value in inputs.items() if each not in (name, FLAG)}
-        instead = [each for each, value in others.items() if _equal(measured, value)]
-        if np.ptp(measured, axis=0).max() <= ROUNDED:
-            instead = [f"{float(measured.flat[0]):.3g} for every material"]
-        words = f", but {instead[0]}" if instead else ""
-        yield f"{name} is not the node's{words}: off by up to {error:.2g}"
 
 
 def _equal(left: Array, right: Array) -> bool:

@@ -192,7 +192,8 @@ class Interpreter:
             return MATHEMATICS[word](*map(_number, positional))
         namespace = call.name.rpartition("::")[0]
         if namespace in ("", "df", "math", "base", "state"):
-            raise Unreadable(f"function {call.name} is not known")
+            known = ", ".join(self._closures)
+            raise Unreadable(f"function {call.name} is unknown; closures may come from {known}")
         raise NotRun(f"function {call.name} is defined elsewhere")
 
 

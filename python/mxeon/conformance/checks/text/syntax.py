@@ -180,6 +180,8 @@ class _Parser:
     def _unary(self) -> Expression:
         if self._take("-"):
             return Operation("-", Number(0.0), self._unary())
+        if self._take("!"):
+            return Operation("==", self._unary(), Number(0.0))
         value = self._primary()
         while self._take("."):
             value = Component(value, self._peek())

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Documents on hosts that make no pictures: their shaders are generated, and not run."""
+
+import warnings
+from pathlib import Path
+
+from mxeon.conformance.results import FAILED, PASSED, Control, Result
+from mxeon.errors import DocumentError, NotRun
+from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import TARGETS, CodeWarning, generate
+from mxeon.shaders.hosts import host_row
+
+CHECK = "document"
+CLAIM = "Shaders are generated from every material of the document."
+
+
+def generate_document(
+    file: Path, host: str, library: str, policy: Policy = DEFAULT
+) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
+    """Result of generating a document's shaders for a host's target, and notes with their location.
+
+    Raises
+    ------
+    DocumentError
+        If no shader can be made from the document.
+    NotRun
+        If this MaterialX has no generator for the target.
+    """
+    target = host_row(host).target
+    if target not in TARGETS:
+        raise NotRun(f"{host}: this MaterialX has no generator for {target}")
+    with warnings.catch_warnings(record=True) as records:
+        warnings.simplefilter("always")
+        warnings.simplefilter("error", MissingFileWarning)
+        generate(file, target, library=library, policy=policy)
+    messages = [record.message for record in records]
+    notes = [
+        (str(message), file.name)
+        for message in messages
+        if isinstance(message, (CodeWarning, DocumentWarning))
+    ]
+    caught = _refused(file.read_bytes(), target, library)
+    result = Result(
+        CHECK,
+        CLAIM,
+        file.name,
+        host,
+        library,
+        PASSED if caught else FAILED,
+        error=0,
+        unit="documents refused",
+        tolerance=0,
+        derivation="a count",
+        control=Control("half of the document is cut off", float(caught), caught),
+    )
+    return (result,), tuple(notes)
+
+
+def _refused(data: bytes, target: str, library: str) -> bool:
+    """Whether the first half of a document is refused."""
+    half = data[: len(data) // 2].decode(errors="replace")
+    try:
+        generate(half if "<" in half else "<", target, library=library)
+    except DocumentError:
+        return True
+    return False

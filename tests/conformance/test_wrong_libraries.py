@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Copies of the library with one fault each: the check that finds it, and the words that name it."""
+
+import shutil
+
+import pytest
+
+from mxeon.conformance.checks.functions import (
+    FUNCTION_CHECKS,
+    FunctionProbe,
+    judge_functions,
+    row_of,
+)
+from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.checks.text.closures import check_closures
+from mxeon.conformance.checks.text.definitions import check_definitions
+from mxeon.conformance.checks.text.languages import check_languages
+from mxeon.conformance.checks.twins import expected, random_columns
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+from mxeon.conformance.run import check
+from mxeon.conformance.run.plan import make_plan
+from mxeon.shaders.functions import names
+from mxeon.shaders.library import data_folder, eonlib_folder, examples_folder
+from mxeon.shaders.nodes import INVERSIONS
+
+ON, OFF, NODE = SUBJECTS
+MDL, OSL = "libraries/eonlib_genmdl_impl.mtlx", "libraries/eonlib_genosl_impl.mtlx"
+DEFINITIONS, GRAPHS = "libraries/eonlib_defs.mtlx", "libraries/eonlib_ng.mtlx"
+CYCLES = "genosl/cycles_closures.osl"
+FLAG = "{{energy_compensation}}"
+KEYWORD = "&quot;energy_compensation&quot;"
+MDL_NORMAL = "normal: {{normal}}, "
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """A function that copies the library with a text replaced wherever it stands in a file."""
+    shutil.copytree(eonlib_folder(), tmp_path / "libraries")
+    for name in ("genglsl", "genosl", "profiles"):
+        shutil.copytree(data_folder() / name, tmp_path / name)
+
+    def edited(file="", old="", new=""):
+        if file:
+            path = tmp_path / file
+            text = path.read_text(encoding="utf-8")
+            assert old in text
+            path.write_text(text.replace(old, new), encoding="utf-8")
+        return str(tmp_path / "libraries")
+
+    return edited
+
+
+def failed(results):
+    """Words on each result that failed, by check."""
+    return {each.check: each.diagnosis for each in results if each.verdict == FAILED}
+
+
+# --- definitions --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        ('roughness" type="float" value="0.0"', 'roughness" type="float" value="0.3"',
+         "default of roughness is 0.3; pbrlib says 0.0"),
+        ('value="0.18, 0.18, 0.18"', 'value="0.8, 0.8, 0.8"',
+         "default of color is 0.8, 0.8, 0.8; pbrlib says 0.18, 0.18, 0.18"),
+        ('weight" type="float" value="1.0"', 'weight" type="float" value="0.5"',
+         "default of weight is 0.5; pbrlib says 1.0"),
+        ('boolean" value="false"', 'boolean" value="true"',
+         "default of energy_compensation is true; pbrlib says false"),
+        ('uniform="true"', "", "uniform of energy_compensation is missing; pbrlib says true"),
+        ('defaultgeomprop="Nworld"', 'defaultgeomprop="Tworld"',
+         "defaultgeomprop of normal is Tworld; pbrlib says Nworld"),
+        ('value="0.0" uimin="0.0" uimax="1.0"', 'value="0.0" uimin="0.0" uimax="2.0"',
+         "upper end of the range of roughness is 2.0; pbrlib says 1.0"),
+        ('<input name="roughness"', '<input name="sigma"', "there is no input roughness"),
+    ],
+)  # fmt: skip
+def test_a_wrong_definition_is_told_from_the_specification(copy, old, new, words):
+    results = {each.subject: each for each in check_definitions(copy(DEFINITIONS, old, new))}
+    found = results["oren_nayar_diffuse_bsdf, definition"]
+    assert found.verdict == FAILED and words in found.diagnosis
+
+
+def test_a_range_that_pbrlib_does_not_state_may_be_missing_in_its_node_alone(copy):
+    results = check_definitions(copy(DEFINITIONS, ' uimin="0.0" uimax="1.0"', ""))
+    wrong = {each.subject for each in results if each.verdict == FAILED}
+    assert wrong == {"eon_diffuse_bsdf, definition"}
+
+
+# --- closures -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "file, old, new, title, words",
+    [
+        (MDL, "28.0", "27.0", "mdl", "multiscatter_tint is not that of EON"),
+        (MDL, "{{color}} * {{color}} *", "{{color}} *", "mdl", ": one factor of the color is missing: off by up to"),
+        (MDL, FLAG + " ?", "!" + FLAG + " ?", "mdl", "(1 - rho (1 - <E>)), but 0: off by"),
+        (MDL, FLAG + " ?", "false ?", "mdl", "rho^2 <E> / (1 - rho (1 - <E>)), but 0: off by up to"),
+        (MDL, "roughness: {{roughness}}", "roughness: 0.5", "mdl",
+         "roughness is not the node's roughness, but 0.5"),
+        (MDL, "weight: {{weight}}", "weight: 1.0 + 0.0 * {{weight}}", "mdl",
+         "weight is not the node's weight, but 1: off"),
+        (MDL, MDL_NORMAL, "", "mdl", "the normal is not passed"),
+        (MDL, "tint: {{color}}, r", "tint: {{color}} * {{color}}, r", "mdl",
+         "color is not the node's"),
+        (MDL, "df::diffuse_reflection_bsdf", "df::difuse_reflection_bsdf", "mdl",
+         "function df::difuse_reflection_bsdf is unknown; closures may come from material,"),
+        (MDL, "multiscatter_tint:", "multiscatter_color:", "mdl",
+         "argument multiscatter_color is not known to MDL"),
+        (OSL, KEYWORD, "&quot;energy_compensaton&quot;", "osl",
+         'keyword "energy_compensaton" is not known to OSL'),
+        (OSL, "{{normal}}, {{color}}", "{{color}}, {{normal}}", "osl", "the normal is not the node's"),
+        (OSL, "{{color}}, {{roughness}}", "{{roughness}}, {{color}}", "osl",
+         "roughness is a float, and gets a color or vector"),
+        (OSL, "{{roughness}},", "{{weight}} * {{roughness}},", "osl", "roughness is not the node's"),
+        (OSL, FLAG, "0", "osl", "energy_compensation is not the node's energy_compensation, but 0"),
+        (OSL, "{{weight}} * ", "", "osl", "weight is not the node's weight, but 1: off"),
+        (OSL, "{{weight}} * ", "{{weight}} * {{weight}} * ", "osl", "weight is not the node's"),
+        (CYCLES, "rho * rho *", "rho * rho * rho *", "osl, cycles", "the sum of closures is not EON"),
+        (CYCLES, "EON_C2 * r", "EON_C1 * r", "osl, cycles", "the sum of closures is not EON"),
+        ("genosl/oren_nayar_diffuse_bsdf_cycles.osl", "weight * eon", "eon", "osl, cycles",
+         "the sum of closures is not EON"),
+        ("genosl/oren_nayar_diffuse_bsdf_cycles.osl", "(energy", "(!energy", "osl, cycles",
+         "the sum of closures is not EON"),
+    ],
+)  # fmt: skip
+def test_a_wrong_closure_is_told_by_its_argument(copy, file, old, new, title, words):
+    results = check_closures([ON], copy(file, old, new))
+    wrong = {each.subject: each.diagnosis for each in results if each.verdict == FAILED}
+    assert set(wrong) == {f"{ON.title}, {title}"}
+    assert words in wrong[f"{ON.title}, {title}"]
+
+
+@pytest.mark.parametrize(
+    "subject, file, old, new, title",
+    [
+        (OFF, MDL, "color(0.0)", "color(1.0)", "mdl"),
+        (OFF, MDL, FLAG + " ?", "!" + FLAG + " ?", "mdl"),
+        (NODE, OSL, KEYWORD + ", 1", KEYWORD + ", 0", "osl"),
+        (NODE, MDL, "28.0", "27.0", "mdl"),
+        (OFF, CYCLES, "(A - B)", "(A + B)", "osl, cycles"),
+        (OFF, "genosl/eon.osl", "0.33)", "0.57)", "osl, cycles"),
+    ],
+)
+def test_the_closures_of_every_subject_are_read(copy, subject, file, old, new, title):
+    results = check_closures([subject], copy(file, old, new))
+    wrong = [each.subject for each in results if each.verdict == FAILED]
+    assert wrong == [f"{subject.title}, {title}"]
+
+
+def test_a_closure_that_is_defined_elsewhere_is_not_run(copy):
+    library = copy(MDL, "df::weighted_layer", "mine::layered")
+    verdicts = {each.subject: each for each in check_closures([NODE], library)}
+    result = verdicts[f"{NODE.title}, mdl"]
+    assert result.verdict == NOT_RUN
+    assert result.reason == "function mine::layered is defined elsewhere"
+
+
+# --- shader functions ---------------------------------------------------------------------------
+
+
+def test_no_shader_function_is_left_unjudged():
+    columns = random_columns()
+    for name in names("glsl"):
+        assert row_of(name) in FUNCTION_CHECKS
+        assert len(expected(name, columns)) == len(columns["mu"])
+
+
+@pytest.mark.parametrize(
+    "file, old, new, words",
+    [
+        ("ltc_sampling", "0.303392", "0.303695",
+         {"samples": "ltc_a is off by", "parts": "with it ltc_density, ltc0_pdf, ltc_pdf"}),
+        ("ltc_sampling", "(1.0 - P_u) * cltc_pdf", "cltc_pdf", {"parts": "eon_cltc_pdf is off by"}),
+        ("ltc_sampling", "d > 0.0 ? x : -x", "d > 0.0 ? -x : x", {"samples": "cltc_clipped is off"}),
+        ("eon_sampling", "return mu_i * parts", "return parts", {"parts": "eon_pdf is off by"}),
+        ("eon_sampling", "eon_rotate_z(wi, turn.x, turn.y)", "eon_rotate_z(wi, turn.x, -turn.y)",
+         {"samples": "eon_sample is off by"}),
+        ("eon_sampling", "* (1.0 / upper)", "* upper", {"samples": "eon_draw is off by"}),
+        ("oren_nayar_family", "0.0571085289", "0.0571656374",
+         {"twins": "fon_loss_approx is off by", "parts": "fon_loss_approx is off by"}),
+        ("oren_nayar_family", "0.57)", "0.33)", {"twins": "qon_footnote_brdf is off by"}),
+        ("eon", "EON_P0 0.318309971", "EON_P0 0.318628281",
+         {"twins": "fon_loss is off by", "loss": "fon_loss is off by",
+          "parts": "fon_loss is off by", "samples": "fon_loss is off by"}),
+        ("eon_sampling", "float eon_pdf(", "float eon_density(",
+         {"parts": "eon_pdf is not defined as eonlib has it"}),
+    ],
+)  # fmt: skip
+def test_a_wrong_shader_function_is_named_by_its_cause(gl, copy, file, old, new, words):
+    library = copy(f"genglsl/{file}.glsl", old, new)
+    found = failed(judge_functions(FunctionProbe(gl, library)))
+    assert set(found) == set(words)
+    assert all(words[key] in found[key] for key in words)
+
+
+def test_shader_functions_that_do_not_compile_fail_with_the_words_of_the_compiler(gl, copy):
+    library = copy("genglsl/eon.glsl", "float m = 1.0 - mu;", "float m = 1.0 - nu;")
+    found = failed(judge_functions(FunctionProbe(gl, library)))
+    assert len(found) == len(FUNCTION_CHECKS) and all("nu" in words for words in found.values())
+
+
+@pytest.mark.parametrize(
+    "file, old, new, words",
+    [
+        ("eon", "0.33", "0.34", "qon_a"),
+        ("ltc_sampling", "0.5 + 0.5 / sqrt", "0.5 - 0.5 / sqrt", "cltc_kept_fraction"),
+        ("eon", "#define EON_Q3 0.0571913429", "#define EON_Q3 0.0571913430", "EON_Q3"),
+    ],
+)
+def test_functions_that_differ_in_osl_are_named(copy, file, old, new, words):
+    (result,) = check_languages(copy(f"genosl/{file}.osl", old, new))
+    assert result.verdict == FAILED and result.diagnosis == f"another text in OSL: {words}"
+
+
+def test_a_comment_may_differ_between_the_languages(copy):
+    (result,) = check_languages(copy("genosl/eon.osl", "// A_F of", "// Albedo's A of"))
+    assert result.verdict == PASSED
+
+
+def test_the_functions_of_a_library_are_its_own(copy):
+    def libraries(*chosen):
+        tasks = make_plan([], ["gl"], chosen).tasks
+        return [task.library for task in tasks if task.check == "twins"]
+
+    assert libraries("stock") == []
+    assert libraries("eonlib", copy()) == ["eonlib", copy()]
+
+
+# --- inversion nodes ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "node, old, new",
+    [
+        (INVERSIONS[0], "0.2877934092108062", "0.2880812026"),
+        (INVERSIONS[0], "0.21530519675388227", "0.2155205019"),
+        (INVERSIONS[0], "0.28995284982769576", "0.2902428027"),
+        (INVERSIONS[1], "0.07248821245692394", "0.0725607007"),
+        (INVERSIONS[1], '<invert name="dark"', '<absval name="dark"'),
+    ],
+)
+def test_a_wrong_inversion_node_fails_there_and_back(gl, copy, node, old, new):
+    library = copy(GRAPHS, old, new)
+    if "invert" in old:
+        library = copy(GRAPHS, "</invert>", "</absval>")
+    found = failed(judge_inversion(InversionProbe(gl, node, library)))
+    assert set(found) == {"inversion", "round_trip"}
+    expected = "values that are not finite" if "invert" in old else "nearest known model: "
+    assert all(words.startswith(expected) for words in found.values())
+
+
+def test_an_inversion_node_that_is_the_other_is_called_so(gl, copy):
+    library = copy(GRAPHS, 'nodedef="ND_eon_rho_from_albedo_avg"', 'nodedef=""')
+    library = copy(
+        GRAPHS, 'nodedef="ND_eon_rho_from_albedo_normal"', 'nodedef="ND_eon_rho_from_albedo_avg"'
+    )
+    found = failed(judge_inversion(InversionProbe(gl, INVERSIONS[1], library)))
+    assert "nearest known model: eon_rho_from_albedo_normal (rms " in found["inversion"]
+
+
+# --- documents on hosts without pictures --------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", [None, "<materialx"], ids=["missing", "cut"])
+def test_a_document_is_read_also_where_no_picture_is_made(tmp_path, text):
+    path = tmp_path / "bad.mtlx"
+    if text:
+        path.write_text(text)
+    run = check([path], ["msl"])
+    assert [str(path) in error for error in run.errors] == [True]
+
+
+def test_shaders_are_generated_where_no_picture_is_made():
+    run = check([examples_folder() / "plaster.mtlx"], ["msl"])
+    (result,) = [each for each in run.results if each.check == "document"]
+    assert result.verdict == PASSED and result.control.caught
