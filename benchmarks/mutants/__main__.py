@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="benchmarks.mutants", description=__doc__.splitlines()[0])
     parser.add_argument("--only", default="", metavar="PATTERN", help="in 'GROUP: NAME'")
     parser.add_argument("--resume", action="store_true", help="leave out what has been tried")
-    parser.add_argument("--quick", action="store_true", help="text and nodes, to the first failure")
+    parser.add_argument("--all", action="store_true", help="go on after the first failure")
     parser.add_argument("--output", type=Path, default=DOCS, help="folder of JSON and page")
     parser.add_argument("--page", action="store_true", help="make the page alone")
     options = parser.parse_args(arguments)
@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         chosen = [each for each in table if re.search(options.only, f"{each.group}: {each.name}")]
         if options.resume:
             chosen = [each for each in chosen if not _tried(each, trials)]
-        _try_all(chosen, trials, file, options.quick)
+        _try_all(chosen, trials, file, options.all)
     page.write(options.output / "mutants.md", table, trials)
     wrong = [each for each in table if each.name in trials and _is_wrong(each, trials[each.name])]
     for each in wrong:
@@ -52,27 +52,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 1 if wrong else 0
 
 
-def _try_all(mutants: Sequence[Mutant], trials: dict[str, Any], file: Path, quick: bool) -> None:
+def _try_all(mutants: Sequence[Mutant], trials: dict[str, Any], file: Path, every: bool) -> None:
     """Try mutants, and keep each result as soon as it is there."""
     with closing(Judge(DEFAULT)) as judge:
         for mutant in tqdm(mutants):
-            trials[mutant.name] = {"digest": mutant.digest} | summary(trial(mutant, judge, quick))
+            trials[mutant.name] = {"digest": mutant.digest} | summary(trial(mutant, judge, every))
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
 
 
 def summary(found: dict[str, Any]) -> dict[str, Any]:
     """The checks that failed, and the explanation of the clearest failure."""
-    failures = found.pop("failures", [])
     if found["verdict"] != KILLED:
         return found
-    refusal = found.pop("refusal", "")
-    explanation = (
-        "; ".join(filter(None, (failures[0]["excess"], failures[0]["diagnosis"])))
-        if failures
-        else refusal
-    )
-    checks = list(dict.fromkeys(each["check"] for each in failures)) or ["refused"]
-    return found | {"checks": checks, "explanation": explanation}
+    failures = found.get("failures", [])
+    clearest = failures[0] if failures else {"diagnosis": found["refusal"]}
+    words = (clearest.get("excess"), clearest["diagnosis"])
+    return {
+        "verdict": KILLED,
+        "host": found["host"],
+        "checks": list(dict.fromkeys(each["check"] for each in failures)) or ["refused"],
+        "explanation": "; ".join(filter(None, words)),
+    }
 
 
 def _read(file: Path) -> dict[str, Any]:

@@ -37,15 +37,16 @@ CHANGED = {
 }
 
 
-def trial(mutant: Mutant, judge: Judge, quick: bool = False) -> dict[str, Any]:
-    """Verdict on a mutant and the failures that it caused, on the first host that saw any.
+def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
+    """Verdict on a mutant, and the failures that it caused on the first host that saw any.
 
     Parameters
     ----------
     mutant : Mutant
+        An equivalent one is judged by its text and the nodes alone.
     judge : Judge
-    quick : bool
-        Whether only text and nodes are judged, up to the first failure.
+    every : bool
+        Whether to go on after the first failure, to the end of the stage.
 
     Returns
     -------
@@ -56,9 +57,11 @@ def trial(mutant: Mutant, judge: Judge, quick: bool = False) -> dict[str, Any]:
     with wrong_library(mutant) as path:
         try:
             assert_changed(mutant, path)
-            for host, stage in islice(stages(mutant, path), 1 if quick else None):
-                if failures := failures_of(stage, judge, first=quick):
-                    return {"verdict": KILLED, "host": host, "failures": ordered(failures)}
+            for host, stage in islice(stages(mutant, path), 1 if mutant.equivalent else None):
+                if failures := failures_of(stage, judge, every):
+                    rows = ordered(failures)
+                    seen = TEXT if rows[0]["host"] == SOURCE else host
+                    return {"verdict": KILLED, "host": seen, "failures": rows}
         except MxeonError as error:
             message = first_line(str(error).replace(f"{Path(path).parent}/", ""))
             return {"verdict": KILLED, "host": TEXT, "refusal": message}
@@ -110,12 +113,12 @@ def _on_cycles(path: str) -> Iterator[tuple[str, list[Task]]]:
         yield "cycles", [task]
 
 
-def failures_of(tasks: Sequence[Task], judge: Judge, first: bool = False) -> list[Result]:
+def failures_of(tasks: Sequence[Task], judge: Judge, every: bool = True) -> list[Result]:
     """Results that did not pass, of all tasks or of the first that has any."""
     failures: list[Result] = []
     for task in tasks:
         failures += [each for each in judge.work(task).results if each.verdict != PASSED]
-        if failures and first:
+        if failures and not every:
             break
     return failures
 
