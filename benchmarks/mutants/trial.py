@@ -20,11 +20,13 @@ from mxeon.shaders import generators, library
 from mxeon.shaders.generation import generate
 
 KILLED, SURVIVED = "killed", "survived"
+CRASHED = "crashed"  # a traceback in place of a verdict
 TEXT = "text"
 
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
 NOT_ON_GL = ("genosl/", "profiles/", "libraries/eonlib_genosl", "libraries/eonlib_genmdl")
+TEXT_FIRST = ("libraries/eonlib_defs.mtlx",)  # other checks fail for what its check names
 # Files of the implementations, and the target whose text has to differ.
 CHANGED = {
     "genglsl/oren_nayar_lobe.glsl": "glsl",
@@ -51,8 +53,8 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
     Returns
     -------
     dict
-        verdict, KILLED or SURVIVED; host; failures: check, subject, excess and diagnosis of each,
-        the largest excess first; or refusal: the message that ended the command.
+        verdict, KILLED, SURVIVED or CRASHED; host; failures: check, subject, excess and diagnosis
+        of each, the largest excess first; or refusal: the message that ended the command.
     """
     with wrong_library(mutant) as path:
         try:
@@ -65,6 +67,8 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
         except MxeonError as error:
             message = first_line(str(error).replace(f"{Path(path).parent}/", ""))
             return {"verdict": KILLED, "host": TEXT, "refusal": message}
+        except Exception as error:
+            return {"verdict": CRASHED, "error": f"{type(error).__name__}: {error}"}
         return {"verdict": SURVIVED}
 
 
@@ -98,7 +102,8 @@ def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
         yield TEXT, [task for task in tasks if task.host == SOURCE]
     else:
         nodes = [task for task in tasks if task.check not in ("lobe", PICTURE)]
-        yield "gl", sorted(nodes, key=lambda task: task.host == SOURCE)
+        text_first = mutant.file in TEXT_FIRST
+        yield "gl", sorted(nodes, key=lambda task: (task.host == SOURCE) != text_first)
         yield "gl", [task for task in tasks if task.check == "lobe"]
         yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
     if mutant.file.startswith(("genosl/", "profiles/")):
