@@ -160,6 +160,21 @@ def test_a_closure_that_is_defined_elsewhere_is_not_run(copy):
     assert result.reason == "function mine::layered is defined elsewhere"
 
 
+@pytest.mark.parametrize(
+    "body, words",
+    [
+        ("for (int i = 0; i < 2; i += 1) { }", "statement for ( int i is not read"),
+        ("mx_other(weight, bsdf);", "statement mx_other ( weight , bsdf ) is not read"),
+    ],
+)
+def test_statements_that_the_reader_lacks_are_not_run(copy, body, words):
+    file = "genosl/eon_diffuse_bsdf_cycles.osl"
+    library = copy(file, "    bsdf = weight", f"    {body}\n    bsdf = weight")
+    verdicts = {each.subject: each for each in check_closures([NODE], library)}
+    result = verdicts[f"{NODE.title}, osl, cycles"]
+    assert (result.verdict, result.reason) == (NOT_RUN, words)
+
+
 # --- shader functions ---------------------------------------------------------------------------
 
 
