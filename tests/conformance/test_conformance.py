@@ -261,7 +261,7 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
 @pytest.mark.parametrize("host", [row.name for row in HOSTS if not row.module])
 def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
     run = check(EXAMPLES[:1], [host])
-    (result,) = [each for each in run.results if each.host == host]
+    (result,) = [each for each in run.results if (each.host, each.check) == (host, "host")]
     assert result.verdict == NOT_RUN and result.reason.startswith(f"{host}: running it needs ")
     texts = [each for each in run.results if each.subject.endswith(f", {host}")]
     assert texts and {each.verdict for each in texts} == {PASSED}

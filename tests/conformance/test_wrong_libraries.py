@@ -160,6 +160,21 @@ def test_a_closure_that_is_defined_elsewhere_is_not_run(copy):
     assert result.reason == "function mine::layered is defined elsewhere"
 
 
+@pytest.mark.parametrize(
+    "body, words",
+    [
+        ("for (int i = 0; i < 2; i += 1) { }", "statement for ( int i is not read"),
+        ("mx_other(weight, bsdf);", "statement mx_other ( weight , bsdf ) is not read"),
+    ],
+)
+def test_statements_that_the_reader_lacks_are_not_run(copy, body, words):
+    file = "genosl/eon_diffuse_bsdf_cycles.osl"
+    library = copy(file, "    bsdf = weight", f"    {body}\n    bsdf = weight")
+    verdicts = {each.subject: each for each in check_closures([NODE], library)}
+    result = verdicts[f"{NODE.title}, osl, cycles"]
+    assert (result.verdict, result.reason) == (NOT_RUN, words)
+
+
 # --- shader functions ---------------------------------------------------------------------------
 
 
@@ -174,10 +189,10 @@ def test_no_shader_function_is_left_unjudged():
     "file, old, new, words",
     [
         ("ltc_sampling", "0.303392", "0.303695",
-         {"samples": "ltc_a is off by", "parts": "with it ltc_density, ltc0_pdf, ltc_pdf"}),
-        ("ltc_sampling", "(1.0 - P_u) * cltc_pdf", "cltc_pdf", {"parts": "eon_cltc_pdf is off by"}),
+         {"samples": "ltc_a is off by", "densities": "with it ltc_density, ltc0_pdf, ltc_pdf"}),
+        ("ltc_sampling", "(1.0 - P_u) * cltc_pdf", "cltc_pdf", {"densities": "eon_cltc_pdf is off by"}),
         ("ltc_sampling", "d > 0.0 ? x : -x", "d > 0.0 ? -x : x", {"samples": "cltc_clipped is off"}),
-        ("eon_sampling", "return mu_i * parts", "return parts", {"parts": "eon_pdf is off by"}),
+        ("eon_sampling", "return mu_i * parts", "return parts", {"densities": "eon_pdf is off by"}),
         ("eon_sampling", "eon_rotate_z(wi, turn.x, turn.y)", "eon_rotate_z(wi, turn.x, -turn.y)",
          {"samples": "eon_sample is off by"}),
         ("eon_sampling", "* (1.0 / upper)", "* upper", {"samples": "eon_draw is off by"}),
@@ -186,9 +201,9 @@ def test_no_shader_function_is_left_unjudged():
         ("oren_nayar_family", "0.57)", "0.33)", {"twins": "qon_footnote_brdf is off by"}),
         ("eon", "EON_P0 0.318309971", "EON_P0 0.318628281",
          {"twins": "fon_loss is off by", "loss": "fon_loss is off by",
-          "parts": "fon_loss is off by", "samples": "fon_loss is off by"}),
+          "densities": "fon_loss is off by", "samples": "fon_loss is off by"}),
         ("eon_sampling", "float eon_pdf(", "float eon_density(",
-         {"parts": "eon_pdf is not defined as eonlib has it"}),
+         {"densities": "eon_pdf is not defined as eonlib has it"}),
     ],
 )  # fmt: skip
 def test_a_wrong_shader_function_is_named_by_its_cause(gl, copy, file, old, new, words):

@@ -17,6 +17,7 @@ from mxeon.conformance.checks.batch import Array
 from mxeon.conformance.checks.evaluate import judge_measurements, not_measured
 from mxeon.conformance.checks.measures import Measurement, absolute, relative
 from mxeon.conformance.checks.tolerances import (
+    DENSITY,
     LOSS,
     PART,
     VALUE,
@@ -33,7 +34,8 @@ SUBJECT = "shader twins"  # the name in reports
 KINDS = ("pairs", "pictures")  # of probes whose hosts evaluate functions
 ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
 SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
-STEP = 2.0**-20  # of the arguments by which a function's condition is measured
+DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")
+STEP = 2.0**-22  # of the arguments by which a function's condition is measured
 ENGINE = """float mxeon_engine(float u)
 {
     return max(abs(cos(6.28318530718 * u)), abs(sin(6.28318530718 * u)));
@@ -172,8 +174,15 @@ FUNCTION_CHECKS = (
         lambda probe: direction_of(probe.sine_error),
     ),
     FunctionCheck(
+        "densities",
+        "The densities of samples, and the matrix of linearly transformed cosines, are NumPy's.",
+        lambda name: bool(DENSITIES.fullmatch(name)),
+        part_error,
+        lambda probe: DENSITY,
+    ),
+    FunctionCheck(
         "parts",
-        "The densities, and all that models and samples are made of, are those of NumPy.",
+        "The functions that models and samples are made of are those of NumPy.",
         lambda name: True,
         part_error,
         lambda probe: PART,
@@ -258,7 +267,6 @@ def _condition(function: str) -> Array:
     columns, exact = twins.random_columns(), _expected(function)
     total: Any = np.maximum(1.0, np.abs(exact).max(axis=1))
     for name in twins.numbers(function):
-        step = np.where(columns[name] > 0.5, -STEP, STEP)
-        moved = twins.expected(function, twins.moved(columns, name, step))
+        moved = twins.expected(function, twins.moved(columns, name, STEP))
         total = total + np.abs(moved - exact).max(axis=1) / STEP
     return np.asarray(total)

@@ -146,7 +146,7 @@ def _value(probe: InversionProbe, values: Array) -> Array:
 def _round_trip(probe: InversionProbe, values: Array) -> Array:
     """Errors of the albedo that the reflectance leads to."""
     color, roughness = probe.inputs
-    finite = np.isfinite(values).all(axis=1)
+    finite = np.asarray(np.isfinite(values).all(axis=1))
     rho = np.where(finite[:, None], np.clip(values, 0.0, 1.0), 0.0)
     if probe.node == INVERSIONS[0]:
         reached = albedo.eon_albedo_dir(1.0, rho, roughness)

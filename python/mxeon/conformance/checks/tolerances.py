@@ -82,10 +82,10 @@ def difference_of(tolerance: Tolerance) -> Tolerance:
 def direction_of(sine_error: float) -> Tolerance:
     """Tolerance of sampled directions on an engine whose own sine is off by so much."""
     return Tolerance(
-        rounded_up(48 * ROUNDING + 4.0 * sine_error),
+        rounded_up(16 * ROUNDING + 4.0 * sine_error),
         CONDITIONED,
         absolute,
-        f"48 roundings of float32, 2^-24 each, and four times the error of the engine's own sine and "
+        f"16 roundings of float32, 2^-24 each, and four times the error of the engine's own sine and "
         f"cosine, {sine_error:.1e}, which turn a direction twice; rounded up",
     )
 
@@ -131,6 +131,12 @@ SURROUNDINGS = Tolerance(
 )
 CONDITIONED = "over 1, the value, and its change with each argument"
 PART = Tolerance(
+    rounded_up(16 * ROUNDING),
+    CONDITIONED,
+    absolute,
+    "16 roundings of float32, 2^-24 each; rounded up",
+)
+DENSITY = Tolerance(
     rounded_up(48 * ROUNDING),
     CONDITIONED,
     absolute,

@@ -8,17 +8,27 @@ columns of those names. All are float32 numbers, so that a float32 host sees the
 import inspect
 from collections.abc import Callable, Mapping
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import SEED, Array, directions
+from mxeon.conformance.checks.batch import GRAZING, SEED, Array, directions
 from mxeon.models import albedo, formulas, sampling
 from mxeon.models.sampling import cltc, eon, hemisphere, ltc
 from mxeon.shaders import functions
 
 POINTS = 4096  # of each function
 CORNERS = 64  # of which so many have arguments at the ends of their ranges
+
+# Along the normal and beyond it by a rounding, at the horizon, and between.
+AXES = (
+    (0.0, 0.0, 1.0),
+    (0.0, 0.0, 1.0 + 2.0**-23),
+    (1.0, 0.0, 0.0),
+    (-1.0, 0.0, 0.0),
+    (0.6, 0.0, 0.8),
+)
 
 Columns = Mapping[str, Array]
 
@@ -71,20 +81,22 @@ def arguments(function: str, columns: Columns) -> list[Array]:
 
 
 def numbers(function: str) -> list[str]:
-    """Names of the columns of a function's parameters that are floats, but for divisors.
+    """Names of the columns of a function's parameters that are floats, or wo for its cosine.
 
-    A quotient is off in proportion to itself; and beside a divisor of 0, where it is 0, it is huge.
+    Divisors are left out: a quotient is off in proportion to itself, and huge beside a divisor of 0.
     """
     return [
         "gray" if name == "rho" else name
         for kind, name in functions.signature("glsl", function)
-        if kind == "float" and name != "divisor"
+        if (kind == "float" and name != "divisor") or name == "wo"
     ]
 
 
-def moved(columns: Columns, name: str, step: Array) -> Columns:
-    """The columns with one of numbers moved by a step."""
-    result = {**columns, name: columns[name] + step}
+def moved(columns: Columns, name: str, step: float) -> Columns:
+    """The columns with one of `numbers` moved by a step, towards the middle of its range."""
+    middle = np.array([0.0, 0.0, 0.5]) if name == "wo" else 0.5
+    moves = np.where(columns[name] > middle, -step, step) * (middle != 0.0)
+    result = {**columns, name: columns[name] + moves}
     if name in ("u1", "u2"):
         result["u"] = np.stack([result["u1"], result["u2"]], axis=-1)
     return result
@@ -115,11 +127,13 @@ def random_columns() -> Columns:
     """Random arguments by the names of parameters; those of one name may be of several functions."""
     rng = np.random.default_rng(SEED)
     wo, wi = directions(rng, POINTS), directions(rng, POINTS)
+    pairs = np.array(list(product(AXES, AXES)))
+    wo[: len(pairs)], wi[: len(pairs)] = pairs[:, 0], pairs[:, 1]
     unit = {
         name: _unit(rng) for name in ("u1", "u2", "v", "q", "m", "t", "y_o", "gray", "roughness")
     }
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
-    mu, roughness = np.minimum(wo[:, 2], 1.0), unit["roughness"]
+    mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     return {
         name: np.asarray(values, np.float32).astype(np.float64)
         for name, values in {
@@ -131,7 +145,7 @@ def random_columns() -> Columns:
             "rho": np.stack([_unit(rng) for _ in range(3)], axis=-1),
             "sigma": 1.5707963 * roughness,
             "mu": mu,
-            "mu_o": mu,
+            "mu_o": np.minimum(wo[:, 2], 1.0),
             "mu_i": np.minimum(wi[:, 2], 1.0),
             "s": _s(wo, wi),
             "S": np.sqrt((1.0 - mu) * (1.0 + mu)),
@@ -157,6 +171,6 @@ def _divisors(rng: np.random.Generator) -> Array:
 
 def _unit(rng: np.random.Generator) -> Array:
     """Numbers of 24 bits in [0, 1), as shaders' random numbers; the first lie on either end."""
-    numbers = rng.integers(0, 1 << 24, POINTS)
-    numbers[:CORNERS] = (numbers[:CORNERS] % 2) * ((1 << 24) - 1)
+    numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
+    numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24

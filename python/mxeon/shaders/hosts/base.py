@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import Unsupported
-from mxeon.shaders import functions
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.scene import Scene
 
@@ -172,6 +171,8 @@ class Host(ABC):
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a shader function of eonlib; see `execute`."""
+        from mxeon.shaders import functions
+
         return self.execute(functions.source(self.language), function, *arguments)
 
     def plane(self, shader: Shader, scene: Scene) -> NDArray[Any]:

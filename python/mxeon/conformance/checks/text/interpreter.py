@@ -5,6 +5,7 @@ A number is a column (N, 1), a color or vector rows (N, 3); N rows are N materia
 is a name with arguments; a sum of weighted closures is a tuple of them.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -102,7 +103,7 @@ class Interpreter:
         text: str,
         closures: Mapping[str, Callable[[Mapping[str, Value]], tuple[Closure, ...]]],
     ) -> None:
-        self._functions, self._macros = function_table(text), macros(text)
+        self._text, self._functions, self._macros = text, function_table(text), macros(text)
         self._closures = closures
 
     def value(self, text: str, variables: Mapping[str, Value]) -> Value:
@@ -191,10 +192,11 @@ class Interpreter:
         if word in MATHEMATICS:
             return MATHEMATICS[word](*map(_number, positional))
         namespace = call.name.rpartition("::")[0]
-        if namespace in ("", "df", "math", "base", "state"):
+        defined = re.search(rf"^[\w ]* {re.escape(call.name)}\s*\(", self._text, re.MULTILINE)
+        if not defined and namespace in ("", "df", "math", "base", "state"):
             known = ", ".join(self._closures)
             raise Unreadable(f"function {call.name} is unknown; closures may come from {known}")
-        raise NotRun(f"function {call.name} is defined elsewhere")
+        raise NotRun(f"function {call.name} is {'not read' if defined else 'defined elsewhere'}")
 
 
 def _labelled(arguments: list[tuple[str, Value]]) -> dict[str, Value]:

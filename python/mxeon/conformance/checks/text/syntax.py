@@ -24,7 +24,7 @@ from mxeon.conformance.checks.text.tree import (
     Statement,
     Text,
 )
-from mxeon.errors import ShaderError
+from mxeon.errors import NotRun, ShaderError
 
 TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?f?)|(?P<text>\"[^\"]*\")"
@@ -33,6 +33,7 @@ TOKEN = re.compile(
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 MACRO = re.compile(r"^#define (\w+) (.+)$", re.MULTILINE)
 FUNCTION = re.compile(r"^(?:closure )?[A-Za-z]\w* (\w+)\s*\(([^()]*)\)\s*(?=\{)", re.MULTILINE)
+LOOPS = ("for", "while", "do")
 PRECEDENCE = ({"||"}, {"&&"}, {"<", ">", "<=", ">=", "==", "!="}, {"+", "-"}, {"*", "/"})
 
 
@@ -160,6 +161,8 @@ class _Parser:
         while self.more and self._peek() not in ("=", ";"):
             words.append(self._peek())
             self._next += 1
+        if not words or not words[-1].isidentifier() or "(" in words or words[0] in LOOPS:
+            raise NotRun(f"statement {' '.join(words)} is not read")
         if self._take(";"):
             return []
         self._expect("=")
