@@ -54,7 +54,12 @@ ISSUES = (
         (("environment", f"{NODE} false"),),
         ("webgl", "vulkan", "slang"),
     ),
-    Issue("genglsl_albedo_acos", "gl", (("environment", f"{NODE} true"),), ("webgl", "vulkan")),
+    Issue(
+        "genglsl_albedo_acos",
+        "gl",
+        (("environment", f"{NODE} true"),),
+        ("webgl", "vulkan", "slang"),
+    ),
     Issue(
         "genosl_dropped_flag",
         "source",

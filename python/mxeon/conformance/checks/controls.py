@@ -27,7 +27,7 @@ class Altered:
 
     @property
     def batches(self) -> tuple[Batch, ...]:
-        """The few: a control has nothing to prove on a million."""
+        """The few: a control has nothing to prove on all pairs."""
         few: tuple[Batch, ...] = self.probe.few
         return few
 

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Copies of the library with one wrong line each: the check meant for it fails and says why."""
+
+import shutil
+
+import pytest
+
+from mxeon.conformance.checks.evaluate import judge_subject
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.shaders.library import data_folder
+
+EON, QON, NODE = SUBJECTS
+DIRECT = "brdf * mu_i * weight * closureData.occlusion"
+ENVIRONMENT = "mx_environment_irradiance(N) * weight"
+FACING = "N = mx_forward_facing_normal(N, wo);"
+RESPONSE = "bsdf.response = brdf"
+ROUGHNESS = f"roughness = 0.3;\n    {FACING}"
+
+# By name: subject, text, the text in its place, key of the check and words of the diagnosis.
+WRONG = {
+    "weight": (
+        EON,
+        DIRECT,
+        DIRECT.replace(" * weight", ""),
+        "value",
+        "fault: the weight is ignored",
+    ),
+    "occlusion": (
+        NODE,
+        DIRECT,
+        DIRECT.replace(" * closureData.occlusion", ""),
+        "value",
+        "fault: the occlusion is ignored (rms ",
+    ),
+    "weight of the environment": (
+        QON,
+        ENVIRONMENT,
+        ENVIRONMENT.replace(" * weight", ""),
+        "environment",
+        "fault: the weight is ignored",
+    ),
+    "occlusion of the environment": (
+        EON,
+        ENVIRONMENT,
+        f"{ENVIRONMENT} * closureData.occlusion",
+        "environment",
+        "fault: the occlusion is applied, as the caller does once more (rms ",
+    ),
+    "small weight": (
+        NODE,
+        "weight <= 0.0",
+        "weight <= 0.01",
+        "value",
+        "all of them with a weight in (0, 0.01]",
+    ),
+    "throughput": (
+        EON,
+        "bsdf.throughput = vec3(0.0);",
+        "",
+        "throughput",
+        "throughput 1 (branches: direct, environment, transmission, emission)",
+    ),
+    "throughput of one branch": (
+        QON,
+        RESPONSE,
+        f"bsdf.throughput = vec3(0.5); {RESPONSE}",
+        "throughput",
+        "throughput 0.5 (branches: direct)",
+    ),
+    "opposite look-up": (
+        NODE,
+        "irradiance(N)",
+        "irradiance(-N)",
+        "surroundings",
+        "the environment is looked up at the opposite of the normal",
+    ),
+    "normal not turned": (
+        EON,
+        FACING,
+        "",
+        "frame",
+        "all of them where the normal faces away from the viewer",
+    ),
+    "normal ignored": (
+        QON,
+        "mx_forward_facing_normal(N, wo)",
+        "mx_forward_facing_normal(closureData.N, wo)",
+        "frame",
+        "the node's normal is ignored: the surface's takes its place",
+    ),
+    "normal incidence": (
+        EON,
+        RESPONSE,
+        f"if (mu_o == 1.0) brdf *= 2.0;\n        {RESPONSE}",
+        "value",
+        "all of them with the viewer along the normal",
+    ),
+    "retro-reflection": (
+        QON,
+        RESPONSE,
+        f"if (wo == wi) brdf *= 1.5;\n        {RESPONSE}",
+        "value",
+        "all of them in exact retro-reflection (L = V)",
+    ),
+    "on the horizon": (
+        NODE,
+        RESPONSE,
+        f"if (mu_o == 0.0) brdf *= 0.0;\n        {RESPONSE}",
+        "value",
+        "all of them with the viewer on the horizon",
+    ),
+    "grazing": (
+        EON,
+        RESPONSE,
+        f"if (mu_o < 1.0e-6) brdf *= 0.0;\n        {RESPONSE}",
+        "value",
+        "all of them with the viewer's cosine in [0, 1e-06]",
+    ),
+    "cosine above 1": (
+        EON,
+        "min(dot(N, wo), 1.0)",
+        "dot(N, wo)",
+        "environment",
+        "values that are not finite with dot(N, V) above 1 by a rounding",
+    ),
+    "light from below": (
+        QON,
+        "clamp(dot(N, wi), 0.0, 1.0)",
+        "min(abs(dot(N, wi)), 1.0)",
+        "value",
+        "all of them with light from below the horizon",
+    ),
+    "roughness constant": (
+        NODE,
+        FACING,
+        ROUGHNESS,
+        "inputs",
+        "without effect: roughness",
+    ),
+    "roughness squared": (
+        NODE,
+        FACING,
+        ROUGHNESS.replace("= 0.3", "*= roughness"),
+        "environment",
+        "fault: the roughness is squared (rms ",
+    ),
+    "channels": (
+        EON,
+        FACING,
+        f"color = color.bgr;\n    {FACING}",
+        "value",
+        "fault: the color channels are exchanged: they come as blue, green, red (rms ",
+    ),
+    "factor": (
+        QON,
+        "brdf * mu_i",
+        "3.14159265 * brdf * mu_i",
+        "value",
+        "fault: the factor 1/pi is missing (rms ",
+    ),
+    "flag": (
+        EON,
+        "energy_compensation ? eon_brdf_mu",
+        "!energy_compensation ? eon_brdf_mu",
+        "value",
+        ", as with energy_compensation false",
+    ),
+    "another model": (
+        NODE,
+        "brdf * mu_i",
+        "(brdf + 0.05 * color * mu_o * mu_o) * mu_i",
+        "value",
+        "no known model is near: ",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_line_fails_the_check_meant_for_it_and_is_named(gl, tmp_path, name):
+    subject, text, other, key, words = WRONG[name]
+    result = judged(gl, wrong_library(tmp_path, text, other), subject, key)
+    assert result.verdict == FAILED and words in result.diagnosis
+
+
+def test_a_copy_without_a_wrong_line_passes_every_check(gl, tmp_path):
+    library = wrong_library(tmp_path, FACING, FACING)
+    for subject in SUBJECTS:
+        results = judge_subject(PairProbe(gl, subject, library))
+        assert {result.verdict for result in results} == {PASSED}
+
+
+@pytest.mark.parametrize("host", ["webgl", "vulkan", "slang"])
+@pytest.mark.parametrize(
+    "name", ["occlusion", "throughput", "opposite look-up", "normal not turned"]
+)
+def test_the_other_hosts_see_what_is_around_the_model(hosts, tmp_path, host, name):
+    subject, text, other, key, words = WRONG[name]
+    result = judged(hosts(host), wrong_library(tmp_path, text, other), subject, key)
+    assert result.verdict == FAILED and words in result.diagnosis
+
+
+def wrong_library(folder, text, other):
+    """A copy of the library whose lobe has one text in place of another."""
+    for name in ("libraries", "genglsl"):
+        shutil.copytree(data_folder() / name, folder / name)
+    file = folder / "genglsl" / "oren_nayar_lobe.glsl"
+    source = file.read_text(encoding="utf-8")
+    assert text in source
+    file.write_text(source.replace(text, other), encoding="utf-8")
+    return str(folder / "libraries")
+
+
+def judged(host, library, subject, key):
+    """The result of one check."""
+    (row,) = [row for row in CHECKS if row.key == key]
+    (result,) = judge_subject(PairProbe(host, subject, library), [row])
+    return result
