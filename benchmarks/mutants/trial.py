@@ -136,7 +136,7 @@ def ordered(failures: list[Result]) -> list[dict[str, str]]:
             "subject": Path(each.subject).name if each.subject.startswith("/") else each.subject,
             "host": each.host,
             "excess": each.excess,
-            "diagnosis": first_line(each.diagnosis if each.verdict == FAILED else each.reason),
+            "diagnosis": first_line(each.diagnosis or f"not run: {each.reason}"),
         }
         for each in sorted(failures, key=_ratio, reverse=True)
     ]

@@ -2,6 +2,7 @@
 """Copies of the library with one fault each: the check that finds it, and the words that name it."""
 
 import shutil
+from contextlib import closing
 
 import pytest
 
@@ -19,10 +20,12 @@ from mxeon.conformance.checks.text.languages import check_languages
 from mxeon.conformance.checks.twins import expected, random_columns
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
-from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import Task, make_plan
+from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.functions import names
 from mxeon.shaders.library import data_folder, eonlib_folder, examples_folder
-from mxeon.shaders.nodes import INVERSIONS
+from mxeon.shaders.nodes import EON, INVERSIONS
 
 ON, OFF, NODE = SUBJECTS
 MDL, OSL = "libraries/eonlib_genmdl_impl.mtlx", "libraries/eonlib_genosl_impl.mtlx"
@@ -82,6 +85,28 @@ def test_a_wrong_definition_is_told_from_the_specification(copy, old, new, words
     results = {each.subject: each for each in check_definitions(copy(DEFINITIONS, old, new))}
     found = results["oren_nayar_diffuse_bsdf, definition"]
     assert found.verdict == FAILED and words in found.diagnosis
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (f'node="{EON}" bsdf="R"', f'node="{EON}" bsdf="RT"', "bsdf is RT; mxeon says R"),
+        (f'node="{EON}"', 'node="eon"', f"the category is eon; mxeon says {EON}"),
+    ],
+)
+def test_a_definition_of_another_category_or_lobe_is_named(copy, old, new, words):
+    results = {each.subject: each for each in check_definitions(copy(DEFINITIONS, old, new))}
+    assert results[f"{EON}, definition"].diagnosis == words
+
+
+def test_an_input_of_another_type_is_not_run_and_says_so(copy, gl):
+    narrow = 'name="weight" type="float" value="1.0" uimin="0.0" uimax="1.0"'
+    wide = narrow.replace("float", "color3").replace('.0"', '.0, 0.0, 0.0"')
+    library = copy(DEFINITIONS, narrow, wide)
+    with closing(Judge(DEFAULT)) as judge:
+        found = judge.work(Task("value", NODE.title, "gl", library)).results[0]
+    assert found.verdict == NOT_RUN
+    assert "input weight must have the type float" in found.reason
 
 
 def test_a_range_that_pbrlib_does_not_state_may_be_missing_in_its_node_alone(copy):

@@ -16,8 +16,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import InputError
+from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import Input, Shader
+from mxeon.shaders.nodes import INPUT_TYPES
 
 # By branch: the closure type of the call that is repeated, and the one that takes its place. A BSDF
 # that only reflects is called in the first two branches alone.
@@ -267,7 +268,12 @@ def _argument(port: Input | None, inputs: Mapping[str, Any]) -> tuple[str, Array
     """Type and value of a BSDF's argument; one that is no input of the shader is the normal."""
     if port is None:
         return "vector3", inputs.get("normal", NORMAL)
-    return port.type, inputs.get(port.path.rsplit("/", 1)[-1], port.value)
+    name = port.path.rsplit("/", 1)[-1]
+    if name in inputs and port.type != INPUT_TYPES.get(name, port.type):
+        raise InterfaceError(
+            f"input {name} must have the type {INPUT_TYPES[name]} to be evaluated; got {port.type}"
+        )
+    return port.type, inputs.get(name, port.value)
 
 
 def _main(

@@ -38,6 +38,7 @@ TINTS = {
 }
 WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
 DEFINITION = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
+FLOAT_FLAG = re.compile(rf'"{FLAG}", *[\d.]*\.')  # OSL looks a keyword up by its type as well
 FILLED = re.compile(r"\b(\w+)\(([^;]*), lobe_out\);")
 
 Inputs = dict[str, Array]
@@ -85,6 +86,8 @@ def _faults(subject: Subject, renderer: Renderer, text: str) -> list[str]:
     inputs = _materials(subject)
     closures = _closures(renderer, text, inputs)
     faults = [*dict.fromkeys(renderer.faults)]
+    if FLOAT_FLAG.search(text):
+        faults.append(f"keyword {FLAG} is an int, and gets a float")
     single = renderer.profile is None and len(closures) == 1
     if single:
         faults += _argument_faults(subject, renderer, closures[0], inputs)
@@ -101,6 +104,8 @@ def _materials(subject: Subject) -> Inputs:
     rng = np.random.default_rng(SEED)
     color, roughness = rng.random((MATERIALS, 3)), rng.random((MATERIALS, 1))
     color[:4], roughness[:4, 0] = [[0.0] * 3, [1.0] * 3, [0.0] * 3, [1.0] * 3], [0, 0, 1, 1]
+    if subject.model == "qon":
+        roughness *= 0.5 * np.pi  # sigma
     normal = rng.standard_normal((MATERIALS, 3))
     return {
         "weight": rng.random((MATERIALS, 1)),

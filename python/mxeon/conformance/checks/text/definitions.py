@@ -64,6 +64,8 @@ class Specification:
         Attributes of each input, in order.
     output : str
         Type of its output.
+    bsdf : str
+        Whether a lobe reflects ("R"), transmits ("T"), or both; "" for other nodes.
     ranges : bool
         Whether the ranges have to be stated.
     """
@@ -72,13 +74,14 @@ class Specification:
     author: str
     inputs: Ports
     output: str
+    bsdf: str = ""
     ranges: bool = True
 
 
 # [pbrlib], table of <oren_nayar_diffuse_bsdf>; a reflectance lies in [0, 1].
 SPECIFICATIONS = (
-    Specification(OREN_NAYAR, "pbrlib", FLAGGED, "BSDF", ranges=False),
-    Specification(EON, "mxeon", LOBE, "BSDF"),
+    Specification(OREN_NAYAR, "pbrlib", FLAGGED, "BSDF", "R", ranges=False),
+    Specification(EON, "mxeon", LOBE, "BSDF", "R"),
     *(
         Specification(node, "mxeon", {"color": COLOR, "roughness": ROUGHNESS}, "color3")
         for node in INVERSIONS
@@ -92,15 +95,22 @@ def check_definitions(library: str) -> tuple[Result, ...]:
     return tuple(
         _judge(specification, definition, library)
         for specification in SPECIFICATIONS
-        for definition in document.getMatchingNodeDefs(specification.node)
+        for definition in _definitions(document, specification.node)
     )
+
+
+def _definitions(document: mx.Document, node: str) -> list[mx.NodeDef]:
+    """Definitions of a category, and the one that has its name but another category."""
+    definitions = document.getMatchingNodeDefs(node)
+    named = document.getNodeDef(f"ND_{node}")
+    return definitions + ([named] if named and named.getNodeString() != node else [])
 
 
 def _judge(specification: Specification, definition: mx.NodeDef, library: str) -> Result:
     inputs = {each.getName(): _attributes(each) for each in definition.getActiveInputs()}
     outputs = [each.getType() for each in definition.getActiveOutputs()]
     wrong = {**inputs, "roughness": {**inputs.get("roughness", {}), "value": "0.3"}}
-    faults = differences(specification, inputs, outputs)
+    faults = _kind(specification, definition) + differences(specification, inputs, outputs)
     control = differences(specification, wrong, outputs)
     return counted(
         CLAIM,
@@ -110,6 +120,17 @@ def _judge(specification: Specification, definition: mx.NodeDef, library: str) -
         len(control),
         "; ".join(faults),
     )
+
+
+def _kind(specification: Specification, definition: mx.NodeDef) -> list[str]:
+    """Differences of the category and of the kind of lobe, in words."""
+    author, node, lobe = specification.author, definition.getNodeString(), specification.bsdf
+    faults = []
+    if node != specification.node:
+        faults.append(f"the category is {node}; {author} says {specification.node}")
+    if (kind := definition.getAttribute("bsdf")) != lobe:
+        faults.append(f"bsdf is {kind or 'missing'}; {author} says {lobe or 'none'}")
+    return faults
 
 
 def differences(specification: Specification, inputs: Ports, outputs: list[str]) -> list[str]:
