@@ -78,6 +78,16 @@ def test_what_the_compiler_refuses_is_a_shader_error(host):
         host.evaluate(shader, PAIR, PAIR, {}, "direct")
 
 
+def test_a_host_works_on_after_a_text_that_does_not_compile(host):
+    good = generate(SUBJECTS[2].document(), host.target)[0]
+    bad = replace(good, stages={**good.stages, "pixel": good.stages["pixel"] + "}"})
+    for flag in (0.25, 0.5):
+        with pytest.raises(ShaderError):
+            host.evaluate(bad, PAIR, PAIR, {"weight": flag}, "direct")
+    third = replace(good, stages={**good.stages, "pixel": good.stages["pixel"] + "\n"})
+    assert host.evaluate(third, PAIR, PAIR, {}, "direct").any()
+
+
 @pytest.mark.parametrize("word", ["branch", "output"])
 def test_an_unknown_branch_or_output_is_refused(host, word):
     shader = generate(SUBJECTS[2].document(), host.target)[0]

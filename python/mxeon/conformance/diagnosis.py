@@ -162,8 +162,17 @@ def _model(
     share = 100.0 * np.concatenate(wrong).mean()
     return (
         f"no known model is near: {first} has the distance rms {least:.2g}; "
-        f"{share:.2g} % of the pairs are wrong"
+        f"{share:.2g} % of the pairs are wrong, most {_worst_place(cases, tolerance)}"
     )
+
+
+def _worst_place(cases: Sequence[Case], tolerance: Tolerance) -> str:
+    """Cosines of the pair with the largest error, in words."""
+    errors = [tolerance.metric(case.measured, case.expected) for case in cases]
+    index = int(np.argmax([error.max() for error in errors]))
+    row, batch = int(errors[index].argmax()), cases[index].batch
+    light = "" if "albedo" in tolerance.unit else f" and L {batch.wi[row, 2]:.2g}"
+    return f"where V has the cosine {batch.wo[row, 2]:.2g}{light}"
 
 
 def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
