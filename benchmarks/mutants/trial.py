@@ -12,7 +12,7 @@ from typing import Any
 
 from benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.results import FAILED, PASSED, Result
+from mxeon.conformance.results import PASSED, Result
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import CURVE, PICTURE, SOURCE, Task, make_plan
 from mxeon.errors import MxeonError

@@ -119,6 +119,7 @@ def _materials(subject: Subject) -> Inputs:
 def _closures(renderer: Renderer, text: str, inputs: Inputs) -> tuple[Closure, ...]:
     """The sum of closures that the lobe of a text is."""
     variables = {variable(name): value for name, value in inputs.items()}
+    variables["N"] = np.array([[0.0, 0.0, 1.0]])  # a global of OSL, the normal of the surface
     interpreter = Interpreter(text, renderer.closures())
     if call := FILLED.search(text):
         closures = interpreter.value(f"{call[1]}({call[2]})", variables)
