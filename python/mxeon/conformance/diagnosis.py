@@ -160,6 +160,8 @@ def _model(
     if first != own and least <= NEAR * rival:
         return sentence(ranking)
     share = 100.0 * np.concatenate(wrong).mean()
+    if first == own and share < 50.0:
+        return f"right but for {share:.2g} % of the pairs; most {_worst_place(cases, tolerance)}"
     return (
         f"no known model is near: {first} has the distance rms {least:.2g}; "
         f"{share:.2g} % of the pairs are wrong, most {_worst_place(cases, tolerance)}"

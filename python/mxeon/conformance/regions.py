@@ -63,6 +63,8 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
             (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit),
         )
     yield "with light from below the horizon", mu_i < 0.0
+    yield "with dot(V, L) above 0.999", dot > 0.999
+    yield "with dot(V, L) above 0.99", dot > 0.99
     yield "with dot(V, L) below 0", dot < 0.0
     yield "with s below 0", s < 0.0
     yield "with s above 0", s > 0.0
