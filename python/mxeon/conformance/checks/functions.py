@@ -30,7 +30,7 @@ from mxeon.shaders.functions import names
 
 SUBJECT = "shader twins"  # the name in reports
 PAIRS = 1 << 16
-KINDS = ("pairs", "pictures")  # of probes whose hosts evaluate functions
+KINDS = ("pairs", "pictures", "planes")  # of probes whose hosts evaluate functions
 
 
 @dataclass(frozen=True)

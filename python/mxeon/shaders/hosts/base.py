@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 
+class RendererWarning(UserWarning):
+    """A renderer's own warning, which may explain what it renders."""
+
+
 @dataclass(frozen=True)
 class Identity:
     """Who executed: the host's name, its version and the device it ran on."""
