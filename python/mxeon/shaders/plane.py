@@ -5,13 +5,15 @@ The camera stands 1 above the origin and looks along y, down by 90 degrees less 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mxeon.shaders.scene import Scene
 
 FOV = 90.0  # degrees, of the whole frame, which is 2 tan(FOV / 2) wide at distance 1
 TILT = np.radians(60.0)  # of the camera's axis, from straight down
-DISTANCE = 1000.0  # of the light, a square of side 1
+DISTANCE = 1000.0  # of the light
+LIGHT_RADIUS = 1.0 / 64.0
+LIGHTS = (20.0, 75.0)  # degrees from the normal towards x
 
 
 def plane_pairs(scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -36,14 +38,6 @@ def plane_points(size: int) -> NDArray[np.float64]:
     ray = ahead + width * (x[:, np.newaxis] * [1.0, 0.0, 0.0] + y[:, np.newaxis] * np.array(up))
     points: NDArray[np.float64] = [0.0, 0.0, 1.0] - ray / ray[:, 2:]
     return points
-
-
-def falloff(light: ArrayLike, size: int) -> NDArray[np.float64]:
-    """Irradiance over pi of a surface that faces the light, (size * size,): nearly 1."""
-    away = DISTANCE * np.asarray(light) - plane_points(size)
-    squared = (away**2).sum(axis=1)
-    irradiance: NDArray[np.float64] = DISTANCE**2 * (_unit(away) @ np.asarray(light)) / squared
-    return irradiance
 
 
 def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

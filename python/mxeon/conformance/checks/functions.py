@@ -31,7 +31,7 @@ from mxeon.shaders import functions
 from mxeon.shaders.hosts.base import Host
 
 SUBJECT = "shader twins"  # the name in reports
-KINDS = ("pairs", "pictures")  # of probes whose hosts evaluate functions
+KINDS = ("pairs", "pictures", "planes")  # of probes whose hosts evaluate functions
 ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
 SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
 DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")

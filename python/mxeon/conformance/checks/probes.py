@@ -37,7 +37,7 @@ from mxeon.models.table import Model
 from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only, host_row
 from mxeon.shaders.hosts.base import Host
-from mxeon.shaders.plane import plane_pairs
+from mxeon.shaders.plane import LIGHTS, plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 # Colors and roughnesses of the pictures that stand for a node on hosts that only make pictures.
@@ -235,8 +235,8 @@ class PlaneProbe(PictureProbe):
 
     kind: ClassVar[str] = "planes"
     scenes: ClassVar[tuple[Scene, ...]] = tuple(
-        Scene(f"plane{degrees}", light=(np.sin(polar), 0.0, np.cos(polar)))
-        for degrees in (20, 75)
+        Scene(f"plane{degrees:.0f}", light=(np.sin(polar), 0.0, np.cos(polar)))
+        for degrees in LIGHTS
         for polar in [np.radians(degrees)]
     )
 

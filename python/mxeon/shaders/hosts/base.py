@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 
+class RendererWarning(UserWarning):
+    """A renderer's own warning, which may explain what it renders."""
+
+
 @dataclass(frozen=True)
 class Identity:
     """Who executed: the host's name, its version and the device it ran on."""

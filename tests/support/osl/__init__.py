@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Facts about OSL's real programs, recorded from a build, and programs that replay them.
+
+    python -m tests.support.osl
+
+records them again with the programs that MXEON_OSLC, MXEON_TESTRENDER and MXEON_TESTSHADE name.
+"""
+
+import json
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.shaders.generation import generate
+from mxeon.shaders.hosts.testrender import Host, planes
+from mxeon.shaders.hosts.testrender.programs import VARIABLES, find_program
+from mxeon.shaders.scene import Scene
+
+FOLDER = Path(__file__).parent
+FACTS = FOLDER / "facts.json"
+PICTURE = FOLDER / "plane.tif"  # testrender's picture of SHADER under LIGHT
+LIGHT = Scene("light", light=(0.6, 0.0, 0.8), size=16)
+SUBJECT, INPUTS = SUBJECTS[0], {"color": (0.2, 0.5, 0.8), "roughness": 1.0}
+
+MISSPELLED = """shader wrong(output closure color out = 0)
+{
+    out = oren_nayar_diffuse_bsdf(N, color(0.5), 0.5, "energy_compensaton", 1);
+}
+"""
+OPTION = re.compile(r"^ {4}(-\S+)(.*?) {2}", re.MULTILINE)
+
+# Replays the recording: help with the recorded title, a compiled shader for each source, and the
+# recorded picture for the recorded scene alone.
+REPLAY = {
+    "oslc": """case "$1" in
+    --help) echo "{title}"; exit 0 ;;
+esac
+for last; do :; done
+grep -n no_such_function "$last" && exit 1
+cp "$last" "${{last%.osl}}.oso"
+""",
+    "testrender": """for last; do :; done
+cmp scene.xml "{folder}/scene.xml" && cmp plane.obj "{folder}/plane.obj" || exit 1
+cmp light.obj "{folder}/light.obj" || exit 1
+echo '{warning}' >&2
+cp "{folder}/plane.tif" "$last"
+""",
+    "testshade": "exit 1\n",
+}
+
+
+def facts():
+    """The recorded facts, by name."""
+    return json.loads(FACTS.read_text())
+
+
+def shader():
+    """The shader of the recorded picture."""
+    return generate(SUBJECT.document(INPUTS), "osl")[0]
+
+
+def write_replay(folder):
+    """Write programs that replay the recording; their paths by the variable that names them."""
+    values = {"title": facts()["title"], "warning": facts()["warning"], "folder": FOLDER}
+    paths = {}
+    for name, text in REPLAY.items():
+        path = folder / name
+        path.write_text(f"#!/bin/sh\n{text.format(**values)}")
+        path.chmod(0o755)
+        paths[VARIABLES[name]] = str(path)
+    return paths
+
+
+def record():
+    """Record the facts again."""
+    with Host() as host:
+        host.plane(shader(), LIGHT)
+        folder = host._folder
+        for name in (planes.SCENE, planes.PLANE, planes.LIGHT):
+            (FOLDER / name).write_text((folder / name).read_text())
+        PICTURE.write_bytes((folder / "picture.tif").read_bytes())
+    recorded = {
+        "title": _run("oslc", "--help")[0].splitlines()[0],
+        "options": {name: _options(name) for name in ("testrender", "testshade")},
+        "warning": _warning(),
+    }
+    FACTS.write_text(json.dumps(recorded, indent=2) + "\n")
+
+
+def _options(program):
+    """Words of a program's options, each with those of its arguments."""
+    return [
+        " ".join((option + rest).split())
+        for option, rest in OPTION.findall(_run(program, "--help")[0])
+    ]
+
+
+def _warning():
+    """The line by which testrender says that a closure has no such keyword."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "wrong.osl").write_text(MISSPELLED)
+        root = "shader root(closure color material = 0) { Ci = material; }"
+        (Path(folder) / "root.osl").write_text(root)
+        for name in ("wrong", "root"):
+            _run("oslc", "-q", f"{name}.osl", folder=folder)
+        (Path(folder) / "scene.xml").write_text(
+            '<World><ShaderGroup name="plane">shader wrong material ; shader root root ; '
+            "connect material.out root.material ;</ShaderGroup>"
+            '<Quad corner="-1,-1,-1" edge_x="2,0,0" edge_y="0,2,0" /></World>'
+        )
+        output = _run("testrender", "--res", "2", "2", "scene.xml", "picture.tif", folder=folder)
+    return output[1].strip()
+
+
+def _run(program, *arguments, folder=None):
+    """Standard output and error of a program."""
+    command = [find_program(program), *arguments]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    return done.stdout, done.stderr
