@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of nodes: complete in a template, and every difference from a specification is noticed."""
+
+import json
+
+import pytest
+
+from mxeon.cli import main
+from mxeon.doc import compare, fill, library_tables, read_tables
+from mxeon.doc.markdown import table_text
+from mxeon.errors import DocumentError
+
+NODES = ("oren_nayar_diffuse_bsdf", "dielectric_bsdf", "generalized_schlick_bsdf", "sheen_bsdf")
+SHEEN = """### `sheen_bsdf`
+
+|Port       |Description   |Type   |Default      |Accepted Values     |
+|-----------|--------------|-------|-------------|--------------------|
+|`weight`   |Factor        |float  |1            |[0, 1]              |
+|`color`    |Reflectivity  |color3 |1, 1, 1      |                    |
+|`roughness`|Of the surface|float  |0.3          |                    |
+|`normal`   |Of the surface|vector3|Nworld       |                    |
+|`mode`     |Of the model  |string |conty_kulla  |zeltner, conty_kulla|
+|`out`      |Output        |BSDF   |__zero__     |                    |
+"""
+
+
+@pytest.fixture(scope="module")
+def tables():
+    return library_tables("stock")
+
+
+def differences(text, tables):
+    """What differs, by port."""
+    return {each.port: each.subject for each in compare(read_tables(text), tables)}
+
+
+def test_a_template_is_filled_and_nothing_else_changes(tables):
+    template = "".join(f"### {node}\n@MX_TABLE_{node}@\n\ntext\n" for node in NODES)
+    text = fill(template, tables)
+    assert "@" not in text and text.count("\ntext\n") == len(NODES)
+    assert [table.ports for table in read_tables(text).values()] == [
+        tables[node].ports for node in NODES
+    ]
+    assert "|`scatter_mode`      |           |string |R            |R, T, RT       |" in text
+
+
+def test_the_definitions_of_eonlib_have_descriptions():
+    table = library_tables("eonlib")["oren_nayar_diffuse_bsdf"]
+    assert all(port.description for port in table.ports if port.name != "out")
+
+
+def test_an_unknown_node_is_named_with_its_line(tables):
+    with pytest.raises(DocumentError, match="line 2: @MX_TABLE_no_such_node@ must name a node"):
+        fill("text\n@MX_TABLE_no_such_node@\n", tables)
+
+
+def test_every_node_of_the_group_is_the_same_after_a_round_trip(tables):
+    nodes = [table for name, table in tables.items() if name.endswith(("bsdf", "edf", "vdf"))]
+    text = "\n".join(f"## `{table.node}`\n\n{table_text(table)}\n" for table in nodes)
+    assert len(nodes) > 10 and compare(read_tables(text), tables) == ()
+
+
+def test_a_node_of_several_types_refers_to_the_first_port(tables):
+    text = table_text(tables["mix"])
+    assert "BSDF, EDF, or VDF" in text and "Same as `fg`" in text
+    assert compare(read_tables(f"# `mix`\n\n{text}\n"), tables) == ()
+
+
+def test_the_same_in_other_words_is_no_difference(tables):
+    assert differences(SHEEN, tables) == {}
+
+
+@pytest.mark.parametrize(
+    "old, new, port, subject",
+    [
+        ("|float  |1            |", "|color3 |1            |", "weight", "type"),
+        ("|0.3          |", "|0.31         |", "roughness", "default"),
+        ("|Nworld       |", "|Tworld       |", "normal", "default"),
+        ("|[0, 1]              |", "|[0, 1)              |", "weight", "accepted values"),
+        ("|zeltner, conty_kulla|", "|zeltner             |", "mode", "accepted values"),
+        ("|`roughness`|", "|`alpha`    |", "roughness", "port"),
+        ("|`roughness`|", "|`alpha`    |", "alpha", "port"),
+    ],
+)
+def test_a_difference_is_noticed(tables, old, new, port, subject):
+    assert old in SHEEN
+    assert differences(SHEEN.replace(old, new), tables)[port] == subject
+
+
+def test_a_node_that_the_library_lacks_is_a_difference(tables):
+    text = SHEEN.replace("sheen_bsdf", "velvet_bsdf")
+    assert [str(each) for each in compare(read_tables(text), tables)] == [
+        "velvet_bsdf: node: the specification has velvet_bsdf, the library none"
+    ]
+
+
+@pytest.mark.parametrize("text", ["no table", "|Channel|\n|-|\n|X|\n", SHEEN + SHEEN, SHEEN[18:]])
+def test_a_text_without_tables_of_ports_is_refused(text):
+    with pytest.raises(DocumentError, match="must"):
+        read_tables(text)
+
+
+def test_the_command_compares(tmp_path, capsys):
+    path = tmp_path / "specification.md"
+    path.write_text(SHEEN)
+    assert main(["doc", "--compare", str(path)]) == 0
+    assert capsys.readouterr().out == "no difference\n"
+    path.write_text(SHEEN.replace("0.3 ", "0.5 "))
+    assert main(["doc", "--compare", str(path), "--json"]) == 1
+    (difference,) = json.loads(capsys.readouterr().out)
+    assert difference["port"] == "roughness" and difference["library"] == "0.3"
+
+
+def test_the_command_fills_a_template(tmp_path):
+    path, output = tmp_path / "template.md", tmp_path / "filled.md"
+    path.write_text("@MX_TABLE_sheen_bsdf@")
+    assert main(["doc", str(path), "--output", str(output)]) == 0
+    assert output.read_text().startswith("|Port ")
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe", b"@MX_TABLE_no@"])
+def test_bad_input_is_one_line(tmp_path, capsys, content):
+    path = tmp_path / "template.md"
+    path.write_bytes(content)
+    assert main(["doc", str(path)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and str(path) in error
