@@ -148,6 +148,21 @@ def test_the_real_renderer_shows_that_stock_materialx_drops_the_flag():
 
 
 @real
+def test_surface_shaders_are_judged_on_the_real_renderer():
+    assert verdicts("eonlib", "open_pbr_surface", ["lobe"])["lobe"] == (PASSED, "")
+    verdict, diagnosis = verdicts("stock", "open_pbr_surface", ["lobe"])["lobe"]
+    assert verdict == FAILED and "qualitative Oren-Nayar (QON)" in diagnosis
+    assert "docs/upstream/genosl_dropped_flag.md" in diagnosis
+
+
+def test_what_a_renderer_warns_of_is_in_the_diagnosis(replay, monkeypatch):
+    monkeypatch.setattr(PlaneProbe, "scenes", (osl.LIGHT,))
+    monkeypatch.setattr(PlaneProbe, "size", osl.LIGHT.size)
+    diagnosis = verdicts("eonlib", EON, ["lambert"])["lambert"][1]  # the picture is of roughness 1
+    assert diagnosis.endswith(osl.facts()["warning"])
+
+
+@real
 def test_the_functions_of_eonlib_are_the_models_in_testshade():
     keys = [check.key for check in FUNCTION_CHECKS]
     found = verdicts("eonlib", "shader twins", keys)

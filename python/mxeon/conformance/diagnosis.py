@@ -9,9 +9,9 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from mxeon.conformance.checks.batch import FEW, Array, Batch
-from mxeon.conformance.checks.measures import Case, albedo_cases, value_cases
+from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
 from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.checks.tolerances import ALBEDOS, VALUES, Tolerance
+from mxeon.conformance.checks.tolerances import ALBEDOS, LOBES, VALUES, Tolerance
 from mxeon.conformance.faults import DIRECT, ENVIRONMENT, Fault, scaled_by
 from mxeon.conformance.regions import Mask, smallest
 from mxeon.models import table as reference
@@ -65,7 +65,9 @@ def of_value(probe: Any) -> Diagnosis:
     """The explanation of the probe's values for pairs of directions."""
     cases = list(value_cases(probe))
     rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
-    return _explained(probe, cases, rows.values(), DIRECT, Batch.expected, VALUES[probe.kind])
+    return _explained(
+        probe, cases, rows.values(), DIRECT, Batch.expected, (VALUES | LOBES)[probe.kind]
+    )
 
 
 @lru_cache(maxsize=2)
@@ -89,23 +91,28 @@ def _explained(
     if unbounded:
         return Diagnosis(unbounded)
     short = [Case(batch.first(FEW), *(each[:FEW] for each in rest)) for batch, *rest in cases]
-    models = {row.title: _distance(short, row, Fault(""), output) for row in rows}
+    models = {row.title: _distance(short, row, Fault(""), output, tolerance) for row in rows}
     own = reference.model(probe.subject.model)
     ranking = sorted(models.items(), key=lambda item: item[1])
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         faults = (*faults, scaled_by(_factor(short)))
-        distances = {fault.text: _distance(short, own, fault, output) for fault in faults}
+        distances = {
+            fault.text: _distance(short, own, fault, output, tolerance) for fault in faults
+        }
         text = _fault(distances, models, own.title, tolerance.value)
         if text:
             return Diagnosis(text, models)
     return Diagnosis(_model(probe, cases, ranking, tolerance), models)
 
 
-def _distance(cases: Sequence[Case], row: Model, fault: Fault, output: Output) -> float:
+def _distance(
+    cases: Sequence[Case], row: Model, fault: Fault, output: Output, tolerance: Tolerance
+) -> float:
     """Root-mean-square distance of the measured values from those of a model with a fault.
 
     A roughness above 1 is left out, which not every model takes; and light up to LIT, where factors of
-    the cosine cannot be told apart.
+    the cosine cannot be told apart. Where the tolerance is that of a mean, values have noise and means
+    are compared.
     """
     errors = []
     for case in cases:
@@ -113,7 +120,8 @@ def _distance(cases: Sequence[Case], row: Model, fault: Fault, output: Output) -
         roughness = np.minimum(batch.inputs["roughness"], row.largest)
         values = fault.values(case.batch, output(batch.altered(roughness=roughness), row.name))
         kept = (case.batch.inputs["roughness"] <= np.float64(1.0)) & (case.batch.wi[:, 2] > LIT)
-        errors.append((case.measured - values)[kept])
+        error = (case.measured - values)[kept]
+        errors.append(error.mean(axis=0, keepdims=True) if tolerance.metric is of_mean else error)
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 
@@ -161,10 +169,10 @@ def _model(
         return sentence(ranking)
     share = 100.0 * np.concatenate(wrong).mean()
     if first == own and share < 50.0:
-        return f"right but for {share:.2g} % of the pairs; most {_worst_place(cases, tolerance)}"
+        return f"right but for {share:.3g} % of the pairs; most {_worst_place(cases, tolerance)}"
     return (
         f"no known model is near: {first} has the distance rms {least:.2g}; "
-        f"{share:.2g} % of the pairs are wrong, most {_worst_place(cases, tolerance)}"
+        f"{share:.3g} % of the pairs are wrong, most {_worst_place(cases, tolerance)}"
     )
 
 

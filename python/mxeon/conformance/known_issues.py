@@ -64,10 +64,22 @@ ISSUES = (
         "genosl_dropped_flag",
         "source",
         (("source", f"{NODE} true, osl"), ("source", f"{NODE} false, osl")),
-        implied=(("closure", f"{NODE} true, osl"),),
+        also=("testrender",),
+        implied=(
+            ("closure", f"{NODE} true, osl"),
+            *((check, f"{NODE} true") for check in ("value", "environment", "furnace")),
+            *(
+                (check, f"{NODE} {flag}")
+                for check in ("flag", "inputs")
+                for flag in ("true", "false")
+            ),
+            ("lobe", "open_pbr_surface"),
+        ),
     ),
-    Issue("openpbr_thin_walled", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
-    Issue("openpbr_thin_walled_tint", "gl", (("lobe", "open_pbr_surface, thin-walled"),)),
+    *(
+        Issue(page, "gl", (("lobe", "open_pbr_surface, thin-walled"),), ("testrender",))
+        for page in ("openpbr_thin_walled", "openpbr_thin_walled_tint")
+    ),
     Issue("genmdl_white_lobe", "source", (("closure", f"{NODE} true, mdl"),)),
     Issue(
         "cycles_rho_cubed",

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results of the table of checks: measurement, control and, on failure, a diagnosis."""
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +15,7 @@ from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
 from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders.hosts.base import RendererWarning
 
 CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
@@ -117,6 +121,20 @@ def not_measured(fields: dict[str, Any], error: NotRun | ShaderError) -> Result:
     return Result(**fields, verdict=FAILED, diagnosis=str(error))
 
 
+@contextmanager
+def renderer_warnings() -> Iterator[list[str]]:
+    """The renderer's own warnings in a block, each once; others are passed on."""
+    notes: list[str] = []
+    with warnings.catch_warnings(record=True) as records:
+        warnings.simplefilter("always", RendererWarning)
+        yield notes
+    for record in records:
+        if not isinstance(record.message, RendererWarning):
+            warnings.warn(record.message, stacklevel=3)
+        elif str(record.message) not in notes:
+            notes.append(str(record.message))
+
+
 def judge_check(check: Check, probe: Any) -> Result:
     """The result of a row of the table for a probe, with its control and a diagnosis."""
     fields = {
@@ -127,10 +145,15 @@ def judge_check(check: Check, probe: Any) -> Result:
         "library": probe.library,
     }
     tolerance = check.tolerances[probe.kind]
+    diagnosis = Diagnosis()
     try:
-        right = check.measure(probe, tolerance.metric)
-        wrong = check.measure(check.control(probe), tolerance.metric)
+        with renderer_warnings() as notes:
+            right = check.measure(probe, tolerance.metric)
+            wrong = check.measure(check.control(probe), tolerance.metric)
+            if right.error > tolerance.value:
+                diagnosis = check.diagnose(probe)
     except (NotRun, ShaderError) as error:
         return not_measured(fields, error)
-    diagnosis = Diagnosis() if right.error <= tolerance.value else check.diagnose(probe)
+    if diagnosis.text:
+        diagnosis = replace(diagnosis, text="; ".join([diagnosis.text, *notes]))
     return judge_measurements(fields, tolerance, right, check.variant, wrong, diagnosis)

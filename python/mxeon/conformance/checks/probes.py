@@ -242,10 +242,20 @@ class PlaneProbe(PictureProbe):
 
     def _points(self, scene: Scene) -> Pairs:
         wo, wi = plane_pairs(scene)
-        return wo, wi, np.ones(len(wo), dtype=bool)
+        return wo, wi, self._mask(wo, wi)
 
     def _radiance(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         return self.host.plane(shader, scene)
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePlaneProbe(SurfaceProbe, PlaneProbe):
+    """The diffuse lobe of a surface shader on a plane."""
+
+    kind: ClassVar[str] = "plane lobes"
+
+    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
+        return PictureProbe._shader(self, inputs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,6 +276,13 @@ PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "pictures": PictureProbe,
     "planes": PlaneProbe,
     "native": NativeProbe,
+}
+
+
+# Of surface shaders, by the class for nodes.
+SURFACE_PROBES: dict[type[PairProbe] | type[PictureProbe], type[SurfaceProbe]] = {
+    PairProbe: SurfaceProbe,
+    PlaneProbe: SurfacePlaneProbe,
 }
 
 

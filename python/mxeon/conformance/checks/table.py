@@ -78,7 +78,7 @@ CHECKS = (
         measures.value,
         "roughness is dropped",
         with_inputs(roughness=0.0),
-        {kind: tolerance for kind, tolerance in tolerances.VALUES.items() if kind != "lobes"},
+        tolerances.VALUES,
     ),
     Check(
         "lobe",
@@ -87,7 +87,7 @@ CHECKS = (
         measures.value,
         "every channel gets the mean color",
         gray,
-        {"lobes": tolerances.LOBE},
+        tolerances.LOBES,
     ),
     Check(
         "environment",

@@ -207,5 +207,6 @@ CYCLES_NOISE = Tolerance(
 )
 
 # By kind of probe: those of a value, and of an albedo.
-VALUES = {"pairs": VALUE, "pictures": CYCLES_RAY, "planes": TESTRENDER, "lobes": LOBE}
+VALUES = {"pairs": VALUE, "pictures": CYCLES_RAY, "planes": TESTRENDER}
+LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER}
 ALBEDOS = {"pairs": ENVIRONMENT, "pictures": CYCLES_NOISE, "planes": TESTRENDER_NOISE}

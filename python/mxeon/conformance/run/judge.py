@@ -13,7 +13,12 @@ from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
-from mxeon.conformance.checks.probes import PROBES, PairProbe, PictureProbe, SurfaceProbe
+from mxeon.conformance.checks.probes import (
+    PROBES,
+    SURFACE_PROBES,
+    PairProbe,
+    PictureProbe,
+)
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_texts
 from mxeon.conformance.known_issues import with_page
@@ -155,8 +160,8 @@ def _with_pages(findings: Findings) -> Findings:
 
 def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
     """The probe of a subject on a host."""
+    probe = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}
     if title in surfaces:
-        return SurfaceProbe(host, surfaces[title], library)
-    subject = next(row for row in SUBJECTS + NATIVE if row.title == title)
-    return PROBES[host_row(host.name).probe](host, subject, library)
+        return SURFACE_PROBES[probe](host, surfaces[title], library)
+    return probe(host, next(row for row in SUBJECTS + NATIVE if row.title == title), library)

@@ -20,7 +20,12 @@ import mxeon
 from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
-from mxeon.conformance.checks.probes import NativeProbe, PairProbe, SurfaceProbe, probe_type
+from mxeon.conformance.checks.probes import (
+    SURFACE_PROBES,
+    NativeProbe,
+    PairProbe,
+    probe_type,
+)
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import Curve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
@@ -200,7 +205,7 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
     if row.surfaces:
         for surface in SURFACES:
             if (library if library in LIBRARIES else "eonlib") in (surface.libraries or LIBRARIES):
-                yield from _checks_of(surface, SurfaceProbe.kind, host, library)
+                yield from _checks_of(surface, SURFACE_PROBES[probe].kind, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
 

@@ -70,7 +70,7 @@ HOSTS = (
         front_lit=("qon",),
     ),
     Row("cycles-native", "osl", "mxeon.shaders.hosts.cycles.native", "native"),
-    Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes"),
+    Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
     Row(
