@@ -138,7 +138,8 @@ function render(program, job, data) {
     const target = gl.createRenderbuffer();
     gl.bindRenderbuffer(gl.RENDERBUFFER, target);
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA32F, ...size);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+    const frame = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, target);
     gl.viewport(0, 0, ...size);
     gl.useProgram(program);
@@ -154,6 +155,7 @@ function render(program, job, data) {
     const pixels = new Float32Array(4 * size[0] * size[1]);
     gl.readPixels(0, 0, ...size, gl.RGBA, gl.FLOAT, pixels);
     bound.forEach((texture) => gl.deleteTexture(texture));
+    gl.deleteFramebuffer(frame); // and nothing else draws into what is gone
     gl.deleteRenderbuffer(target);
     return pixels;
 }
