@@ -2,6 +2,7 @@
 """Shader functions as text, in GLSL and in OSL, and their signatures."""
 
 import re
+from functools import lru_cache
 
 from mxeon.errors import InputError
 from mxeon.shaders.library import data_folder
@@ -33,7 +34,7 @@ def source(language: str, stem: str = ALL) -> str:
 
 def names(language: str) -> tuple[str, ...]:
     """Names of all shader functions of a language."""
-    return tuple(_parameters(language))
+    return tuple(_parameters(source(language)))
 
 
 def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
@@ -55,13 +56,14 @@ def signature(language: str, function: str) -> tuple[tuple[str, str], ...]:
     ValueError
         If there is no such function; lists the known ones.
     """
-    parameters = _parameters(language)
+    parameters = _parameters(source(language))
     if function not in parameters:
         raise InputError(f"function must be one of {', '.join(parameters)}; got {function!r}")
     pairs = (each.rpartition(" ") for each in parameters[function].split(", "))
     return tuple((kind, name) for kind, _, name in pairs)
 
 
-def _parameters(language: str) -> dict[str, str]:
-    """Text of the parameters of each function, by its name."""
-    return dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", source(language), re.MULTILINE))
+@lru_cache(maxsize=4)
+def _parameters(text: str) -> dict[str, str]:
+    """Text of the parameters of each function of a source, by its name."""
+    return dict(re.findall(r"^\w+ (\w+)\(([^)]*)\)$", text, re.MULTILINE))
