@@ -195,6 +195,10 @@ class Host(base.Host):
             pixels = self._render(Path(folder), text, **frame)
         return pixels.reshape(-1, 3)[:count]
 
+    def forget(self) -> None:
+        """Forget the pictures that are kept."""
+        self._picture.cache_clear()
+
     def _rendered(
         self,
         scene: Scene,
