@@ -16,14 +16,15 @@ from pathlib import Path
 from benchmarks import page, record
 from mxeon.errors import NotRun
 
-GROUPS = ("shaders", "noise", "materials", "cycles", "models", "tool")
+GROUPS = ("shaders", "noise", "materials", "cycles", "models", "tool", "check")
 QUICK = {
     "shaders": {"rounds": 5},
     "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"rounds": 3, "size": 256},
     "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
-    "tool": {"rounds": 2, "counts": (1, 10), "documents": 10, "whole": False},
+    "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
+    "check": {"rounds": 1, "field": False},
 }
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 

@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as command
-from benchmarks import cycles, lights, materials, models, noise, page, record, shaders, tool
+from benchmarks import check, cycles, lights, materials, models, noise, page, record, shaders, tool
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
 from mxeon.models import eon_brdf
 from mxeon.models.sampling import SAMPLERS
+from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 
 
@@ -62,7 +63,17 @@ def test_timed_models_give_right_values_and_memory_is_seen():
 
 def test_timed_generation_gives_the_text_of_the_raw_calls(monkeypatch):
     monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
-    assert_right(tool.measure(rounds=1, counts=(1, 2), documents=1, whole=False))
+    assert_right(tool.measure(rounds=1, counts=(1, 2), documents=1))
+
+
+def test_check_in_a_process_of_its_own_has_time_memory_and_verdicts(gl):
+    group = check.measure(rounds=1, files=(str(examples_folder() / "clay.mtlx"),), field=False)
+    assert_right(group)
+    assert {each.name for each in group.checks} == {check.NONE, check.TWO}
+
+
+def test_check_whose_results_fail_is_wrong(gl):
+    assert check.job(str(examples_folder() / "clay.mtlx"), "--library", "stock").wrong > 0.0
 
 
 def test_compiled_values_and_errors_are_those_of_the_models():
