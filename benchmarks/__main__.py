@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the benchmarks: prints the tables, and writes docs/performance.json and the page from it.
 
-    python -m benchmarks [GROUP ...] [--quick] [--output DIR]
+    python -m benchmarks [GROUP ...] [--quick] [--kind TEXT] [--output DIR]
     python -m benchmarks --page           the page alone, from the JSON that is there
 
 Exit status: 0, or 1 if a value that was timed is wrong. A missed goal is shown and no error.
@@ -16,13 +16,15 @@ from pathlib import Path
 from benchmarks import page, record
 from mxeon.errors import NotRun
 
-GROUPS = ("shaders", "materials", "cycles", "models", "tool")
+GROUPS = ("shaders", "noise", "materials", "cycles", "models", "tool", "check")
 QUICK = {
     "shaders": {"rounds": 5},
+    "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"rounds": 3, "size": 256},
     "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
-    "tool": {"rounds": 2, "counts": (1, 10), "documents": 10, "whole": False},
+    "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
+    "check": {"rounds": 1, "field": False},
 }
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
@@ -32,6 +34,9 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__.splitlines()[0])
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=", ".join(GROUPS))
     parser.add_argument("--quick", action="store_true", help="small sizes, few rounds")
+    parser.add_argument(
+        "--kind", default="", help="kind of machine; its results stand beside others"
+    )
     parser.add_argument("--output", type=Path, default=DOCS, help="folder of JSON and page")
     parser.add_argument("--page", action="store_true", help="make the page alone")
     options = parser.parse_args(arguments)
@@ -50,7 +55,7 @@ def main(arguments=None):
                 print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
                 continue
             print(page.table(found[-1]), flush=True)
-        record.write(file, found)
+        record.write(file, found, options.kind)
     groups = page.write(options.output, file)
     wrong = [each.name for group in groups for each in group.checks if not each.passed]
     if wrong:

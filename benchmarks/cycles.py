@@ -43,7 +43,8 @@ def shader(library):
 
 
 def render(host, generated, size, samples):
-    """The picture of so many samples a pixel."""
+    """The picture of so many samples a pixel, rendered anew."""
+    host.forget()
     usual, cycles.ENVIRONMENT_SAMPLES = cycles.ENVIRONMENT_SAMPLES, samples
     try:
         return host.picture(generated, replace(FURNACE, size=size))

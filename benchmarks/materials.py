@@ -8,7 +8,7 @@ from itertools import count
 import numpy as np
 
 from benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio, scaled
-from mxeon.shaders.hosts import gl, raster
+from mxeon.shaders.hosts import gl, points, raster
 from mxeon.shaders.library import LIBRARIES
 from mxeon.shaders.nodes import (
     FLAG,
@@ -63,7 +63,7 @@ class Frame:
             if name in program:
                 host._texture(raster.WHITE, False).use(location=unit)
                 program[name].value = unit
-        vertices, indices = raster.grid(MESH)
+        vertices, indices = mesh(MESH)
         buffers = [
             (context.buffer(values), f"{values.shape[1]}f", name)
             for name, values in vertices.items()
@@ -84,6 +84,14 @@ class Frame:
         width, height = self._target.size
         pixels = np.frombuffer(self._target.read(components=3, dtype="f4"), np.float32)
         return pixels.reshape(height, width, 3)[::-1]
+
+
+def mesh(size):
+    """Vertices at the pixel centers of a small picture and beyond, and triangles between them."""
+    width = size + 2 * points.MARGIN
+    corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
+    square = corner[:, None] + [0, 1, width, width, 1, width + 1]
+    return points.vertices(size), square.astype("u4")
 
 
 def first_frame(host, generated, numbers):

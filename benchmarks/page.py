@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from benchmarks import record
+from benchmarks import noise_page, record
 
 NOTES = Path(__file__).with_name("notes.md")
 HEAD = """<!-- Made by `python -m benchmarks --page` from performance.json. -->
@@ -42,6 +42,8 @@ def table_1(group):
 
 def table(group):
     """The figures of a group and its worst check, in Markdown."""
+    if group.name == "noise":
+        return noise_page.table(group)
     lines = [f"## {group.title}", "", "| | median | quartiles | goal | |", "|---|---|---|---|---|"]
     for each in group.figures:
         sign = "≥" if each.at_least else "≤"
@@ -92,7 +94,8 @@ def write(folder, file):
         groups.append(group)
         parts += [table(group), *([table_1(group)] if group.name == "shaders" else [])]
         parts.append("Measured on: " + ", ".join(f"{k} {v}" for k, v in machine.items()) + ".\n")
-        for image in plot(group, folder / "images") if group.series else ():
+        plotted = group.series and "kind" not in machine  # another kind has the same curves
+        for image in plot(group, folder / "images") if plotted else ():
             parts.append(f"![{group.title}, {image.stem}](images/{image.name})\n")
     parts.append(NOTES.read_text(encoding="utf-8"))
     (folder / "performance.md").write_text("\n".join(parts), encoding="utf-8")

@@ -8,6 +8,9 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
+import moderngl
+import numpy as np
+
 from benchmarks.rounds import Check, Figure, Group
 
 PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "numba")
@@ -17,6 +20,7 @@ def machine():
     """Hardware and versions that the figures depend on, by name."""
     found = {
         "processor": _processor(),
+        "NumPy's vectors": _vectors(),
         "cores": os.cpu_count(),
         "load before": round(os.getloadavg()[0], 2),
         "system": platform.platform(terse=True),
@@ -24,6 +28,33 @@ def machine():
         "date": datetime.now(UTC).date().isoformat(),
     }
     return found | {name: _version(name) for name in PACKAGES}
+
+
+# Features of processors that NumPy has code for, the widest first, and their width.
+VECTORS = {
+    "AVX512_SKX": "AVX-512, 512 bits",
+    "AVX2": "AVX2, 256 bits",
+    "SVE": "SVE",
+    "ASIMD": "ASIMD, 128 bits",
+    "SSE42": "SSE4.2, 128 bits",
+}
+
+
+def _vectors():
+    """The widest vectors that NumPy uses; NPY_DISABLE_CPU_FEATURES takes some from it."""
+    enabled = np._core._multiarray_umath.__cpu_features__
+    return next((VECTORS[name] for name in VECTORS if enabled.get(name)), "unknown")
+
+
+def _renderer():
+    """OpenGL's device, which for llvmpipe states the width of its vectors."""
+    try:
+        context = moderngl.create_standalone_context(require=430, backend="egl")
+    except Exception:  # moderngl and glcontext raise bare Exception
+        return "none"
+    renderer = context.info["GL_RENDERER"]
+    context.release()
+    return renderer
 
 
 def _processor():
@@ -42,14 +73,17 @@ def _version(name):
 LOAD = machine()["load before"]
 
 
-def write(file, groups):
-    """Write the groups; those of an earlier run that are not among them stay."""
+def write(file, groups, kind=""):
+    """Write the groups; those of an earlier run, or of another kind of machine, stay."""
     kept = {}
     if file.is_file():
         kept = json.loads(file.read_text(encoding="utf-8"))["groups"]
-    setting = machine() | {"load before": LOAD}
+    setting = machine() | {"OpenGL": _renderer(), "load before": LOAD}
+    setting |= {"kind": kind} if kind else {}
     for group in groups:
-        kept[group.name] = asdict(group) | {"machine": setting}
+        title = f"{group.title}; {kind}" if kind else group.title
+        key = f"{group.name}; {kind}" if kind else group.name
+        kept[key] = asdict(group) | {"title": title, "machine": setting}
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(json.dumps({"groups": kept}, indent=1) + "\n", encoding="utf-8")
 

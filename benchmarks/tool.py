@@ -10,19 +10,14 @@ from functools import partial
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
-import numpy as np
 
 from benchmarks.models import peak_memory, reset_memory
 from benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
-from mxeon.conformance.run import check
-from mxeon.errors import NotRun
 from mxeon.shaders.generation import GENERATORS, TARGETS, generate
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import examples_folder, load_library
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 DOCUMENTS = (1, 10, 100, 1000)
-WHOLE = ("gl", "webgl", "vulkan", "slang", "cycles")
 
 
 def _process(*arguments):
@@ -140,39 +135,10 @@ def loading(rounds):
     ]
 
 
-def checking(host, workers):
-    """Time of the whole check of the bundled examples, and what of it did not pass."""
-    start = time.perf_counter()
-    run = check(hosts=(host,), workers=workers)
-    seconds = time.perf_counter() - start
-    wrong = sum(result.verdict == "failed" for result in run.results) + len(run.errors)
-    passed = sum(result.verdict == "passed" for result in run.results)
-    name = f"whole check, bundled examples, {host}, {workers or 'no'} workers"
-    return figure(name, "s", [seconds]), Check(name, float(wrong) if passed else np.inf, 0.0)
-
-
-def whole_checks():
-    """`checking` on every host that can run here, with two workers, and on gl without."""
-    found = [checking("gl", 0)] + [checking(host, 2) for host in WHOLE if runs(host)]
-    return [list(each) for each in zip(*found, strict=True)]
-
-
-def runs(host):
-    """Whether a host can run here."""
-    try:
-        open_host(host).close()
-    except NotRun:
-        return False
-    return True
-
-
-def measure(rounds=5, counts=DOCUMENTS, documents=100, whole=True):
+def measure(rounds=5, counts=DOCUMENTS, documents=100):
     """The `Group` of all that."""
     with unwarned():
         figures, checks = generating(rounds, documents)
     grown, series = growing(counts)
     figures = starting(4 * rounds) + loading(rounds) + figures + grown
-    if whole:
-        found, right = whole_checks()
-        figures, checks = figures + found, checks + right
     return Group("tool", "The tool", tuple(figures), tuple(checks), series)

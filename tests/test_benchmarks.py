@@ -5,8 +5,11 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as command
-from benchmarks import cycles, materials, models, page, record, shaders, tool
+from benchmarks import check, cycles, lights, materials, models, noise, page, record, shaders, tool
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
+from mxeon.models import eon_brdf
+from mxeon.models.sampling import SAMPLERS
+from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 
 
@@ -60,7 +63,17 @@ def test_timed_models_give_right_values_and_memory_is_seen():
 
 def test_timed_generation_gives_the_text_of_the_raw_calls(monkeypatch):
     monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
-    assert_right(tool.measure(rounds=1, counts=(1, 2), documents=1, whole=False))
+    assert_right(tool.measure(rounds=1, counts=(1, 2), documents=1))
+
+
+def test_check_in_a_process_of_its_own_has_time_memory_and_verdicts(gl):
+    group = check.measure(rounds=1, files=(str(examples_folder() / "clay.mtlx"),), field=False)
+    assert_right(group)
+    assert {each.name for each in group.checks} == {check.NONE, check.TWO}
+
+
+def test_check_whose_results_fail_is_wrong(gl):
+    assert check.job(str(examples_folder() / "clay.mtlx"), "--library", "stock").wrong > 0.0
 
 
 def test_compiled_values_and_errors_are_those_of_the_models():
@@ -135,3 +148,68 @@ def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_sha
     for pairs, channels in ((0, 3), (1, 3), (5, 2), (5, 3)):
         rho, r = np.full((pairs, channels), 0.5), np.full(pairs, 0.5)
         assert compiled.eon_brdf(up[:pairs], up[:pairs], rho, r).shape == (pairs, channels)
+
+
+NORMAL = np.array([-0.3, 0.4, np.sqrt(0.75)])  # of a pixel that all these lights reach
+PICKED = ("overcast sky", "half space", "window", "horizon band", "retro lamp")
+SAMPLES = 50_000
+ERRORS = 4.0  # standard errors: by chance, one of the 15 variances exceeds them in 1 of 1000 seeds
+
+
+def radiance(title, wi):
+    """Radiance of one of PICKED from directions of the world, by its description."""
+    x, y, z = wi.T
+    ahead = 0.6 * z - 0.8 * x
+    across = np.maximum(np.abs(0.6 * x + 0.8 * z), np.abs(y))
+    return {
+        "overcast sky": np.where(y > 0.0, (1.0 + 2.0 * y) / 3.0, 0.0),
+        "half space": 1.0 * (x > 0.0),
+        "window": 1.0 * (across < np.tan(np.radians(15.0)) * ahead),
+        "horizon band": 1.0 * ((y > 0.0) & (y < np.sin(np.radians(10.0)))),
+        "retro lamp": 1.0 * (z > np.cos(np.radians(10.0))),
+    }[title]
+
+
+@pytest.mark.parametrize("title", PICKED)
+@pytest.mark.parametrize("name", noise.SAMPLERS)
+def test_variance_by_quadrature_is_that_of_random_samples(title, name):
+    light = next(each for each in lights.LIGHTS if each.title == title)
+    quadrature = noise.pixel_variances(light, NORMAL, 1.0)[name]
+    wo = np.repeat(lights.local(NORMAL, np.array([[0.0, 0.0, 1.0]])), SAMPLES, axis=0)
+    sampler = next(each for each in SAMPLERS if each.name == noise.TRACED[name])
+    options = {"rho": noise.REFLECTANCE} if name == "exact" else {}
+    u = np.random.default_rng(7).random((SAMPLES, 2))
+    wi, pdf = sampler.sample(wo, u, np.ones(SAMPLES), **options)
+    value = eon_brdf(wo, wi, noise.REFLECTANCE, 1.0)[:, 0] * wi[:, 2] / pdf
+    value = value * radiance(title, wi @ lights.local(NORMAL, np.eye(3)).T)
+    squares = (value - value.mean()) ** 2
+    error = squares.std() / np.sqrt(SAMPLES)
+    assert abs(quadrature - squares.mean()) <= ERRORS * error
+
+
+@pytest.mark.parametrize("light", lights.LIGHTS, ids=lambda light: light.title)
+def test_density_of_a_light_integrates_to_one(light):
+    # The sun takes its solid angle from the even sky, 2 pi (1 - cos) of 4 pi.
+    assert abs(light.pdf @ light.solid_angle - 1.0) <= 1.0 - lights.SUN
+
+
+def test_noise_under_a_uniform_light_is_all_but_gone_by_exact_sampling():
+    uniform = noise.variances(lights.LIGHTS[0], lights.points(rings=3, spokes=4))
+    # What is left is the error of the quadrature, 1 / 8192 of the squared mean at most.
+    assert uniform["exact"] < 1.0 / len(lights.LIGHTS[0].wi)
+    assert uniform["exact"] < uniform["CLTC"] < uniform["cosine"]
+
+
+def test_equal_noise_times_are_relative_to_the_best_sampler_alone(gl):
+    group = noise.measure(rounds=1, invocations=256, calls=4, size=16, pictures=2, spokes=2)
+    found = {each.name: each.median for each in group.figures}
+    for light in (*(each.title for each in lights.LIGHTS), noise.SCENE):
+        assert min(found[f"{noise.PATHS}: {light}: {name}"] for name in noise.SAMPLERS) == 1.0
+    assert "| uniform | > 100 |" in page.table(group)
+
+
+def test_results_of_two_kinds_of_machine_stand_beside_each_other(tmp_path):
+    for kind in ("", "narrow"):
+        record.write(tmp_path / "performance.json", [Group("tool", "The tool", series={})], kind)
+    titles = [group.title for group, _ in record.read(tmp_path / "performance.json")]
+    assert titles == ["The tool", "The tool; narrow"]

@@ -270,3 +270,23 @@ def test_nothing_is_left_behind(sources, host):
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
     assert not log.exists()
+
+
+def test_a_picture_that_was_rendered_is_kept_until_it_is_forgotten(host, monkeypatch):
+    shader, asked, ask = osl(eon((0.5, 0.5, 0.5), 0.5)), [], host.worker.ask
+    monkeypatch.setattr(host.worker, "ask", lambda **request: asked.append(1) or ask(**request))
+    first, second = host.picture(shader, SMALL), host.picture(shader, SMALL)
+    assert len(asked) == 1 and not second.flags.writeable
+    host.forget()
+    third = host.picture(shader, SMALL)
+    assert len(asked) == 2
+    assert np.array_equal(first, second) and np.array_equal(first, third)
+
+
+def test_nothing_of_an_earlier_picture_stays_in_the_scene(host):
+    shader = osl(eon((0.5, 0.5, 0.5), 0.5))
+    alone = host.picture(shader, SMALL)
+    host.picture(shader, replace(FURNACE, size=16))
+    host.picture(shader, LIGHTS[1])
+    host.forget()
+    assert np.array_equal(host.picture(shader, SMALL), alone)

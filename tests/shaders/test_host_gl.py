@@ -187,3 +187,17 @@ def test_another_context_of_the_process_is_not_in_the_way(gl):
     other = moderngl.create_standalone_context(require=430, backend="egl")
     other.release()
     np.testing.assert_array_equal(gl.call("fon_a", np.array([0.5])), before)
+
+
+def test_a_picture_of_odd_size_is_the_models(gl, reference):
+    odd = replace(SCENES[1], size=SIZE + 1)
+    image, expected = (host.picture(shader(LOBES["eon"]), odd) for host in (gl, reference))
+    error = np.abs(image - expected).max(axis=2) * sphere(odd.size).normal[..., 2]
+    assert expected.any() and error.max() <= PICTURE
+
+
+def test_points_of_a_picture_are_captured_once_for_all_its_lights(gl):
+    gl._points.cache_clear()
+    for scene in SCENES:
+        picture(gl, LOBES["eon"], scene)
+    assert gl._points.cache_info().misses == 1

@@ -3,6 +3,7 @@
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 
 from mxeon.errors import InputError, ShaderError
@@ -86,6 +87,7 @@ def parameters(text: str, function: str) -> tuple[tuple[str, str], ...]:
     return known[function]
 
 
+@lru_cache(maxsize=4)
 def signatures(text: str) -> Mapping[str, tuple[tuple[str, str], ...]]:
     """Parameter types and names of each function that a text defines, in order."""
     return {match[1]: _parameters(match[2]) for match in SIGNATURE.finditer(text)}

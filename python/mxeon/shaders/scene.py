@@ -143,3 +143,12 @@ def local_directions(
     local = axes @ np.asarray(direction)
     unit: NDArray[np.float64] = local / np.linalg.norm(local, axis=1, keepdims=True)
     return unit
+
+
+@lru_cache(maxsize=16)
+def sphere_directions(size: int, direction: tuple[float, float, float]) -> NDArray[np.float64]:
+    """A direction in the frames of the visible points of the sphere, row after row, (N, 3)."""
+    points = sphere(size)
+    local = local_directions(points.normal[points.mask], direction)
+    local.flags.writeable = False  # shared by all callers
+    return local

@@ -16,7 +16,7 @@ from mxeon.shaders import hosts
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
+from mxeon.shaders.scene import VIEW, Scene, sphere, sphere_directions
 
 # Any target will do: the document behind the shader is what is evaluated.
 ROW = hosts.Row("reference", target="glsl", module=__name__)
@@ -43,8 +43,8 @@ class Host(base.Host):
         points = sphere(scene.size)
         normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
         if scene.light is not None:
-            wi = local_directions(normal, scene.light)
-            lobe = _lit(local_directions(normal, VIEW), wi, np.pi)
+            wo, wi = (sphere_directions(scene.size, each) for each in (VIEW, scene.light))
+            lobe = _lit(wo, wi, np.pi)
         elif isinstance(scene.environment, float):
             lobe = _furnace(normal[:, 2], scene.environment)
         else:

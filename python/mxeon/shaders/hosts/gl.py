@@ -14,11 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts import base, fragment, raster
+from mxeon.shaders.hosts import base, fragment, points, raster
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import Scene
 
 PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
+POINTS = 4  # textures of points that are kept: most materials have the same vertex stage
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -68,6 +69,7 @@ class Host(base.Host):
             ) from None
         self._context.gc_mode = "context_gc"
         self._program = lru_cache(maxsize=PROGRAMS)(partial(_program, self._context))
+        self._points = lru_cache(maxsize=POINTS)(partial(_points, self._context))
 
     @_current
     def identity(self) -> Identity:
@@ -78,11 +80,13 @@ class Host(base.Host):
     @_current
     def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         """Picture of the sphere; see `mxeon.shaders.hosts.base.Host`."""
-        program = self._program(shader.stages["vertex"], shader.stages["pixel"])
+        program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
         _set(program, raster.inputs(shader) | raster.light(scene))
-        size = scene.size
-        image = self._draw(program, raster.textures(shader, scene), raster.grid(size), (size, size))
-        return raster.picture(image, size)
+        captured, size = points.outputs(shader), scene.size
+        textures = self._textures(program, raster.textures(shader, scene))
+        if captured:
+            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
+        return raster.picture(self._draw(program, textures, (size, size)), size)
 
     @_current
     def evaluate(
@@ -136,9 +140,7 @@ class Host(base.Host):
         context = self._context
         program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
         _set(program, uniforms)
-        vertices, indices = raster.triangle()
-        corners = [(context.buffer(vertices["i_position"]), "3f", "i_position")]
-        triangle = context.vertex_array(program, corners, context.buffer(indices))
+        triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
         frame.clear()
@@ -157,6 +159,7 @@ class Host(base.Host):
     def close(self) -> None:
         """Release the context, and all that is in it."""
         self._program.cache_clear()
+        self._points.cache_clear()
         self._context.release()
 
     def _evaluate(
@@ -171,13 +174,13 @@ class Host(base.Host):
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         textures |= raster.environment(irradiance)
         program = self._program(vertex, pixel)
-        return self._draw(program, textures, raster.triangle(), size).reshape(-1, 3)[:count]
+        frame = self._draw(program, self._textures(program, textures), size)
+        return frame.reshape(-1, 3)[:count]
 
     def _draw(
         self,
         program: moderngl.Program,
-        textures: Mapping[str, NDArray[Any]],
-        mesh: raster.Mesh,
+        textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
         size: tuple[int, int],
     ) -> NDArray[Any]:
         """One frame as float32 (height, width, 3), row 0 at the bottom."""
@@ -185,20 +188,22 @@ class Host(base.Host):
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
         frame.clear()
-        used = [name for name in textures if name in program]
-        bound = [self._texture(textures[name], name == "u_envRadiance") for name in used]
-        for unit, (name, texture) in enumerate(zip(used, bound, strict=True)):
+        for unit, (name, texture) in enumerate(textures.items()):
             texture.use(location=unit)
             _set(program, {name: unit})
-        vertices, indices = mesh
-        buffers = [
-            (context.buffer(values), f"{values.shape[1]}f", name)
-            for name, values in vertices.items()
-            if name in program
-        ]
-        context.vertex_array(program, buffers, context.buffer(indices)).render()
+        context.vertex_array(program, _buffers(context, program, raster.TRIANGLE)).render()
         image = np.frombuffer(frame.read(components=3, dtype="f4"), dtype=np.float32)
         return image.reshape(size[1], size[0], 3)
+
+    def _textures(
+        self, program: moderngl.Program, texels: Mapping[str, NDArray[Any]]
+    ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
+        """Textures of the samplers that a program has."""
+        return {
+            name: self._texture(values, name == "u_envRadiance")
+            for name, values in texels.items()
+            if name in program
+        }
 
     def _texture(self, texels: NDArray[Any], mipmaps: bool) -> moderngl.Texture:
         height, width, components = texels.shape
@@ -214,6 +219,33 @@ def _program(context: moderngl.Context, vertex: str, pixel: str) -> moderngl.Pro
         return context.program(vertex_shader=vertex, fragment_shader=pixel)
     except moderngl.Error as error:
         raise ShaderError(f"gl: {str(error).strip()}") from None
+
+
+def _points(
+    context: moderngl.Context, vertex: str, captured: tuple[points.Output, ...], size: int
+) -> moderngl.TextureArray:
+    """Texture of what a vertex stage gives at the points of a picture."""
+    program = context.program(vertex_shader=vertex, varyings=tuple(each.name for each in captured))
+    vertices = points.vertices(size)
+    count = len(vertices["i_position"])
+    stage = context.vertex_array(program, _buffers(context, program, vertices))
+    buffer = context.buffer(reserve=count * points.stride(captured))
+    context.simple_framebuffer((1, 1)).use()  # without a frame, OpenGL draws nothing at all
+    stage.transform(buffer, mode=context.POINTS, vertices=count)
+    texels = points.texels(buffer.read(), captured, size)
+    layers, height, width, _ = texels.shape
+    return context.texture_array((width, height, layers), 4, texels, dtype="f4")
+
+
+def _buffers(
+    context: moderngl.Context, program: moderngl.Program, vertices: Mapping[str, NDArray[Any]]
+) -> list[tuple[moderngl.Buffer, str, str]]:
+    """Buffers of the attributes that a program has."""
+    return [
+        (context.buffer(values), f"{values.shape[1]}f", name)
+        for name, values in vertices.items()
+        if name in program
+    ]
 
 
 def _set(program: moderngl.Program, values: Mapping[str, Any]) -> None:

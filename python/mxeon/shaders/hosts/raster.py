@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames that a rasterizing host draws: one vertex per pixel, at its center.
-
-A pixel of a picture holds the shader's value at an exact point of the sphere, and has neighbors to
-take derivatives from.
-"""
+"""Frames that a rasterizing host draws: uniforms, textures, and one triangle over all pixels."""
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +15,10 @@ from mxeon.shaders.scene import Scene, sphere
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
-# Vertices by attribute, and the indices of their triangles.
-Mesh: TypeAlias = tuple[dict[str, NDArray[np.float32]], NDArray[np.uint32]]
+TRIANGLE = {  # attributes of its three vertices
+    "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
+    "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
+}
 
 
 def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
@@ -75,34 +73,6 @@ def light(scene: Scene) -> dict[str, Any]:
             "u_lightData[0].intensity": np.pi,
         }
     return values
-
-
-def grid(size: int) -> Mesh:
-    """Vertices at the pixel centers, one row more on each side, and triangles between them.
-
-    The triangles that meet in a pixel's vertex surround it, and one of them covers the pixel. A
-    center beside the sphere has the normal of the nearest point of the rim.
-    """
-    points = sphere(size, margin=1)
-    size = len(points.mask)
-    flat = points.normal.reshape(-1, 3)
-    tangent = np.stack([flat[:, 2], np.zeros(len(flat)), -flat[:, 0]], axis=1)
-    vertices = {
-        "i_position": points.position.reshape(-1, 3),
-        "i_normal": flat,
-        "i_tangent": tangent / np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-30),
-        "i_texcoord_0": points.texcoord.reshape(-1, 2),
-    }
-    corner = np.arange(size * size).reshape(size, size)[:-1, :-1].ravel()
-    square = corner[:, None] + [0, 1, size, size, 1, size + 1]
-    return {name: values.astype("f4") for name, values in vertices.items()}, square.astype("u4")
-
-
-def triangle() -> Mesh:
-    """One triangle over the whole frame."""
-    corners = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
-    normals = np.tile(np.array([[0, 0, 1]], dtype="f4"), (3, 1))
-    return {"i_position": corners, "i_normal": normals}, np.arange(3, dtype="u4")
 
 
 def picture(image: NDArray[Any], size: int) -> NDArray[Any]:

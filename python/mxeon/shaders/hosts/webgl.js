@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh over a float32 frame in WebGL2.
+// Float32 frames and captured vertex stages in WebGL2.
 
 const gl = document.createElement("canvas").getContext("webgl2");
 const floats = gl && gl.getExtension("EXT_color_buffer_float");
@@ -21,10 +21,11 @@ function compile(kind, text) {
     return shader;
 }
 
-function link(vertex, pixel) {
+function link(vertex, pixel, outputs = []) {
     const stages = [compile(gl.VERTEX_SHADER, vertex), compile(gl.FRAGMENT_SHADER, pixel)];
     const program = gl.createProgram();
     stages.forEach((stage) => gl.attachShader(program, stage));
+    gl.transformFeedbackVaryings(program, outputs, gl.INTERLEAVED_ATTRIBS);
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
         const logs = stages.map((stage) => gl.getShaderInfoLog(stage));
@@ -34,13 +35,41 @@ function link(vertex, pixel) {
     return program;
 }
 
+// Programs by their texts, the last used last: one serves many frames.
+const programs = new Map();
+const PROGRAMS = 16;
+
+function programOf(vertex, pixel) {
+    const key = vertex + pixel;
+    const program = programs.get(key) || link(vertex, pixel);
+    programs.delete(key);
+    programs.set(key, program);
+    const [oldest] = programs.keys();
+    if (programs.size > PROGRAMS) {
+        gl.deleteProgram(programs.get(oldest));
+        programs.delete(oldest);
+    }
+    return program;
+}
+
 // An array of a job's file.
 function view({ shape, offset }, data, Kind = Float32Array) {
     return new Kind(data, offset, shape.reduce((product, each) => product * each));
 }
 
-// A texture of float32 texels that repeats, without smaller versions of itself.
+// A texture of float32 texels that repeats, without smaller versions of itself; of layers where the
+// array has four dimensions.
 function upload(layout, data) {
+    const texture = gl.createTexture();
+    if (layout.shape.length == 4) {
+        const [depth, height, width] = layout.shape;
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+        const size = [width, height, depth];
+        gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA32F, ...size);
+        const place = [gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, ...size];
+        gl.texSubImage3D(...place, gl.RGBA, gl.FLOAT, view(layout, data));
+        return texture;
+    }
     const [height, width, components] = layout.shape;
     const [inner, outer] = [
         [gl.R32F, gl.RED],
@@ -48,7 +77,6 @@ function upload(layout, data) {
         [gl.RGB32F, gl.RGB],
         [gl.RGBA32F, gl.RGBA],
     ][components - 1];
-    const texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
     const texels = view(layout, data);
     gl.texImage2D(gl.TEXTURE_2D, 0, inner, width, height, 0, outer, gl.FLOAT, texels);
@@ -94,27 +122,24 @@ function setAttributes(program, attributes, data) {
     });
 }
 
-// Draws the triangles, with vertex arrays that are theirs alone.
-function drawMesh(program, { attributes, mesh }, data) {
+// Calls `draw` with vertex arrays that are for it alone.
+function withAttributes(program, attributes, data, draw) {
     const state = gl.createVertexArray();
     gl.bindVertexArray(state);
     const buffers = setAttributes(program, attributes, data);
-    const order = gl.createBuffer();
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, order);
-    const indices = view(mesh.indices, data, Uint32Array);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
-    gl.drawElements(gl.TRIANGLES, indices.length, gl.UNSIGNED_INT, 0);
+    draw();
     gl.deleteVertexArray(state);
-    [...buffers, order].forEach((each) => gl.deleteBuffer(each));
+    buffers.forEach((each) => gl.deleteBuffer(each));
 }
 
 // A frame as RGBA float32, row 0 at the bottom.
 function render(program, job, data) {
-    const { size, uniforms, textures } = job;
+    const { size, uniforms, textures, attributes } = job;
     const target = gl.createRenderbuffer();
     gl.bindRenderbuffer(gl.RENDERBUFFER, target);
     gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA32F, ...size);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+    const frame = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, target);
     gl.viewport(0, 0, ...size);
     gl.useProgram(program);
@@ -126,10 +151,11 @@ function render(program, job, data) {
         return upload(layout, data);
     });
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
-    drawMesh(program, job, data);
+    withAttributes(program, attributes, data, () => gl.drawArrays(gl.TRIANGLES, 0, 3));
     const pixels = new Float32Array(4 * size[0] * size[1]);
     gl.readPixels(0, 0, ...size, gl.RGBA, gl.FLOAT, pixels);
     bound.forEach((texture) => gl.deleteTexture(texture));
+    gl.deleteFramebuffer(frame); // and nothing else draws into what is gone
     gl.deleteRenderbuffer(target);
     return pixels;
 }
@@ -143,18 +169,49 @@ function encode(array) {
     });
 }
 
-// What a job asks for: { pixels }, or { refused } in the compiler's words, or { failed }.
-async function draw(job) {
+// Outputs of a vertex stage, `stride` bytes for each of `count` points, one after the other.
+function feedback(program, { attributes, uniforms, count, stride }, data) {
+    const captured = new Uint8Array(count * stride);
+    const buffer = gl.createBuffer();
+    gl.useProgram(program);
+    setUniforms(program, uniforms);
+    withAttributes(program, attributes, data, () => {
+        gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
+        gl.bufferData(gl.TRANSFORM_FEEDBACK_BUFFER, captured.length, gl.STREAM_READ);
+        gl.enable(gl.RASTERIZER_DISCARD);
+        gl.beginTransformFeedback(gl.POINTS);
+        gl.drawArrays(gl.POINTS, 0, count);
+        gl.endTransformFeedback();
+        gl.disable(gl.RASTERIZER_DISCARD);
+        gl.getBufferSubData(gl.TRANSFORM_FEEDBACK_BUFFER, 0, captured);
+        gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, null);
+    });
+    gl.deleteBuffer(buffer);
+    return captured;
+}
+
+// What `work` makes of a program and the job's arrays: { bytes }, or { refused } in the compiler's
+// words, or { failed }.
+async function answer(makeProgram, work, job) {
     const data = await document.querySelector("input").files[0].arrayBuffer();
     let program;
     try {
-        program = link(job.vertex, job.pixel);
+        program = makeProgram();
     } catch (error) {
         return { refused: error.message };
     }
-    const pixels = render(program, job, data);
-    gl.deleteProgram(program);
+    const bytes = work(program, job, data);
     const code = gl.getError();
     if (code) return { failed: `WebGL error 0x${code.toString(16)}` };
-    return { pixels: await encode(pixels) };
+    return { bytes: await encode(bytes) };
+}
+
+function draw(job) {
+    return answer(() => programOf(job.vertex, job.pixel), render, job);
+}
+
+const EMPTY = "#version 300 es\nvoid main() {}\n";
+
+function capture(job) {
+    return answer(() => link(job.vertex, EMPTY, job.outputs), feedback, job);
 }

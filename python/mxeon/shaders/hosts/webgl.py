@@ -15,6 +15,7 @@ import shutil
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -25,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts import base, fragment, raster
+from mxeon.shaders.hosts import base, fragment, points, raster
 from mxeon.shaders.hosts.base import TURN, Identity
 from mxeon.shaders.scene import Scene
 
@@ -44,6 +45,8 @@ FLAGS = (
 )
 PAGE = "<input type='file'><script>{}</script>"
 IDENTITY = np.eye(4).ravel().tolist()
+VERTEX = fragment.DIALECTS["essl"].vertex
+POINTS = 4  # pictures' points that are kept: most materials have the same vertex stage
 
 # ESSL gives uniforms no initial values.
 UNIFORMS = {
@@ -81,6 +84,7 @@ class Host(base.Host):
         self._program = program()
         self._limit = 1000.0 * limit
         self._page: Any = None
+        self._points = lru_cache(maxsize=POINTS)(self._capture)
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
         try:
@@ -96,12 +100,13 @@ class Host(base.Host):
 
     def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         """Picture of the sphere; see `mxeon.shaders.hosts.base.Host`."""
-        size = scene.size
+        captured, size = points.outputs(shader), scene.size
+        stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         uniforms = UNIFORMS | _inputs(shader) | raster.light(scene)
-        frame = self._draw(
-            shader.stages, uniforms, raster.textures(shader, scene), raster.grid(size), (size, size)
-        )
-        return raster.picture(frame, size)
+        textures = raster.textures(shader, scene)
+        if captured:
+            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
+        return raster.picture(self._draw(stages, uniforms, textures, (size, size)), size)
 
     def evaluate(
         self,
@@ -124,7 +129,7 @@ class Host(base.Host):
         pixel, texels = fragment.function_evaluation(
             source, function, parameters, arguments, self.target
         )
-        return self._evaluate(fragment.DIALECTS[self.target].vertex, pixel, texels)
+        return self._evaluate(VERTEX, pixel, texels)
 
     def close(self) -> None:
         """End the browser; the next request starts another."""
@@ -142,7 +147,7 @@ class Host(base.Host):
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         textures |= raster.environment(irradiance)
         stages = {"vertex": vertex, "pixel": pixel}
-        frame = self._draw(stages, UNIFORMS, textures, raster.triangle(), size)
+        frame = self._draw(stages, UNIFORMS, textures, size)
         return frame.reshape(-1, 3)[:count]
 
     def _draw(
@@ -150,19 +155,43 @@ class Host(base.Host):
         stages: Mapping[str, str],
         uniforms: Mapping[str, Any],
         textures: Mapping[str, NDArray[Any]],
-        mesh: raster.Mesh,
         size: tuple[int, int],
     ) -> NDArray[Any]:
         """One frame as float32 (height, width, 3), row 0 at the bottom."""
-        arrays = {"textures": textures, "attributes": mesh[0], "mesh": {"indices": mesh[1]}}
+        job = {**stages, "size": size, "uniforms": uniforms}
+        arrays = {"textures": textures, "attributes": raster.TRIANGLE}
+        pixels = np.frombuffer(self._bytes("draw", job, arrays), dtype=np.float32)
+        return pixels.reshape(size[1], size[0], 4)[..., :3]
+
+    def _capture(
+        self, vertex: str, captured: tuple[points.Output, ...], size: int
+    ) -> NDArray[np.float32]:
+        """Texels of what a vertex stage gives at the points of a picture."""
+        attributes = points.vertices(size)
+        job = {
+            "vertex": vertex,
+            "outputs": [each.name for each in captured],
+            "count": len(attributes["i_position"]),
+            "stride": points.stride(captured),
+            "uniforms": UNIFORMS,
+        }
+        return points.texels(
+            self._bytes("capture", job, {"attributes": attributes}), captured, size
+        )
+
+    def _bytes(
+        self,
+        function: str,
+        job: Mapping[str, Any],
+        arrays: Mapping[str, Mapping[str, NDArray[Any]]],
+    ) -> bytes:
+        """Bytes that a function of the page makes of a job and arrays."""
         with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
             file = Path(folder, "arrays")
-            job = {**stages, "size": size, "uniforms": uniforms, **_write(file, arrays)}
-            answer = self._ask("draw", job, file)
+            answer = self._ask(function, {**job, **_write(file, arrays)}, file)
         if "refused" in answer:
             raise ShaderError(f"webgl: {answer['refused'].strip()}")
-        pixels = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
-        return pixels.reshape(size[1], size[0], 4)[..., :3]
+        return base64.b64decode(answer["bytes"])
 
     def _ask(
         self, function: str, job: dict[str, Any] | None = None, file: Path | None = None
@@ -231,8 +260,7 @@ def _write(path: Path, groups: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict
         for group, arrays in groups.items():
             layout[group] = {}
             for name, values in arrays.items():
-                kind = np.uint32 if values.dtype == np.uint32 else np.float32
-                data = np.ascontiguousarray(values, dtype=kind)
+                data = np.ascontiguousarray(values, dtype=np.float32)
                 layout[group][name] = {"shape": data.shape, "offset": offset}
                 offset += file.write(data.tobytes())
     return layout

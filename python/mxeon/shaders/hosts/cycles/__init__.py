@@ -8,6 +8,7 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -28,6 +29,9 @@ from mxeon.shaders.scene import Scene, sphere
 
 # Samples per pixel under an environment, 1 being enough under a distant light.
 ENVIRONMENT_SAMPLES = 256
+
+# Pictures that are kept: the checks of a node ask for some of them again.
+PICTURES = 64
 
 # Cycles has no surface coordinates on a point cloud: a block that opens like this gives the globals
 # `u` and `v`, which a generated shader reads, the values of `mxeon.shaders.scene.sphere`.
@@ -78,6 +82,7 @@ class Host(base.Host):
         self._sources = Path(sources or data_folder() / "genosl").resolve()
         self._temporary = TemporaryDirectory(prefix="mxeon-cycles-")
         self.worker = Worker(python, Path(self._temporary.name, "log.txt"), limit)
+        self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def close(self) -> None:
         """End the process and remove the temporary files."""
@@ -120,9 +125,7 @@ class Host(base.Host):
         """
         if isinstance(scene.environment, (str, Path)):
             raise NotRun("cycles: environment must be uniform; got an image")
-        with self._folder() as folder:
-            pixels = self._render(Path(folder), _on_sphere(shader.stages["pixel"]), **_frame(scene))
-        return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+        return self._picture(scene, text=_on_sphere(shader.stages["pixel"]))
 
     def blender_node(self, kind: str, inputs: dict[str, Any], scene: Scene) -> NDArray[Any]:
         """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
@@ -146,11 +149,7 @@ class Host(base.Host):
         NotRun
             If the process fails.
         """
-        with self._folder() as folder:
-            pixels = self._request(
-                Path(folder), native={"kind": kind, "inputs": inputs}, **_frame(scene)
-            )
-        return np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+        return self._picture(scene, kind=kind, inputs=tuple(inputs.items()))
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a function of the OSL sources; see `execute`.
@@ -190,6 +189,28 @@ class Host(base.Host):
             frame = dict(size=size, samples=1, radius=2.0, light=None, environment=None)
             pixels = self._render(Path(folder), text, **frame)
         return pixels.reshape(-1, 3)[:count]
+
+    def forget(self) -> None:
+        """Forget the pictures that are kept."""
+        self._picture.cache_clear()
+
+    def _rendered(
+        self,
+        scene: Scene,
+        text: str = "",
+        kind: str = "",
+        inputs: tuple[tuple[str, Any], ...] = (),
+    ) -> NDArray[Any]:
+        """Picture of the sphere with an OSL shader or a node of Blender's on it; read-only."""
+        with self._folder() as folder:
+            if text:
+                pixels = self._render(Path(folder), text, **_frame(scene))
+            else:
+                native = {"kind": kind, "inputs": dict(inputs)}
+                pixels = self._request(Path(folder), native=native, **_frame(scene))
+        image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+        image.flags.writeable = False  # shared by all callers
+        return image
 
     def _folder(self) -> TemporaryDirectory[str]:
         """Folder for the files of one request."""
