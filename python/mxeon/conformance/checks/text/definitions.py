@@ -101,7 +101,7 @@ def check_definitions(library: str) -> tuple[Result, ...]:
 
 def _definitions(document: mx.Document, node: str) -> list[mx.NodeDef]:
     """Definitions of a category, and the one that has its name but another category."""
-    definitions = document.getMatchingNodeDefs(node)
+    definitions: list[mx.NodeDef] = document.getMatchingNodeDefs(node)
     named = document.getNodeDef(f"ND_{node}")
     return definitions + ([named] if named and named.getNodeString() != node else [])
 
