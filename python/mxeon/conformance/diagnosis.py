@@ -155,7 +155,7 @@ def _model(
 ) -> str:
     """The nearest model, the region that is wrong, or that no model is near."""
     own = reference.model(probe.subject.model).title
-    errors = (tolerance.metric(case.measured, case.expected) for case in cases)
+    errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     wrong: list[Mask] = [error > tolerance.value for error in errors]
     (first, least), (_, rival) = ranking[:2]
     if first != own and least <= max(tolerance.value, SAME * rival):
@@ -163,7 +163,7 @@ def _model(
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
         return place or "every value is right by itself"
-    if first == own and least <= INEXACT * tolerance.value:
+    if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
         return f"the model is right, {own} (rms {least:.2g}), but not as exact as it has to be"
     if first != own and least <= NEAR * rival:
         return sentence(ranking)

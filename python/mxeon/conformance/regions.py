@@ -91,6 +91,8 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with the largest roughness", roughness >= 0.999999 * roughness.max()
     yield "with a roughness above 1", roughness > 1.0
     yield "with a roughness above 0", roughness > 0.0
+    yield "with a white color", (color == 1.0).all(axis=1)
+    yield "with a gray color", (color == color[:, :1]).all(axis=1)
     yield "with a color channel at 0", _any(color == 0.0)
     yield "with a color channel in [0, 0.001]", _any(color <= 1e-3)
     yield "with a color channel at 1", _any(color == 1.0)

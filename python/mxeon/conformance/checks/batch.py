@@ -110,11 +110,18 @@ def directions(rng: np.random.Generator, count: int) -> Array:
 
 
 def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
-    """Random colors and roughnesses; an eighth of each lies on either end of its range."""
+    """Random colors and roughnesses; an eighth of each lies on either end of its range.
+
+    The last colors are gray.
+    """
     color, roughness = rng.random((count, 3)), rng.random(count)
     color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
+    color[-(count // 16) :] = color[-(count // 16) :, :1]
     roughness = row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
-    roughness = np.minimum(roughness.astype(np.float32), np.nextafter(np.float32(row.largest), 0))
+    largest = np.float32(row.largest)
+    if float(largest) > row.largest:
+        largest = np.nextafter(largest, np.float32(0.0))
+    roughness = np.minimum(roughness.astype(np.float32), largest)
     return {"color": rounded(color.T), "roughness": roughness.astype(np.float64)}
 
 
