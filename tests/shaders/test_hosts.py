@@ -43,7 +43,7 @@ def test_the_generated_bsdf_is_the_model(probe):
 
 
 def test_the_environment_branch_is_the_albedo(probe):
-    batch = probe.few[0].first(COUNT)
+    batch = probe.few[0].first(COUNT).altered(weight=1.0)
     row = reference.model(probe.subject.model)
     expected = row.albedo_dir(batch.wo[:, 2], batch.inputs["color"], batch.inputs["roughness"])
     np.testing.assert_allclose(probe.albedo(batch), expected, rtol=0.0, atol=TWIN_ALBEDO)
@@ -51,6 +51,7 @@ def test_the_environment_branch_is_the_albedo(probe):
 
 def test_a_function_of_the_twins_is_the_model(host):
     batch = PairProbe(host, SUBJECTS[0], "eonlib").few[0].first(COUNT)
+    batch = batch.altered(weight=1.0, occlusion=1.0)
     rho, roughness = batch.inputs["color"], batch.inputs["roughness"]
     brdf = host.call("eon_brdf", batch.wo, batch.wi, rho, roughness)
     np.testing.assert_allclose(
