@@ -75,7 +75,7 @@ class Judge:
         self._policy = policy
         self._hosts: dict[str, Host | NotRun] = {}  # or the reason why there is none
         self._reference = Reference()
-        self._probe = lru_cache(maxsize=1)(_probe)  # a million pairs each
+        self._probe = lru_cache(maxsize=1)(_probe)  # its pairs take some memory
 
     def work(self, task: Task) -> Findings:
         """Findings of a task.
