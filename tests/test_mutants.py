@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mutation bench: its table fits the sources, and a slice of it is noticed by the checks meant."""
 
+import json
 from contextlib import closing
 
 import pytest
@@ -60,6 +61,12 @@ def test_every_mutant_has_a_reason():
 def test_every_equivalent_mutant_has_a_proof():
     proofs = {mutant.name: mutant.reason for mutant in TABLE if mutant.equivalent}
     assert proofs and [name for name, proof in proofs.items() if not proof.endswith(".")] == []
+
+
+def test_the_page_is_of_this_table_and_has_no_survivor():
+    trials = json.loads((trial.ROOT / "docs" / "mutants.json").read_text())
+    verdicts = {name: found["verdict"] == trial.KILLED for name, found in trials.items()}
+    assert verdicts == {mutant.name: not mutant.equivalent for mutant in TABLE}
 
 
 @pytest.mark.parametrize(("name", "check"), SLICE.items())

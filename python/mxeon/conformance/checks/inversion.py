@@ -18,7 +18,7 @@ from mxeon.conformance.checks.evaluate import judge_measurements, not_measured
 from mxeon.conformance.checks.measures import Measurement, absolute
 from mxeon.conformance.checks.text.syntax import braces
 from mxeon.conformance.checks.tolerances import INVERSION, ROUND_TRIP
-from mxeon.conformance.diagnosis import Diagnosis, sentence
+from mxeon.conformance.diagnosis import SAME, Diagnosis, sentence
 from mxeon.conformance.results import Result
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models import albedo, inversion
@@ -164,7 +164,7 @@ def _worst(probe: InversionProbe, values: Array, errors: Array) -> Measurement:
 
 
 def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
-    """The inversion that is nearest; the color itself is one."""
+    """The other inversion that the values are, if any; the color itself is one."""
     color, roughness = probe.inputs
     known = {"the color itself": color} | {
         name: function(color, roughness)
@@ -176,7 +176,12 @@ def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
     distances = {
         name: float(np.sqrt(np.mean((values - each) ** 2))) for name, each in known.items()
     }
-    return Diagnosis(sentence(sorted(distances.items(), key=lambda item: item[1])), distances)
+    ranking = sorted(distances.items(), key=lambda item: item[1])
+    (first, least), (_, rival) = ranking[:2]
+    if first != probe.node and least <= SAME * rival:
+        return Diagnosis(sentence(ranking), distances)
+    text = f"off by rms {distances[probe.node]:.2g}; no other known function is near"
+    return Diagnosis(text, distances)
 
 
 def _functions(text: str, use: str) -> str:
