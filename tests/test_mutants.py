@@ -31,7 +31,7 @@ SLICE = {
     "stock node: flag on by default": "definition",
 }
 # The tasks that answer several checks.
-TASKS = dict.fromkeys(("closure", "languages", "definition"), SOURCE) | {"densities": "twins"}
+TASKS = dict.fromkeys(("closure", "languages"), SOURCE) | {"densities": "twins"}
 
 
 @pytest.fixture(scope="module")

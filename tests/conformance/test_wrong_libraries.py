@@ -319,3 +319,12 @@ def test_shaders_are_generated_where_no_picture_is_made():
     run = check([examples_folder() / "plaster.mtlx"], ["msl"])
     (result,) = [each for each in run.results if each.check == "document"]
     assert result.verdict == PASSED and result.control.caught
+
+
+def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_refused(copy):
+    old = 'energy_compensation" type="boolean"'
+    library = copy(DEFINITIONS, old, old.replace("tion", "ton"))
+    wrong = [row for row in check([], ["gl"], [library]).results if row.verdict == FAILED]
+    assert wrong[0].check == "definition"
+    assert "there is no input energy_compensation" in wrong[0].diagnosis
+    assert any("the library refuses a document of the node" in row.diagnosis for row in wrong[1:])

@@ -20,12 +20,13 @@ from mxeon.conformance.checks.probes import (
     PictureProbe,
 )
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.checks.text import check_texts
+from mxeon.conformance.checks.text import check_definitions, check_texts
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.results import NOT_RUN, Result
+from mxeon.conformance.results import FAILED, NOT_RUN, Result
 from mxeon.conformance.run.plan import (
     CURVE,
+    DEFINITION,
     DOCUMENT,
     FUNCTIONS,
     HOST,
@@ -44,6 +45,7 @@ from mxeon.shaders.hosts.base import Host
 ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {check.key: check.claim for check in CHECKS} | {
     HOST: "The host executes shaders here.",
+    DEFINITION: "The nodes are defined as their specification has them.",
     SOURCE: "The generated text was checked.",
     DOCUMENT: DOCUMENT_CLAIM,
     INVERSION: "The node is the NumPy function of its name.",
@@ -58,6 +60,21 @@ def not_run(task: Task, reason: str) -> Findings:
     claim = CLAIMS[task.check]
     result = Result(
         task.check, claim, task.subject, task.host, task.library, NOT_RUN, reason=reason
+    )
+    return Findings(results=(result,))
+
+
+def refused(task: Task, reason: str) -> Findings:
+    """Findings of a task whose document, which is ours, the library makes invalid."""
+    meaning = f"the library refuses a document of the node: {reason}"
+    result = Result(
+        task.check,
+        CLAIMS[task.check],
+        task.subject,
+        task.host,
+        task.library,
+        FAILED,
+        diagnosis=meaning,
     )
     return Findings(results=(result,))
 
@@ -98,6 +115,8 @@ class Judge:
             return _with_pages(Findings(**self._findings(task)))
         except InterfaceError as reason:
             return not_run(task, str(reason))
+        except DocumentError as reason:
+            return refused(task, str(reason))
 
     def close(self) -> None:
         """Close the hosts."""
@@ -118,6 +137,8 @@ class Judge:
         return host
 
     def _findings(self, task: Task) -> dict[str, Any]:
+        if task.check == DEFINITION:
+            return {"results": check_definitions(task.library)}
         if task.check == SOURCE:
             return {"results": check_texts(subjects(task.library), task.library)}
         if task.check == DOCUMENT:

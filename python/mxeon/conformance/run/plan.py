@@ -43,7 +43,8 @@ from mxeon.shaders.library import (
 )
 from mxeon.shaders.nodes import INVERSIONS
 
-HOST, SOURCE, CURVE, PICTURE = "host", "source", "curve", "picture"
+HOST, DEFINITION, SOURCE = "host", "definition", "source"
+CURVE, PICTURE = "curve", "picture"
 FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
 TWINS, EVERY_NODE = functions.SUBJECT, "every node"
 
@@ -55,7 +56,7 @@ class Task:
     Attributes
     ----------
     check : str
-        Key of a row of `mxeon.conformance.checks.table`, or HOST, SOURCE, CURVE,
+        Key of a row of `mxeon.conformance.checks.table`, or HOST, DEFINITION, SOURCE, CURVE,
         PICTURE, FUNCTIONS, INVERSION or DOCUMENT.
     subject : str
         Title of a node, path of a document, or TWINS.
@@ -157,6 +158,7 @@ def make_plan(
     for library in libraries:
         paths = [Path(file) for file in files] or _examples(library)
         documents += map(str, paths)
+        tasks.append(Task(DEFINITION, EVERY_NODE, SOURCE, library))
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
         for host in hosts:
             if files and not host_row(host).scenes:

@@ -10,9 +10,11 @@ from mxeon.conformance.checks.text.languages import check_languages
 from mxeon.conformance.checks.text.sources import check_sources
 from mxeon.conformance.results import Result
 
+__all__ = ["check_definitions", "check_texts"]
+
 
 def check_texts(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]:
-    """Results of all checks of text for the nodes of a library.
+    """Results of all checks of generated text and of functions for the nodes of a library.
 
     Parameters
     ----------
@@ -26,7 +28,6 @@ def check_texts(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]
     """
     subjects = tuple(subjects)
     return (
-        *check_definitions(library),
         *check_sources(subjects, library),
         *check_closures(subjects, library),
         *check_languages(library),
