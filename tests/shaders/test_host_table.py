@@ -38,9 +38,12 @@ class Host(base.Host):
     def identity(self):
         return base.Identity(self.name, "1", "paper")
 
-    def evaluate(self, shader, wo, wi, inputs, branch):
+    def evaluate(self, shader, wo, wi, inputs, branch, **options):
         rho = np.broadcast_to(inputs["color"], wo.shape)
-        return table.model("eon").brdf(wo, wi, rho, inputs["roughness"]) * wi[:, 2:]
+        above = wi * np.where(wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
+        brdf = table.model("eon").brdf(wo, above, rho, inputs["roughness"])
+        factor = np.maximum(inputs.get("weight", 1.0), 0.0) * inputs.get("occlusion", 1.0)
+        return brdf * np.clip(wi[:, 2:], 0.0, 1.0) * np.reshape(factor, (-1, 1))
 
 
 @pytest.fixture

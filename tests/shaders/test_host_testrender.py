@@ -12,6 +12,7 @@ from itertools import product
 import numpy as np
 import pytest
 
+import tests.support.osl as osl
 from mxeon.conformance.checks.functions import FUNCTION_CHECKS
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.probes import PlaneProbe
@@ -26,7 +27,6 @@ from mxeon.shaders.hosts import testrender
 from mxeon.shaders.hosts.base import RendererWarning
 from mxeon.shaders.hosts.testrender import calls, programs
 from mxeon.shaders.plane import plane_pairs
-from tests.support import osl
 
 EON = SUBJECTS[0].title
 REAL = all(os.environ.get(variable) for variable in programs.VARIABLES.values())
