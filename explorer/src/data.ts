@@ -31,7 +31,9 @@ export interface ModelSource {
   readonly kind: "model";
   readonly id: string; // "model/eon"
   readonly title: string; // "energy-preserving Oren-Nayar (EON)"
+  readonly group: string; // heading of the list it is chosen from
   readonly model: ModelName;
+  readonly meant: ModelName; // what it should be: `model` itself, but for a renderer's variant
   readonly note: string; // one sentence: what it is, or who implements it; "" for none
 }
 
@@ -39,7 +41,7 @@ export interface ModelSource {
 export interface Port {
   readonly name: string; // of the uniform
   readonly type: string; // MaterialX's: float, integer, boolean, color3, vector2, filename, ...
-  readonly value: number | boolean | string | readonly number[] | null;
+  readonly value: number | boolean | readonly number[] | null; // null of a filename
   readonly path: string; // name path of the input in the document
   readonly label: string; // uiname, or the words of the name
   readonly min: number | null; // uimin, or uisoftmin; per component the least
@@ -57,30 +59,21 @@ export interface Texels {
 /** A material as a shader that mxeon generated, ESSL 3.00, with MaterialX's directional light. */
 export interface ShaderSource {
   readonly kind: "shader";
-  readonly id: string; // "shader/eonlib", "shader/stock", "document/0/eonlib", ...
+  readonly id: string; // "shader/eonlib", "shader/stock", "document/0/clay/eonlib", ...
   readonly title: string;
+  readonly group: string;
   readonly note: string;
   readonly library: string; // "eonlib", "stock"
-  readonly vertex: string;
   readonly pixel: string;
   readonly inputs: readonly Port[];
   /** Uniforms that the page's own controls set, "" where it has none. */
   readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };
-  readonly correct: Models | null; // what the node has to be; null if it is not one diffuse node
+  readonly meant: Models | null; // what the node has to be; null if it is not one diffuse node
   readonly actual: Models | null; // what this library's code is, as the diagnosis names it
   readonly document: string; // its MaterialX text, for the copy button
 }
 
 export type Source = ModelSource | ShaderSource;
-
-/** A diagnosis of a run that `--report` names: the model that a host implements. */
-export interface Finding {
-  readonly host: string;
-  readonly library: string;
-  readonly subject: string;
-  readonly model: ModelName;
-  readonly text: string;
-}
 
 /** A picture for browsers without WebGL2. */
 export interface Still {
@@ -94,6 +87,5 @@ export interface PageData {
   /** eonlib's GLSL functions of the whole family and its samplers, includes expanded, no #version. */
   readonly functions: string;
   readonly sources: readonly Source[];
-  readonly findings: readonly Finding[];
   readonly stills: readonly Still[];
 }
