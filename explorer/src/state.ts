@@ -37,6 +37,9 @@ export interface State {
   readonly exposure: number; // stops
   readonly color: Readonly<Triple>; // rho, linear, each in [0, 1]
   readonly roughness: number; // r, or sigma in radian; in [0, 1]
+  readonly wanted: Readonly<Triple>; // albedo that the color is asked for
+  readonly average: boolean; // whether it is the average albedo, not that at normal incidence
+  readonly keep: boolean; // whether `color` follows from `wanted`
   readonly paths: boolean; // path tracing instead of the generated shader's own lighting
   readonly samples: number; // per pixel, at which path tracing stops
   /** Values of a document's inputs that differ from its own, by source id and name of the uniform. */
@@ -55,13 +58,16 @@ export const INITIAL: State = {
   scale: 0.1,
   shown: "left",
   shape: "sphere",
-  azimuth: 100,
-  elevation: 25,
+  azimuth: 180, // from behind and above: where implementations part
+  elevation: 62,
   light: 1,
   surroundings: "none",
   exposure: 0,
   color: [0.8, 0.4, 0.1],
   roughness: 1,
+  wanted: [0.8, 0.4, 0.1],
+  average: false,
+  keep: false,
   paths: false,
   samples: 256,
   inputs: {},

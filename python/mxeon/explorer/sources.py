@@ -40,7 +40,7 @@ def node_sources() -> tuple[ShaderSource, ...]:
         [shader] = generate(text, "essl", library=library, lights=True)
         sources.append(
             shader_source(
-                shader, text, f"shader/{library}", f"{OREN_NAYAR}, {title}", NODES, library
+                shader, text, f"shader/{library}", f"{title}: {OREN_NAYAR}", NODES, library
             )
         )
     return tuple(sources)
