@@ -158,7 +158,17 @@ export function makeTexture(
 ): WebGLTexture {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texImage2D(gl.TEXTURE_2D, 0, format.inner, width, height, 0, format.outer, format.type, texels);
+  gl.texImage2D(
+    gl.TEXTURE_2D,
+    0,
+    format.inner,
+    width,
+    height,
+    0,
+    format.outer,
+    format.type,
+    texels,
+  );
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, wrap[0]);
@@ -187,6 +197,11 @@ export function makeTarget(
 export function deleteTarget(gl: WebGL2RenderingContext, { frame, textures }: Target): void {
   gl.deleteFramebuffer(frame);
   textures.forEach((texture) => gl.deleteTexture(texture));
+}
+
+export function clear(gl: WebGL2RenderingContext, { frame, textures }: Target): void {
+  gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+  textures.forEach((_, index) => gl.clearBufferfv(gl.COLOR, index, [0, 0, 0, 0]));
 }
 
 /** Pixels of one layer of a target, RGBA, row 0 at the bottom. */

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stage: draws a state when it changes, sharpens the picture at rest, and then does nothing.
 
-import type { PageData, Triple } from "../data";
+import type { PageData, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
-import { diameterOf, Engine, SIDES, type Size } from "./engine";
+import { diameterOf, Engine, SIDES } from "./engine";
+import type { Size } from "./paths";
 import { camera, cross, dot, lightAt, lightMark, lightVector, toView, unit } from "./scenes";
 
 export interface Pick {
@@ -14,7 +15,12 @@ export interface Pick {
 }
 
 export type Status =
-  | { readonly kind: "drawn"; readonly width: number; readonly height: number; readonly milliseconds: number }
+  | {
+      readonly kind: "drawn";
+      readonly width: number;
+      readonly height: number;
+      readonly milliseconds: number;
+    }
   | { readonly kind: "compiling"; readonly source: string }
   | {
       readonly kind: "samples";
@@ -31,6 +37,8 @@ export interface Stage {
   draw(state: State, dragging?: boolean): void;
   /** What is at a point of the picture, [0, 1]^2 from the left top; null beside the subject. */
   pick(x: number, y: number, state: State): Pick | null;
+  /** pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or fail. */
+  evaluate(pair: { wo: Vec3; wi: Vec3 }, state: State): { left: Triple; right: Triple } | null;
   /** The light that a point of the picture stands for, and the point of a light. */
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number };
   fromLight(state: State): [number, number];
@@ -44,7 +52,8 @@ export interface Stage {
 }
 
 const SMOOTHING = 8; // frames that a picture at rest is the average of
-const MOVING_BUDGET = 28; // milliseconds of a frame while something moves
+const MOVING_BUDGET = 28; // milliseconds of a frame while something moves,
+const PATHS_BUDGET = 120; // and of a pass of paths
 const REST = 220; // milliseconds after which what changed last is at rest
 const SMALLEST = 0.3; // share of the resolution that is kept
 const MOST_PIXELS = 2.4e6;
@@ -119,6 +128,14 @@ class CanvasStage implements Stage {
     const viewer = unit([eye[0] - position[0], eye[1] - position[1], eye[2] - position[2]]);
     const [wo, wi] = localPair(normal, viewer, toView(view, lightVector(state)));
     return { wo, wi, position, normal };
+  }
+
+  evaluate(
+    { wo, wi }: { wo: Vec3; wi: Vec3 },
+    state: State,
+  ): { left: Triple; right: Triple } | null {
+    const [left, right] = SIDES.map((side) => this.engine?.value(state, side, wo, wi));
+    return left && right ? { left, right } : null;
   }
 
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number } {
@@ -246,9 +263,8 @@ class CanvasStage implements Stage {
   /** Choose the resolution of what is drawn from now on. */
   private begin(state: State): void {
     const [width, height] = this.fit();
-    const pixels = MOVING_BUDGET / (this.rate || 1e-9);
-    const coarse = this.moving || state.paths;
-    const share = coarse ? Math.sqrt(pixels / (width * height)) : 1;
+    const budget = this.moving ? MOVING_BUDGET : state.paths ? PATHS_BUDGET : Infinity;
+    const share = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;
     // In steps, so that what is dragged keeps one size.
     this.share = Math.min(Math.max(Math.ceil(share * 10) / 10, SMALLEST), 1);
   }

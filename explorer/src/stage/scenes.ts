@@ -48,7 +48,8 @@ export function toView({ axes }: Camera, world: Vec3): Triple {
 
 /** A direction of the viewer's frame in the world. */
 export function toWorld({ axes }: Camera, view: Vec3): Triple {
-  const along = (k: 0 | 1 | 2) => axes[0][k] * view[0] + axes[1][k] * view[1] + axes[2][k] * view[2];
+  const along = (k: 0 | 1 | 2) =>
+    axes[0][k] * view[0] + axes[1][k] * view[1] + axes[2][k] * view[2];
   return [along(0), along(1), along(2)];
 }
 

@@ -17,17 +17,18 @@
 #define STAGE_CUT_LEFT vec3(0.9205049, 0.0, 0.3907311)
 #define STAGE_CUT_RIGHT vec3(-0.4848096, 0.0, 0.8746197)
 #define STAGE_CUT_AT 0.04
+#define STAGE_CUT_SILL -0.42
 #define STAGE_INSIDE 0.86
 #define STAGE_CORE 0.52
 #define STAGE_FOOT 0.6
-#define STAGE_FOOT_TOP -0.8
+#define STAGE_FOOT_TOP -0.8 // Where the shell goes through it: the foot needs no lid.
 #define STAGE_GROUND -1.15
 
 // The cloth.
 #define STAGE_CLOTH_WIDTH 1.5
 #define STAGE_CLOTH_HEIGHT 1.12
-#define STAGE_CLOTH_DEPTH 0.34
-#define STAGE_CLOTH_STEPS 48
+#define STAGE_CLOTH_DEPTH 0.27
+#define STAGE_CLOTH_STEPS 32
 
 struct Hit {
     float t;
@@ -72,13 +73,13 @@ Hit stage_nearest(vec3 origin, vec3 direction)
 // Distance in z from the cloth, and its slopes in x and y: two waves that grow towards the hem.
 vec3 stage_cloth(vec2 p)
 {
-    float depth = 0.17 - 0.065 * p.y;
-    float first = 4.3 * p.x + 0.75 * sin(1.5 * p.y + 0.5);
-    float second = 7.9 * p.x - 1.1 * p.y + 0.8;
-    float wave = sin(first) + 0.3 * sin(second);
-    float across = 4.3 * cos(first) + 2.37 * cos(second);
-    float down = 1.125 * cos(1.5 * p.y + 0.5) * cos(first) - 0.33 * cos(second);
-    return vec3(depth * wave, depth * across, depth * down - 0.065 * wave);
+    float depth = 0.125 - 0.06 * p.y;
+    float first = 5.2 * p.x + 0.7 * sin(1.6 * p.y + 0.5);
+    float second = 9.1 * p.x - 1.3 * p.y + 0.8;
+    float wave = sin(first) + 0.35 * sin(second);
+    float across = 5.2 * cos(first) + 3.185 * cos(second);
+    float down = 1.12 * cos(1.6 * p.y + 0.5) * cos(first) - 0.455 * cos(second);
+    return vec3(depth * wave, depth * across, depth * down - 0.06 * wave);
 }
 
 // How far in front of the cloth a point of a ray is.
@@ -103,7 +104,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
     for (int k = 0; k < STAGE_CLOTH_STEPS; ++k) {
         from += step;
         if (side * stage_before_cloth(origin + from * direction) < 0.0) {
-            for (int half_step = 0; half_step < 14; ++half_step) {
+            for (int half_step = 0; half_step < 11; ++half_step) {
                 step *= 0.5;
                 float behind = side * stage_before_cloth(origin + from * direction);
                 from += behind < 0.0 ? -step : step;
@@ -116,19 +117,27 @@ Hit stage_nearest(vec3 origin, vec3 direction)
     return hit;
 }
 #else
-bool stage_cut(vec3 p)
+// How far inside the cut a point is, across its two upright faces and its sill.
+vec3 stage_in_cut(vec3 p)
 {
-    return dot(p, STAGE_CUT_LEFT) > STAGE_CUT_AT && dot(p, STAGE_CUT_RIGHT) > STAGE_CUT_AT;
+    return vec3(dot(p, STAGE_CUT_LEFT) - STAGE_CUT_AT, dot(p, STAGE_CUT_RIGHT) - STAGE_CUT_AT,
+                p.y - STAGE_CUT_SILL);
 }
 
-// One of the two plane faces that the cut leaves in the shell; `beyond` bounds it.
-void stage_face(inout Hit hit, vec3 origin, vec3 direction, vec3 normal, vec3 beyond)
+bool stage_cut(vec3 p)
 {
-    float t = (STAGE_CUT_AT - dot(origin, normal)) / dot(direction, normal);
+    return all(greaterThan(stage_in_cut(p), vec3(0.0)));
+}
+
+// A plane face that the cut leaves in the shell, seen from the cut; `other` leaves its own side out.
+void stage_face(inout Hit hit, vec3 origin, vec3 direction, vec3 normal, float height, vec3 other)
+{
+    float t = (height - dot(origin, normal)) / dot(direction, normal);
     vec3 p = origin + t * direction;
     float radius = length(p);
-    if (radius > STAGE_INSIDE && radius < 1.0 && dot(p, beyond) > STAGE_CUT_AT)
-        stage_keep(hit, t, dot(direction, normal) < 0.0 ? normal : -normal, STAGE_SUBJECT);
+    bool bounded = all(greaterThan(stage_in_cut(p) + other, vec3(0.0)));
+    if (dot(direction, normal) < 0.0 && bounded && radius > STAGE_INSIDE && radius < 1.0)
+        stage_keep(hit, t, normal, STAGE_SUBJECT);
 }
 
 // The shell from outside and, where it is open, from its hollow.
@@ -144,7 +153,7 @@ void stage_shell(inout Hit hit, vec3 origin, vec3 direction)
         stage_keep(hit, t, -p / STAGE_INSIDE, STAGE_SUBJECT);
 }
 
-// An upright cylinder with a lid, seen from outside.
+// An upright cylinder, seen from outside.
 void stage_foot(inout Hit hit, vec3 origin, vec3 direction)
 {
     float a = dot(direction.xz, direction.xz);
@@ -154,18 +163,15 @@ void stage_foot(inout Hit hit, vec3 origin, vec3 direction)
     vec3 p = origin + t * direction;
     if (b * b > a * c && p.y < STAGE_FOOT_TOP && p.y > STAGE_GROUND)
         stage_keep(hit, t, vec3(p.x, 0.0, p.z) / STAGE_FOOT, STAGE_SUBJECT);
-    t = (STAGE_FOOT_TOP - origin.y) / direction.y;
-    p = origin + t * direction;
-    if (direction.y < 0.0 && dot(p.xz, p.xz) < STAGE_FOOT * STAGE_FOOT)
-        stage_keep(hit, t, vec3(0.0, 1.0, 0.0), STAGE_SUBJECT);
 }
 
 Hit stage_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
     stage_shell(hit, origin, direction);
-    stage_face(hit, origin, direction, STAGE_CUT_LEFT, STAGE_CUT_RIGHT);
-    stage_face(hit, origin, direction, STAGE_CUT_RIGHT, STAGE_CUT_LEFT);
+    stage_face(hit, origin, direction, STAGE_CUT_LEFT, STAGE_CUT_AT, vec3(9.0, 0.0, 0.0));
+    stage_face(hit, origin, direction, STAGE_CUT_RIGHT, STAGE_CUT_AT, vec3(0.0, 9.0, 0.0));
+    stage_face(hit, origin, direction, vec3(0.0, 1.0, 0.0), STAGE_CUT_SILL, vec3(0.0, 0.0, 9.0));
     float core = stage_sphere(origin, direction, STAGE_CORE).x;
     stage_keep(hit, core, (origin + core * direction) / STAGE_CORE, STAGE_SUBJECT);
     stage_foot(hit, origin, direction);
@@ -193,7 +199,7 @@ float stage_ambient(vec3 p, vec3 normal)
 #if STAGE_SHAPE == 0
     return 1.0;
 #elif STAGE_SHAPE == 2
-    return clamp(0.72 + 1.1 * p.z, 0.3, 1.0);
+    return clamp(0.75 + 1.4 * p.z, 0.3, 1.0);
 #else
     float down = 0.5 - 0.5 * normal.y;
     float open = 1.0 - 0.6 * down;
@@ -208,8 +214,10 @@ float stage_ambient(vec3 p, vec3 normal)
         open = 0.35;
     else if (radius < STAGE_CORE + 1.0e-3)
         open = clamp(0.35 + 0.45 * dot(normal, normalize(STAGE_CUT_LEFT + STAGE_CUT_RIGHT)), 0.12, 1.0);
-    else if (p.y < STAGE_FOOT_TOP + 1.0e-3 && radius > 1.0e-3 + 1.0)
-        open *= normal.y > 0.5 ? 0.35 : mix(0.85, 0.45, smoothstep(STAGE_GROUND, STAGE_FOOT_TOP, p.y));
+    else if (radius > 1.0e-3 + 1.0)
+        open *= mix(0.9, 0.4, smoothstep(STAGE_GROUND, STAGE_FOOT_TOP, p.y));
+    else
+        open *= 1.0 - 0.45 * smoothstep(-0.55, -0.85, p.y);
 #endif
     return clamp(open, 0.0, 1.0);
 #endif

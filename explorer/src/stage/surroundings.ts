@@ -14,6 +14,7 @@ export interface SkyMap {
 
 const RADIANCE_ROWS = 64;
 const IRRADIANCE_ROWS = 32; // a cosine lobe has no finer detail
+const BRIGHTNESS = 0.6; // leaves room for the light at exposure 0
 const SUMMED_ROWS = 32; // of the radiance that the irradiance is the sum of
 
 function mixed(a: Vec3, b: Vec3, share: number): Triple {
@@ -59,7 +60,10 @@ function studio(w: Vec3): Triple {
 function sky(w: Vec3): Triple {
   const glow = Math.max(dot(w, unit([0.6, 0.3, 0.75])), 0);
   const above = mixed([0.95, 0.85, 0.74], [0.18, 0.36, 0.78], Math.max(w[1], 0) ** 0.42);
-  const sun = sum(scaled([1.0, 0.62, 0.3], 2.4 * glow ** 24), scaled([1, 0.8, 0.6], 0.5 * glow ** 4));
+  const sun = sum(
+    scaled([1.0, 0.62, 0.3], 2.4 * glow ** 24),
+    scaled([1, 0.8, 0.6], 0.5 * glow ** 4),
+  );
   const ground = mixed([0.4, 0.34, 0.28], [0.16, 0.13, 0.11], Math.max(-w[1], 0) ** 0.5);
   return mixed(ground, sum(above, sun), inside(-w[1], 0.06));
 }
@@ -84,7 +88,7 @@ export function radianceMap(name: Surroundings): SkyMap {
     const radiance = name === "uniform" ? 1 : 0;
     return { width: 1, height: 1, pixels: new Float32Array([radiance, radiance, radiance, 1]) };
   }
-  return mapOf(RADIANCE_ROWS, RADIANCE[name]);
+  return mapOf(RADIANCE_ROWS, (direction) => scaled(RADIANCE[name](direction), BRIGHTNESS));
 }
 
 /** Irradiance over pi for every normal. Weights of a normal add up to 1, as a lobe of cosines does. */

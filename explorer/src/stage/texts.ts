@@ -96,7 +96,9 @@ export class Texts {
   }
 
   private shaped(shape: Shape, ...parts: string[]): string {
-    return HEAD + this.functions + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("");
+    return (
+      HEAD + this.functions + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("")
+    );
   }
 
   geometry(shape: Shape): string {
