@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: a view, what changes it, and its parts.
 
-import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
 import { from_address, to_address } from "./address";
 import { copy } from "./copies";
 import type { PageData } from "./data";
@@ -18,6 +18,9 @@ import { StageView } from "./ui/stage_view";
 import { actual_model, consistent, meant_model, source_of, sources_of, type Sources } from "./view";
 
 const ADDRESS_DELAY = 300; // milliseconds; browsers refuse an address that changes all the time
+
+const MEASURE_DELAY = 60; // milliseconds, after which the picture has been drawn
+const RETRY_DELAY = 250;
 
 interface AppProps {
   readonly data: PageData;
@@ -139,7 +142,7 @@ function useWorst(state: State, sources: Sources): Point {
   }, [left, right, azimuth, elevation, color, roughness]);
 }
 
-/** Values of the shaders for a pair; they are asked after the picture is drawn. */
+/** Values of the shaders for a pair, asked when nothing moves, and again while they compile. */
 function useMeasured(
   stage: Stage | null,
   pair: Pair,
@@ -147,16 +150,19 @@ function useMeasured(
   dragging: boolean,
 ): Measured | null {
   const [measured, setMeasured] = useState<Measured | null>(null);
-  const asked = useRef(0);
   useEffect(() => {
+    setMeasured(null);
     if (!stage || dragging) return;
-    const turn = ++asked.current;
-    const timer = setTimeout(() => {
-      if (turn === asked.current) setMeasured(stage.evaluate(pair, state));
-    }, 50);
+    let timer = 0;
+    const ask = (): void => {
+      const values = stage.evaluate({ wo: [...pair.wo], wi: [...pair.wi] }, state);
+      setMeasured(values);
+      if (!values?.left || !values.right) timer = window.setTimeout(ask, RETRY_DELAY);
+    };
+    timer = window.setTimeout(ask, MEASURE_DELAY);
     return () => clearTimeout(timer);
   }, [stage, pair.wo.join(), pair.wi.join(), state, dragging]);
-  return dragging ? null : measured;
+  return measured;
 }
 
 /** Where a point of the sphere is in the picture. */

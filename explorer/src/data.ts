@@ -47,6 +47,7 @@ export interface Port {
   readonly min: number | null; // uimin, or uisoftmin; per component the least
   readonly max: number | null;
   readonly image: Texels | null; // of a filename
+  readonly shown: boolean; // whether readers may want to move it
 }
 
 /** An image: RGBA, 8 bits each, row 0 first in v (at the bottom), in base64. */

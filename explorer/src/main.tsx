@@ -2,6 +2,7 @@
 // Reads the page's data and shows the page.
 
 import { render } from "preact";
+import { from_address, to_address } from "./address";
 import { App } from "./app";
 import type { PageData } from "./data";
 import * as albedo from "./models/albedo";
@@ -18,6 +19,8 @@ interface Hook {
   show: (state: State) => void;
   readonly data: PageData;
   readonly models: typeof albedo & typeof inversion & typeof table;
+  readonly to_address: (state: State) => string;
+  readonly from_address: (address: string) => State;
 }
 
 declare global {
@@ -25,10 +28,15 @@ declare global {
 }
 
 const data = JSON.parse(document.getElementById("data")!.textContent!) as PageData;
-const models = { ...albedo, ...inversion, ...table };
+const hook = {
+  data,
+  models: { ...albedo, ...inversion, ...table },
+  to_address: (state: State) => to_address(state, data),
+  from_address: (address: string) => from_address(address, data),
+};
 
 function tell(stage: Stage | null, state: State, show: (state: State) => void): void {
-  globalThis.mxeon = { stage, state: () => state, show, data, models };
+  globalThis.mxeon = { ...hook, stage, state: () => state, show };
 }
 
 const page = document.getElementById("page")!;

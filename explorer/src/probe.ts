@@ -87,8 +87,10 @@ export function worst_point(first: Model, second: Model, state: State): Point {
       }
     }
   }
-  const normal: Triple = [0, 0, 1];
-  return worst ?? { ...pair_of(normal, normal, light), normal, apart: 0 };
+  if (worst && Math.abs(worst.apart) > 1e-12) return worst;
+  // Two equal models: a point that faces the viewer and the light alike.
+  const half = unit([light[0], light[1], light[2] + 1.0 + 1e-9]);
+  return { ...pair_of(half, [0, 0, 1], light), normal: half, apart: 0 };
 }
 
 const STEPS = 20;

@@ -42,7 +42,7 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
     for (const { id } of twins) inputs[id] = { ...inputs[id], [port.name]: value };
     change({ inputs });
   };
-  const ports = source.inputs.filter((port) => !own.has(port.name) && port.value !== null);
+  const ports = source.inputs.filter((port) => port.shown && !own.has(port.name));
   if (ports.length === 0) return null;
   return (
     <section>
@@ -100,5 +100,5 @@ function Field({ port, value, onChange }: FieldProps) {
 /** The range of a number's slider: what its definition recommends, or one around its own value. */
 function range(port: Port, value: number): [number, number] {
   const own = typeof port.value === "number" ? port.value : value;
-  return [port.min ?? Math.min(0, 2 * own), port.max ?? Math.max(1, 2 * own)];
+  return [port.min ?? Math.min(0, 2 * own), port.max ?? (own > 1 ? 2 * own : 1)];
 }

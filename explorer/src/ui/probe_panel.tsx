@@ -11,14 +11,15 @@ import { actual_model, LETTER, meant_model, SIDES, source_of } from "../view";
 import { AlbedoPlot, type Curve, Polar } from "./plots";
 import type { ViewProps } from "./sides";
 
+/** pi f cos of each shader; null while it compiles, or if it does not. */
 export interface Measured {
-  readonly left: Triple;
-  readonly right: Triple;
+  readonly left: Triple | null;
+  readonly right: Triple | null;
 }
 
 interface ProbeProps extends ViewProps {
   readonly pair: Pair;
-  readonly measured: Measured | null; // what the shaders give; null where they do not run
+  readonly measured: Measured | null; // null while something moves, and where no shader runs
 }
 
 const DECIMALS = 7;
@@ -51,8 +52,12 @@ export function Probe(props: ProbeProps) {
         <Values {...props} />
         <Copies {...props} />
       </div>
-      <Polar {...{ curves, pair, color, roughness }} />
-      <AlbedoPlot {...{ curves, pair, color, roughness }} />
+      {curves.length > 0 && (
+        <>
+          <Polar {...{ curves, pair, color, roughness }} />
+          <AlbedoPlot {...{ curves, pair, color, roughness }} />
+        </>
+      )}
     </section>
   );
 }
@@ -92,11 +97,17 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
         </tr>
       </thead>
       <tbody>
-        <Row title={measured ? "shader" : "model"}>
+        <Row title="value">
           {SIDES.map((name) => {
             const of = actual_model(source_of(sources, state[name]), state[name]);
-            if (measured) return <Numbers values={measured[name]} />;
-            return of ? <Numbers values={values(of, pair, color, roughness)} /> : "–";
+            const value = measured?.[name];
+            if (!value && !of) return "–";
+            return (
+              <>
+                <span class="of">{value ? "shader, float32" : `${of!.short}, float64`}</span>
+                <Numbers values={value ?? values(of!, pair, color, roughness)} />
+              </>
+            );
           })}
         </Row>
         <Row title="reference">

@@ -79,6 +79,8 @@ class Port:
         Range that its definition recommends.
     image : Texels or None
         Of a file that can be read.
+    shown : bool
+        Whether it is a number or a switch that readers may want to move.
     """
 
     name: str
@@ -89,6 +91,7 @@ class Port:
     min: float | None = None
     max: float | None = None
     image: Texels | None = None
+    shown: bool = True
 
 
 @dataclass(frozen=True)

@@ -156,7 +156,18 @@ def _port(shader: Shader, port: Input) -> Port:
         next(filter(None, (_least(attributes(name)) for name in names)), None) for names in RANGE
     )
     label = attributes("uiname") or port.path.rpartition("/")[2].replace("_", " ")
-    return Port(port.name, port.type, None, port.path, label, low and low[0], high and high[0])
+    # Words that choose from a list are numbers in the shader; frames of images do not move here.
+    shown = not (attributes("enum") or port.type == "filename" or "frame" in port.path)
+    return Port(
+        port.name,
+        port.type,
+        None,
+        port.path,
+        label,
+        low and low[0],
+        high and high[0],
+        shown=shown,
+    )
 
 
 def _definition(document: mx.Document, path: str) -> mx.Element | None:
