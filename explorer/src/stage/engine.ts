@@ -41,6 +41,7 @@ export class Engine {
   private readonly tables: Record<SideName, gpu.Target>;
   private readonly pixel: gpu.Target; // of a single value,
   private readonly upright: WebGLTexture; // and the normal there
+  private readonly one: gpu.Target; // geometry of a single pixel
   private readonly drawn = new Map<string, string>(); // what each pass was last drawn from
   private targets: Targets;
   private traced: Paths | null = null;
@@ -62,6 +63,7 @@ export class Engine {
     const table = () => gpu.makeTarget(gl, [float], ALBEDO_ANGLES, 1);
     this.tables = { left: table(), right: table() };
     this.pixel = gpu.makeTarget(gl, [float], 1, 1);
+    this.one = gpu.makeTarget(gl, [float, float, float], 1, 1);
     this.upright = gpu.makeTexture(gl, float, 1, 1, new Float32Array([0, 0, 1, 1]));
     this.targets = makeTargets(gl, [2, 2]);
     gl.bindVertexArray(gl.createVertexArray());
@@ -103,11 +105,13 @@ export class Engine {
 
   /** Normal and part, and position, of a pixel, in the viewer's frame; null while compiling. */
   point(state: State, size: Size, x: number, y: number): [Float32Array, Float32Array] | null {
-    if (!this.ready(state)) return null;
-    this.allocate(size);
-    this.prepare(state, size, 0);
-    const read = (each: number) =>
-      gpu.readPixels(this.gl, this.targets.geometry, each, [x, y, 1, 1]);
+    const text = this.texts.geometry(state.shape);
+    const program = this.isPending("", text) ? null : this.programs.get(text);
+    if (!program) return null;
+    // A frame of one pixel, moved to where that one is.
+    const uniforms = { ...this.uniformsOf(state, size, 0), stage_jitter: [x, y] };
+    gpu.drawPass(this.gl, program, this.one, [1, 1], uniforms);
+    const read = (each: number) => gpu.readPixels(this.gl, this.one, each, [0, 0, 1, 1]);
     return [read(0), read(1)];
   }
 

@@ -47,15 +47,20 @@ export interface Stage {
   size(): { width: number; height: number };
   /** Of the sphere, in pixels of the canvas. */
   diameter(): number;
+  /** Whether the picture is final, so that nothing is drawn until something changes. */
+  isSettled(): boolean;
   onStatus(callback: (status: Status) => void): void;
   dispose(): void;
 }
 
-const SMOOTHING = 8; // frames that a picture at rest is the average of
+const SMOOTHING = 8; // frames that a picture at rest is the average of,
+const SLOW_SMOOTHING = 4; // and where a frame takes longer than
+const SLOW = 60; // milliseconds
 const MOVING_BUDGET = 28; // milliseconds of a frame while something moves,
 const PATHS_BUDGET = 120; // and of a pass of paths
 const REST = 220; // milliseconds after which what changed last is at rest
 const SMALLEST = 0.3; // share of the resolution that is kept
+const FIRST_SHARE = 0.5; // that of the first picture
 const MOST_PIXELS = 2.4e6;
 const ATTRIBUTES: WebGLContextAttributes = {
   alpha: true,
@@ -76,17 +81,18 @@ interface Fence {
   readonly sync: WebGLSync;
   readonly since: number;
   readonly size: Size;
-  readonly first: boolean; // of its average
 }
 
 class CanvasStage implements Stage {
   private engine: Engine | null;
   private state: State | null = null;
-  private report: (status: Status) => void = () => undefined;
+  private readonly listeners: ((status: Status) => void)[] = [];
   private readonly resizing: ResizeObserver;
   private request = 0;
   private timer = 0;
-  private moving = false;
+  private moving = false; // and another state will follow soon
+  private dragging = false;
+  private coarse = true; // The first picture is, to be there soon.
   private changed = 0; // when the state last did
   private index = 0; // of the next frame of the average, or of paths
   private share = 1; // of the resolution, of the frames of the average
@@ -103,16 +109,20 @@ class CanvasStage implements Stage {
     this.engine = this.makeEngine();
     canvas.addEventListener("webglcontextlost", this.lose);
     canvas.addEventListener("webglcontextrestored", this.restore);
-    this.resizing = new ResizeObserver(() => this.restart());
+    this.resizing = new ResizeObserver(() => this.isFitted() || this.restart());
     this.resizing.observe(canvas);
   }
 
   draw(state: State, dragging = false): void {
     const now = performance.now();
     // A control that is moved calls often, too, without saying that it drags.
-    this.moving = dragging || (this.state !== null && now - this.changed < REST);
+    const often = this.state !== null && !this.dragging && now - this.changed < REST;
+    this.moving = dragging || often;
+    this.dragging = dragging;
     this.changed = now;
     this.state = state;
+    clearTimeout(this.timer);
+    if (often && !dragging) this.timer = window.setTimeout(this.rest, REST);
     this.restart();
   }
 
@@ -171,8 +181,12 @@ class CanvasStage implements Stage {
     return diameterOf(this.fit());
   }
 
+  isSettled(): boolean {
+    return this.index > 0 && !this.request && !this.moving;
+  }
+
   onStatus(callback: (status: Status) => void): void {
-    this.report = callback;
+    this.listeners.push(callback);
   }
 
   dispose(): void {
@@ -197,12 +211,12 @@ class CanvasStage implements Stage {
     event.preventDefault(); // or it is never restored
     this.engine = null;
     this.fence = null;
-    this.report({ kind: "lost" });
+    this.tell({ kind: "lost" });
   };
 
   private readonly restore = (): void => {
     this.engine = this.makeEngine();
-    this.report({ kind: "restored" });
+    this.tell({ kind: "restored" });
     this.restart();
   };
 
@@ -215,6 +229,11 @@ class CanvasStage implements Stage {
     );
     const even = (length: number) => Math.max(2 * Math.round((length * ratio) / 2), 2);
     return [even(clientWidth), even(clientHeight)];
+  }
+
+  private isFitted(): boolean {
+    const [width, height] = this.fit();
+    return this.canvas.width === width && this.canvas.height === height;
   }
 
   private drawnSize(): Size {
@@ -243,9 +262,7 @@ class CanvasStage implements Stage {
     if (this.index === 0) this.begin(state);
     const canvas = this.fit();
     const size = this.drawnSize();
-    if (this.canvas.width !== canvas[0] || this.canvas.height !== canvas[1]) {
-      [this.canvas.width, this.canvas.height] = canvas;
-    }
+    if (!this.isFitted()) [this.canvas.width, this.canvas.height] = canvas;
     const done = engine.frame(state, size, canvas, this.index);
     this.tellErrors(engine);
     if (!done) {
@@ -256,7 +273,7 @@ class CanvasStage implements Stage {
     this.index += 1;
     const sync = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     this.gl.flush();
-    if (sync) this.fence = { sync, since: performance.now(), size, first: this.index === 1 };
+    if (sync) this.fence = { sync, since: performance.now(), size };
     this.schedule();
   };
 
@@ -264,7 +281,8 @@ class CanvasStage implements Stage {
   private begin(state: State): void {
     const [width, height] = this.fit();
     const budget = this.moving ? MOVING_BUDGET : state.paths ? PATHS_BUDGET : Infinity;
-    const share = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;
+    const affordable = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;
+    const share = this.coarse ? FIRST_SHARE : affordable;
     // In steps, so that what is dragged keeps one size.
     this.share = Math.min(Math.max(Math.ceil(share * 10) / 10, SMALLEST), 1);
   }
@@ -277,8 +295,9 @@ class CanvasStage implements Stage {
     gl.deleteSync(fence.sync);
     this.fence = null;
     const milliseconds = performance.now() - fence.since;
-    if (fence.first) this.rate = milliseconds / (fence.size[0] * fence.size[1]);
-    this.tell({ kind: "drawn", width: fence.size[0], height: fence.size[1], milliseconds });
+    const [width, height] = fence.size;
+    this.rate = milliseconds / (width * height);
+    this.tell({ kind: "drawn", width, height, milliseconds });
     return false;
   }
 
@@ -291,13 +310,20 @@ class CanvasStage implements Stage {
       this.tell({ kind: "samples", done: this.index, of: state.samples, noise: this.noise });
       return this.index < state.samples;
     }
-    if (!this.moving) return this.index < SMOOTHING;
-    clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => {
-      this.moving = false;
-      this.restart();
-    }, REST);
-    return false;
+    if (this.coarse) this.rest();
+    this.coarse = false;
+    return this.index === 0 || (!this.moving && this.index < this.smoothing());
+  }
+
+  /** Draw at full resolution again. */
+  private readonly rest = (): void => {
+    this.moving = false;
+    this.restart();
+  };
+
+  private smoothing(): number {
+    const [width, height] = this.fit();
+    return this.rate * width * height > SLOW ? SLOW_SMOOTHING : SMOOTHING;
   }
 
   private measured(engine: Engine): { left: number; right: number } {
@@ -312,7 +338,7 @@ class CanvasStage implements Stage {
   /** Report a status, but the same only once. */
   private tell(status: Status): void {
     const said = JSON.stringify(status);
-    if (said !== this.said) this.report(status);
+    if (said !== this.said) for (const listener of this.listeners) listener(status);
     this.said = said;
   }
 }
