@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: a view, what changes it, and its parts.
 
-import { useCallback, useEffect, useMemo, useState } from "preact/hooks";
+import { useCallback, useEffect, useLayoutEffect, useMemo, useState } from "preact/hooks";
 import { from_address, to_address } from "./address";
 import { copy } from "./copies";
 import type { PageData } from "./data";
@@ -39,7 +39,7 @@ export function App({ data, tell }: AppProps) {
   const [dragging, setDragging] = useState(false);
   useAddress(state, setState, data);
   useKeys(state, change);
-  useEffect(() => tell(stage, state, setState), [stage, state]);
+  useLayoutEffect(() => tell(stage, state, setState), [stage, state]);
 
   const worst = useWorst(state, sources);
   const probed = stage && state.probe ? stage.pick(...state.probe, state) : null;

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pages of the explorer in a headless Chromium, which fail a test by what they ask for or say."""
+
+import os
+from contextlib import contextmanager
+
+from playwright.sync_api import sync_playwright
+
+from mxeon.shaders.hosts.webgl import FLAGS, program
+
+VIEWPORT = {"width": 760, "height": 560}
+DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) != null"
+
+
+@contextmanager
+def launched(flags=FLAGS):
+    """A browser of its own."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=program(), args=flags, chromium_sandbox=os.geteuid() != 0
+        )
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def opened(browser, address, allowed=(), drawn=True, **options):
+    """The page at an address; messages that are not allowed, and requests, fail the test."""
+    asked, said = [], []
+    context = browser.new_context(**({"viewport": VIEWPORT} | options))
+    page = context.new_page()
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto(address)
+    until(page, DRAWN if drawn else "globalThis.mxeon !== undefined")
+    yield page
+    context.close()
+    start = address.partition("#")[0]
+    assert [url for url in asked if not url.startswith((start, "data:", "blob:"))] == []
+    assert [text for text in said if not text.startswith(tuple(allowed))] == []
+
+
+def until(page, expression, argument=None, seconds=60):
+    """Wait until an expression is true; playwright's own way needs what the page's policy forbids."""
+    for _ in range(20 * seconds):
+        if page.evaluate(expression, argument):
+            return
+        page.wait_for_timeout(50)
+    raise AssertionError(f"never true: {expression}")
+
+
+def state(page):
+    """The view that the page shows."""
+    return page.evaluate("mxeon.state()")
+
+
+def show(page, **patch):
+    """Show a view with other fields."""
+    page.evaluate("patch => mxeon.show({...mxeon.state(), ...patch})", patch)

@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page for its readers: every control has its effect, by hand and by key."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import mxeon
+from mxeon.models import eon_brdf
+from tests.explorer.browser import opened, show, state, until
+
+CLIPBOARD = {"permissions": ["clipboard-read", "clipboard-write"]}
+# Roundings of float32 in a shader's value, of which it makes fewer than 64.
+SHADER = 64 * 2**-24
+
+
+@pytest.fixture(scope="module")
+def page(browser, address):
+    with opened(browser, address, **CLIPBOARD) as page:
+        yield page
+
+
+@pytest.fixture(autouse=True)
+def first_view(request):
+    """Begin each test that has the page with the first view."""
+    if "page" in request.fixturenames:
+        page = request.getfixturevalue("page")
+        page.evaluate("mxeon.show(mxeon.from_address(''))")
+
+
+def picture(page):
+    """The picture that is shown, when it stays as it is."""
+    canvas, last = page.locator("canvas"), b""
+    for _ in range(50):
+        shot = canvas.screenshot()
+        if shot == last:
+            return shot
+        last = shot
+        page.wait_for_timeout(100)
+    raise AssertionError("the picture never comes to rest")
+
+
+def fill(page, label, value):
+    page.get_by_label(label, exact=True).fill(str(value))
+    page.get_by_label(label, exact=True).blur()
+
+
+def choose(page, group, option):
+    page.get_by_role("group", name=group).get_by_role("radio", name=option, exact=True).check()
+
+
+SLIDERS = [
+    ("Roughness", "roughness", 0.5),
+    ("Light around", "azimuth", 40),
+    ("Light above", "elevation", -20),
+    ("Light strength", "light", 0.5),
+    ("Exposure", "exposure", 1.5),
+]
+
+
+@pytest.mark.parametrize(("label", "field", "value"), SLIDERS)
+def test_a_slider_changes_the_view_and_the_picture(page, label, field, value):
+    before = picture(page)
+    fill(page, f"{label}, number", value)
+    assert state(page)[field] == value
+    assert picture(page) != before
+    slider = page.get_by_label(re.compile(f"^{label}( [a-z]+)?$")).first
+    slider.focus()
+    slider.press("ArrowLeft")
+    assert state(page)[field] < value
+
+
+@pytest.mark.parametrize(
+    ("group", "option", "field", "value"),
+    [
+        ("Shape", "on a plane", "shape", "plane"),
+        ("Shape", "cloth", "shape", "cloth"),
+        ("Shape", "shader ball", "shape", "ball"),
+        ("Surroundings", "white", "surroundings", "uniform"),
+        ("Surroundings", "studio", "surroundings", "studio"),
+        ("Surroundings", "sky", "surroundings", "sky"),
+        ("Surroundings", "window", "surroundings", "window"),
+        ("Compare", "Difference", "comparison", "difference"),
+    ],
+)
+def test_a_choice_changes_the_view_and_the_picture(page, group, option, field, value):
+    before = picture(page)
+    choose(page, group, option)
+    assert state(page)[field] == value
+    assert picture(page) != before
+
+
+def test_the_color_changes_the_picture_and_the_albedo(page):
+    before, albedo = picture(page), page.locator(".albedos").inner_text()
+    fill(page, "Color entered, green", 0.9)
+    assert state(page)["color"] == [0.8, 0.9, 0.1]
+    assert page.locator(".albedos").inner_text() != albedo and picture(page) != before
+    page.get_by_label("Color entered, picker").fill("#ffffff")
+    assert state(page)["color"] == [1, 1, 1]
+    rows = page.locator(".albedos tbody tr")
+    assert rows.nth(0).inner_text().count("1.000, 1.000, 1.000") == 2
+
+
+def test_another_material_is_drawn_and_judged(page):
+    before = picture(page)
+    page.get_by_label("Material B").select_option("model/fon")
+    assert state(page)["right"]["source"] == "model/fon"
+    assert page.locator(".side.right .verdict strong").inner_text() == "FON"
+    assert picture(page) != before
+
+
+def test_the_flag_is_drawn_and_judged(page):
+    before = picture(page)
+    badge = page.locator(".side.right .verdict strong")
+    assert badge.inner_text() == "not EON"
+    page.locator(".side.right").get_by_label("energy_compensation").uncheck()
+    assert (
+        badge.inner_text() == "not QON"
+        and "surroundings" in page.locator(".side.right .verdict").inner_text()
+    )
+    assert picture(page) != before
+    page.locator(".side.left").get_by_label("energy_compensation").uncheck()
+    assert page.locator(".side.left .verdict strong").inner_text() == "QON"
+
+
+def test_a_reader_learns_which_is_eon_and_by_how_much_the_other_is_wrong(page):
+    assert page.locator(".side.left .verdict").inner_text().startswith("EON Correct")
+    verdict = page.locator(".side.right .verdict").inner_text()
+    here, anywhere = map(
+        float, re.search(r"up to (\S+) in this light and (\S+) in", verdict).groups()
+    )
+    assert "too bright where the light comes from behind" in verdict
+    error = page.locator(".values tr").last.locator("td").nth(1).inner_text()
+    assert error == f"+{here:g} too bright" and here < anywhere < 0.4
+
+
+def test_a_reader_learns_which_color_to_enter(page):
+    answer = page.locator(".answer output")
+    assert answer.inner_text() == "(0.836, 0.460, 0.125)"
+    choose(page, "Seen", "on average")
+    assert state(page)["average"] and answer.inner_text() == "(0.828, 0.445, 0.118)"
+    fill(page, "To look like, red", 0.5)
+    assert (
+        state(page)["wanted"] == [0.5, 0.4, 0.1] and answer.inner_text() != "(0.828, 0.445, 0.118)"
+    )
+
+
+def test_a_color_that_is_kept_is_seen_at_every_roughness(page):
+    page.get_by_label("Enter it, and keep the color seen").check()
+    for roughness in (1.0, 0.3):
+        fill(page, "Roughness, number", roughness)
+        assert "0.800, 0.400, 0.100" in page.locator(".albedos tbody tr").first.inner_text()
+    entered = state(page)["color"]
+    assert entered[0] > 0.8
+    fill(page, "Color entered, red", 0.5)
+    assert not state(page)["keep"]
+
+
+def test_a_color_out_of_reach_is_said_to_be(page):
+    page.get_by_label("Material A").select_option("model/qon")
+    fill(page, "To look like, red", 0.9)
+    assert "Out of reach" in page.locator(".wanted").inner_text()
+
+
+def test_paths_have_samplers_and_count_their_samples(page):
+    before = picture(page)
+    page.get_by_label("Path tracing, with light between surfaces").check()
+    fill(page, "Samples per pixel, number", 2)
+    page.locator(".side.right").get_by_label("Samples").select_option("cosine")
+    assert state(page)["paths"] and state(page)["samples"] == 2
+    assert state(page)["right"]["sampler"] == "cosine"
+    until(
+        page, "document.querySelector('.picture .status').textContent.startsWith('2 of 2 samples')"
+    )
+    assert page.locator("canvas").screenshot() != before
+
+
+def test_the_scale_of_a_difference_is_written_and_drawn(page):
+    choose(page, "Compare", "Difference")
+    before = picture(page)
+    fill(page, "Scale, number", -2)
+    assert state(page)["scale"] == 0.01
+    assert "−0.01, B brighter" in page.locator(".legend").inner_text()
+    assert picture(page) != before
+
+
+def test_keys_choose_the_comparison_and_show_the_other_material(page):
+    page.locator("h1").click()
+    page.keyboard.press("d")
+    assert state(page)["comparison"] == "difference"
+    page.keyboard.press("f")
+    assert (state(page)["comparison"], state(page)["shown"]) == ("flicker", "right")
+    right = picture(page)
+    page.get_by_role("button", name="Show A").click()
+    assert state(page)["shown"] == "left" and picture(page) != right
+    page.keyboard.press("w")
+    assert state(page)["comparison"] == "wipe"
+
+
+def test_keys_do_nothing_while_a_number_is_typed(page):
+    page.get_by_label("Roughness, number").focus()
+    page.keyboard.press("d")
+    assert state(page)["comparison"] == "wipe"
+
+
+def drag(page, start, end):
+    """Drag in the picture, from and to a place in [0, 1]^2."""
+    box = page.locator("canvas").bounding_box()
+    (x0, y0), (x1, y1) = (
+        (box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end)
+    )
+    page.mouse.move(x0, y0)
+    page.mouse.down()
+    page.mouse.move((x0 + x1) / 2, (y0 + y1) / 2)
+    page.mouse.move(x1, y1)
+    page.mouse.up()
+
+
+def test_the_line_is_dragged_and_moved_by_keys(page):
+    before = picture(page)
+    drag(page, (0.5, 0.7), (0.25, 0.7))
+    assert abs(state(page)["wipe"] - 0.25) < 0.01
+    assert picture(page) != before
+    page.get_by_role("slider", name="Wipe between A and B").press("ArrowRight")
+    assert abs(state(page)["wipe"] - 0.27) < 0.01
+
+
+def test_the_light_is_dragged_and_moved_by_keys(page):
+    drag(page, (0.75, 0.7), (0.6, 0.4))
+    view = state(page)
+    assert (view["azimuth"], view["elevation"]) != (180, 62) and view["probe"] is None
+    page.get_by_role("button", name="Light,").press("ArrowUp")
+    assert state(page)["elevation"] == pytest.approx(min(view["elevation"] + 5, 90))
+
+
+def test_a_click_probes_a_point(page):
+    fill(page, "Light above, number", 20)
+    fill(page, "Light around, number", 30)
+    box = page.locator("canvas").bounding_box()
+    page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"])
+    assert np.allclose(state(page)["probe"], (0.6, 0.4), atol=0.01)
+    before = page.locator(".directions").inner_text()
+    page.get_by_role("button", name="Probe; arrow keys").press("ArrowDown")
+    assert page.locator(".directions").inner_text() != before
+    page.get_by_role("button", name="Go to the largest difference").click()
+    assert state(page)["probe"] is None
+
+
+def numbers(text):
+    return [float(word) for word in re.findall(r"[+-]?\d+\.\d+", text.replace("−", "-"))]
+
+
+def test_the_probe_shows_the_value_of_the_shader_and_the_reference(page):
+    until(page, "document.querySelector('.values').innerText.includes('float32')")
+    wo, wi = np.reshape(numbers(page.locator(".directions").inner_text()), (2, 3))
+    cells = [row.locator("td").all() for row in page.locator(".values tbody tr").all()]
+    value, reference = (numbers(cells[row][0].inner_text()) for row in (0, 1))
+    wo, wi = wo / np.linalg.norm(wo), wi / np.linalg.norm(wi)
+    expected = np.pi * eon_brdf(wo, wi, [0.8, 0.4, 0.1], 1.0) * wi[2]
+    assert np.allclose(reference, expected, atol=1e-3)  # directions are shown with four digits
+    assert np.allclose(value, reference, atol=SHADER)
+    assert "rounding" in cells[2][0].inner_text()
+
+
+def copied(page, side, what):
+    page.get_by_role("button", name=f"Copy {side} as {what}").click()
+    until(page, f"document.querySelector('.copies .said').textContent === '{side}, {what} copied.'")
+    return page.evaluate("navigator.clipboard.readText()")
+
+
+def test_the_python_line_runs_and_gives_the_value(page):
+    until(page, "document.querySelector('.values').innerText.includes('float32')")
+    for column, side in enumerate("AB"):
+        line = copied(page, side, "Python")
+        command = [sys.executable, "-c", line]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        cell = page.locator(".values tbody tr").first.locator("td").nth(column).inner_text()
+        assert np.allclose(
+            [float(word) for word in done.stdout.split()], numbers(cell), atol=SHADER
+        )
+
+
+def test_the_copied_document_is_the_material_in_sight(page):
+    show(page, roughness=0.25, color=[0.5, 0.25, 0.125])
+    page.locator(".side.left").get_by_label("energy_compensation").uncheck()
+    text = copied(page, "A", "MaterialX")
+    values = {port.name: port.value for port in mxeon.generate(text, "essl")[0].inputs}
+    assert values["lobe_color"] == (0.5, 0.25, 0.125) and values["lobe_roughness"] == 0.25
+    assert values["lobe_energy_compensation"] is False
+
+
+def test_the_copied_shader_is_the_one_that_is_drawn(page):
+    assert "oren_nayar_diffuse_bsdf" in copied(page, "B", "GLSL")
+    page.get_by_label("Material B").select_option("model/eon")
+    assert "vec3 eon_brdf(" in copied(page, "B", "GLSL")
+
+
+def test_what_cannot_be_copied_has_no_button_that_works(page):
+    page.get_by_label("Material B").select_option("variant/cycles_rho_cubed/4")
+    assert page.get_by_role("button", name="Copy B as MaterialX").is_disabled()
+    assert page.get_by_role("button", name="Copy B as GLSL").is_disabled()
+
+
+def test_the_link_is_the_address_of_the_view(page):
+    show(page, exposure=2)
+    until(page, "location.hash.includes('exposure=2')")
+    page.get_by_role("button", name="Copy a link").click()
+    until(page, "document.querySelector('header .said').textContent === 'Copied'")
+    assert page.evaluate("navigator.clipboard.readText()").endswith("#exposure=2")
