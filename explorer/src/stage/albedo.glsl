@@ -2,7 +2,8 @@
 // Directional albedo of a model by quadrature, at 256 cosines. Stands behind STAGE_VALUE.
 //
 // The integrand is smooth between the polar angle of wo, where the larger cosine changes, and the
-// azimuth at which s changes its sign: four rectangles with Gauss-Legendre nodes in each.
+// azimuth at which s changes its sign: rectangles with 16 Gauss-Legendre nodes on each side. Angles
+// are the tangents of their halves, which makes cosines and sines quotients: drivers' are poor.
 
 uniform vec3 stage_rho;
 uniform float stage_parameter;
@@ -15,39 +16,44 @@ const float NODES[8] = float[8](0.0950125098, 0.2816035508, 0.4580167777, 0.6178
 const float WEIGHTS[8] = float[8](0.1894506105, 0.1826034150, 0.1691565194, 0.1495959888,
                                   0.1246289713, 0.0951585117, 0.0622535239, 0.0271524594);
 
-vec2 stage_node(int k)
+// Node and weight in [low, high].
+vec2 stage_node(int k, float low, float high)
 {
-    return k < 8 ? vec2(-NODES[k], WEIGHTS[k]) : vec2(NODES[k - 8], WEIGHTS[k - 8]);
+    float node = k < 8 ? -NODES[k] : NODES[k - 8];
+    return 0.5 * vec2(low + high + (high - low) * node, (high - low) * WEIGHTS[k & 7]);
 }
 
-// Integral over a rectangle of polar angle and azimuth, the first from `low` to `high`.
-vec3 stage_rectangle(vec3 wo, float low, float high, float azimuth, vec3 rho, float r)
+// Cosine and sine of the angle whose half has the tangent t, and how fast it grows with t.
+vec3 stage_angle(float t)
+{
+    return vec3(1.0 - t * t, 2.0 * t, 2.0) / (1.0 + t * t);
+}
+
+// Integral over the half of the hemisphere with y > 0 and tangents of polar angles from low to high.
+vec3 stage_zone(vec3 wo, float low, float high, vec3 rho, float r)
 {
     vec3 sum = vec3(0.0);
     for (int k = 0; k < 16; ++k) {
-        vec2 polar = stage_node(k);
-        float theta = 0.5 * (low + high + (high - low) * polar.x);
-        float S = sin(theta);
-        for (int n = 0; n < 16; ++n) {
-            vec2 around = stage_node(n);
-            float phi = azimuth + 0.25 * EON_PI * (1.0 + around.x);
-            vec3 wi = vec3(S * cos(phi), S * sin(phi), cos(theta));
-            sum += polar.y * around.y * wi.z * S * STAGE_VALUE;
+        vec2 polar = stage_node(k, low, high);
+        vec3 theta = stage_angle(polar.x);
+        for (int n = 0; n < 32; ++n) {
+            vec2 azimuth = stage_node(n & 15, 0.0, 1.0);
+            vec3 phi = stage_angle(azimuth.x);
+            float ahead = n < 16 ? phi.x : -phi.x;
+            vec3 wi = vec3(theta.y * ahead, theta.y * phi.y, theta.x);
+            sum += polar.y * theta.z * theta.x * theta.y * azimuth.y * phi.z * STAGE_VALUE;
         }
     }
-    return 0.5 * (high - low) * 0.25 * EON_PI * sum;
+    return sum;
 }
 
 void main()
 {
     float mu = (gl_FragCoord.x - 0.5) / 255.0;
-    vec3 wo = vec3(sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu);
-    float theta = 0.5 * EON_PI * oren_nayar_angle(wo.x, mu);
-    vec3 sum = vec3(0.0);
-    for (int quarter = 0; quarter < 2; ++quarter) {
-        float azimuth = 0.5 * EON_PI * float(quarter);
-        sum += stage_rectangle(wo, 0.0, theta, azimuth, stage_rho, stage_parameter);
-        sum += stage_rectangle(wo, theta, 0.5 * EON_PI, azimuth, stage_rho, stage_parameter);
-    }
-    stage_albedo = vec4(2.0 * sum, 1.0);
+    float S = sqrt((1.0 - mu) * (1.0 + mu));
+    vec3 wo = vec3(S, 0.0, mu);
+    float tangent = S / (1.0 + mu);
+    vec3 below = stage_zone(wo, 0.0, tangent, stage_rho, stage_parameter);
+    vec3 above = stage_zone(wo, tangent, 1.0, stage_rho, stage_parameter);
+    stage_albedo = vec4(2.0 * (below + above), 1.0);
 }

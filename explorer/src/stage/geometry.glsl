@@ -9,7 +9,8 @@ layout(location = 2) out vec4 stage_detail; // Texture coordinates, opacity.
 // Angle of (x, y) from the x axis as a share of a full turn, in [-0.5, 0.5].
 float stage_turn(float y, float x)
 {
-    float quarter = 0.25 * oren_nayar_angle(abs(y), abs(x));
+    float radius = max(length(vec2(x, y)), 1.0e-30); // At a pole there is no angle: 0.
+    float quarter = 0.25 * oren_nayar_angle(abs(y) / radius, abs(x) / radius);
     return (y < 0.0 ? -1.0 : 1.0) * (x < 0.0 ? 0.5 - quarter : quarter);
 }
 

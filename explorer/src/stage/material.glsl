@@ -17,15 +17,16 @@ uniform float stage_parameter; // Roughness or sigma.
 
 out vec4 stage_radiance;
 
-// A direction in the frame of the normal, in whose x-z plane the viewer is.
-vec3 stage_local(vec3 direction, vec3 normal, vec3 view)
+// Both directions in the frame of the normal, in whose x-z plane the viewer is. The sine of a view
+// almost along the normal is that of a cross product: a difference from the normal would cancel.
+void stage_local(vec3 normal, vec3 view, vec3 light, out vec3 wo, out vec3 wi)
 {
-    vec3 tangent = view - dot(view, normal) * normal;
-    if (dot(tangent, tangent) < 1.0e-12)
-        tangent = vec3(normal.z, 0.0, -normal.x) + vec3(1.0e-6, 0.0, 0.0);
-    tangent = normalize(tangent);
-    vec3 bitangent = cross(normal, tangent);
-    return vec3(dot(direction, tangent), dot(direction, bitangent), dot(direction, normal));
+    vec3 beside = cross(normal, view);
+    float S_o = length(beside);
+    vec3 any = cross(normal, abs(normal.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
+    vec3 y = S_o > 0.0 ? beside / S_o : normalize(any);
+    wo = vec3(S_o, 0.0, clamp(dot(view, normal), 0.0, 1.0));
+    wi = vec3(dot(light, cross(y, normal)), dot(light, y), dot(light, normal));
 }
 
 // The table of albedos, linear between its angles.
@@ -48,9 +49,9 @@ void main()
     vec4 place = texelFetch(stage_place, at, 0);
     vec3 normal = normalize(surface.xyz);
     vec3 view = normalize(stage_eye_view - place.xyz);
-    vec3 wo = stage_local(view, normal, view);
-    vec3 wi = stage_local(stage_light_view, normal, view);
-    wo.z = clamp(wo.z, 0.0, 1.0);
+    vec3 wo;
+    vec3 wi;
+    stage_local(normal, view, stage_light_view, wo, wi);
     float lit = stage_intensity * texture(stage_lit, gl_FragCoord.xy / stage_frame.xy).x;
     vec3 rho = stage_rho;
     float r = stage_parameter;

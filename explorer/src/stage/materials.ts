@@ -11,6 +11,8 @@ import type { Textures } from "./textures";
 const SPECULAR_SAMPLES = 16; // of the surroundings, by a generated shader's glossy lobes
 const MIPS = 8; // of a map of 128 columns
 
+const ATLAS = /^uniform vec2 (\w+_uv_scale);/gm;
+
 /** A program that a side needs, and the source to name if it fails. */
 export interface Wanted {
   readonly source: string;
@@ -51,9 +53,9 @@ export function shaderUniforms(
   eye: Vec3,
 ): Uniforms {
   const inputs: Record<string, UniformValue> = {};
+  // Every image has a place in an atlas, which none of them is in.
+  for (const [, name = ""] of source.pixel.matchAll(ATLAS)) inputs[name] = [1, 1];
   for (const { name, value, image } of source.inputs) {
-    inputs[`${name}_uv_scale`] = [1, 1];
-    inputs[`${name}_uv_offset`] = [0, 0];
     if (image) inputs[name] = textures.image(image);
     else if (value !== null) inputs[name] = value;
   }

@@ -88,25 +88,24 @@ function defined(macros: Record<string, string | number>): string {
     .join("");
 }
 
+function shaped(shape: Shape, ...parts: string[]): string {
+  return HEAD + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("");
+}
+
 export class Texts {
   private readonly functions: string;
+  private readonly adapted = new Map<ShaderSource, string>();
 
   constructor(data: PageData) {
     this.functions = data.functions + variants;
   }
 
-  private shaped(shape: Shape, ...parts: string[]): string {
-    return (
-      HEAD + this.functions + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("")
-    );
-  }
-
   geometry(shape: Shape): string {
-    return this.shaped(shape, camera, geometry);
+    return shaped(shape, this.functions, camera, geometry);
   }
 
   shadow(shape: Shape): string {
-    return this.shaped(shape, shadow);
+    return shaped(shape, shadow);
   }
 
   model(model: ModelName): string {
@@ -122,11 +121,11 @@ export class Texts {
   paths(model: ModelName, sampler: Sampler, shape: Shape): string {
     const [sample, pdf] = SAMPLERS[sampler];
     const macros = { STAGE_VALUE: MODELS[model].value, STAGE_SAMPLE: sample, STAGE_PDF: pdf };
-    return this.shaped(shape, camera, surroundings, defined(macros), paths);
+    return shaped(shape, this.functions, camera, surroundings, defined(macros), paths);
   }
 
   picture(shape: Shape): string {
-    return this.shaped(shape, camera, surroundings, picture);
+    return shaped(shape, camera, surroundings, picture);
   }
 
   screen(): string {
@@ -134,7 +133,9 @@ export class Texts {
   }
 
   generated(source: ShaderSource): string {
-    return withPoints(source.pixel);
+    let text = this.adapted.get(source);
+    if (text === undefined) this.adapted.set(source, (text = withPoints(source.pixel)));
+    return text;
   }
 }
 
