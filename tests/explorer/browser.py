@@ -8,7 +8,7 @@ from playwright.sync_api import sync_playwright
 
 from mxeon.shaders.hosts.webgl import FLAGS, program
 
-VIEWPORT = {"width": 760, "height": 560}
+VIEWPORT = {"width": 880, "height": 320}  # few pixels, for a software driver
 DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) != null"
 
 
@@ -41,7 +41,7 @@ def opened(browser, address, allowed=(), drawn=True, **options):
     assert [text for text in said if not text.startswith(tuple(allowed))] == []
 
 
-def until(page, expression, argument=None, seconds=60):
+def until(page, expression, argument=None, seconds=20):
     """Wait until an expression is true; playwright's own way needs what the page's policy forbids."""
     for _ in range(20 * seconds):
         if page.evaluate(expression, argument):
@@ -51,8 +51,10 @@ def until(page, expression, argument=None, seconds=60):
 
 
 def state(page):
-    """The view that the page shows."""
-    return page.evaluate("mxeon.state()")
+    """The view that the page shows, once it has answered all events."""
+    return page.evaluate(
+        "new Promise(done => requestAnimationFrame(() => setTimeout(() => done(mxeon.state()))))"
+    )
 
 
 def show(page, **patch):
