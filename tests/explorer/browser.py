@@ -15,12 +15,16 @@ DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) !
 @contextmanager
 def launched(flags=FLAGS):
     """A browser of its own."""
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=program(), args=flags, chromium_sandbox=os.geteuid() != 0
-        )
+    with sync_playwright() as playwright, started(playwright.chromium, flags) as browser:
         yield browser
-        browser.close()
+
+
+@contextmanager
+def started(kind, flags):
+    """A browser of a kind that playwright knows, with these flags."""
+    browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=os.geteuid() != 0)
+    yield browser
+    browser.close()
 
 
 @contextmanager
