@@ -66,14 +66,14 @@ def view(stage, left, right=None, light="side", **patch):
 
 def settle(stage):
     """Wait until the picture is final."""
-    stage.wait_for_function("mxeon.stage.isSettled()", timeout=LIMIT)
+    stage.wait_for_function("mxeon.stage.isSettled(mxeon.state())", timeout=LIMIT)
 
 
-def frame(stage, name=None):
-    """What `read` gives, row 0 at the top."""
-    size = stage.evaluate("mxeon.stage.size()")
+def frame(stage, name=None, size=None):
+    """What `read` gives, row 0 at the top; paths are of another width and height."""
+    width, height = size or stage.evaluate("Object.values(mxeon.stage.size())")
     data = np.frombuffer(base64.b64decode(stage.evaluate(READ, name)), dtype=np.float32)
-    return data.reshape(size["height"], size["width"], 4)[::-1]
+    return data.reshape(height, width, 4)[::-1]
 
 
 def picture(stage, name="left"):

@@ -47,8 +47,8 @@ export interface Stage {
   size(): { width: number; height: number };
   /** Of the sphere, in pixels of the canvas. */
   diameter(): number;
-  /** Whether the picture is final, so that nothing is drawn until something changes. */
-  isSettled(): boolean;
+  /** Whether the picture of a state is final, so that nothing is drawn until something changes. */
+  isSettled(state: State): boolean;
   onStatus(callback: (status: Status) => void): void;
   dispose(): void;
 }
@@ -96,7 +96,8 @@ class CanvasStage implements Stage {
   private changed = 0; // when the state last did
   private index = 0; // of the next frame of the average, or of paths
   private share = 1; // of the resolution, of the frames of the average
-  private rate = 0; // milliseconds per pixel, of the latest frames
+  private rate = 0; // milliseconds per pixel, of the latest frame
+  private latest = 0; // milliseconds of that
   private fence: Fence | null = null;
   private noise: { left: number; right: number } | null = null;
   private said = "";
@@ -181,8 +182,8 @@ class CanvasStage implements Stage {
     return diameterOf(this.fit());
   }
 
-  isSettled(): boolean {
-    return this.index > 0 && !this.request && !this.moving;
+  isSettled(state: State): boolean {
+    return this.state === state && this.index > 0 && !this.request && !this.moving;
   }
 
   onStatus(callback: (status: Status) => void): void {
@@ -279,11 +280,12 @@ class CanvasStage implements Stage {
 
   /** Choose the resolution of what is drawn from now on. */
   private begin(state: State): void {
+    // What is dragged keeps one size, unless that is still too slow.
+    if (this.moving && this.share < 1 && this.latest < 2 * MOVING_BUDGET) return;
     const [width, height] = this.fit();
     const budget = this.moving ? MOVING_BUDGET : state.paths ? PATHS_BUDGET : Infinity;
     const affordable = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;
     const share = this.coarse ? FIRST_SHARE : affordable;
-    // In steps, so that what is dragged keeps one size.
     this.share = Math.min(Math.max(Math.ceil(share * 10) / 10, SMALLEST), 1);
   }
 
@@ -296,6 +298,7 @@ class CanvasStage implements Stage {
     this.fence = null;
     const milliseconds = performance.now() - fence.since;
     const [width, height] = fence.size;
+    this.latest = milliseconds;
     this.rate = milliseconds / (width * height);
     this.tell({ kind: "drawn", width, height, milliseconds });
     return false;
