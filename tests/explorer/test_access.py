@@ -85,17 +85,19 @@ def test_the_picture_stays_in_sight_on_a_phone(browser, address):
 
 
 def test_without_webgl2_there_are_pictures_and_all_numbers(browser, documents):
-    with started(browser.browser_type, NO_GRAPHICS) as other:
-        with opened(other, documents, drawn=False) as page:
-            assert "no WebGL2" in page.get_by_role("alert").inner_text()
-            stills = page.locator(".stills img")
-            until(page, "[...document.images].every(each => each.complete && each.naturalWidth)")
-            assert stills.count() == 4 and page.locator("canvas").count() == 0
-            assert "not EON" in page.locator(".side.right .verdict").inner_text()
-            assert "EON, clamped, float64" in page.locator(".values").inner_text()
-            page.get_by_label("Roughness, number").fill("0.5")
-            page.get_by_label("Roughness, number").blur()
-            assert state(page)["roughness"] == 0.5
+    with (
+        started(browser.browser_type, NO_GRAPHICS) as other,
+        opened(other, documents, drawn=False) as page,
+    ):
+        assert "no WebGL2" in page.get_by_role("alert").inner_text()
+        stills = page.locator(".stills img")
+        until(page, "[...document.images].every(each => each.complete && each.naturalWidth)")
+        assert stills.count() == 4 and page.locator("canvas").count() == 0
+        assert "not EON" in page.locator(".side.right .verdict").inner_text()
+        assert "EON, clamped, float64" in page.locator(".values").inner_text()
+        page.get_by_label("Roughness, number").fill("0.5")
+        page.get_by_label("Roughness, number").blur()
+        assert state(page)["roughness"] == 0.5
 
 
 def test_the_page_says_its_language_and_headings_in_order(browser, address):

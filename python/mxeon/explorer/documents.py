@@ -3,8 +3,9 @@
 
 import math
 from base64 import b64encode
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import MaterialX as mx
@@ -150,14 +151,11 @@ def _numbers(
 
 def _port(shader: Shader, port: Input) -> Port:
     """An input without a value, with its label and range."""
-    definition = _definition(shader.document, port.path)
-    attributes = definition.getAttribute if definition else lambda _: ""
-    low, high = (
-        next(filter(None, (_least(attributes(name)) for name in names)), None) for names in RANGE
-    )
-    label = attributes("uiname") or port.path.rpartition("/")[2].replace("_", " ")
+    words = partial(_attribute, _descriptions(shader.document, port.path))
+    low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
+    label = words("uiname") or port.path.rpartition("/")[2].replace("_", " ")
     # Words that choose from a list are numbers in the shader; frames of images do not move here.
-    shown = not (attributes("enum") or port.type == "filename" or "frame" in port.path)
+    shown = not (words("enum") or port.type == "filename" or "frame" in port.path)
     return Port(
         port.name,
         port.type,
@@ -170,15 +168,18 @@ def _port(shader: Shader, port: Input) -> Port:
     )
 
 
-def _definition(document: mx.Document, path: str) -> mx.Element | None:
-    """The element that describes an input: its own, or that of its node's definition."""
-    element = document.getDescendant(path)
-    if element is not None and any(element.hasAttribute(name) for names in RANGE for name in names):
-        return element
+def _descriptions(document: mx.Document, path: str) -> list[mx.Element]:
+    """The elements that describe an input: its own, and that of its node's definition."""
     parent, _, name = path.rpartition("/")
     node = document.getDescendant(parent) if parent else None
     definition = node.getNodeDef() if isinstance(node, mx.Node) else None
-    return (definition.getActiveInput(name) if definition else None) or element
+    inputs = (document.getDescendant(path), definition and definition.getActiveInput(name))
+    return [each for each in inputs if each is not None]
+
+
+def _attribute(elements: Iterable[mx.Element], name: str) -> str:
+    """The first of the elements' attributes of a name that has a text."""
+    return next(filter(None, (each.getAttribute(name) for each in elements)), "")
 
 
 def _least(text: str) -> tuple[float] | None:
