@@ -41,8 +41,10 @@ def opened(browser, address, allowed=(), drawn=True, **options):
     yield page
     context.close()
     start = address.partition("#")[0]
-    assert [url for url in asked if not url.startswith((start, "data:", "blob:"))] == []
-    assert [text for text in said if not text.startswith(tuple(allowed))] == []
+    others = [url for url in asked if not url.startswith((start, "data:", "blob:"))]
+    complaints = [text for text in said if not text.startswith(tuple(allowed))]
+    assert not others, f"requests: {others}"
+    assert not complaints, f"messages: {complaints}"
 
 
 def until(page, expression, argument=None, seconds=20):

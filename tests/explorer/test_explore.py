@@ -88,6 +88,14 @@ def test_a_node_of_eonlib_alone_has_no_stock_twin():
     assert source.library == "eonlib" and source.meant.off == "eon"
 
 
+@pytest.mark.parametrize("path", sorted(examples_folder().glob("*.mtlx")), ids=lambda p: p.stem)
+def test_the_text_of_a_document_is_the_document(path):
+    source = document_sources(str(path))[0]
+    again = document_sources_of(source.document)
+    inputs = [(each.name, each.value) for each in source.inputs]
+    assert inputs in [[(each.name, each.value) for each in one.inputs] for one in again]
+
+
 def test_a_textured_node_is_not_one_model():
     text = material_text(EON, {"normal": (0.0, 0.0, 1.0)})
     [source] = document_sources_of(text)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from xml.etree import ElementTree
 
 import MaterialX as mx
 import numpy as np
@@ -20,6 +21,7 @@ from mxeon.shaders.hosts.textures import read_texture
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG
 
 LIBRARIES = ("eonlib", "stock")
+LAYOUT = ("comment", "newline")
 LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
@@ -59,11 +61,37 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
                 raise
             continue  # a node that stock MaterialX lacks
         for shader in shaders:
-            text = mx.writeToXmlString(shader.document)
+            text = document_text(shader.document)
             title = f"{name}: {shader.element}, {library}"
             source = shader_source(shader, text, f"{shader.name}/{library}", title, name, library)
             sources.append(source)
     return tuple(sources)
+
+
+def document_text(document: mx.Document) -> str:
+    """A document as XML; MaterialX's own writer leaves a `<` of an attribute as it is.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+        Whatever it includes is in it.
+
+    Returns
+    -------
+    str
+    """
+    root = _tree(document)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _tree(element: mx.Element) -> ElementTree.Element:
+    """An element with its children, but for comments and empty lines."""
+    named = {"name": element.getName()} if element.getName() else {}
+    attributes = {name: element.getAttribute(name) for name in element.getAttributeNames()}
+    tree = ElementTree.Element(element.getCategory(), named | attributes)
+    tree.extend(_tree(each) for each in element.getChildren() if each.getCategory() not in LAYOUT)
+    return tree
 
 
 def shader_source(
