@@ -47,13 +47,16 @@ function panel(direction: Vec3, toward: Vec3, wide: number, high: number): numbe
   return inside(Math.abs(dot(direction, right)) / ahead - wide, 0.12) * inside(height - high, 0.12);
 }
 
-/** A dark room with a warm key light, a cool strip behind the subject and a soft top light. */
+/**
+ * A dark room with a warm light above and in front, and a cool strip behind on either side. Left and
+ * right are alike, so that what a wipe shows differs by its material alone.
+ */
 function studio(w: Vec3): Triple {
-  const room = mixed([0.05, 0.05, 0.055], [0.16, 0.16, 0.17], 0.5 + 0.5 * w[1]);
-  const key = scaled([5.2, 4.7, 4.1], panel(w, [-0.75, 0.55, 0.65], 0.5, 0.5));
-  const strip = scaled([2.6, 3.3, 4.4], panel(w, [0.9, 0.15, -0.45], 0.16, 0.9));
-  const top = scaled([1.6, 1.6, 1.6], panel(w, [0.15, 1, -0.2], 0.7, 0.35));
-  return sum(room, key, strip, top);
+  const room = mixed([0.05, 0.05, 0.055], [0.15, 0.15, 0.16], 0.5 + 0.5 * w[1]);
+  const key = scaled([4.0, 3.7, 3.3], panel(w, [0, 0.8, 0.75], 0.75, 0.4));
+  const across: Vec3 = [Math.abs(w[0]), w[1], w[2]];
+  const strips = scaled([2.6, 3.2, 4.2], panel(across, [0.9, 0.1, -0.4], 0.16, 0.9));
+  return sum(room, key, strips);
 }
 
 /** A clear sky late in the day above dry ground. The glow is that around the sun. */
