@@ -10,7 +10,7 @@ import * as gpu from "./gpu";
 import { modelOf, shaderUniforms, wanted } from "./materials";
 import { jitter, Paths, type Size } from "./paths";
 import { camera, lightVector, toView } from "./scenes";
-import { hasTable, samplerRoughness, Texts } from "./texts";
+import { hasTable, samplerRoughness, type Text, Texts } from "./texts";
 import { Textures } from "./textures";
 
 export const SIDES = ["left", "right"] as const satisfies readonly SideName[];
@@ -166,7 +166,7 @@ export class Engine {
     return missing.length === 0;
   }
 
-  private isPending(source: string, text: string): boolean {
+  private isPending(source: string, text: Text): boolean {
     try {
       return this.programs.get(text) === null;
     } catch (error) {
@@ -229,7 +229,7 @@ export class Engine {
   private pass(
     name: string,
     key: string,
-    text: string,
+    text: Text,
     target: gpu.Target,
     size: Size,
     uniforms: gpu.Uniforms,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs, textures and frames of one WebGL2 context.
 
-import { VERTEX } from "./texts";
+import { type Text, VERTEX } from "./texts";
 
 export type UniformValue = number | boolean | readonly number[] | WebGLTexture;
 export type Uniforms = Readonly<Record<string, UniformValue>>;
@@ -29,7 +29,7 @@ export interface Target {
   readonly textures: readonly WebGLTexture[];
 }
 
-/** Programs by the text of their pixel stage, compiled when they are first asked for. */
+/** Programs by their pixel stage, compiled when they are first asked for. */
 export class Programs {
   private readonly known = new Map<string, Pending>();
   private readonly vertex: WebGLShader;
@@ -41,9 +41,9 @@ export class Programs {
   }
 
   /** The program, or null while it is compiled; raises the compiler's words. */
-  get(pixel: string): Program | null {
-    let pending = this.known.get(pixel);
-    if (!pending) this.known.set(pixel, (pending = this.start(pixel)));
+  get(pixel: Text): Program | null {
+    let pending = this.known.get(pixel.key);
+    if (!pending) this.known.set(pixel.key, (pending = this.start(pixel.make())));
     if (pending.error !== null) throw new Error(pending.error);
     return pending.program ?? this.finish(pending);
   }

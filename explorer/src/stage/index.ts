@@ -69,8 +69,18 @@ const ATTRIBUTES: WebGLContextAttributes = {
   stencil: false,
 };
 
+/** The canvas' size in pixels of the screen: even, so that the sphere's center is a corner. */
+function fitted({ clientWidth, clientHeight }: HTMLCanvasElement): Size {
+  const most = Math.sqrt(MOST_PIXELS / Math.max(clientWidth * clientHeight, 1));
+  const ratio = Math.min(window.devicePixelRatio, most);
+  const even = (length: number) => Math.max(2 * Math.round((length * ratio) / 2), 2);
+  return [even(clientWidth), even(clientHeight)];
+}
+
 /** A stage on a canvas; null without WebGL2 that draws into float32 frames. */
 export function createStage(canvas: HTMLCanvasElement, data: PageData): Stage | null {
+  // A context that is resized later waits for the driver.
+  [canvas.width, canvas.height] = fitted(canvas);
   const gl = canvas.getContext("webgl2", ATTRIBUTES) as WebGL2RenderingContext | null;
   if (!gl?.getExtension("EXT_color_buffer_float")) return null;
   return new CanvasStage(canvas, gl, data);
@@ -221,15 +231,8 @@ class CanvasStage implements Stage {
     this.restart();
   };
 
-  /** The canvas' size in pixels of the screen: even, so that the sphere's center is a corner. */
   private fit(): Size {
-    const { clientWidth, clientHeight } = this.canvas;
-    const ratio = Math.min(
-      window.devicePixelRatio,
-      Math.sqrt(MOST_PIXELS / Math.max(clientWidth * clientHeight, 1)),
-    );
-    const even = (length: number) => Math.max(2 * Math.round((length * ratio) / 2), 2);
-    return [even(clientWidth), even(clientHeight)];
+    return fitted(this.canvas);
   }
 
   private isFitted(): boolean {

@@ -5,7 +5,7 @@ import type { ModelName, ShaderSource, Source, Vec3 } from "../data";
 import type { Side, State } from "../state";
 import type { Uniforms, UniformValue } from "./gpu";
 import type { Camera } from "./scenes";
-import { hasTable, type Texts } from "./texts";
+import { hasTable, type Text, type Texts } from "./texts";
 import type { Textures } from "./textures";
 
 const SPECULAR_SAMPLES = 16; // of the surroundings, by a generated shader's glossy lobes
@@ -16,7 +16,7 @@ const ATLAS = /^uniform vec2 (\w+_uv_scale);/gm;
 /** A program that a side needs, and the source to name if it fails. */
 export interface Wanted {
   readonly source: string;
-  readonly text: string;
+  readonly text: Text;
 }
 
 /** The model that a source is, for path tracing; null if it has none. */

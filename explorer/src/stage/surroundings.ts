@@ -98,16 +98,22 @@ export function radianceMap(name: Surroundings): SkyMap {
 export function irradianceMap(radiance: SkyMap): SkyMap {
   if (radiance.height === 1) return radiance;
   const coarse = reduced(radiance, radiance.height / SUMMED_ROWS);
-  const incoming = directions(SUMMED_ROWS);
-  return mapOf(IRRADIANCE_ROWS, (normal) => {
-    const total: Triple = [0, 0, 0];
-    let weights = 0;
-    incoming.forEach(({ direction, solidAngle }, index) => {
-      const weight = Math.max(dot(direction, normal), 0) * solidAngle;
+  const incoming = Float64Array.from(
+    directions(SUMMED_ROWS).flatMap(({ direction, solidAngle }) => [...direction, solidAngle]),
+  );
+  return mapOf(IRRADIANCE_ROWS, ([x, y, z]) => {
+    // Four million terms before the first picture: no objects in this loop.
+    let [red, green, blue, weights] = [0, 0, 0, 0];
+    for (let k = 0; k < incoming.length; k += 4) {
+      const cosine = x * incoming[k]! + y * incoming[k + 1]! + z * incoming[k + 2]!;
+      if (cosine <= 0) continue;
+      const weight = cosine * incoming[k + 3]!;
       weights += weight;
-      for (let k = 0; k < 3; ++k) total[k as 0 | 1 | 2] += weight * (coarse[4 * index + k] ?? 0);
-    });
-    return scaled(total, 1 / weights);
+      red += weight * coarse[k]!;
+      green += weight * coarse[k + 1]!;
+      blue += weight * coarse[k + 2]!;
+    }
+    return [red / weights, green / weights, blue / weights];
   });
 }
 

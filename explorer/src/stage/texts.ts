@@ -92,50 +92,58 @@ function shaped(shape: Shape, ...parts: string[]): string {
   return HEAD + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("");
 }
 
+/** A program's pixel stage: a short name, which programs are kept by, and its long text. */
+export interface Text {
+  readonly key: string;
+  readonly make: () => string;
+}
+
 export class Texts {
   private readonly functions: string;
-  private readonly adapted = new Map<ShaderSource, string>();
 
   constructor(data: PageData) {
     this.functions = data.functions + variants;
   }
 
-  geometry(shape: Shape): string {
-    return shaped(shape, this.functions, camera, geometry);
+  geometry(shape: Shape): Text {
+    const make = () => shaped(shape, this.functions, camera, geometry);
+    return { key: `geometry ${shape}`, make };
   }
 
-  shadow(shape: Shape): string {
-    return shaped(shape, shadow);
+  shadow(shape: Shape): Text {
+    return { key: `shadow ${shape}`, make: () => shaped(shape, shadow) };
   }
 
-  model(model: ModelName): string {
+  model(model: ModelName): Text {
     const { value, albedo: closed } = MODELS[model];
     const macros = { STAGE_VALUE: value, STAGE_ALBEDO: closed ?? "stage_tabulated(mu)" };
-    return HEAD + this.functions + defined(macros) + surroundings + material;
+    const make = () => HEAD + this.functions + defined(macros) + surroundings + material;
+    return { key: `model ${model}`, make };
   }
 
-  albedo(model: ModelName): string {
-    return HEAD + this.functions + defined({ STAGE_VALUE: MODELS[model].value }) + albedo;
+  albedo(model: ModelName): Text {
+    const macros = { STAGE_VALUE: MODELS[model].value };
+    const make = () => HEAD + this.functions + defined(macros) + albedo;
+    return { key: `albedo ${model}`, make };
   }
 
-  paths(model: ModelName, sampler: Sampler, shape: Shape): string {
+  paths(model: ModelName, sampler: Sampler, shape: Shape): Text {
     const [sample, pdf] = SAMPLERS[sampler];
     const macros = { STAGE_VALUE: MODELS[model].value, STAGE_SAMPLE: sample, STAGE_PDF: pdf };
-    return shaped(shape, this.functions, camera, surroundings, defined(macros), paths);
+    const make = () => shaped(shape, this.functions, camera, surroundings, defined(macros), paths);
+    return { key: `paths ${model} ${sampler} ${shape}`, make };
   }
 
-  picture(shape: Shape): string {
-    return shaped(shape, camera, surroundings, picture);
+  picture(shape: Shape): Text {
+    return { key: `picture ${shape}`, make: () => shaped(shape, camera, surroundings, picture) };
   }
 
-  screen(): string {
-    return HEAD + screen;
+  screen(): Text {
+    return { key: "screen", make: () => HEAD + screen };
   }
 
-  generated(source: ShaderSource): string {
-    let text = this.adapted.get(source);
-    if (text === undefined) this.adapted.set(source, (text = withPoints(source.pixel)));
-    return text;
+  generated(source: ShaderSource): Text {
+    return { key: `source ${source.id}`, make: () => withPoints(source.pixel) };
   }
 }
 
