@@ -59,9 +59,9 @@ export const INITIAL: State = {
   shown: "left",
   shape: "sphere",
   azimuth: 180, // from behind and above: where implementations part
-  elevation: 62,
-  light: 1,
-  surroundings: "none",
+  elevation: 50,
+  light: 1.5,
+  surroundings: "studio",
   exposure: 0,
   color: [0.8, 0.4, 0.1],
   roughness: 1,

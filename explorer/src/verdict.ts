@@ -50,7 +50,7 @@ function wrong(actual: Model, meant: Model, state: State): string {
         "in units of \u03c0 f cos\u03b8.",
     );
   }
-  if (albedo > 1e-9) amount.push(`In surroundings off by up to ${show(albedo, 2)}.`);
+  if (albedo > 1e-9) amount.push(`In surroundings its albedo is off by up to ${show(albedo, 2)}.`);
   if (amount.length === 0) amount.push("At this color and roughness both are the same.");
   return `${parts.join(": ")}. ${amount.join(" ")}`;
 }

@@ -8,7 +8,9 @@ from playwright.sync_api import sync_playwright
 
 from mxeon.shaders.hosts.webgl import FLAGS, program
 
-VIEWPORT = {"width": 880, "height": 320}  # few pixels, for a software driver
+VIEWPORT = {"width": 880, "height": 180}  # few pixels, for a software driver
+HAS = """fields => Object.entries(fields).every(([name, value]) =>
+    JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
 DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) != null"
 
 
@@ -29,10 +31,15 @@ def started(kind, flags):
 
 @contextmanager
 def opened(browser, address, allowed=(), drawn=True, **options):
-    """The page at an address; messages that are not allowed, and requests, fail the test."""
+    """The page at an address; messages that are not allowed, and requests, fail the test.
+
+    Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
+    """
     asked, said = [], []
     context = browser.new_context(**({"viewport": VIEWPORT} | options))
     page = context.new_page()
+    if not drawn:
+        page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
@@ -42,8 +49,8 @@ def opened(browser, address, allowed=(), drawn=True, **options):
     context.close()
     start = address.partition("#")[0]
     others = [url for url in asked if not url.startswith((start, "data:", "blob:"))]
-    complaints = [text for text in said if not text.startswith(tuple(allowed))]
     assert not others, f"requests: {others}"
+    complaints = [text for text in said if not text.startswith(tuple(allowed))]
     assert not complaints, f"messages: {complaints}"
 
 
@@ -57,10 +64,17 @@ def until(page, expression, argument=None, seconds=20):
 
 
 def state(page):
-    """The view that the page shows, once it has answered all events."""
-    return page.evaluate(
-        "new Promise(done => requestAnimationFrame(() => setTimeout(() => done(mxeon.state()))))"
-    )
+    """The view that the page shows."""
+    return page.evaluate("mxeon.state()")
+
+
+def shows(page, **fields):
+    """Require that the page shows a view with these fields, soon."""
+    try:
+        until(page, HAS, fields, seconds=5)
+    except AssertionError:
+        view = state(page)
+        raise AssertionError(f"{ {name: view[name] for name in fields} }, not {fields}") from None
 
 
 def show(page, **patch):

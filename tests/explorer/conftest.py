@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The explorer's page, and a browser for it, which ends with the module that asked for it."""
+"""The explorer's page, and a browser for it, which ends with these tests."""
 
 import pytest
 
@@ -9,7 +9,7 @@ from tests.explorer.browser import launched
 from tests.support.availability import available
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def browser():
     """Chromium with its own software driver."""
     with available("webgl"), launched() as browser:

@@ -15,10 +15,10 @@ from tests.explorer.build import MODULES, needs_modules
 # Without a driver for graphics, Chromium has no WebGL.
 NO_GRAPHICS = ("--disable-gpu", "--disable-software-rasterizer", "--no-proxy-server")
 VIEWS = {
-    "first": {},
-    "difference": {"comparison": "difference"},
+    "light": {},
     "paths": {"comparison": "flicker", "paths": True, "samples": 1, "probe": [0.5, 0.3]},
-    "models": {
+    "dark": {
+        "comparison": "difference",
         "left": {"source": "model/qon", "flag": True, "sampler": "exact"},
         "right": {"source": "variant/cycles_rho_cubed/4", "flag": True, "sampler": "exact"},
         "wanted": [0.9, 0.9, 0.9],
@@ -44,24 +44,26 @@ def findings(page):
     ]
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing(browser, documents, scheme):
-    needs_modules()
-    # The page's own policy would refuse the script.
-    with opened(browser, documents, color_scheme=scheme, bypass_csp=True) as page:
-        page.add_script_tag(path=MODULES / "axe-core" / "axe.min.js")
-        for name, view in VIEWS.items():
-            page.evaluate("mxeon.show(mxeon.from_address(''))")
-            show(page, **view)
-            assert (name, findings(page)) == (name, [])
-
-
-def test_axe_would_find_a_picture_without_a_name(browser, documents):
+@pytest.fixture(scope="module")
+def checked(browser, documents):
+    """The page with axe-core, which the page's own policy would refuse."""
     needs_modules()
     with opened(browser, documents, bypass_csp=True) as page:
         page.add_script_tag(path=MODULES / "axe-core" / "axe.min.js")
-        page.evaluate("document.querySelector('canvas').removeAttribute('aria-label')")
-        assert [each for each in findings(page) if "svg-img-alt" in each or "role-img-alt" in each]
+        yield page
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_axe_finds_nothing(checked, name):
+    checked.emulate_media(color_scheme="dark" if name == "dark" else "light")
+    checked.evaluate("mxeon.show(mxeon.from_address(''))")
+    show(checked, **VIEWS[name])
+    assert findings(checked) == []
+
+
+def test_axe_would_find_a_picture_without_a_name(checked):
+    checked.evaluate("document.querySelector('canvas').removeAttribute('aria-label')")
+    assert [each for each in findings(checked) if "role-img-alt" in each]
 
 
 def test_a_phone_shows_all_without_scrolling_sideways(browser, documents):

@@ -39,6 +39,18 @@ def test_the_page_is_one_small_file_that_names_no_other():
     assert "default-src 'none'" in text and "%" not in text.split("<style>")[0]
 
 
+def test_the_page_of_the_documentation_is_that_of_the_command():
+    kept, new = (ROOT / "docs" / "explore.html").read_text(), page(page_data())
+    data = [data_of(text) | {"stills": None} for text in (kept, new)]  # whose last bits may differ
+    assert data[0] == data[1], "make it again: python docs/explorer.py"
+    mark = 'type="application/json">'
+    for kept_part, new_part in zip(kept.split(mark), new.split(mark), strict=True):
+        assert (
+            kept_part.rpartition("</script>\n    <script>")[2]
+            == (new_part.rpartition("</script>\n    <script>")[2])
+        )
+
+
 def test_the_page_offers_every_model_and_every_defect():
     sources = page_data().sources
     models = {source.model for source in sources if source.kind == "model"}

@@ -2,9 +2,48 @@
 // Form fields, each with its label.
 
 import type { ComponentChildren } from "preact";
-import { useId } from "preact/hooks";
+import { useId, useRef, useState } from "preact/hooks";
 import type { Triple, Vec3 } from "../data";
 import { from_hex, to_hex } from "../format";
+
+interface NumberProps {
+  readonly label: string;
+  readonly value: number;
+  readonly min?: number;
+  readonly max?: number;
+  readonly step?: number | "any";
+  readonly onChange: (value: number) => void;
+}
+
+/** A number to type. What is being typed stays, whatever else changes, until it is done. */
+export function NumberField({ label, value, min, max, step = "any", onChange }: NumberProps) {
+  const [draft, setDraft] = useState<string | null>(null);
+  const typed = useRef(false);
+  const end = (event: Event): void => {
+    const number = (event.currentTarget as HTMLInputElement).valueAsNumber;
+    const done = !typed.current || Number.isNaN(number);
+    typed.current = false;
+    setDraft(null);
+    if (done) return;
+    onChange(Math.min(Math.max(number, min ?? -Infinity), max ?? Infinity));
+  };
+  return (
+    <input
+      type="number"
+      aria-label={label}
+      {...(min === undefined ? {} : { min })}
+      {...(max === undefined ? {} : { max })}
+      step={step}
+      value={draft ?? Number(value.toPrecision(7))}
+      onInput={(event) => {
+        typed.current = true;
+        setDraft(event.currentTarget.value);
+      }}
+      onChange={end}
+      onBlur={end}
+    />
+  );
+}
 
 interface SliderProps {
   readonly label: string;
@@ -19,19 +58,20 @@ interface SliderProps {
 /** A number as a slider and as a field beside it. */
 export function Slider({ label, value, min, max, step = 0.01, unit = "", onChange }: SliderProps) {
   const id = useId();
-  const read = (event: Event): void => {
-    const number = (event.currentTarget as HTMLInputElement).valueAsNumber;
-    if (!Number.isNaN(number)) onChange(Math.min(Math.max(number, min), max));
-  };
-  const common = { min, max, value: Number(value.toPrecision(7)) };
   return (
     <div class="slider">
       <label for={id}>
         {label}
         {unit && <span class="unit"> {unit}</span>}
       </label>
-      <input id={id} type="range" step={step} {...common} onInput={read} />
-      <input type="number" step="any" aria-label={`${label}, number`} {...common} onChange={read} />
+      <input
+        id={id}
+        type="range"
+        {...{ min, max, step }}
+        value={Number(value.toPrecision(7))}
+        onInput={(event) => onChange(event.currentTarget.valueAsNumber)}
+      />
+      <NumberField label={`${label}, number`} {...{ value, min, max, onChange }} />
     </div>
   );
 }
@@ -96,11 +136,9 @@ const CHANNELS = ["red", "green", "blue"] as const;
 
 /** A linear color: a picker, and a number for each channel. */
 export function Color({ label, value, onChange }: ColorProps) {
-  const change = (channel: number, event: Event): void => {
-    const number = (event.currentTarget as HTMLInputElement).valueAsNumber;
-    if (Number.isNaN(number)) return;
+  const change = (channel: number, number: number): void => {
     const next: Triple = [...value];
-    next[channel] = Math.min(Math.max(number, 0), 1);
+    next[channel] = number;
     onChange(next);
   };
   return (
@@ -116,15 +154,14 @@ export function Color({ label, value, onChange }: ColorProps) {
         onInput={(event) => onChange(from_hex(event.currentTarget.value))}
       />
       {CHANNELS.map((name, channel) => (
-        <input
+        <NumberField
           key={name}
-          type="number"
-          min="0"
-          max="1"
-          step="0.01"
-          aria-label={`${label}, ${name}`}
+          label={`${label}, ${name}`}
+          min={0}
+          max={1}
+          step={0.01}
           value={Number(value[channel]!.toFixed(4))}
-          onChange={(event) => change(channel, event)}
+          onChange={(number) => change(channel, number)}
         />
       ))}
     </fieldset>

@@ -4,7 +4,7 @@
 import type { Port, ShaderSource, Triple } from "../data";
 import type { State, Value } from "../state";
 import { SIDES, source_of, values_of } from "../view";
-import { Check, Color, Slider } from "./fields";
+import { Check, Color, NumberField, Slider } from "./fields";
 import type { ViewProps } from "./sides";
 
 /** The controls of the documents in sight, one group for both libraries of a material. */
@@ -81,16 +81,11 @@ function Field({ port, value, onChange }: FieldProps) {
     <fieldset class="parts">
       <legend>{label}</legend>
       {value.map((part, k) => (
-        <input
+        <NumberField
           key={k}
-          type="number"
-          step="any"
-          aria-label={`${label}, part ${k + 1}`}
+          label={`${label}, part ${k + 1}`}
           value={part}
-          onChange={(event) => {
-            const number = event.currentTarget.valueAsNumber;
-            if (!Number.isNaN(number)) onChange(value.map((one, n) => (n === k ? number : one)));
-          }}
+          onChange={(number) => onChange(value.map((one, n) => (n === k ? number : one)))}
         />
       ))}
     </fieldset>
