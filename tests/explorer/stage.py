@@ -9,13 +9,13 @@ from mxeon.explorer import document_sources, page, page_data
 from mxeon.io.files import write_text
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import sphere
-from tests.explorer.browser import opened, show
+from tests.explorer.browser import opened, show, shows, until
 
 RHO = (0.8, 0.4, 0.1)
 ROUGHNESS = 0.9
 LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation
 VIEWPORT = {"width": 420, "height": 640}
-LIMIT = 120_000  # milliseconds for a picture, on a busy machine
+LIMIT = 120  # seconds for a picture, on a busy machine
 READ = """side => {
     const bytes = new Uint8Array(mxeon.stage.read(side).buffer);
     let text = "";
@@ -33,8 +33,8 @@ def written(file, *names):
 
 
 def opened_stage(browser, address, **options):
-    """The page; expressions that are waited for need what its policy forbids."""
-    return opened(browser, address, viewport=VIEWPORT, bypass_csp=True, **options)
+    """The page, as narrow as a phone: a small picture."""
+    return opened(browser, address, **({"viewport": VIEWPORT} | options))
 
 
 def side(source, flag=True, sampler="exact"):
@@ -61,12 +61,13 @@ def view(stage, left, right=None, light="side", **patch):
         "probe": None,
     }
     show(stage, **(common | patch))
+    shows(stage, **(common | patch))
     settle(stage)
 
 
 def settle(stage):
     """Wait until the picture is final."""
-    stage.wait_for_function("mxeon.stage.isSettled(mxeon.state())", timeout=LIMIT)
+    until(stage, "mxeon.stage.isSettled(mxeon.state())", seconds=LIMIT)
 
 
 def frame(stage, name=None, size=None):

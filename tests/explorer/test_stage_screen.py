@@ -8,6 +8,7 @@ import pytest
 from mxeon.explorer import page, page_data
 from mxeon.io.files import write_text
 from mxeon.io.images import srgb_encoded
+from tests.explorer.browser import until
 from tests.explorer.stage import (
     frame,
     model_sources,
@@ -65,7 +66,7 @@ def address(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def stage(browser, address):
-    with opened_stage(browser, address) as shown:
+    with opened_stage(browser, address, bypass_csp=True) as shown:
         shown.add_style_tag(content=ALONE)
         shown.evaluate(COUNT)
         shown.evaluate(LISTEN)
@@ -181,10 +182,10 @@ def test_a_lost_context_is_restored_with_the_same_picture(browser, address):
         view(page, side("shader/eonlib"), side("shader/stock"))
         before = picture(page)
         page.evaluate(LOSE)
-        page.wait_for_function("said.some(each => each.kind === 'lost')")
+        until(page, "said.some(each => each.kind === 'lost')")
         assert page.evaluate("mxeon.stage.pick(0.5, 0.5, mxeon.state())") is None
         page.evaluate("globalThis.loss.restoreContext()")
-        page.wait_for_function("said.some(each => each.kind === 'restored')")
+        until(page, "said.some(each => each.kind === 'restored')")
         settle(page)
         assert (picture(page) == before).all()
         assert before.max() > 0.1
@@ -196,8 +197,7 @@ def test_a_shader_that_does_not_compile_is_named_and_the_other_side_stays(browse
     first = type(data.sources[0])(**(sources[0] | {"pixel": sources[0]["pixel"] + "oops"}))
     file = tmp_path / "broken.html"
     write_text(file, page(type(data)(**(vars(data) | {"sources": (first, *data.sources[1:])}))))
-    with opened_stage(browser, file.as_uri(), drawn=False) as shown:
-        shown.wait_for_function("mxeon?.stage")
+    with opened_stage(browser, file.as_uri() + "#a=model/eon&b=model/eon") as shown:
         shown.evaluate(LISTEN)
         view(shown, side(sources[0]["id"]), side(sources[1]["id"]))
         said = shown.evaluate("said.filter(each => each.kind === 'error')")
