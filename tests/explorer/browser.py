@@ -8,7 +8,8 @@ from playwright.sync_api import sync_playwright
 
 from mxeon.shaders.hosts.webgl import FLAGS, program
 
-VIEWPORT = {"width": 880, "height": 180}  # few pixels, for a software driver
+# Few pixels, for a software driver.
+SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
 HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
 DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) != null"
@@ -36,7 +37,7 @@ def opened(browser, address, allowed=(), drawn=True, **options):
     Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
     """
     asked, said = [], []
-    context = browser.new_context(**({"viewport": VIEWPORT} | options))
+    context = browser.new_context(**(SMALL | options))
     page = context.new_page()
     if not drawn:
         page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
@@ -54,7 +55,7 @@ def opened(browser, address, allowed=(), drawn=True, **options):
     assert not complaints, f"messages: {complaints}"
 
 
-def until(page, expression, argument=None, seconds=20):
+def until(page, expression, argument=None, seconds=120):
     """Wait until an expression is true; playwright's own way needs what the page's policy forbids."""
     for _ in range(20 * seconds):
         if page.evaluate(expression, argument):

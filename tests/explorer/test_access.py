@@ -66,24 +66,29 @@ def test_axe_would_find_a_picture_without_a_name(checked):
     assert [each for each in findings(checked) if "role-img-alt" in each]
 
 
-def test_a_phone_shows_all_without_scrolling_sideways(browser, documents):
-    phone = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
-    with opened(browser, documents, **phone) as page:
-        for view in VIEWS.values():
-            show(page, **view)
-            assert page.evaluate("document.documentElement.scrollWidth") == 390
-        wide = page.evaluate(
-            "[...document.querySelectorAll('main *')].filter(each => !each.closest('.hidden, svg')"
-            " && each.getBoundingClientRect().right > 391).map(each => each.outerHTML)"
-        )
-        assert wide == []
+@pytest.fixture(scope="module")
+def phone(browser, documents):
+    """The page on a phone."""
+    options = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+    with opened(browser, documents, **options) as page:
+        yield page
 
 
-def test_the_picture_stays_in_sight_on_a_phone(browser, address):
-    with opened(browser, address, viewport={"width": 390, "height": 844}) as page:
-        page.get_by_label("Roughness, number").scroll_into_view_if_needed()
-        box = page.locator("canvas").bounding_box()
-        assert 0 <= box["y"] < box["y"] + box["height"] < 844
+@pytest.mark.parametrize("name", VIEWS)
+def test_a_phone_shows_all_without_scrolling_sideways(phone, name):
+    show(phone, **VIEWS[name])
+    assert phone.evaluate("document.documentElement.scrollWidth") == 390
+    wide = phone.evaluate(
+        "[...document.querySelectorAll('main *')].filter(each => !each.closest('.hidden, svg')"
+        " && each.getBoundingClientRect().right > 391).map(each => each.outerHTML)"
+    )
+    assert wide == []
+
+
+def test_the_picture_stays_in_sight_on_a_phone(phone):
+    phone.get_by_label("Roughness, number").scroll_into_view_if_needed()
+    box = phone.locator("canvas").bounding_box()
+    assert 0 <= box["y"] < box["y"] + box["height"] < 844
 
 
 def test_without_webgl2_there_are_pictures_and_all_numbers(browser, documents):
