@@ -132,14 +132,16 @@ function useKeys(state: State, change: (patch: Partial<State>) => void): void {
 
 /** The point at which the sides differ most; of one model, at which it differs from Lambert. */
 function useWorst(state: State, sources: Sources): Point {
-  const { left, right, azimuth, elevation, color, roughness } = state;
+  const { left, right, azimuth, elevation, color, roughness, inputs } = state;
   return useMemo(() => {
     const [first, second] = [left, right].map((side) => {
       const source = source_of(sources, side);
-      return actual_model(source, side) ?? meant_model(source, side) ?? model("lambert");
+      return (
+        actual_model(source, side, state) ?? meant_model(source, side, state) ?? model("lambert")
+      );
     });
     return worst_point(first!, second!, state);
-  }, [left, right, azimuth, elevation, color, roughness]);
+  }, [left, right, azimuth, elevation, color, roughness, inputs]);
 }
 
 /** Values of the shaders for a pair, asked when nothing moves, and again while they compile. */

@@ -18,7 +18,7 @@ export interface Verdict {
 /** The verdict on a side, for the colors, the roughness and the light of a view. */
 export function verdict_on(state: State, sources: Sources, side: Side): Verdict {
   const source = source_of(sources, side);
-  const [actual, meant] = [actual_model(source, side), meant_model(source, side)];
+  const [actual, meant] = [actual_model(source, side, state), meant_model(source, side, state)];
   if (!actual || !meant) {
     return {
       kind: "unknown",

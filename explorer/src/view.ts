@@ -23,15 +23,21 @@ export function source_of(sources: Sources, side: Side): Source {
 }
 
 /** The model that a side is, or null if only its shader tells. */
-export function actual_model(source: Source, side: Side): Model | null {
+export function actual_model(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.model);
-  return source.actual && model(by_flag(source.actual, side));
+  return source.actual && !is_changed(source, state) ? model(by_flag(source.actual, side)) : null;
 }
 
 /** The model that a side should be, or null if that is not known. */
-export function meant_model(source: Source, side: Side): Model | null {
+export function meant_model(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.meant);
-  return source.meant && model(by_flag(source.meant, side));
+  return source.meant && !is_changed(source, state) ? model(by_flag(source.meant, side)) : null;
+}
+
+/** Whether an input of a document, such as its weight, is not the document's own. */
+function is_changed(source: ShaderSource, state: State): boolean {
+  const values = state.inputs[source.id] ?? {};
+  return source.inputs.some(({ name, value }) => name in values && values[name] !== value);
 }
 
 function by_flag(of: { on: ModelName; off: ModelName }, side: Side): ModelName {
@@ -61,7 +67,7 @@ export function consistent(state: State, sources: Sources): State {
 
 /** The model for which colors are inverted: the one that the left side should be. */
 export function inversion_model(state: State, sources: Sources): Model {
-  return meant_model(source_of(sources, state.left), state.left) ?? model("eon");
+  return meant_model(source_of(sources, state.left), state.left, state) ?? model("eon");
 }
 
 /** The color to enter for an albedo. */

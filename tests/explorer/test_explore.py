@@ -3,7 +3,7 @@
 
 import json
 import re
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,7 +19,7 @@ from mxeon.explorer.sources import RENDERERS
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
-from tests.explorer.browser import opened
+from tests.explorer.browser import opened, show, until
 
 LARGEST = 2 * 2**20  # bytes of the page without documents
 ROOT = Path(__file__).parents[2]
@@ -108,10 +108,10 @@ def test_the_text_of_a_document_is_the_document(path):
     assert inputs in [[(each.name, each.value) for each in one.inputs] for one in again]
 
 
-def test_a_textured_node_is_not_one_model():
-    text = material_text(EON, {"normal": (0.0, 0.0, 1.0)})
-    [source] = document_sources_of(text)
-    assert source.meant is None
+@pytest.mark.parametrize("inputs", [{"normal": (0.0, 0.0, 1.0)}, {"weight": 0.5}], ids=str)
+def test_a_node_with_more_than_color_and_roughness_is_not_one_model(inputs):
+    [plain], [source] = (document_sources_of(material_text(EON, each)) for each in ({}, inputs))
+    assert plain.meant is not None and source.meant is None
 
 
 def document_sources_of(text):
@@ -219,17 +219,23 @@ def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
         view = page.evaluate("mxeon.state()")
         assert view["color"] == [0.43, 0.15, 0.07] and view["roughness"] == 0.6
         assert view["right"]["source"] == "document/0/terracotta/stock"
-        before = page.evaluate("mxeon.stage.read('left')[0] + mxeon.stage.read('left').length")
+        assert page.locator(".side.left .verdict strong").inner_text() == "EON"
+        sums = (
+            "mxeon.stage.read('left').reduce((sum, value, k) => sum + (k % 4 < 3 ? value : 0), 0)"
+        )
+        before = page.evaluate(sums)
         weight = page.get_by_label("terracotta lobe: weight, number")
         assert (weight.get_attribute("min"), weight.get_attribute("max")) == ("0", "1")
         weight.fill("0.25")
         weight.blur()
+        until(page, "Object.keys(mxeon.state().inputs).length > 0")
         inputs = page.evaluate("mxeon.state().inputs")
         assert {
             inputs[f"document/0/terracotta/{library}"]["terracotta_lobe_weight"]
             for library in ("eonlib", "stock")
         } == {0.25}
-        assert before
+        until(page, f"before => {sums} < 0.5 * before", before)
+        assert page.locator(".side.left .verdict strong").inner_text() == "material"
 
 
 def test_the_data_are_the_fields_that_the_page_reads():
@@ -243,3 +249,26 @@ def test_the_data_are_the_fields_that_the_page_reads():
     for name, fields in kinds.items():
         body = re.search(rf"export interface {name} {{(.*?)\n}}", text, re.DOTALL)[1]
         assert set(re.findall(r"^  readonly (\w+):", body, re.MULTILINE)) == set(fields), name
+
+
+def test_a_shader_that_is_not_the_model_of_its_name_is_found_out(browser, tmp_path):
+    """A page that calls stock MaterialX by the name of a correct model."""
+    data = page_data()
+    sources = tuple(
+        replace(each, actual=each.meant) if each.id == "shader/stock" else each
+        for each in data.sources
+    )
+    file = tmp_path / "page.html"
+    file.write_text(page(replace(data, sources=sources)))
+    with opened(browser, f"{file.as_uri()}#azimuth=150") as sheet:
+        show(sheet, right={"source": "model/lambert", "flag": True, "sampler": "exact"})
+        until(sheet, "document.querySelector('.values').innerText.includes('float32')")
+        assert "The shader is not" not in sheet.locator(".values").inner_text()
+        show(sheet, left={"source": "shader/stock", "flag": True, "sampler": "exact"})
+        show(
+            sheet,
+            right={"source": "variant/genglsl_clamped_dot/0", "flag": True, "sampler": "exact"},
+        )
+        until(
+            sheet, "document.querySelector('.values').innerText.includes('The shader is not EON.')"
+        )

@@ -16,7 +16,7 @@ function per_channel(color: Vec3, one: (rho: number) => number): Triple {
 export function Material({ sources, state, change }: ViewProps) {
   const { color, roughness } = state;
   const shown = SIDES.map((name) => source_of(sources, state[name]));
-  const models = shown.map((source, k) => actual_model(source, state[SIDES[k]!]));
+  const models = shown.map((source, k) => actual_model(source, state[SIDES[k]!], state));
   const moves = (control: "color" | "roughness"): boolean =>
     shown.some((source) => source.kind === "model" || source.controls[control] !== "");
   if (!moves("color") && !moves("roughness")) return null;

@@ -31,7 +31,7 @@ export function Probe(props: ProbeProps) {
   const { color, roughness, probe } = state;
   const curves: Curve[] = [];
   for (const side of SIDES) {
-    const of = actual_model(source_of(sources, state[side]), state[side]);
+    const of = actual_model(source_of(sources, state[side]), state[side], state);
     if (of) curves.push({ side, model: of });
   }
   return (
@@ -99,20 +99,23 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
       <tbody>
         <Row title="value">
           {SIDES.map((name) => {
-            const of = actual_model(source_of(sources, state[name]), state[name]);
+            const of = actual_model(source_of(sources, state[name]), state[name], state);
             const value = measured?.[name];
             if (!value && !of) return "–";
             return (
               <>
                 <span class="of">{value ? "shader, float32" : `${of!.short}, float64`}</span>
                 <Numbers values={value ?? values(of!, pair, color, roughness)} />
+                {value && of && is_other(value, values(of, pair, color, roughness)) && (
+                  <strong class="wrong">The shader is not {of.short}.</strong>
+                )}
               </>
             );
           })}
         </Row>
         <Row title="reference">
           {SIDES.map((name) => {
-            const of = meant_model(source_of(sources, state[name]), state[name]);
+            const of = meant_model(source_of(sources, state[name]), state[name], state);
             if (!of) return "–";
             return (
               <>
@@ -125,11 +128,14 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
         <Row title="error">
           {SIDES.map((name) => {
             const source = source_of(sources, state[name]);
-            const [is, of] = [actual_model(source, state[name]), meant_model(source, state[name])];
+            const [is, of] = [
+              actual_model(source, state[name], state),
+              meant_model(source, state[name], state),
+            ];
             const value = measured?.[name] ?? (is && values(is, pair, color, roughness));
             if (!value || !of) return "–";
             const error = apart(value, values(of, pair, color, roughness));
-            const right = Math.abs(error) < ROUNDING;
+            const right = !is_other(value, values(of, pair, color, roughness));
             return (
               <strong class={right ? "correct" : "wrong"}>
                 {signed(error, 2)} {right ? "✓ rounding" : error > 0 ? "too bright" : "too dark"}
@@ -140,6 +146,11 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
       </tbody>
     </table>
   );
+}
+
+/** Whether two values differ by more than roundings. */
+function is_other(value: Triple, other: Triple): boolean {
+  return !(Math.abs(apart(value, other)) < ROUNDING);
 }
 
 interface RowProps {
@@ -180,7 +191,7 @@ function Copies({ data, sources, state, pair }: ProbeProps) {
     <div class="copies">
       {SIDES.map((name) => {
         const source = source_of(sources, state[name]);
-        const of = actual_model(source, state[name]);
+        const of = actual_model(source, state[name], state);
         const texts: [string, string | null][] = [
           ["MaterialX", material_x(state, sources, source, state[name])],
           ["GLSL", shader_text(data, source)],

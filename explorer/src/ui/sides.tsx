@@ -35,10 +35,10 @@ function SideCard({ name, data, sources, state, change }: ViewProps & { readonly
   const side = state[name];
   const source = source_of(sources, side);
   const groups = [...new Set(data.sources.map((each) => each.group))];
-  const { azimuth, elevation, color, roughness } = state;
+  const { azimuth, elevation, color, roughness, inputs } = state;
   const verdict = useMemo(
     () => verdict_on(state, sources, side),
-    [side, azimuth, elevation, color, roughness],
+    [side, azimuth, elevation, color, roughness, inputs],
   );
   return (
     <div class={`side ${name}`}>

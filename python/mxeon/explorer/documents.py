@@ -135,12 +135,18 @@ def shader_source(
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
-    if connected or not (color and roughness):
+    if connected or not (color and roughness and _is_whole(source)):
         return source
     meant, actual = MEANT, ACTUAL[library]
     if node.getCategory() == EON:
         meant, actual = Models("eon", "eon"), Models("eon", "eon")
     return replace(source, meant=meant, actual=actual)
+
+
+def _is_whole(source: ShaderSource) -> bool:
+    """Whether nothing weakens the lobe of a source: its weight and its opacity are the number 1."""
+    factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
+    return factors.get("weight") == factors.get("opacity") == 1.0
 
 
 def _only_diffuse_node(shader: Shader) -> mx.Node | None:
