@@ -31,14 +31,15 @@ def started(kind, flags):
 
 
 @contextmanager
-def opened(browser, address, allowed=(), drawn=True, **options):
+def opened(browser, address, allowed=(), drawn=True, script="", **options):
     """The page at an address; messages that are not allowed, and requests, fail the test.
 
-    Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
+    A script runs before those of the page. Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
     """
     asked, said = [], []
     context = browser.new_context(**(SMALL | options))
     page = context.new_page()
+    page.add_init_script(script)
     if not drawn:
         page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.on("request", lambda request: asked.append(request.url))
