@@ -14,7 +14,7 @@ from tests.explorer.browser import opened, show, shows, until
 RHO = (0.8, 0.4, 0.1)
 ROUGHNESS = 0.9
 LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation
-VIEWPORT = {"width": 420, "height": 640}
+VIEWPORT = {"width": 200, "height": 170}
 LIMIT = 120  # seconds for a picture, on a busy machine
 READ = """side => {
     const bytes = new Uint8Array(mxeon.stage.read(side).buffer);

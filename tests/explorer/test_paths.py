@@ -19,7 +19,7 @@ from tests.explorer.stage import (
 )
 from tests.support.tolerances import EON_WEIGHT
 
-SAMPLES = 64
+SAMPLES = 16
 
 
 @pytest.fixture(scope="module")
@@ -61,13 +61,14 @@ def test_a_white_furnace_keeps_every_exact_path(stage, sources):
     status = traced(stage, side(sources["eon"]), side(sources["fon"]), **white)
     assert status["samples"]["done"] == SAMPLES
     measured, _ = whole(stage, "left")
-    assert len(measured) > 1000
+    assert len(measured) > 500
     assert np.abs(measured - 1.0).max() < EON_WEIGHT
     assert whole(stage, "right")[0].mean() < 0.95
 
 
-@pytest.mark.parametrize("sampler", ["exact", "cltc", "cosine"])
-@pytest.mark.parametrize("name", ["eon", "qon", "fon_white_lobe"])
+@pytest.mark.parametrize(
+    ("name", "sampler"), [("eon", "exact"), ("qon", "cltc"), ("fon_white_lobe", "cosine")]
+)
 def test_means_of_paths_are_albedos(stage, sources, name, sampler):
     uniform = {"light": None, "surroundings": "uniform"}
     status = traced(stage, side(sources[name], sampler=sampler), **uniform)

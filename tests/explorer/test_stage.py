@@ -12,8 +12,10 @@ from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
+from tests.explorer.browser import until
 from tests.explorer.stage import (
     LIGHTS,
+    LIMIT,
     RHO,
     ROUGHNESS,
     model_sources,
@@ -25,7 +27,7 @@ from tests.explorer.stage import (
     written,
 )
 
-DOCUMENTS = ("brick", "openpbr_rough_base")
+DOCUMENTS = ("brick", "mixed_lobes")
 ROWS = MODELS + KNOWN_DEFECTS
 
 
@@ -41,6 +43,10 @@ def stage(browser, tmp_path_factory):
 @pytest.fixture(scope="module")
 def sources(stage):
     return model_sources(stage)
+
+
+EVALUATE = """([patch, pairs]) =>
+    pairs.map(pair => mxeon.stage.evaluate(pair, {...mxeon.state(), ...patch}))"""
 
 
 def parameter_of(row):
@@ -66,14 +72,14 @@ def error(measured, expected):
     return (np.abs(measured - expected) * cosine).max()
 
 
-@pytest.mark.parametrize("light", LIGHTS)
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row, light):
-    view(stage, side(sources[row.name]), light=light)
+def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row):
+    view(stage, side(sources[row.name]), side(sources["lambert"]))
     measured = picture(stage)
-    wrong = model("eon" if row.name == "lambert" else "lambert")
-    assert error(measured, exact(row, len(measured), light)) < PLAIN.value
-    assert error(measured, exact(wrong, len(measured), light)) > 1000 * PLAIN.value
+    expected = exact(row, len(measured), "side")
+    assert error(measured, expected) < PLAIN.value
+    other = picture(stage, "right")
+    assert row.name == "lambert" or error(other, expected) > 1000 * PLAIN.value
 
 
 def white(row, mu):
@@ -83,7 +89,7 @@ def white(row, mu):
         return row.albedo_dir(mu, *arguments)
     # The stage interpolates between so many angles.
     angles = np.linspace(0.0, 1.0, 256)
-    table = albedo_dir_quadrature(row.brdf, angles, *arguments)
+    table = albedo_dir_quadrature(row.brdf, angles, *arguments, nodes=32)
     return np.stack([np.interp(mu, angles, table[:, k]) for k in range(3)], axis=-1)
 
 
@@ -105,21 +111,22 @@ def compiled(host, library, flag):
     return host.compile(text, library=library)[0]
 
 
+# MaterialX's own EON takes arc cosines, which Mesa's driver has to 1.6e-4 (measured). An albedo
+# falls by up to 1 / 4 per radian, and two of them are multiplied.
+ARC_COSINE = 2 * 1.6e-4 / 4
+
+
+@pytest.mark.parametrize("light", LIGHTS)
 @pytest.mark.parametrize("flag", [True, False])
-@pytest.mark.parametrize("library", ["eonlib", "stock"])
-def test_pixels_of_the_nodes_are_those_of_the_hosts(stage, hosts, library, flag):
-    for name in ("webgl", "gl"):
-        shader = compiled(hosts(name), library, flag)
-        # MaterialX's own formula takes arc cosines, of which each driver has its own.
-        if name == "gl" and library == "stock" and flag:
-            continue
-        for light in LIGHTS:
-            view(stage, side(f"shader/{library}", flag), light=light)
-            measured = picture(stage)
-            scene = Scene(light, light=towards(light), size=len(measured))
-            expected = hosts(name).picture(shader, scene)
-            assert error(measured, expected) < VALUE.value
-            assert error(measured, 1.001 * expected) > VALUE.value
+def test_pixels_of_the_nodes_are_those_of_the_gl_host(stage, gl, flag, light):
+    view(stage, side("shader/eonlib", flag), side("shader/stock", flag), light=light)
+    for name, library in (("left", "eonlib"), ("right", "stock")):
+        measured = picture(stage, name)
+        scene = Scene(light, light=towards(light), size=len(measured))
+        expected = gl.picture(compiled(gl, library, flag), scene)
+        tolerance = ARC_COSINE if flag and library == "stock" else VALUE.value
+        assert error(measured, expected) < tolerance
+        assert error(measured, 1.001 * expected) > tolerance
 
 
 def test_the_stock_node_differs_from_eonlib_in_back_light(stage):
@@ -130,16 +137,15 @@ def test_the_stock_node_differs_from_eonlib_in_back_light(stage):
 def test_the_flag_and_the_inputs_of_a_document_reach_its_shader(stage):
     view(stage, side("shader/eonlib", True), side("shader/eonlib", False))
     assert error(picture(stage, "left"), picture(stage, "right")) > 0.05
-    source = stage.evaluate("mxeon.data.sources.find(each => each.id.includes('concrete')).id")
+    source = stage.evaluate("mxeon.data.sources.find(each => each.id.includes('brick')).id")
+    view(stage, side(source), inputs={source: {"brick_lobe_weight": 0.5}})
+    half = picture(stage)
     view(stage, side(source))
-    before = picture(stage)
-    view(stage, side(source), inputs={source: {"concrete_surface_base_weight": 0.0}})
-    assert error(before, picture(stage)) > 0.05
+    assert np.abs(picture(stage) - 2.0 * half).max() < VALUE.value < half.max()
 
 
-@pytest.mark.parametrize("library", ["eonlib", "stock"])
-@pytest.mark.parametrize("name", DOCUMENTS)
-def test_pixels_of_documents_are_those_of_the_gl_host(stage, gl, library, name):
+@pytest.mark.parametrize(("name", "library"), [("brick", "eonlib"), ("mixed_lobes", "stock")])
+def test_pixels_of_documents_are_those_of_the_gl_host(stage, gl, name, library):
     shader = gl.compile(str(examples_folder() / f"{name}.mtlx"), library=library)[0]
     find = "([name, library]) => mxeon.data.sources.find(each => each.kind === 'shader' && "
     find += "each.group.startsWith(name) && each.library === library)"
@@ -171,14 +177,16 @@ def test_surroundings_are_an_irradiance_times_the_albedo(stage, sources, name):
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
 def test_single_values_are_those_of_numpy(stage, sources, row):
-    view(stage, side(sources[row.name]), side("shader/eonlib"))
+    patch = {"left": side(sources[row.name]), "right": side("shader/eonlib")}
+    patch |= {"color": list(RHO), "roughness": ROUGHNESS}
     random = np.random.default_rng(7)
     vectors = random.normal(size=(2, 12, 3))
     wo, wi = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
     wo[:, 2], wi[:, 2] = abs(wo[:, 2]), abs(wi[:, 2])
     wo[0] = 0.0, 0.0, 1.0
-    ask = "pairs => pairs.map(([wo, wi]) => mxeon.stage.evaluate({wo, wi}, mxeon.state()))"
-    answers = stage.evaluate(ask, [[list(o), list(i)] for o, i in zip(wo, wi, strict=True)])
+    pairs = [{"wo": list(o), "wi": list(i)} for o, i in zip(wo, wi, strict=True)]
+    until(stage, f"{EVALUATE}.every(each => each)", [patch, pairs], seconds=LIMIT)
+    answers = stage.evaluate(EVALUATE, [patch, pairs])
     for name, compared in (("left", row), ("right", model("eon"))):
         measured = np.array([answer[name] for answer in answers])
         expected = np.pi * wi[:, 2:] * compared.brdf(wo, wi, RHO, *parameter_of(compared))

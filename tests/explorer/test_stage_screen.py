@@ -46,7 +46,7 @@ FRAMES = """count => new Promise(done => {
 # The canvas without the handles above it, on whole pixels.
 ALONE = """.picture > :not(canvas) { display: none !important }
 canvas { position: fixed !important; inset: 0 auto auto 0; z-index: 9;
-         width: 380px !important; height: 260px !important }"""
+         width: 140px !important; height: 100px !important }"""
 LISTEN = "globalThis.said = []; mxeon.stage.onStatus(status => globalThis.said.push(status))"
 CLOCK = """speed => {
     globalThis.clock ??= performance.now.bind(performance);
@@ -136,7 +136,7 @@ def test_the_difference_map_has_the_colors_of_its_scale(stage, sources, tmp_path
 def test_nothing_is_drawn_when_nothing_changes(stage):
     view(stage, side("shader/eonlib"), side("shader/stock"))
     before = stage.evaluate("globalThis.draws")
-    assert stage.evaluate(FRAMES, 30) == before
+    assert stage.evaluate(FRAMES, 10) == before
     view(stage, side("shader/eonlib"), side("shader/stock"), light="back")
     assert stage.evaluate("globalThis.draws") > before
 
@@ -146,12 +146,12 @@ def test_a_wipe_that_moves_draws_no_material_again(stage):
     stage.evaluate(CLOCK, 0)  # as on a device that draws in no time, on which sizes stay
     draw = "wipe => mxeon.stage.draw({...mxeon.state(), wipe}, true)"
     stage.evaluate(draw, 0.4)
-    stage.evaluate(FRAMES, 60)
+    stage.evaluate(FRAMES, 12)
     stage.evaluate("globalThis.draws = 0")
     stage.evaluate(draw, 0.6)
-    assert stage.evaluate(FRAMES, 60) == 2  # the picture and the screen
+    assert stage.evaluate(FRAMES, 12) == 2  # the picture and the screen
     stage.evaluate("mxeon.stage.draw({...mxeon.state(), azimuth: 5}, true)")
-    assert stage.evaluate(FRAMES, 60) == 2 + 4  # both materials too
+    assert stage.evaluate(FRAMES, 12) == 2 + 4  # both materials too
     stage.evaluate(CLOCK, 1)
     stage.evaluate("mxeon.stage.draw(mxeon.state())")
     settle(stage)
@@ -162,11 +162,11 @@ def test_while_dragging_a_slow_picture_is_coarse_and_at_rest_full(stage):
     full = stage.evaluate("Object.values(mxeon.stage.size())")
     stage.evaluate(CLOCK, 1000)
     stage.evaluate("mxeon.stage.draw({...mxeon.state(), azimuth: 1})")
-    stage.evaluate(FRAMES, 90)
+    stage.evaluate(FRAMES, 25)
     stage.evaluate("globalThis.said.length = 0")
     for azimuth in (10, 20, 30):
         stage.evaluate("a => mxeon.stage.draw({...mxeon.state(), azimuth: a}, true)", azimuth)
-        stage.evaluate(FRAMES, 30)
+        stage.evaluate(FRAMES, 10)
     sizes = stage.evaluate("said.filter(each => each.kind === 'drawn').map(each => each.width)")
     assert 0 < max(sizes) < 0.5 * full[0]
     stage.evaluate(CLOCK, 1)

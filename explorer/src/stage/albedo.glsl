@@ -53,7 +53,11 @@ void main()
     float S = sqrt((1.0 - mu) * (1.0 + mu));
     vec3 wo = vec3(S, 0.0, mu);
     float tangent = S / (1.0 + mu);
-    vec3 below = stage_zone(wo, 0.0, tangent, stage_rho, stage_parameter);
-    vec3 above = stage_zone(wo, tangent, 1.0, stage_rho, stage_parameter);
-    stage_albedo = vec4(2.0 * (below + above), 1.0);
+    vec3 sum = vec3(0.0);
+    // A loop, so that compilers write the model out once.
+    for (int zone = 0; zone < 2; ++zone) {
+        float low = zone == 0 ? 0.0 : tangent;
+        sum += stage_zone(wo, low, zone == 0 ? tangent : 1.0, stage_rho, stage_parameter);
+    }
+    stage_albedo = vec4(2.0 * sum, 1.0);
 }
