@@ -19,8 +19,8 @@ import { actual_model, consistent, meant_model, source_of, sources_of, type Sour
 
 const ADDRESS_DELAY = 300; // milliseconds; browsers refuse an address that changes all the time
 
-const MEASURE_DELAY = 60; // milliseconds, after which the picture has been drawn
-const RETRY_DELAY = 250;
+const MEASURE_DELAY = 60; // milliseconds
+const RETRY_DELAY = 200;
 
 interface AppProps {
   readonly data: PageData;
@@ -144,7 +144,7 @@ function useWorst(state: State, sources: Sources): Point {
   }, [left, right, azimuth, elevation, color, roughness, inputs]);
 }
 
-/** Values of the shaders for a pair, asked when nothing moves, and again while they compile. */
+/** Values of the shaders for a pair, asked when the picture is done, not to hold it up. */
 function useMeasured(
   stage: Stage | null,
   pair: Pair,
@@ -157,7 +157,8 @@ function useMeasured(
     if (!stage || dragging) return;
     let timer = 0;
     const ask = (): void => {
-      const values = stage.evaluate({ wo: [...pair.wo], wi: [...pair.wi] }, state);
+      const free = state.paths || stage.isSettled(state); // paths take long
+      const values = free ? stage.evaluate({ wo: [...pair.wo], wi: [...pair.wi] }, state) : null;
       setMeasured(values);
       if (!values?.left || !values.right) timer = window.setTimeout(ask, RETRY_DELAY);
     };
