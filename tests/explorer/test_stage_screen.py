@@ -135,6 +135,7 @@ def test_the_difference_map_has_the_colors_of_its_scale(stage, sources, tmp_path
 
 def test_nothing_is_drawn_when_nothing_changes(stage):
     view(stage, side("shader/eonlib"), side("shader/stock"))
+    stage.wait_for_timeout(500)  # The probe measures soon after a picture.
     before = stage.evaluate("globalThis.draws")
     assert stage.evaluate(FRAMES, 10) == before
     view(stage, side("shader/eonlib"), side("shader/stock"), light="back")
