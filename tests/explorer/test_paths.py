@@ -7,6 +7,7 @@ import pytest
 from mxeon.models.table import model
 from mxeon.shaders.scene import sphere
 from tests.explorer.stage import (
+    CLOCK,
     RHO,
     ROUGHNESS,
     frame,
@@ -29,6 +30,7 @@ def stage(browser, tmp_path_factory):
         page.evaluate(
             "globalThis.said = []; mxeon.stage.onStatus(status => globalThis.said.push(status))"
         )
+        page.evaluate(CLOCK, 0)
         yield page
 
 

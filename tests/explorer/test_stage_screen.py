@@ -10,6 +10,7 @@ from mxeon.io.files import write_text
 from mxeon.io.images import srgb_encoded
 from tests.explorer.browser import until
 from tests.explorer.stage import (
+    CLOCK,
     frame,
     model_sources,
     opened_stage,
@@ -48,10 +49,6 @@ ALONE = """.picture > :not(canvas) { display: none !important }
 canvas { position: fixed !important; inset: 0 auto auto 0; z-index: 9;
          width: 140px !important; height: 100px !important }"""
 LISTEN = "globalThis.said = []; mxeon.stage.onStatus(status => globalThis.said.push(status))"
-CLOCK = """speed => {
-    globalThis.clock ??= performance.now.bind(performance);
-    performance.now = () => speed * globalThis.clock();
-}"""
 LOSE = """() => {
     const gl = document.querySelector("canvas").getContext("webgl2");
     globalThis.loss = gl.getExtension("WEBGL_lose_context");

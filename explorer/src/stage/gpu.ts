@@ -143,6 +143,7 @@ export function formats(gl: WebGL2RenderingContext) {
     float: { inner: gl.RGBA32F, outer: gl.RGBA, type: gl.FLOAT },
     half: { inner: gl.RGBA16F, outer: gl.RGBA, type: gl.FLOAT },
     bytes: { inner: gl.RGBA8, outer: gl.RGBA, type: gl.UNSIGNED_BYTE },
+    single: { inner: gl.R32F, outer: gl.RED, type: gl.FLOAT },
     gray: { inner: gl.R8, outer: gl.RED, type: gl.UNSIGNED_BYTE },
   } satisfies Record<string, Format>;
 }

@@ -61,7 +61,7 @@ const PATHS_BUDGET = 120; // and of a pass of paths
 const REST = 220; // milliseconds after which what changed last is at rest
 const SMALLEST = 0.3; // share of the resolution that is kept
 const FIRST_SHARE = 0.5; // that of the first picture
-const MOST_PIXELS = 2.4e6;
+const MOST_PIXELS = 1.6e6; // which take 150 bytes each
 const ATTRIBUTES: WebGLContextAttributes = {
   alpha: true,
   antialias: false,
@@ -111,6 +111,7 @@ class CanvasStage implements Stage {
   private fence: Fence | null = null;
   private noise: { left: number; right: number } | null = null;
   private said = "";
+  private readonly told = new Set<string>(); // sources whose errors were reported
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -249,6 +250,7 @@ class CanvasStage implements Stage {
   /** Begin the average anew. */
   private restart(): void {
     this.index = 0;
+    this.told.clear();
     this.noise = null;
     this.schedule();
   }
@@ -337,8 +339,13 @@ class CanvasStage implements Stage {
     return { left: left ?? 0, right: right ?? 0 };
   }
 
+  /** Report what went wrong, once for each view. */
   private tellErrors(engine: Engine): void {
-    for (const [source, message] of engine.errors) this.tell({ kind: "error", source, message });
+    for (const [source, message] of engine.errors) {
+      if (this.told.has(source)) continue;
+      this.told.add(source);
+      this.tell({ kind: "error", source, message });
+    }
   }
 
   /** Report a status, but the same only once. */

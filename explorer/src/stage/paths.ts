@@ -25,8 +25,8 @@ export class Paths {
     private readonly gl: WebGL2RenderingContext,
     size: Size,
   ) {
-    const { float } = gpu.formats(gl);
-    const target = () => gpu.makeTarget(gl, [float, float], ...size);
+    const { float, single } = gpu.formats(gl);
+    const target = () => gpu.makeTarget(gl, [float, single], ...size);
     this.sides = { left: [target(), target()], right: [target(), target()] };
   }
 
