@@ -143,6 +143,12 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
             );
           })}
         </Row>
+        {measured?.left && measured.right && (
+          <tr>
+            <th scope="row">A − B</th>
+            <td colSpan={2}>{signed(apart(measured.left, measured.right), 3)}</td>
+          </tr>
+        )}
       </tbody>
     </table>
   );

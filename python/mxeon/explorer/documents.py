@@ -36,7 +36,7 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
     Parameters
     ----------
     file : str
-        A MaterialX document; its name becomes a part of the titles.
+        A MaterialX document; its name becomes the heading of its materials.
     policy : Policy
         Permissions, limits and search path.
 
@@ -62,7 +62,7 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
             continue  # a node that stock MaterialX lacks
         for shader in shaders:
             text = document_text(shader.document)
-            title = f"{name}: {shader.element}, {library}"
+            title = f"{shader.element}, {library}"
             source = shader_source(shader, text, f"{shader.name}/{library}", title, name, library)
             sources.append(source)
     return tuple(sources)

@@ -11,24 +11,24 @@ from numpy.typing import NDArray
 from mxeon.explorer.data import Still
 from mxeon.io.images import write_png
 from mxeon.models.table import model
-from mxeon.shaders.scene import BACK, VIEW, Scene, local_directions, sphere
+from mxeon.shaders.scene import VIEW, local_directions, sphere
 
-SIZE = 192
+SIZE = 176
+LIGHT = (0.0, 0.8, -0.6)  # from above and behind
 COLOR = (0.8, 0.4, 0.1)
 MODELS = ("eon", "eon_clamped", "qon", "lambert")
 
 
 def stills() -> tuple[Still, ...]:
-    """A sphere of the color (0.8, 0.4, 0.1) and roughness 1, lit from behind, in several models."""
-    return tuple(Still(model(name).title, _address(picture(name, BACK))) for name in MODELS)
+    """A sphere of the color (0.8, 0.4, 0.1) and roughness 1, lit from behind."""
+    return tuple(Still(model(name).title, _address(picture(name))) for name in MODELS)
 
 
-def picture(name: str, scene: Scene) -> NDArray[np.float64]:
+def picture(name: str) -> NDArray[np.float64]:
     """Radiance of a sphere of one model, (SIZE, SIZE, 3): pi f cos(theta_i)."""
     points = sphere(SIZE)
     normals = points.normal[points.mask]
-    assert scene.light is not None
-    wo, wi = (local_directions(normals, each) for each in (VIEW, scene.light))
+    wo, wi = (local_directions(normals, each) for each in (VIEW, LIGHT))
     lit = wi[:, 2] > 0.0
     row = model(name)
     parameter = [1.0] if row.parameter else []
