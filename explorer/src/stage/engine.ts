@@ -11,6 +11,7 @@ import { modelOf, shaderUniforms, wanted } from "./materials";
 import { jitter, Paths, type Size } from "./paths";
 import { camera, lightVector, toView } from "./scenes";
 import { hasTable, samplerRoughness, type Text, Texts } from "./texts";
+import { deleteTargets, layer, makeTargets, type Targets } from "./targets";
 import { Textures } from "./textures";
 
 export const SIDES = ["left", "right"] as const satisfies readonly SideName[];
@@ -21,16 +22,6 @@ const FAR = 1e8;
 /** Diameter of the sphere in pixels: even, so that its pixels are those of the gl host's picture. */
 export function diameterOf(size: Size): number {
   return 2 * Math.round(Math.min(...size) / 2 / camera("sphere").span);
-}
-
-/** What is as large as the canvas. */
-interface Targets {
-  readonly size: Size;
-  readonly geometry: gpu.Target;
-  readonly lit: gpu.Target;
-  readonly left: gpu.Target;
-  readonly right: gpu.Target;
-  readonly average: readonly [gpu.Target, gpu.Target];
 }
 
 export class Engine {
@@ -178,8 +169,7 @@ export class Engine {
   private allocate(size: Size): void {
     const { targets, gl } = this;
     if (targets.size[0] === size[0] && targets.size[1] === size[1]) return;
-    const { geometry, lit, left, right, average } = targets;
-    for (const target of [geometry, lit, left, right, ...average]) gpu.deleteTarget(gl, target);
+    deleteTargets(gl, targets);
     this.traced?.delete();
     this.traced = null;
     this.targets = makeTargets(gl, size);
@@ -315,22 +305,4 @@ export class Engine {
       stage_backdrop: state.surroundings !== "none" && state.surroundings !== "uniform",
     });
   }
-}
-
-function layer(target: gpu.Target, index = 0): WebGLTexture {
-  return target.textures[index] as WebGLTexture;
-}
-
-function makeTargets(gl: WebGL2RenderingContext, size: Size): Targets {
-  const { float, half, gray } = gpu.formats(gl);
-  const target = (...layers: gpu.Format[]) => gpu.makeTarget(gl, layers, ...size);
-  const smooth = () => gpu.makeTarget(gl, [half], ...size, gl.LINEAR);
-  return {
-    size,
-    geometry: target(float, float, float),
-    lit: target(gray),
-    left: target(float),
-    right: target(float),
-    average: [smooth(), smooth()],
-  };
 }

@@ -4,8 +4,9 @@
 import type { PageData, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
 import { diameterOf, Engine, SIDES } from "./engine";
+import { Pace } from "./pace";
 import type { Size } from "./paths";
-import { camera, cross, dot, lightAt, lightMark, lightVector, toView, unit } from "./scenes";
+import { camera, lightAt, lightMark, lightVector, localPair, toView, unit } from "./scenes";
 
 export interface Pick {
   readonly wo: Triple; // unit, in the local frame, normal +z, in the x-z plane
@@ -53,14 +54,6 @@ export interface Stage {
   dispose(): void;
 }
 
-const SMOOTHING = 8; // frames that a picture at rest is the average of,
-const SLOW_SMOOTHING = 4; // and where a frame takes longer than
-const SLOW = 60; // milliseconds
-const MOVING_BUDGET = 28; // milliseconds of a frame while something moves,
-const PATHS_BUDGET = 120; // and of a pass of paths
-const REST = 220; // milliseconds after which what changed last is at rest
-const SMALLEST = 0.3; // share of the resolution that is kept
-const FIRST_SHARE = 0.5; // that of the first picture
 const MOST_PIXELS = 1.6e6; // which take 150 bytes each
 const ATTRIBUTES: WebGLContextAttributes = {
   alpha: true,
@@ -99,15 +92,8 @@ class CanvasStage implements Stage {
   private readonly listeners: ((status: Status) => void)[] = [];
   private readonly resizing: ResizeObserver;
   private request = 0;
-  private timer = 0;
-  private moving = false; // and another state will follow soon
-  private dragging = false;
-  private coarse = true; // The first picture is, to be there soon.
-  private changed = 0; // when the state last did
   private index = 0; // of the next frame of the average, or of paths
-  private share = 1; // of the resolution, of the frames of the average
-  private rate = 0; // milliseconds per pixel, of the latest frame
-  private latest = 0; // milliseconds of that
+  private readonly pace = new Pace(() => this.restart());
   private fence: Fence | null = null;
   private noise: { left: number; right: number } | null = null;
   private said = "";
@@ -126,15 +112,8 @@ class CanvasStage implements Stage {
   }
 
   draw(state: State, dragging = false): void {
-    const now = performance.now();
-    // A control that is moved calls often, too, without saying that it drags.
-    const often = this.state !== null && !this.dragging && now - this.changed < REST;
-    this.moving = dragging || often;
-    this.dragging = dragging;
-    this.changed = now;
+    this.pace.change(dragging);
     this.state = state;
-    clearTimeout(this.timer);
-    if (often && !dragging) this.timer = window.setTimeout(this.rest, REST);
     this.restart();
   }
 
@@ -194,7 +173,7 @@ class CanvasStage implements Stage {
   }
 
   isSettled(state: State): boolean {
-    return this.state === state && this.index > 0 && !this.request && !this.moving;
+    return this.state === state && this.index > 0 && !this.request && !this.pace.moving;
   }
 
   onStatus(callback: (status: Status) => void): void {
@@ -206,7 +185,7 @@ class CanvasStage implements Stage {
     this.canvas.removeEventListener("webglcontextlost", this.lose);
     this.canvas.removeEventListener("webglcontextrestored", this.restore);
     cancelAnimationFrame(this.request);
-    clearTimeout(this.timer);
+    this.pace.end();
     this.gl.getExtension("WEBGL_lose_context")?.loseContext();
     this.engine = null;
   }
@@ -242,9 +221,7 @@ class CanvasStage implements Stage {
   }
 
   private drawnSize(): Size {
-    const [width, height] = this.fit();
-    const even = (length: number) => Math.max(2 * Math.round((length * this.share) / 2), 2);
-    return this.share === 1 ? [width, height] : [even(width), even(height)];
+    return this.pace.size(this.fit());
   }
 
   /** Begin the average anew. */
@@ -265,8 +242,8 @@ class CanvasStage implements Stage {
     if (!state || !engine || !this.canvas.clientWidth) return;
     if (this.isBusy()) return this.schedule();
     if (!this.goesOn(state, engine)) return;
-    if (this.index === 0) this.begin(state);
     const canvas = this.fit();
+    if (this.index === 0) this.pace.begin(canvas, state.paths);
     const size = this.drawnSize();
     if (!this.isFitted()) [this.canvas.width, this.canvas.height] = canvas;
     const done = engine.frame(state, size, canvas, this.index);
@@ -283,17 +260,6 @@ class CanvasStage implements Stage {
     this.schedule();
   };
 
-  /** Choose the resolution of what is drawn from now on. */
-  private begin(state: State): void {
-    // What is dragged keeps one size, unless that is still too slow.
-    if (this.moving && this.share < 1 && this.latest < 2 * MOVING_BUDGET) return;
-    const [width, height] = this.fit();
-    const budget = this.moving ? MOVING_BUDGET : state.paths ? PATHS_BUDGET : Infinity;
-    const affordable = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;
-    const share = this.coarse ? FIRST_SHARE : affordable;
-    this.share = Math.min(Math.max(Math.ceil(share * 10) / 10, SMALLEST), 1);
-  }
-
   /** Whether the driver still draws the last frame. Measures it when it has just ended. */
   private isBusy(): boolean {
     const { fence, gl } = this;
@@ -303,8 +269,7 @@ class CanvasStage implements Stage {
     this.fence = null;
     const milliseconds = performance.now() - fence.since;
     const [width, height] = fence.size;
-    this.latest = milliseconds;
-    this.rate = milliseconds / (width * height);
+    this.pace.measure(milliseconds, fence.size);
     this.tell({ kind: "drawn", width, height, milliseconds });
     return false;
   }
@@ -318,20 +283,7 @@ class CanvasStage implements Stage {
       this.tell({ kind: "samples", done: this.index, of: state.samples, noise: this.noise });
       return this.index < state.samples;
     }
-    if (this.coarse) this.rest();
-    this.coarse = false;
-    return this.index === 0 || (!this.moving && this.index < this.smoothing());
-  }
-
-  /** Draw at full resolution again. */
-  private readonly rest = (): void => {
-    this.moving = false;
-    this.restart();
-  };
-
-  private smoothing(): number {
-    const [width, height] = this.fit();
-    return this.rate * width * height > SLOW ? SLOW_SMOOTHING : SMOOTHING;
+    return this.index < this.pace.frames(this.fit());
   }
 
   private measured(engine: Engine): { left: number; right: number } {
@@ -358,15 +310,4 @@ class CanvasStage implements Stage {
 
 function triple(values: Float32Array): Triple {
   return [values[0] ?? 0, values[1] ?? 0, values[2] ?? 0];
-}
-
-/** Viewer and light in the frame of the normal, in whose x-z plane the viewer is. */
-function localPair(normal: Triple, viewer: Triple, light: Triple): [Triple, Triple] {
-  const mu = dot(viewer, normal);
-  const [x, y, z] = viewer.map((each, k) => each - mu * (normal[k] ?? 0)) as Triple;
-  const steep = Math.abs(normal[0]) < 0.5 ? ([1, 0, 0] as const) : ([0, 1, 0] as const);
-  const along = Math.hypot(x, y, z) > 1e-9 ? unit([x, y, z]) : unit(cross(steep, normal));
-  const beside = cross(normal, along);
-  const local = (v: Triple): Triple => [dot(v, along), dot(v, beside), dot(v, normal)];
-  return [unit(local(viewer)), unit(local(light))];
 }

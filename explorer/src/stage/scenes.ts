@@ -102,3 +102,14 @@ export function unit(v: Vec3): Triple {
 export function cross(a: Vec3, b: Vec3): Triple {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
+
+/** Viewer and light in the frame of the normal, in whose x-z plane the viewer is. */
+export function localPair(normal: Triple, viewer: Triple, light: Triple): [Triple, Triple] {
+  const mu = dot(viewer, normal);
+  const [x, y, z] = viewer.map((each, k) => each - mu * (normal[k] ?? 0)) as Triple;
+  const steep = Math.abs(normal[0]) < 0.5 ? ([1, 0, 0] as const) : ([0, 1, 0] as const);
+  const along = Math.hypot(x, y, z) > 1e-9 ? unit([x, y, z]) : unit(cross(steep, normal));
+  const beside = cross(normal, along);
+  const local = (v: Triple): Triple => [dot(v, along), dot(v, beside), dot(v, normal)];
+  return [unit(local(viewer)), unit(local(light))];
+}
