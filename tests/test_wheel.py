@@ -90,6 +90,10 @@ def test_the_wheel_says_that_it_has_types(wheel):
     assert "mxeon/py.typed" in contents(wheel)
 
 
+def test_the_wheel_holds_the_page_of_the_explorer(wheel):
+    assert "mxeon/explorer/explorer.html" in contents(wheel)
+
+
 def test_no_folder_of_the_wheel_hides_materialxs_libraries(wheel):
     assert [name for name in contents(wheel) if "libraries" in name.split("/")] == []
 
@@ -109,7 +113,12 @@ def test_the_sdist_holds_what_the_tests_need_and_nothing_made(built):
         names = [name.partition("/")[2] for name in archive.getnames()]
     assert {"run", "pyproject.toml", "LICENSE", "README.md", "tests/test_wheel.py"} <= set(names)
     hidden = (".venv", ".venv-cycles", ".git", "out", "dist", "build")
-    assert [name for name in names if name.split("/")[0] in hidden or "__pycache__" in name] == []
+    assert "explorer/package-lock.json" in names
+    assert [
+        name
+        for name in names
+        if name.split("/")[0] in hidden or {"__pycache__", "node_modules"} & {*name.split("/")}
+    ] == []
 
 
 def test_the_installed_package_loads_and_generates_outside_the_checkout(environment, tmp_path):

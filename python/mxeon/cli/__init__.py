@@ -11,7 +11,18 @@ import warnings
 from collections.abc import Sequence
 
 import mxeon
-from mxeon.cli import check, doc, figures, generate, invert, kit, library, render, report
+from mxeon.cli import (
+    check,
+    doc,
+    explore,
+    figures,
+    generate,
+    invert,
+    kit,
+    library,
+    render,
+    report,
+)
 from mxeon.cli.arguments import Parser
 from mxeon.cli.output import discard, fail, flush, open_streams, show_warning, status_of
 from mxeon.errors import NOT_RUN, InputError, MxeonError
@@ -21,7 +32,7 @@ DESCRIPTION = (
     "Correct Oren-Nayar and EON diffuse shading for every MaterialX target, verified by running "
     "the generated shaders."
 )
-COMMANDS = (check, generate, render, library, invert, figures, report, kit, doc)
+COMMANDS = (check, generate, render, explore, library, invert, figures, report, kit, doc)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

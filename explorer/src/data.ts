@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Types of the data that Python embeds in the page (python/mxeon/explorer/data.py writes them).
+
+export type Vec3 = readonly [number, number, number];
+export type Triple = [number, number, number];
+
+/** Name of a row of the tables of models and of known defects, as in python/mxeon/models/table.py. */
+export type ModelName =
+  | "lambert"
+  | "oren_nayar"
+  | "qon"
+  | "qon_footnote"
+  | "qon_fujii"
+  | "fon"
+  | "eon"
+  | "eon_approx"
+  | "eon_clamped"
+  | "eon_rho_cubed"
+  | "fon_white_lobe"
+  | "qon_fitted"
+  | "qon_tinted_twice";
+
+/** The models that a node has with energy_compensation true and false; equal where it has no flag. */
+export interface Models {
+  readonly on: ModelName;
+  readonly off: ModelName;
+}
+
+/** A material that is one model, drawn with the functions of `PageData.functions` or a variant. */
+export interface ModelSource {
+  readonly kind: "model";
+  readonly id: string; // "model/eon"
+  readonly title: string; // "energy-preserving Oren-Nayar (EON)"
+  readonly group: string; // heading of the list it is chosen from
+  readonly model: ModelName;
+  readonly meant: ModelName; // what it should be: `model` itself, but for a renderer's variant
+  readonly note: string; // one sentence: what it is, or who implements it; "" for none
+}
+
+/** A public input of a generated shader. */
+export interface Port {
+  readonly name: string; // of the uniform
+  readonly type: string; // MaterialX's: float, integer, boolean, color3, vector2, filename, ...
+  readonly value: number | boolean | readonly number[] | null; // null of a filename
+  readonly path: string; // name path of the input in the document
+  readonly label: string; // uiname, or the words of the name
+  readonly min: number | null; // uimin, or uisoftmin; per component the least
+  readonly max: number | null;
+  readonly image: Texels | null; // of a filename
+  readonly shown: boolean; // whether readers may want to move it
+}
+
+/** An image: RGBA, 8 bits each, row 0 first in v (at the bottom), in base64. */
+export interface Texels {
+  readonly width: number;
+  readonly height: number;
+  readonly rgba: string;
+}
+
+/** A material as a shader that mxeon generated, ESSL 3.00, with MaterialX's directional light. */
+export interface ShaderSource {
+  readonly kind: "shader";
+  readonly id: string; // "shader/eonlib", "shader/stock", "document/0/clay/eonlib", ...
+  readonly title: string;
+  readonly group: string;
+  readonly note: string;
+  readonly library: string; // "eonlib", "stock"
+  readonly pixel: string;
+  readonly inputs: readonly Port[];
+  /** Uniforms that the page's own controls set, "" where it has none. */
+  readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };
+  readonly meant: Models | null; // what the node has to be; null if it is not one diffuse node
+  readonly actual: Models | null; // what this library's code is, as the diagnosis names it
+  readonly document: string; // its MaterialX text, for the copy button
+}
+
+export type Source = ModelSource | ShaderSource;
+
+/** A picture for browsers without WebGL2. */
+export interface Still {
+  readonly title: string;
+  readonly picture: string; // data: address of a PNG
+}
+
+export interface PageData {
+  readonly version: string; // of mxeon
+  readonly materialx: string;
+  /** eonlib's GLSL functions of the whole family and its samplers, includes expanded, no #version. */
+  readonly functions: string;
+  readonly sources: readonly Source[];
+  readonly stills: readonly Still[];
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of directions and values of the models for them: what the probe shows, in float64.
+
+import type { Triple, Vec3 } from "./data";
+import { pi_f_cos, type Model } from "./models/table";
+import type { State } from "./state";
+
+const RADIAN = Math.PI / 180;
+
+/** A pair of directions in the local frame of the normal (z); wo lies in the x-z plane. */
+export interface Pair {
+  readonly wo: Vec3;
+  readonly wi: Vec3;
+}
+
+export function dot(a: Vec3, b: Vec3): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+function unit(v: Vec3): Triple {
+  const length = Math.hypot(...v);
+  return [v[0] / length, v[1] / length, v[2] / length];
+}
+
+/** Unit vector to the light: x to the right, y up, z to the viewer. */
+export function light_of({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
+  const [a, e] = [azimuth * RADIAN, elevation * RADIAN];
+  return [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
+}
+
+/** The pair that a normal makes of a viewer and a light, unit vectors in one frame. */
+export function pair_of(normal: Vec3, viewer: Vec3, light: Vec3): Pair {
+  const mu_o = Math.min(dot(normal, viewer), 1.0);
+  const mu_i = Math.min(dot(normal, light), 1.0);
+  const s = dot(viewer, light) - mu_o * mu_i;
+  const S_o = Math.sqrt(1.0 - mu_o * mu_o);
+  const x = S_o > 0.0 ? s / S_o : Math.sqrt(Math.max(0.0, 1.0 - mu_i * mu_i));
+  const y = Math.sqrt(Math.max(0.0, 1.0 - mu_i * mu_i - x * x));
+  return { wo: [S_o, 0.0, mu_o], wi: unit([x, y, mu_i]) };
+}
+
+/** A pair whose directions are unit vectors in float64. */
+export function unit_pair({ wo, wi }: Pair): Pair {
+  return { wo: unit(wo), wi: unit(wi) };
+}
+
+/** pi f cos(theta_i) of a model for a pair, per channel. */
+export function values(of: Model, { wo, wi }: Pair, color: Vec3, roughness: number): Triple {
+  const one = (rho: number): number => pi_f_cos(of, wo, wi, rho, roughness);
+  return [one(color[0]), one(color[1]), one(color[2])];
+}
+
+/** The difference a - b of the channel in which it is largest. */
+export function apart(a: Vec3, b: Vec3): number {
+  const each = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  return each.reduce((most, one) => (Math.abs(one) > Math.abs(most) ? one : most));
+}
+
+/** A point of the sphere, seen along -z. */
+export interface Point extends Pair {
+  readonly normal: Triple;
+  readonly apart: number;
+}
+
+const GRID = 96;
+
+/** The point of the sphere at which two models differ most in this light. */
+export function worst_point(first: Model, second: Model, state: State): Point {
+  const light = light_of(state);
+  let worst: Point | null = null;
+  for (let row = 0; row < GRID; row++) {
+    for (let column = 0; column < GRID; column++) {
+      const x = (2 * column + 1) / GRID - 1;
+      const y = 1 - (2 * row + 1) / GRID;
+      const squared = 1 - x * x - y * y;
+      if (squared <= 0.0) continue;
+      const normal: Triple = [x, y, Math.sqrt(squared)];
+      if (dot(normal, light) <= 0.0) continue;
+      const pair = pair_of(normal, [0, 0, 1], light);
+      const { color, roughness } = state;
+      const difference = apart(
+        values(first, pair, color, roughness),
+        values(second, pair, color, roughness),
+      );
+      if (!worst || Math.abs(difference) > Math.abs(worst.apart)) {
+        worst = { ...pair, normal, apart: difference };
+      }
+    }
+  }
+  if (worst && Math.abs(worst.apart) > 1e-12) return worst;
+  // Two equal models: a point that faces the viewer and the light alike.
+  const half = unit([light[0], light[1], light[2] + 1.0 + 1e-9]);
+  return { ...pair_of(half, [0, 0, 1], light), normal: half, apart: 0 };
+}
+
+const STEPS = 20;
+
+/** The largest difference of two models over all pairs of directions, signed. */
+export function largest_apart(first: Model, second: Model, color: Vec3, roughness: number): number {
+  let most = 0.0;
+  for (let o = 0; o <= STEPS; o++) {
+    const theta_o = (o / STEPS) * 89.9 * RADIAN;
+    const wo: Triple = [Math.sin(theta_o), 0, Math.cos(theta_o)];
+    for (let i = 0; i <= STEPS; i++) {
+      const theta_i = (i / STEPS) * 89.9 * RADIAN;
+      for (let p = 0; p <= STEPS; p++) {
+        const phi = (p / STEPS) * Math.PI;
+        const [S, z] = [Math.sin(theta_i), Math.cos(theta_i)];
+        const pair: Pair = { wo, wi: [S * Math.cos(phi), S * Math.sin(phi), z] };
+        const one = apart(
+          values(first, pair, color, roughness),
+          values(second, pair, color, roughness),
+        );
+        if (Math.abs(one) > Math.abs(most)) most = one;
+      }
+    }
+  }
+  return most;
+}

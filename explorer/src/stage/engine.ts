@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+// The passes of a frame, in one WebGL2 context: geometry, shadow, both materials, picture, screen.
+//
+// What a pass reads decides whether it is drawn again: a wipe that moves draws no material anew.
+
+import type { PageData, Source, Triple, Vec3 } from "../data";
+import type { SideName, State } from "../state";
+import { DIFFERENCE_COLORS, linear } from "./colors";
+import * as gpu from "./gpu";
+import { modelOf, shaderUniforms, wanted } from "./materials";
+import { jitter, Paths, type Size } from "./paths";
+import { camera, lightVector, toView } from "./scenes";
+import { hasTable, samplerRoughness, type Text, Texts } from "./texts";
+import { deleteTargets, layer, makeTargets, type Targets } from "./targets";
+import { Textures } from "./textures";
+
+export const SIDES = ["left", "right"] as const satisfies readonly SideName[];
+
+const ALBEDO_ANGLES = 256; // of the table of a model without a closed form
+const FAR = 1e8;
+
+/** Diameter of the sphere in pixels: even, so that its pixels are those of the gl host's picture. */
+export function diameterOf(size: Size): number {
+  return 2 * Math.round(Math.min(...size) / 2 / camera("sphere").span);
+}
+
+export class Engine {
+  private readonly texts: Texts;
+  private readonly textures: Textures;
+  private readonly sources: ReadonlyMap<string, Source>;
+  private readonly programs: gpu.Programs;
+  private readonly tables: Record<SideName, gpu.Target>;
+  private readonly pixel: gpu.Target; // of a single value,
+  private readonly upright: WebGLTexture; // and the normal there
+  private readonly one: gpu.Target; // geometry of a single pixel
+  private readonly drawn = new Map<string, string>(); // what each pass was last drawn from
+  private targets: Targets;
+  private traced: Paths | null = null;
+  private uniforms: gpu.Uniforms = {};
+  /** What is wrong with the programs, by the source they belong to. */
+  readonly errors = new Map<string, string>();
+  /** Source whose program is compiled now. */
+  waiting = "";
+
+  constructor(
+    private readonly gl: WebGL2RenderingContext,
+    data: PageData,
+  ) {
+    this.texts = new Texts(data);
+    this.textures = new Textures(gl);
+    this.sources = new Map(data.sources.map((source) => [source.id, source]));
+    this.programs = new gpu.Programs(gl);
+    const { float } = gpu.formats(gl);
+    const table = () => gpu.makeTarget(gl, [float], ALBEDO_ANGLES, 1);
+    this.tables = { left: table(), right: table() };
+    this.pixel = gpu.makeTarget(gl, [float], 1, 1);
+    this.one = gpu.makeTarget(gl, [float, float, float], 1, 1);
+    this.upright = gpu.makeTexture(gl, float, 1, 1, new Float32Array([0, 0, 1, 1]));
+    this.targets = makeTargets(gl, [2, 2]);
+    gl.bindVertexArray(gl.createVertexArray());
+    gl.disable(gl.DITHER);
+  }
+
+  /** Draw frame `index` of the average onto the canvas; false while programs are compiled. */
+  frame(state: State, size: Size, canvas: Size, index: number): boolean {
+    if (!this.ready(state)) return false;
+    this.allocate(canvas);
+    const averaged = state.paths ? 0 : index;
+    this.prepare(state, size, averaged);
+    for (const side of SIDES) {
+      if (state.paths) this.path(state, side, size, index);
+      else this.material(state, side, size);
+    }
+    this.picture(state, size, averaged, index + 1);
+    const screen = this.programs.get(this.texts.screen());
+    const uniforms = {
+      stage_picture: layer(this.targets.average[averaged % 2 ? 1 : 0]),
+      stage_canvas: [...canvas, size[0] / canvas[0], size[1] / canvas[1]],
+    };
+    if (screen) gpu.drawPass(this.gl, screen, null, canvas, uniforms);
+    return true;
+  }
+
+  /** Linear radiance of a side at the pixels' centers, alpha 1 on the subject; null while compiling. */
+  read(state: State, side: SideName, size: Size, passes: number): Float32Array | null {
+    if (!this.ready(state)) return null;
+    const area = [0, 0, ...size] as const;
+    if (state.paths) {
+      return this.traced && gpu.readPixels(this.gl, this.traced.target(side, passes), 0, area);
+    }
+    this.allocate(size);
+    this.prepare(state, size, 0);
+    this.material(state, side, size);
+    return gpu.readPixels(this.gl, this.targets[side], 0, area);
+  }
+
+  /** Normal and part, and position, of a pixel, in the viewer's frame; null while compiling. */
+  point(state: State, size: Size, x: number, y: number): [Float32Array, Float32Array] | null {
+    const text = this.texts.geometry(state.shape);
+    const program = this.isPending("", text) ? null : this.programs.get(text);
+    if (!program) return null;
+    // A frame of one pixel, moved to where that one is.
+    const uniforms = { ...this.uniformsOf(state, size, 0), stage_jitter: [x, y] };
+    gpu.drawPass(this.gl, program, this.one, [1, 1], uniforms);
+    const read = (each: number) => gpu.readPixels(this.gl, this.one, each, [0, 0, 1, 1]);
+    return [read(0), read(1)];
+  }
+
+  /** pi f cos(theta_i) of a side's own shader for one pair; null while compiling or if it fails. */
+  value(state: State, side: SideName, wo: Vec3, wi: Vec3): Triple | null {
+    const alone: State = { ...state, shape: "sphere", light: 1, surroundings: "none" };
+    const source = this.sources.get(state[side].source);
+    if (!source) return null;
+    const eye: Triple = [FAR * wo[0], FAR * wo[1], FAR * wo[2]];
+    this.uniforms = {
+      ...this.uniformsOf(alone, [1, 1], 0),
+      stage_surface: this.upright,
+      stage_place: this.textures.white,
+      stage_light_view: wi,
+      stage_eye_view: eye,
+    };
+    const texts = wanted(this.texts, source, state[side], { ...alone, paths: false });
+    if (texts.some(({ text }) => this.isPending(source.id, text))) return null;
+    if (this.errors.has(source.id)) return null;
+    const { text, uniforms } = this.look(alone, side, source, wi, eye);
+    const program = this.programs.get(text);
+    if (!program) return null;
+    gpu.drawPass(this.gl, program, this.pixel, [1, 1], { ...this.uniforms, ...uniforms });
+    const [red = 0, green = 0, blue = 0] = gpu.readPixels(this.gl, this.pixel, 0, [0, 0, 1, 1]);
+    return [red, green, blue];
+  }
+
+  /** Standard error over the mean of a side's pixels after so many passes. */
+  noise(side: SideName, size: Size, passes: number): number {
+    return this.traced?.noise(side, size, passes) ?? 0;
+  }
+
+  /** Ask for all programs of a state, so that they are compiled side by side. */
+  private ready(state: State): boolean {
+    this.errors.clear();
+    const { texts } = this;
+    const own = [texts.geometry(state.shape), texts.picture(state.shape), texts.screen()];
+    if (state.shape !== "sphere") own.push(texts.shadow(state.shape));
+    const missing = own.filter((text) => this.isPending("", text)).map(() => "");
+    for (const side of SIDES) {
+      const source = this.sources.get(state[side].source);
+      if (!source) continue;
+      try {
+        for (const each of wanted(texts, source, state[side], state)) {
+          if (this.isPending(source.id, each.text)) missing.push(source.id);
+        }
+      } catch (error) {
+        this.errors.set(source.id, (error as Error).message);
+      }
+    }
+    this.waiting = missing.find(Boolean) ?? "";
+    return missing.length === 0;
+  }
+
+  private isPending(source: string, text: Text): boolean {
+    try {
+      return this.programs.get(text) === null;
+    } catch (error) {
+      this.errors.set(source, (error as Error).message);
+      return false;
+    }
+  }
+
+  private allocate(size: Size): void {
+    const { targets, gl } = this;
+    if (targets.size[0] === size[0] && targets.size[1] === size[1]) return;
+    deleteTargets(gl, targets);
+    this.traced?.delete();
+    this.traced = null;
+    this.targets = makeTargets(gl, size);
+    this.drawn.clear();
+  }
+
+  /** Uniforms of all passes of a frame. */
+  private uniformsOf(state: State, size: Size, index: number): gpu.Uniforms {
+    const view = camera(state.shape);
+    const light = lightVector(state);
+    const { geometry, lit } = this.targets;
+    const { white } = this.textures;
+    return {
+      stage_camera: view.axes.flat(),
+      stage_eye: view.eye,
+      stage_eye_view: toView(view, view.eye),
+      stage_frame: [...size, diameterOf(size), (view.distance * Math.min(...size)) / 2 / view.span],
+      stage_jitter: jitter(index),
+      stage_light: light,
+      stage_light_view: toView(view, light),
+      stage_intensity: state.light,
+      stage_rho: state.color,
+      stage_parameter: state.roughness,
+      stage_surface: layer(geometry),
+      stage_place: layer(geometry, 1),
+      stage_detail: layer(geometry, 2),
+      stage_lit: state.shape === "sphere" ? white : layer(lit),
+      stage_environment: this.textures.surroundings(state.surroundings, "radiance"),
+      stage_irradiance: this.textures.surroundings(state.surroundings, "irradiance"),
+      stage_before: white,
+      stage_before_square: white,
+    };
+  }
+
+  /** The geometry and the shadow. */
+  private prepare(state: State, size: Size, index: number): void {
+    this.uniforms = this.uniformsOf(state, size, index);
+    const { geometry, lit } = this.targets;
+    const seen = JSON.stringify([state.shape, size, index]);
+    this.pass("geometry", seen, this.texts.geometry(state.shape), geometry, size, {});
+    if (state.shape === "sphere") return;
+    const light = JSON.stringify([seen, lightVector(state)]);
+    this.pass("lit", light, this.texts.shadow(state.shape), lit, size, {});
+  }
+
+  /** Draw a pass if what it reads has changed. */
+  private pass(
+    name: string,
+    key: string,
+    text: Text,
+    target: gpu.Target,
+    size: Size,
+    uniforms: gpu.Uniforms,
+  ): void {
+    if (this.drawn.get(name) === key) return;
+    this.drawn.set(name, key);
+    const program = this.programs.get(text);
+    if (program) gpu.drawPass(this.gl, program, target, size, { ...this.uniforms, ...uniforms });
+  }
+
+  /** Draw a side's material, or nothing if it has none that works. */
+  private material(state: State, side: SideName, size: Size): void {
+    const source = this.sources.get(state[side].source);
+    if (!source || this.errors.has(source.id)) {
+      this.drawn.delete(side);
+      gpu.clear(this.gl, this.targets[side]);
+      return;
+    }
+    const { color, roughness, light, surroundings } = state;
+    const inputs = state.inputs[source.id];
+    const seen = [source.id, state[side].flag, color, roughness, light, surroundings, inputs];
+    const place = [this.drawn.get("geometry"), lightVector(state)];
+    const view = camera(state.shape);
+    const eye = toView(view, view.eye);
+    const { text, uniforms } = this.look(
+      state,
+      side,
+      source,
+      toView(view, lightVector(state)),
+      eye,
+    );
+    this.pass(side, JSON.stringify([seen, place]), text, this.targets[side], size, uniforms);
+  }
+
+  /** Program and uniforms of a side's material, and its table of albedos; the light in the viewer's frame. */
+  private look(state: State, side: SideName, source: Source, light: Vec3, eye: Vec3) {
+    if (source.kind === "shader") {
+      const view = camera(state.shape);
+      const uniforms = shaderUniforms(this.textures, source, state[side], state, view, light, eye);
+      return { text: this.texts.generated(source), uniforms };
+    }
+    const table = this.tables[side];
+    if (hasTable(source.model)) {
+      const key = JSON.stringify([source.model, state.color, state.roughness]);
+      const text = this.texts.albedo(source.model);
+      this.pass(`table ${side}`, key, text, table, [ALBEDO_ANGLES, 1], {});
+    }
+    return { text: this.texts.model(source.model), uniforms: { stage_albedos: layer(table) } };
+  }
+
+  /** Add a path per pixel to a side's average. */
+  private path(state: State, side: SideName, size: Size, index: number): void {
+    this.traced ??= new Paths(this.gl, this.targets.size);
+    const source = this.sources.get(state[side].source);
+    const model = source && !this.errors.has(source.id) && modelOf(source, state[side].flag);
+    const text = model && this.texts.paths(model, state[side].sampler, state.shape);
+    const program = text ? this.programs.get(text) : null;
+    const roughness = model ? samplerRoughness(model, state.roughness) : 0;
+    this.traced.draw(side, program, size, index, roughness, this.uniforms);
+  }
+
+  /** Compare the sides in frame `index` of the average, the sides after so many passes. */
+  private picture(state: State, size: Size, index: number, passes: number): void {
+    const { average } = this.targets;
+    const [now, before] = index % 2 ? [average[1], average[0]] : average;
+    const program = this.programs.get(this.texts.picture(state.shape));
+    if (!program) return;
+    const side = (name: SideName) =>
+      layer((state.paths && this.traced?.target(name, passes)) || this.targets[name]);
+    const [width] = size;
+    const flicker = state.shown === "left" ? 2 * width : -width;
+    gpu.drawPass(this.gl, program, now, size, {
+      ...this.uniforms,
+      stage_left: side("left"),
+      stage_right: side("right"),
+      stage_before: layer(before),
+      stage_share: 1 / (index + 1),
+      stage_gain: 2 ** state.exposure,
+      stage_edge: state.comparison === "flicker" ? flicker : state.wipe * width,
+      stage_scale: state.comparison === "difference" ? state.scale : 0,
+      stage_colors: DIFFERENCE_COLORS.flat().map(linear),
+      stage_traced: state.paths,
+      stage_backdrop: state.surroundings !== "none" && state.surroundings !== "uniform",
+    });
+  }
+}

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stage: draws a state when it changes, sharpens the picture at rest, and then does nothing.
+
+import type { PageData, Triple, Vec3 } from "../data";
+import type { SideName, State } from "../state";
+import { diameterOf, Engine, SIDES } from "./engine";
+import { Pace } from "./pace";
+import type { Size } from "./paths";
+import { camera, lightAt, lightMark, lightVector, localPair, toView, unit } from "./scenes";
+
+export interface Pick {
+  readonly wo: Triple; // unit, in the local frame, normal +z, in the x-z plane
+  readonly wi: Triple; // of the light; its z may be <= 0
+  readonly position: Triple; // in the viewer's frame
+  readonly normal: Triple;
+}
+
+export type Status =
+  | {
+      readonly kind: "drawn";
+      readonly width: number;
+      readonly height: number;
+      readonly milliseconds: number;
+    }
+  | { readonly kind: "compiling"; readonly source: string }
+  | {
+      readonly kind: "samples";
+      readonly done: number;
+      readonly of: number;
+      readonly noise: { readonly left: number; readonly right: number } | null;
+    }
+  | { readonly kind: "error"; readonly source: string; readonly message: string }
+  | { readonly kind: "lost" }
+  | { readonly kind: "restored" };
+
+export interface Stage {
+  /** Show a state soon; `dragging` promises another one, and allows a coarser picture. */
+  draw(state: State, dragging?: boolean): void;
+  /** What is at a point of the picture, [0, 1]^2 from the left top; null beside the subject. */
+  pick(x: number, y: number, state: State): Pick | null;
+  /** pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or fail. */
+  evaluate(pair: { wo: Vec3; wi: Vec3 }, state: State): { left: Triple; right: Triple } | null;
+  /** The light that a point of the picture stands for, and the point of a light. */
+  toLight(x: number, y: number, state: State): { azimuth: number; elevation: number };
+  fromLight(state: State): [number, number];
+  /** Linear RGBA radiance before exposure, row 0 at the bottom; without a side what is compared. */
+  read(side?: SideName): Float32Array;
+  size(): { width: number; height: number };
+  /** Of the sphere, in pixels of the canvas. */
+  diameter(): number;
+  /** Whether the picture of a state is final, so that nothing is drawn until something changes. */
+  isSettled(state: State): boolean;
+  onStatus(callback: (status: Status) => void): void;
+  dispose(): void;
+}
+
+const MOST_PIXELS = 1.6e6; // which take 150 bytes each
+const ATTRIBUTES: WebGLContextAttributes = {
+  alpha: true,
+  antialias: false,
+  depth: false,
+  stencil: false,
+};
+
+/** The canvas' size in pixels of the screen: even, so that the sphere's center is a corner. */
+function fitted({ clientWidth, clientHeight }: HTMLCanvasElement): Size {
+  const most = Math.sqrt(MOST_PIXELS / Math.max(clientWidth * clientHeight, 1));
+  const ratio = Math.min(window.devicePixelRatio, most);
+  const even = (length: number) => Math.max(2 * Math.round((length * ratio) / 2), 2);
+  return [even(clientWidth), even(clientHeight)];
+}
+
+/** A stage on a canvas; null without WebGL2 that draws into float32 frames. */
+export function createStage(canvas: HTMLCanvasElement, data: PageData): Stage | null {
+  // A context that is resized later waits for the driver.
+  [canvas.width, canvas.height] = fitted(canvas);
+  const gl = canvas.getContext("webgl2", ATTRIBUTES) as WebGL2RenderingContext | null;
+  if (!gl?.getExtension("EXT_color_buffer_float")) return null;
+  return new CanvasStage(canvas, gl, data);
+}
+
+/** A frame that the driver draws. */
+interface Fence {
+  readonly sync: WebGLSync;
+  readonly since: number;
+  readonly size: Size;
+}
+
+class CanvasStage implements Stage {
+  private engine: Engine | null;
+  private state: State | null = null;
+  private readonly listeners: ((status: Status) => void)[] = [];
+  private readonly resizing: ResizeObserver;
+  private request = 0;
+  private index = 0; // of the next frame of the average, or of paths
+  private readonly pace = new Pace(() => this.restart());
+  private fence: Fence | null = null;
+  private noise: { left: number; right: number } | null = null;
+  private said = "";
+  private readonly told = new Set<string>(); // sources whose errors were reported
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly gl: WebGL2RenderingContext,
+    private readonly data: PageData,
+  ) {
+    this.engine = this.makeEngine();
+    canvas.addEventListener("webglcontextlost", this.lose);
+    canvas.addEventListener("webglcontextrestored", this.restore);
+    this.resizing = new ResizeObserver(() => this.isFitted() || this.restart());
+    this.resizing.observe(canvas);
+  }
+
+  draw(state: State, dragging = false): void {
+    this.pace.change(dragging);
+    this.state = state;
+    this.restart();
+  }
+
+  pick(x: number, y: number, state: State): Pick | null {
+    const size = this.fit();
+    const column = Math.min(Math.floor(x * size[0]), size[0] - 1);
+    const row = Math.min(Math.floor((1 - y) * size[1]), size[1] - 1);
+    const point = this.engine?.point(state, size, column, row);
+    if (!point || point[0][3] !== 1) return null;
+    const [normal, position] = [unit(triple(point[0])), triple(point[1])];
+    const view = camera(state.shape);
+    const eye = toView(view, view.eye);
+    const viewer = unit([eye[0] - position[0], eye[1] - position[1], eye[2] - position[2]]);
+    const [wo, wi] = localPair(normal, viewer, toView(view, lightVector(state)));
+    return { wo, wi, position, normal };
+  }
+
+  evaluate(
+    { wo, wi }: { wo: Vec3; wi: Vec3 },
+    state: State,
+  ): { left: Triple; right: Triple } | null {
+    const [left, right] = SIDES.map((side) => this.engine?.value(state, side, wo, wi));
+    return left && right ? { left, right } : null;
+  }
+
+  toLight(x: number, y: number, state: State): { azimuth: number; elevation: number } {
+    const [width, height] = this.fit();
+    return lightAt(state.shape, x, y, width / height);
+  }
+
+  fromLight(state: State): [number, number] {
+    const [width, height] = this.fit();
+    return lightMark(state, width / height);
+  }
+
+  read(side?: SideName): Float32Array {
+    const { state } = this;
+    if (!state || !this.engine) return new Float32Array(0);
+    const size = state.paths ? this.drawnSize() : this.fit();
+    const pixels = (each: SideName) =>
+      this.engine?.read(state, each, size, this.index) ?? new Float32Array(0);
+    if (side) return pixels(side);
+    if (state.comparison === "flicker") return pixels(state.shown);
+    const [left, right] = [pixels("left"), pixels("right")];
+    const shown = (k: number) => ((k >> 2) % size[0]) + 0.5 < state.wipe * size[0];
+    if (state.comparison === "wipe") return left.map((v, k) => (shown(k) ? v : (right[k] ?? 0)));
+    return left.map((v, k) => (k % 4 === 3 ? v : v - (right[k] ?? 0)));
+  }
+
+  size(): { width: number; height: number } {
+    const [width, height] = this.fit();
+    return { width, height };
+  }
+
+  diameter(): number {
+    return diameterOf(this.fit());
+  }
+
+  isSettled(state: State): boolean {
+    return this.state === state && this.index > 0 && !this.request && !this.pace.moving;
+  }
+
+  onStatus(callback: (status: Status) => void): void {
+    this.listeners.push(callback);
+  }
+
+  dispose(): void {
+    this.resizing.disconnect();
+    this.canvas.removeEventListener("webglcontextlost", this.lose);
+    this.canvas.removeEventListener("webglcontextrestored", this.restore);
+    cancelAnimationFrame(this.request);
+    this.pace.end();
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
+    this.engine = null;
+  }
+
+  private makeEngine(): Engine {
+    // Extensions count per context, and a restored one is new.
+    for (const name of ["EXT_color_buffer_float", "OES_texture_float_linear"]) {
+      this.gl.getExtension(name);
+    }
+    return new Engine(this.gl, this.data);
+  }
+
+  private readonly lose = (event: Event): void => {
+    event.preventDefault(); // or it is never restored
+    this.engine = null;
+    this.fence = null;
+    this.tell({ kind: "lost" });
+  };
+
+  private readonly restore = (): void => {
+    this.engine = this.makeEngine();
+    this.tell({ kind: "restored" });
+    this.restart();
+  };
+
+  private fit(): Size {
+    return fitted(this.canvas);
+  }
+
+  private isFitted(): boolean {
+    const [width, height] = this.fit();
+    return this.canvas.width === width && this.canvas.height === height;
+  }
+
+  private drawnSize(): Size {
+    return this.pace.size(this.fit());
+  }
+
+  /** Begin the average anew. */
+  private restart(): void {
+    this.index = 0;
+    this.told.clear();
+    this.noise = null;
+    this.schedule();
+  }
+
+  private schedule(): void {
+    this.request ||= requestAnimationFrame(this.tick);
+  }
+
+  private readonly tick = (): void => {
+    this.request = 0;
+    const { state, engine } = this;
+    if (!state || !engine || !this.canvas.clientWidth) return;
+    if (this.isBusy()) return this.schedule();
+    if (!this.goesOn(state, engine)) return;
+    const canvas = this.fit();
+    if (this.index === 0) this.pace.begin(canvas, state.paths);
+    const size = this.drawnSize();
+    if (!this.isFitted()) [this.canvas.width, this.canvas.height] = canvas;
+    const done = engine.frame(state, size, canvas, this.index);
+    this.tellErrors(engine);
+    if (!done) {
+      this.tell({ kind: "compiling", source: engine.waiting });
+      this.schedule();
+      return;
+    }
+    this.index += 1;
+    const sync = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.gl.flush();
+    if (sync) this.fence = { sync, since: performance.now(), size };
+    this.schedule();
+  };
+
+  /** Whether the driver still draws the last frame. Measures it when it has just ended. */
+  private isBusy(): boolean {
+    const { fence, gl } = this;
+    if (!fence) return false;
+    if (gl.getSyncParameter(fence.sync, gl.SYNC_STATUS) === gl.UNSIGNALED) return true;
+    gl.deleteSync(fence.sync);
+    this.fence = null;
+    const milliseconds = performance.now() - fence.since;
+    const [width, height] = fence.size;
+    this.pace.measure(milliseconds, fence.size);
+    this.tell({ kind: "drawn", width, height, milliseconds });
+    return false;
+  }
+
+  /** Whether the average wants another frame. */
+  private goesOn(state: State, engine: Engine): boolean {
+    if (this.index === 0) return true;
+    if (state.paths) {
+      const powerOfTwo = (this.index & (this.index - 1)) === 0;
+      if (this.index >= 16 && powerOfTwo) this.noise = this.measured(engine);
+      this.tell({ kind: "samples", done: this.index, of: state.samples, noise: this.noise });
+      return this.index < state.samples;
+    }
+    return this.index < this.pace.frames(this.fit());
+  }
+
+  private measured(engine: Engine): { left: number; right: number } {
+    const [left, right] = SIDES.map((side) => engine.noise(side, this.drawnSize(), this.index));
+    return { left: left ?? 0, right: right ?? 0 };
+  }
+
+  /** Report what went wrong, once for each view. */
+  private tellErrors(engine: Engine): void {
+    for (const [source, message] of engine.errors) {
+      if (this.told.has(source)) continue;
+      this.told.add(source);
+      this.tell({ kind: "error", source, message });
+    }
+  }
+
+  /** Report a status, but the same only once. */
+  private tell(status: Status): void {
+    const said = JSON.stringify(status);
+    if (said !== this.said) for (const listener of this.listeners) listener(status);
+    this.said = said;
+  }
+}
+
+function triple(values: Float32Array): Triple {
+  return [values[0] ?? 0, values[1] ?? 0, values[2] ?? 0];
+}

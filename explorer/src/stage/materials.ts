@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a side of the comparison is drawn with: texts of programs, and their uniforms.
+
+import type { ModelName, ShaderSource, Source, Vec3 } from "../data";
+import type { Side, State } from "../state";
+import type { Uniforms, UniformValue } from "./gpu";
+import type { Camera } from "./scenes";
+import { hasTable, type Text, type Texts } from "./texts";
+import type { Textures } from "./textures";
+
+const SPECULAR_SAMPLES = 16; // of the surroundings, by a generated shader's glossy lobes
+const MIPS = 8; // of a map of 128 columns
+
+const ATLAS = /^uniform vec2 (\w+_uv_scale);/gm;
+
+/** A program that a side needs, and the source to name if it fails. */
+export interface Wanted {
+  readonly source: string;
+  readonly text: Text;
+}
+
+/** The model that a source is, for path tracing; null if it has none. */
+export function modelOf(source: Source, flag: boolean): ModelName | null {
+  if (source.kind === "model") return source.model;
+  return source.actual && (flag ? source.actual.on : source.actual.off);
+}
+
+/** Programs of a side; raises an error if it cannot be drawn like that. */
+export function wanted(texts: Texts, source: Source, side: Side, state: State): Wanted[] {
+  if (state.paths) {
+    const model = modelOf(source, side.flag);
+    if (!model) throw new Error("path tracing needs a material that is one diffuse node");
+    return [{ source: source.id, text: texts.paths(model, side.sampler, state.shape) }];
+  }
+  if (source.kind === "shader") return [{ source: source.id, text: texts.generated(source) }];
+  const value = { source: source.id, text: texts.model(source.model) };
+  if (!hasTable(source.model)) return [value];
+  return [value, { source: source.id, text: texts.albedo(source.model) }];
+}
+
+/**
+ * Uniforms of a generated shader: its inputs, and MaterialX's light, viewer and surroundings.
+ *
+ * `light` and `eye` are in the viewer's frame, in which these shaders work.
+ */
+export function shaderUniforms(
+  textures: Textures,
+  source: ShaderSource,
+  side: Side,
+  state: State,
+  { axes }: Camera,
+  light: Vec3,
+  eye: Vec3,
+): Uniforms {
+  const inputs: Record<string, UniformValue> = {};
+  // Every image has a place in an atlas, which none of them is in.
+  for (const [, name = ""] of source.pixel.matchAll(ATLAS)) inputs[name] = [1, 1];
+  for (const { name, value, image } of source.inputs) {
+    if (image) inputs[name] = textures.image(image);
+    else if (value !== null) inputs[name] = value;
+  }
+  const { color, roughness, flag } = source.controls;
+  if (color) inputs[color] = state.color;
+  if (roughness) inputs[roughness] = state.roughness;
+  if (flag) inputs[flag] = side.flag;
+  const even = state.surroundings === "none" || state.surroundings === "uniform";
+  return {
+    ...inputs,
+    ...state.inputs[source.id],
+    "u_lightData[0].type": 1,
+    "u_lightData[0].direction": [-light[0], -light[1], -light[2]],
+    "u_lightData[0].color": [1, 1, 1],
+    "u_lightData[0].intensity": Math.PI * state.light,
+    u_viewPosition: eye,
+    u_envMatrix: [...axes.map((axis) => [...axis, 0]), [0, 0, 0, 1]].flat(),
+    u_envRadiance: textures.surroundings(state.surroundings, "radiance"),
+    u_envIrradiance: textures.surroundings(state.surroundings, "irradiance"),
+    u_envRadianceMips: even ? 1 : MIPS,
+    u_envRadianceSamples: SPECULAR_SAMPLES,
+  };
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The viewer of each shape, and where the light is in the picture.
+//
+// World frame: x to the right, y up, z towards the viewer. The viewer's frame is the world turned
+// about x, so that the sphere alone is seen as the gl host sees it: straight on, without perspective.
+
+import type { Triple, Vec3 } from "../data";
+import type { Shape, State } from "../state";
+
+export interface Camera {
+  readonly axes: readonly [Vec3, Vec3, Vec3]; // right, up and back, in the world
+  readonly eye: Vec3; // in the world
+  readonly distance: number; // of the eye from the target
+  readonly span: number; // half of the frame's smaller side over the subject's radius
+}
+
+interface View {
+  readonly pitch: number; // degrees that the viewer looks down
+  readonly distance: number; // of the eye from the target
+  readonly target: number; // its height
+  readonly span: number;
+}
+
+const FAR = 1e8; // makes normalize(eye - position) the z axis, in float32
+
+const VIEWS: Record<Shape, View> = {
+  sphere: { pitch: 0, distance: FAR, target: 0, span: 1.14 },
+  plane: { pitch: 18, distance: 8, target: -0.12, span: 1.5 },
+  cloth: { pitch: 0, distance: 7, target: 0, span: 1.3 },
+  ball: { pitch: 15, distance: 8, target: -0.12, span: 1.36 },
+};
+
+/** Index of a shape in shapes.glsl. */
+export const SHAPE_INDEX: Record<Shape, number> = { sphere: 0, plane: 1, cloth: 2, ball: 3 };
+
+export function camera(shape: Shape): Camera {
+  const { pitch, distance, target, span } = VIEWS[shape];
+  const [sine, cosine] = [Math.sin((pitch * Math.PI) / 180), Math.cos((pitch * Math.PI) / 180)];
+  const back: Vec3 = [0, sine, cosine];
+  const eye: Vec3 = [0, target + distance * sine, distance * cosine];
+  return { axes: [[1, 0, 0], [0, cosine, -sine], back], eye, distance, span };
+}
+
+/** A direction of the world in the viewer's frame. */
+export function toView({ axes }: Camera, world: Vec3): Triple {
+  return [dot(axes[0], world), dot(axes[1], world), dot(axes[2], world)];
+}
+
+/** A direction of the viewer's frame in the world. */
+export function toWorld({ axes }: Camera, view: Vec3): Triple {
+  const along = (k: 0 | 1 | 2) =>
+    axes[0][k] * view[0] + axes[1][k] * view[1] + axes[2][k] * view[2];
+  return [along(0), along(1), along(2)];
+}
+
+/** Unit vector towards the light, in the world. */
+export function lightVector({ azimuth, elevation }: Pick<State, "azimuth" | "elevation">): Triple {
+  const [around, up] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
+  return [Math.sin(around) * Math.cos(up), Math.sin(up), Math.cos(around) * Math.cos(up)];
+}
+
+/**
+ * The light that a point of the picture stands for, [0, 1]^2 from the left top: in the middle the
+ * light comes from the viewer, at the subject's rim from the side, twice as far out from behind.
+ */
+export function lightAt(shape: Shape, x: number, y: number, aspect: number) {
+  const view = camera(shape);
+  const [right, up] = [(2 * x - 1) * Math.max(aspect, 1), (1 - 2 * y) * Math.max(1 / aspect, 1)];
+  const distance = Math.hypot(right, up);
+  const polar = (Math.min(distance * view.span, 2) * Math.PI) / 2;
+  const side = distance > 0 ? Math.sin(polar) / distance : 0;
+  const [wx, wy, wz] = toWorld(view, [right * side, up * side, Math.cos(polar)]);
+  const degrees = 180 / Math.PI;
+  return {
+    azimuth: Math.atan2(wx, wz) * degrees,
+    elevation: Math.asin(Math.max(-1, Math.min(1, wy))) * degrees,
+  };
+}
+
+/** The point of the picture that stands for the light; inverse of `lightAt`. */
+export function lightMark(state: State, aspect: number): [number, number] {
+  const view = camera(state.shape);
+  const [x, y, z] = toView(view, lightVector(state));
+  const side = Math.hypot(x, y);
+  const distance = (Math.atan2(side, z) * 2) / Math.PI / view.span;
+  const scale = side > 0 ? distance / side : 0;
+  return [
+    0.5 + (0.5 * x * scale) / Math.max(aspect, 1),
+    0.5 - (0.5 * y * scale) / Math.max(1 / aspect, 1),
+  ];
+}
+
+export function dot(a: Vec3, b: Vec3): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+export function unit(v: Vec3): Triple {
+  const length = Math.sqrt(dot(v, v));
+  return [v[0] / length, v[1] / length, v[2] / length];
+}
+
+export function cross(a: Vec3, b: Vec3): Triple {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+/** Viewer and light in the frame of the normal, in whose x-z plane the viewer is. */
+export function localPair(normal: Triple, viewer: Triple, light: Triple): [Triple, Triple] {
+  const mu = dot(viewer, normal);
+  const [x, y, z] = viewer.map((each, k) => each - mu * (normal[k] ?? 0)) as Triple;
+  const steep = Math.abs(normal[0]) < 0.5 ? ([1, 0, 0] as const) : ([0, 1, 0] as const);
+  const along = Math.hypot(x, y, z) > 1e-9 ? unit([x, y, z]) : unit(cross(steep, normal));
+  const beside = cross(normal, along);
+  const local = (v: Triple): Triple => [dot(v, along), dot(v, beside), dot(v, normal)];
+  return [unit(local(viewer)), unit(local(light))];
+}

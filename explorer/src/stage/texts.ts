@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// The texts of all programs of the stage, in ESSL 3.00.
+
+import type { ModelName, PageData, ShaderSource } from "../data";
+import type { Sampler, Shape } from "../state";
+import albedo from "./albedo.glsl";
+import camera from "./camera.glsl";
+import generated from "./generated.glsl";
+import geometry from "./geometry.glsl";
+import material from "./material.glsl";
+import paths from "./paths.glsl";
+import picture from "./picture.glsl";
+import { SHAPE_INDEX } from "./scenes";
+import screen from "./screen.glsl";
+import shadow from "./shadow.glsl";
+import shapes from "./shapes.glsl";
+import surroundings from "./surroundings.glsl";
+import variants from "./variants.glsl";
+
+const HEAD = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+`;
+
+/** One triangle over the whole frame. */
+export const VERTEX = `#version 300 es
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+`;
+
+/** Calls of a model's value and, where a closed form is known, of its albedo. */
+interface Calls {
+  readonly value: string;
+  readonly albedo: string | null;
+  readonly sigma?: boolean; // the parameter is a sigma
+}
+
+const MODELS: Record<ModelName, Calls> = {
+  lambert: { value: "lambert_brdf(wo, wi, rho)", albedo: "rho" },
+  oren_nayar: { value: "oren_nayar_brdf(wo, wi, rho, r)", albedo: null, sigma: true },
+  qon: { value: "qon_brdf(wo, wi, rho, r)", albedo: "rho * qon_albedo_dir(mu, r)", sigma: true },
+  qon_footnote: { value: "qon_footnote_brdf(wo, wi, rho, r)", albedo: null, sigma: true },
+  qon_fujii: { value: "qon_fujii_brdf(wo, wi, rho, r)", albedo: null, sigma: true },
+  fon: { value: "fon_brdf(wo, wi, rho, r)", albedo: "rho * fon_albedo_dir(mu, r)" },
+  eon: { value: "eon_brdf(wo, wi, rho, r)", albedo: "eon_albedo_dir(mu, rho, r)" },
+  eon_approx: { value: "eon_brdf_approx(wo, wi, rho, r)", albedo: null },
+  eon_clamped: { value: "eon_clamped_brdf(wo, wi, rho, r)", albedo: null },
+  eon_rho_cubed: {
+    value: "eon_rho_cubed_brdf(wo, wi, rho, r)",
+    albedo: "eon_rho_cubed_albedo_dir(mu, rho, r)",
+  },
+  fon_white_lobe: {
+    value: "fon_white_lobe_brdf(wo, wi, rho, r)",
+    albedo: "fon_white_lobe_albedo_dir(mu, rho, r)",
+  },
+  qon_fitted: {
+    value: "qon_brdf(wo, wi, rho, r)",
+    albedo: "qon_fitted_albedo_dir(mu, rho, r)",
+    sigma: true,
+  },
+  qon_tinted_twice: {
+    value: "qon_tinted_twice_brdf(wo, wi, rho, r)",
+    albedo: "qon_tinted_twice_albedo_dir(mu, rho, r)",
+    sigma: true,
+  },
+};
+
+const SAMPLERS: Record<Sampler, readonly [string, string]> = {
+  exact: ["eon_sample(wo, u.x, u.y, rho, r)", "eon_pdf(wo, wi, rho, r)"],
+  cltc: ["eon_cltc_sample(wo, u.x, u.y, r)", "eon_cltc_pdf(wo, wi, r)"],
+  cosine: ["cosine_sample(u.x, u.y)", "cosine_pdf(wi)"],
+};
+
+/** Roughness that samplers take for a model's parameter. */
+export function samplerRoughness(model: ModelName, parameter: number): number {
+  return MODELS[model].sigma ? Math.min((2 * parameter) / Math.PI, 1) : parameter;
+}
+
+export function hasTable(model: ModelName): boolean {
+  return MODELS[model].albedo === null;
+}
+
+function defined(macros: Record<string, string | number>): string {
+  return Object.entries(macros)
+    .map(([name, text]) => `#define ${name} ${text}\n`)
+    .join("");
+}
+
+function shaped(shape: Shape, ...parts: string[]): string {
+  return HEAD + defined({ STAGE_SHAPE: SHAPE_INDEX[shape] }) + shapes + parts.join("");
+}
+
+/** A program's pixel stage: a short name, which programs are kept by, and its long text. */
+export interface Text {
+  readonly key: string;
+  readonly make: () => string;
+}
+
+export class Texts {
+  private readonly functions: string;
+
+  constructor(data: PageData) {
+    this.functions = data.functions + variants;
+  }
+
+  geometry(shape: Shape): Text {
+    const make = () => shaped(shape, this.functions, camera, geometry);
+    return { key: `geometry ${shape}`, make };
+  }
+
+  shadow(shape: Shape): Text {
+    return { key: `shadow ${shape}`, make: () => shaped(shape, shadow) };
+  }
+
+  model(model: ModelName): Text {
+    const { value, albedo: closed } = MODELS[model];
+    const macros = { STAGE_VALUE: value, STAGE_ALBEDO: closed ?? "stage_tabulated(mu)" };
+    const make = () => HEAD + this.functions + defined(macros) + surroundings + material;
+    return { key: `model ${model}`, make };
+  }
+
+  albedo(model: ModelName): Text {
+    const macros = { STAGE_VALUE: MODELS[model].value };
+    const make = () => HEAD + this.functions + defined(macros) + albedo;
+    return { key: `albedo ${model}`, make };
+  }
+
+  paths(model: ModelName, sampler: Sampler, shape: Shape): Text {
+    const [sample, pdf] = SAMPLERS[sampler];
+    const macros = { STAGE_VALUE: MODELS[model].value, STAGE_SAMPLE: sample, STAGE_PDF: pdf };
+    const make = () => shaped(shape, this.functions, camera, surroundings, defined(macros), paths);
+    return { key: `paths ${model} ${sampler} ${shape}`, make };
+  }
+
+  picture(shape: Shape): Text {
+    return { key: `picture ${shape}`, make: () => shaped(shape, camera, surroundings, picture) };
+  }
+
+  screen(): Text {
+    return { key: "screen", make: () => HEAD + screen };
+  }
+
+  generated(source: ShaderSource): Text {
+    return { key: `source ${source.id}`, make: () => withPoints(source.pixel) };
+  }
+}
+
+/** What a shader may read from its vertex stage, from what the geometry holds. */
+const POINTS: Record<string, string> = {
+  normalWorld: "stage_normal",
+  positionWorld: "stage_position.xyz",
+  tangentWorld: "stage_tangent",
+  bitangentWorld: "cross(stage_normal, stage_tangent)",
+  normalObject: "stage_camera * stage_normal",
+  positionObject: "stage_camera * stage_position.xyz",
+  tangentObject: "stage_camera * stage_tangent",
+  bitangentObject: "stage_camera * cross(stage_normal, stage_tangent)",
+  texcoord_0: "stage_texcoord",
+};
+
+/**
+ * A generated pixel stage that takes its point from the geometry instead of a vertex stage.
+ *
+ * Only declarations change: each `in` becomes a variable, and so do two uniforms that differ from
+ * pixel to pixel here, whether the light arrives and how much of the surroundings does. A point that
+ * is not in POINTS is zero, as it is for the gl host, which has no such vertex attribute either.
+ */
+export function withPoints(pixel: string): string {
+  const inputs: string[] = [];
+  const text = pixel
+    .replace(/^in (\w+) (\w+);/gm, (_, type: string, name: string) => {
+      inputs.push(`${name} = ${POINTS[name] ?? `${type}(0.0)`};`);
+      return `${type} ${name};`;
+    })
+    .replace(/^uniform (int u_numActiveLightSources|float u_envLightIntensity);/gm, "$1;")
+    .replace(/^void main\(\)/m, "void stage_generated_main()");
+  const output = /^out vec4 (\w+);/m.exec(text)?.[1] ?? "";
+  return text + defined({ STAGE_OUTPUT: output, STAGE_INPUTS: inputs.join(" ") }) + generated;
+}

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inputs of a document, with the ranges of their definitions.
+
+import type { Port, ShaderSource, Triple } from "../data";
+import type { State, Value } from "../state";
+import { SIDES, source_of, values_of } from "../view";
+import { Check, Color, NumberField, Slider } from "./fields";
+import type { ViewProps } from "./sides";
+
+/** The controls of the documents in sight, one group for both libraries of a material. */
+export function Inputs(props: ViewProps) {
+  const { sources, state } = props;
+  const shown = new Map<string, ShaderSource>();
+  for (const name of SIDES) {
+    const source = source_of(sources, state[name]);
+    if (source.kind === "shader" && source.id.startsWith("document/")) {
+      const stem = stem_of(source.id);
+      if (!shown.has(stem)) shown.set(stem, source);
+    }
+  }
+  return (
+    <>
+      {[...shown.values()].map((source) => (
+        <Group key={source.id} source={source} {...props} />
+      ))}
+    </>
+  );
+}
+
+/** What the ids of a material have in common, whatever the library. */
+function stem_of(id: string): string {
+  return id.replace(/[^/]*$/, "");
+}
+
+function Group({ source, data, state, change }: ViewProps & { readonly source: ShaderSource }) {
+  const side = SIDES.map((name) => state[name]).find((each) => each.source === source.id)!;
+  const values = values_of(source, state, side);
+  const own = new Set(Object.values(source.controls));
+  const twins = data.sources.filter((each) => stem_of(each.id) === stem_of(source.id));
+  const set = (port: Port, value: Value): void => {
+    const inputs: Record<string, State["inputs"][string]> = { ...state.inputs };
+    for (const { id } of twins) inputs[id] = { ...inputs[id], [port.name]: value };
+    change({ inputs });
+  };
+  const ports = source.inputs.filter((port) => port.shown && !own.has(port.name));
+  if (ports.length === 0) return null;
+  return (
+    <section>
+      <h2>Inputs of {source.title.replace(/, [^,]*$/, "")}</h2>
+      {ports.map((port) => (
+        <Field
+          key={port.name}
+          port={port}
+          value={values.get(port.name)!}
+          onChange={(value) => set(port, value)}
+        />
+      ))}
+    </section>
+  );
+}
+
+interface FieldProps {
+  readonly port: Port;
+  readonly value: Value;
+  readonly onChange: (value: Value) => void;
+}
+
+function Field({ port, value, onChange }: FieldProps) {
+  const node = port.path.split("/").slice(-2, -1)[0];
+  const label = node ? `${node.replaceAll("_", " ")}: ${port.label}` : port.label;
+  if (typeof value === "boolean") return <Check label={label} value={value} onChange={onChange} />;
+  if (typeof value === "number") {
+    const [min, max] = range(port, value);
+    const step = port.type === "integer" ? 1 : (max - min) / 200;
+    return <Slider label={label} {...{ value, min, max, step, onChange }} />;
+  }
+  if (port.type === "color3") {
+    return <Color label={label} value={value as Triple} onChange={onChange} />;
+  }
+  return (
+    <fieldset class="parts">
+      <legend>{label}</legend>
+      {value.map((part, k) => (
+        <NumberField
+          key={k}
+          label={`${label}, part ${k + 1}`}
+          value={part}
+          onChange={(number) => onChange(value.map((one, n) => (n === k ? number : one)))}
+        />
+      ))}
+    </fieldset>
+  );
+}
+
+/** The range of a number's slider: what its definition recommends, or one around its own value. */
+function range(port: Port, value: number): [number, number] {
+  const own = typeof port.value === "number" ? port.value : value;
+  return [port.min ?? Math.min(0, 2 * own), port.max ?? (own > 1 ? 2 * own : 1)];
+}

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// The probe: a pair of directions, the values of both sides for it, and their errors.
+
+import type { ComponentChild } from "preact";
+import { useState } from "preact/hooks";
+import type { Triple } from "../data";
+import { copy, material_x, python_line, shader_text } from "../copies";
+import { degrees, signed, triple } from "../format";
+import { apart, type Pair, values } from "../probe";
+import { actual_model, LETTER, meant_model, SIDES, source_of } from "../view";
+import { AlbedoPlot, type Curve, Polar } from "./plots";
+import type { ViewProps } from "./sides";
+
+/** pi f cos of each shader; null while it compiles, or if it does not. */
+export interface Measured {
+  readonly left: Triple | null;
+  readonly right: Triple | null;
+}
+
+interface ProbeProps extends ViewProps {
+  readonly pair: Pair;
+  readonly measured: Measured | null; // null while something moves, and where no shader runs
+}
+
+const DECIMALS = 7;
+/** Errors below it are roundings of float32, of which the shaders make some tens. */
+const ROUNDING = 64 * 2 ** -24;
+
+export function Probe(props: ProbeProps) {
+  const { sources, state, change, pair } = props;
+  const { color, roughness, probe } = state;
+  const curves: Curve[] = [];
+  for (const side of SIDES) {
+    const of = actual_model(source_of(sources, state[side]), state[side], state);
+    if (of) curves.push({ side, model: of });
+  }
+  return (
+    <section class="probe" aria-label="Probe">
+      <div>
+        <h2>Probe</h2>
+        <p class="where">
+          {probe ? "The point that was clicked." : "Where A and B differ most in this light."}{" "}
+          {probe ? (
+            <button type="button" class="link" onClick={() => change({ probe: null })}>
+              Go to the largest difference
+            </button>
+          ) : (
+            "Click the picture for another point."
+          )}
+        </p>
+        <Directions pair={pair} />
+        <Values {...props} />
+        <Copies {...props} />
+      </div>
+      {curves.length > 0 && (
+        <>
+          <Polar {...{ curves, pair, color, roughness }} />
+          <AlbedoPlot {...{ curves, pair, color, roughness }} />
+        </>
+      )}
+    </section>
+  );
+}
+
+function Directions({ pair: { wo, wi } }: { readonly pair: Pair }) {
+  const azimuth = Math.atan2(wi[1], wi[0]) - Math.atan2(wo[1], wo[0]);
+  return (
+    <dl class="directions">
+      <dt>wo, to the eye</dt>
+      <dd>
+        {triple(wo, 4)} <span>θ {degrees(Math.acos(wo[2]))}</span>
+      </dd>
+      <dt>wi, to the light</dt>
+      <dd>
+        {triple(wi, 4)}{" "}
+        <span>
+          θ {degrees(Math.acos(wi[2]))}, φ {degrees(Math.abs(azimuth))}
+        </span>
+      </dd>
+    </dl>
+  );
+}
+
+function Values({ sources, state, pair, measured }: ProbeProps) {
+  const { color, roughness } = state;
+  return (
+    <table class="values">
+      <caption>Value, π f cos θ for red, green, blue</caption>
+      <thead>
+        <tr>
+          <td />
+          {SIDES.map((name) => (
+            <th key={name} scope="col" class={name}>
+              {LETTER[name]}
+            </th>
+          ))}
+        </tr>
+      </thead>
+      <tbody>
+        <Row title="value">
+          {SIDES.map((name) => {
+            const of = actual_model(source_of(sources, state[name]), state[name], state);
+            const value = measured?.[name];
+            if (!value && !of) return "–";
+            return (
+              <>
+                <span class="of">{value ? "shader, float32" : `${of!.short}, float64`}</span>
+                <Numbers values={value ?? values(of!, pair, color, roughness)} />
+                {value && of && is_other(value, values(of, pair, color, roughness)) && (
+                  <strong class="wrong">The shader is not {of.short}.</strong>
+                )}
+              </>
+            );
+          })}
+        </Row>
+        <Row title="reference">
+          {SIDES.map((name) => {
+            const of = meant_model(source_of(sources, state[name]), state[name], state);
+            if (!of) return "–";
+            return (
+              <>
+                <span class="of">{of.short}, float64</span>
+                <Numbers values={values(of, pair, color, roughness)} />
+              </>
+            );
+          })}
+        </Row>
+        <Row title="error">
+          {SIDES.map((name) => {
+            const source = source_of(sources, state[name]);
+            const [is, of] = [
+              actual_model(source, state[name], state),
+              meant_model(source, state[name], state),
+            ];
+            const value = measured?.[name] ?? (is && values(is, pair, color, roughness));
+            if (!value || !of) return "–";
+            const error = apart(value, values(of, pair, color, roughness));
+            const right = !is_other(value, values(of, pair, color, roughness));
+            return (
+              <strong class={right ? "correct" : "wrong"}>
+                {signed(error, 2)} {right ? "✓ rounding" : error > 0 ? "too bright" : "too dark"}
+              </strong>
+            );
+          })}
+        </Row>
+        {measured?.left && measured.right && (
+          <tr>
+            <th scope="row">A − B</th>
+            <td colSpan={2}>{signed(apart(measured.left, measured.right), 3)}</td>
+          </tr>
+        )}
+      </tbody>
+    </table>
+  );
+}
+
+/** Whether two values differ by more than roundings. */
+function is_other(value: Triple, other: Triple): boolean {
+  return !(Math.abs(apart(value, other)) < ROUNDING);
+}
+
+interface RowProps {
+  readonly title: string;
+  readonly children: readonly ComponentChild[];
+}
+
+function Row({ title, children }: RowProps) {
+  return (
+    <tr>
+      <th scope="row">{title}</th>
+      {children.map((cell, k) => (
+        <td key={k}>{cell}</td>
+      ))}
+    </tr>
+  );
+}
+
+function Numbers({ values }: { readonly values: Triple }) {
+  return (
+    <span class="numbers">
+      {values.map((one, k) => (
+        <span key={k}>{one.toFixed(DECIMALS).replace("-", "\u2212")}</span>
+      ))}
+    </span>
+  );
+}
+
+/** Buttons that copy, for each side what it has. */
+function Copies({ data, sources, state, pair }: ProbeProps) {
+  const [said, say] = useState("");
+  const take = (what: string, text: string): void => {
+    void copy(text).then((done) =>
+      say(done ? `${what} copied.` : `${what} cannot be copied here.`),
+    );
+  };
+  return (
+    <div class="copies">
+      {SIDES.map((name) => {
+        const source = source_of(sources, state[name]);
+        const of = actual_model(source, state[name], state);
+        const texts: [string, string | null][] = [
+          ["MaterialX", material_x(state, sources, source, state[name])],
+          ["GLSL", shader_text(data, source)],
+          ["Python", of && python_line(of, pair, state)],
+        ];
+        return (
+          <p key={name} role="group" aria-label={`Copy from ${LETTER[name]}`}>
+            <span>Copy {LETTER[name]}:</span>
+            {texts.map(([what, text]) => (
+              <button
+                key={what}
+                type="button"
+                disabled={text === null}
+                aria-label={`Copy ${LETTER[name]} as ${what}`}
+                onClick={() => text !== null && take(`${LETTER[name]}, ${what}`, text)}
+              >
+                {what}
+              </button>
+            ))}
+          </p>
+        );
+      })}
+      <p class="said" role="status">
+        {said}
+      </p>
+    </div>
+  );
+}

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// The picture with its handles: the wipe, the light and the probe.
+
+import { useEffect, useRef, useState } from "preact/hooks";
+import { show, signed } from "../format";
+import { type Stage, type Status, createStage } from "../stage";
+import { DIFFERENCE_COLORS } from "../stage/colors";
+import { COMPARISONS, type Comparison, type State } from "../state";
+import { LETTER, short_title, SIDES, source_of } from "../view";
+import { Choice, Slider } from "./fields";
+import type { ViewProps } from "./sides";
+import { Stills } from "./stills";
+
+interface StageViewProps extends ViewProps {
+  /** Where the probe is in the picture, [0, 1]^2 from the left top; null for nowhere. */
+  readonly mark: readonly [number, number] | null;
+  readonly onStage: (stage: Stage | null) => void;
+  readonly onDrag: (dragging: boolean) => void;
+}
+
+const TITLES: Readonly<Record<Comparison, string>> = {
+  wipe: "Wipe",
+  difference: "Difference",
+  flicker: "Flicker",
+};
+const NEAR = 18; // pixels from the line within which it is taken
+const CLICK = 4; // pixels that a click may move
+const STEP = 0.02; // of the picture, for an arrow key
+
+type Drag = { kind: "wipe" | "light" | "click"; x: number; y: number } | null;
+
+export function StageView(props: StageViewProps) {
+  const { data, sources, state, change, mark, onStage, onDrag } = props;
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [stage, setStage] = useState<Stage | null | undefined>(undefined);
+  const [status, setStatus] = useState<Status | null>(null);
+  const [dragging, setDragging] = useState(false);
+  const drag = useRef<Drag>(null);
+
+  useEffect(() => {
+    const made = createStage(canvas.current!, data);
+    made?.onStatus(setStatus);
+    setStage(made);
+    onStage(made);
+    return () => made?.dispose();
+  }, []);
+  useEffect(() => stage?.draw(state, dragging), [stage, state, dragging]);
+  useEffect(() => onDrag(dragging), [dragging]);
+
+  /** A pointer's place in the picture. */
+  const place = (event: PointerEvent): [number, number] => {
+    const frame = canvas.current!.getBoundingClientRect();
+    return [
+      Math.min(Math.max((event.clientX - frame.left) / frame.width, 0), 1),
+      Math.min(Math.max((event.clientY - frame.top) / frame.height, 0), 1),
+    ];
+  };
+  const down = (event: PointerEvent): void => {
+    if (event.button !== 0) return;
+    const { width } = canvas.current!.getBoundingClientRect();
+    const [x] = place(event);
+    const onLine = state.comparison === "wipe" && Math.abs(x - state.wipe) * width < NEAR;
+    drag.current = { kind: onLine ? "wipe" : "click", x: event.clientX, y: event.clientY };
+    (event.currentTarget as Element).setPointerCapture(event.pointerId);
+  };
+  const move = (event: PointerEvent): void => {
+    const now = drag.current;
+    if (!now) return;
+    const far = Math.hypot(event.clientX - now.x, event.clientY - now.y) > CLICK;
+    if (now.kind === "click" && far) now.kind = "light";
+    if (now.kind === "click") return;
+    setDragging(true);
+    const [x, y] = place(event);
+    if (now.kind === "wipe") change({ wipe: x });
+    else change(stage?.toLight(x, y, state) ?? {});
+  };
+  const up = (event: PointerEvent): void => {
+    if (drag.current?.kind === "click") change({ probe: place(event) });
+    drag.current = null;
+    setDragging(false);
+  };
+
+  if (stage === null) return <Stills stills={data.stills} />;
+  const names = SIDES.map((name) => short_title(source_of(sources, state[name]), state[name]));
+  return (
+    <section class="stage" aria-label="Picture">
+      <Toolbar {...props} />
+      <div
+        class="picture"
+        onPointerDown={down}
+        onPointerMove={move}
+        onPointerUp={up}
+        onPointerCancel={up}
+      >
+        <canvas
+          ref={canvas}
+          role="img"
+          aria-label={`Picture of ${names.map((name, k) => `${"AB"[k]}: ${name}`).join("; ")}`}
+        />
+        <Labels state={state} names={names} />
+        {state.comparison === "wipe" && <WipeHandle {...props} />}
+        {stage && <LightHandle {...props} at={stage.fromLight(state)} />}
+        {mark && <ProbeMark {...props} at={mark} />}
+        <StatusLine status={status} />
+      </div>
+      {state.comparison === "difference" ? (
+        <Legend {...props} />
+      ) : (
+        <p class="hint">
+          Drag the line to compare. Drag anywhere else to move the light. Click to probe.
+        </p>
+      )}
+    </section>
+  );
+}
+
+function Toolbar({ state, change }: ViewProps) {
+  const other = state.shown === "left" ? "right" : "left";
+  return (
+    <div class="toolbar">
+      <Choice
+        label="Compare"
+        value={state.comparison}
+        options={COMPARISONS.map((word) => [word, TITLES[word]] as const)}
+        onChange={(comparison) => change({ comparison })}
+      />
+      {state.comparison === "flicker" && (
+        <button type="button" class="flip" onClick={() => change({ shown: other })}>
+          Show {LETTER[other]} <kbd>F</kbd>
+        </button>
+      )}
+    </div>
+  );
+}
+
+/** Which material is where. */
+function Labels({ state, names }: { readonly state: State; readonly names: readonly string[] }) {
+  if (state.comparison === "difference") return null;
+  return (
+    <>
+      {SIDES.map((name, k) => {
+        const seen =
+          state.comparison === "flicker"
+            ? state.shown === name
+            : name === "left"
+              ? state.wipe > 0.1
+              : state.wipe < 0.9;
+        return (
+          seen && (
+            <span key={name} class={`label ${name}`} aria-hidden="true">
+              <b>{LETTER[name]}</b> {names[k]}
+            </span>
+          )
+        );
+      })}
+    </>
+  );
+}
+
+const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+/** Steps of an arrow key, if the event is one. */
+function arrow(event: KeyboardEvent): readonly [number, number] | null {
+  const steps = ARROWS[event.key] ?? null;
+  if (steps) event.preventDefault();
+  return steps;
+}
+
+function clamp(value: number): number {
+  return Math.min(Math.max(value, 0), 1);
+}
+
+function WipeHandle({ state, change }: ViewProps) {
+  return (
+    <div
+      class="wipe"
+      role="slider"
+      tabIndex={0}
+      aria-label="Wipe between A and B"
+      aria-valuemin={0}
+      aria-valuemax={100}
+      aria-valuenow={Math.round(100 * state.wipe)}
+      style={{ left: `${100 * state.wipe}%` }}
+      onKeyDown={(event) => {
+        const steps = arrow(event);
+        if (steps) change({ wipe: clamp(state.wipe + STEP * (steps[0] - steps[1])) });
+      }}
+    >
+      <span />
+    </div>
+  );
+}
+
+interface HandleProps extends ViewProps {
+  readonly at: readonly [number, number];
+}
+
+/** A handle's place, all of it inside the picture. */
+function position([x, y]: readonly [number, number]) {
+  const inside = (share: number): string => `clamp(16px, ${100 * share}%, 100% - 16px)`;
+  return { left: inside(x), top: inside(y) };
+}
+
+function LightHandle({ state, change, at }: HandleProps) {
+  const { azimuth, elevation } = state;
+  return (
+    <button
+      type="button"
+      class="light"
+      aria-label={`Light, ${azimuth.toFixed()} degrees around, ${elevation.toFixed()} above; arrow keys move it`}
+      style={position(at)}
+      onKeyDown={(event) => {
+        const steps = arrow(event);
+        if (!steps) return;
+        change({
+          azimuth: ((azimuth + 5 * steps[0] + 540) % 360) - 180,
+          elevation: Math.min(Math.max(elevation - 5 * steps[1], -90), 90),
+        });
+      }}
+    >
+      <svg viewBox="-12 -12 24 24" aria-hidden="true">
+        <circle r="5" />
+        {[0, 45, 90, 135, 180, 225, 270, 315].map((angle) => (
+          <line key={angle} x1="8" x2="11" transform={`rotate(${angle})`} />
+        ))}
+      </svg>
+    </button>
+  );
+}
+
+function ProbeMark({ change, at }: HandleProps) {
+  return (
+    <button
+      type="button"
+      class="mark"
+      aria-label="Probe; arrow keys move it"
+      style={position(at)}
+      onKeyDown={(event) => {
+        const steps = arrow(event);
+        if (steps)
+          change({ probe: [clamp(at[0] + STEP * steps[0]), clamp(at[1] + STEP * steps[1])] });
+      }}
+    />
+  );
+}
+
+function StatusLine({ status }: { readonly status: Status | null }) {
+  return (
+    <p class="status" role="status">
+      {status && status_text(status)}
+    </p>
+  );
+}
+
+function status_text(status: Status): string {
+  switch (status.kind) {
+    case "drawn":
+    case "restored":
+      return "";
+    case "compiling":
+      return "Compiling the shader…";
+    case "samples": {
+      const noise = status.noise;
+      const words = noise
+        ? `, noise A ${show(100 * noise.left, 2)} %, B ${show(100 * noise.right, 2)} %`
+        : "";
+      return `${status.done} of ${status.of} samples${words}`;
+    }
+    case "error":
+      return status.message;
+    case "lost":
+      return "The browser took the graphics away; the picture comes back by itself.";
+  }
+}
+
+/** The scale of the difference map. */
+function Legend({ state, change }: ViewProps) {
+  const stops = DIFFERENCE_COLORS.map((color, k) => {
+    const codes = color.map((each) => Math.round(255 * each)).join(" ");
+    return (
+      <stop key={k} offset={k / (DIFFERENCE_COLORS.length - 1)} stop-color={`rgb(${codes})`} />
+    );
+  });
+  return (
+    <div class="legend">
+      <svg viewBox="0 0 100 6" preserveAspectRatio="none" aria-hidden="true">
+        <defs>
+          <linearGradient id="difference">{stops}</linearGradient>
+        </defs>
+        <rect width="100" height="6" fill="url(#difference)" />
+      </svg>
+      <p>
+        <span>{signed(-state.scale)}, B brighter</span>
+        <span>0</span>
+        <span>{signed(state.scale)}, A brighter</span>
+      </p>
+      <Slider
+        label="Scale"
+        unit="powers of ten"
+        value={Math.log10(state.scale)}
+        min={-8}
+        max={1}
+        step={0.1}
+        onChange={(power) => change({ scale: Number((10 ** power).toPrecision(4)) })}
+      />
+    </div>
+  );
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Questions to a view and its data: which model is on which side, and what follows from what.
+
+import type { ModelName, PageData, ShaderSource, Source, Triple } from "./data";
+import { model, rho_from_albedo, type Model } from "./models/table";
+import { INITIAL, type Side, type SideName, type State, type Value } from "./state";
+
+export const SIDES = ["left", "right"] as const;
+
+/** Letters by which readers know the sides. */
+export const LETTER: Readonly<Record<SideName, string>> = { left: "A", right: "B" };
+
+/** What a page embeds, by id. */
+export type Sources = ReadonlyMap<string, Source>;
+
+export function sources_of(data: PageData): Sources {
+  return new Map(data.sources.map((source) => [source.id, source]));
+}
+
+/** The source of a side. */
+export function source_of(sources: Sources, side: Side): Source {
+  return sources.get(side.source)!;
+}
+
+/** The model that a side is, or null if only its shader tells. */
+export function actual_model(source: Source, side: Side, state: State): Model | null {
+  if (source.kind === "model") return model(source.model);
+  return source.actual && !is_changed(source, state) ? model(by_flag(source.actual, side)) : null;
+}
+
+/** The model that a side should be, or null if that is not known. */
+export function meant_model(source: Source, side: Side, state: State): Model | null {
+  if (source.kind === "model") return model(source.meant);
+  return source.meant && !is_changed(source, state) ? model(by_flag(source.meant, side)) : null;
+}
+
+/** Whether an input of a document, such as its weight, is not the document's own. */
+function is_changed(source: ShaderSource, state: State): boolean {
+  const values = state.inputs[source.id] ?? {};
+  return source.inputs.some(({ name, value }) => name in values && values[name] !== value);
+}
+
+function by_flag(of: { on: ModelName; off: ModelName }, side: Side): ModelName {
+  return side.flag ? of.on : of.off;
+}
+
+/** Whether a side has energy_compensation. */
+export function has_flag(source: Source): boolean {
+  return source.kind === "shader" && source.controls.flag !== "";
+}
+
+/** A name for a side where there is little room. */
+export function short_title(source: Source, side: Side): string {
+  if (source.kind === "model") return source.title.split(":")[0]!.replace(/.*\((.*)\)$/, "$1");
+  if (source.id.startsWith("shader/")) {
+    return `${source.library}, flag ${side.flag ? "on" : "off"}`;
+  }
+  return source.title;
+}
+
+/** A view whose color follows from the albedo that is wanted, where it is to be kept. */
+export function consistent(state: State, sources: Sources): State {
+  if (!state.keep) return state;
+  const of = inversion_model(state, sources);
+  return { ...state, color: enter(of, state.wanted, state.roughness, state.average) };
+}
+
+/** The model for which colors are inverted: the one that the left side should be. */
+export function inversion_model(state: State, sources: Sources): Model {
+  return meant_model(source_of(sources, state.left), state.left, state) ?? model("eon");
+}
+
+/** The color to enter for an albedo. */
+export function enter(
+  of: Model,
+  wanted: Readonly<Triple>,
+  roughness: number,
+  average: boolean,
+): Triple {
+  const [r, g, b] = wanted;
+  const one = (seen: number): number => rho_from_albedo(of, seen, roughness, average);
+  return [one(r), one(g), one(b)];
+}
+
+/** A view with another source on a side; a document brings its own color, roughness and flag. */
+export function with_source(
+  state: State,
+  sources: Sources,
+  side: SideName,
+  id: string,
+): Partial<State> {
+  const source = sources.get(id)!;
+  const change = { [side]: { ...state[side], source: id } };
+  if (source.kind === "model" || !source.id.startsWith("document/")) return change;
+  const value = (name: string): Value | null | undefined =>
+    source.inputs.find((port) => port.name === name)?.value;
+  const { color, roughness, flag } = source.controls;
+  return {
+    [side]: { ...state[side], source: id, flag: Boolean(value(flag) ?? state[side].flag) },
+    color: (value(color) as Triple | undefined) ?? state.color,
+    roughness: (value(roughness) as number | undefined) ?? state.roughness,
+    keep: false,
+  };
+}
+
+/** Values of a shader's inputs as they are drawn, by name of the uniform. */
+export function values_of(source: ShaderSource, state: State, side: Side): Map<string, Value> {
+  const values = new Map<string, Value>();
+  for (const port of source.inputs) {
+    if (port.value !== null) values.set(port.name, port.value);
+  }
+  const { color, roughness, flag } = source.controls;
+  if (color) values.set(color, state.color);
+  if (roughness) values.set(roughness, state.roughness);
+  if (flag) values.set(flag, side.flag);
+  for (const [name, value] of Object.entries(state.inputs[source.id] ?? {})) {
+    if (values.has(name)) values.set(name, value);
+  }
+  return values;
+}
+
+/** The first view of a page: its first document if it has one. */
+export function first_view(data: PageData): State {
+  const sources = sources_of(data);
+  const documents = data.sources.filter((source) => source.id.startsWith("document/"));
+  const [first] = documents;
+  if (!first) return INITIAL;
+  const stem = first.id.replace(/[^/]*$/, "");
+  const twin = documents.find((source) => source !== first && source.id.startsWith(stem));
+  const left = { ...INITIAL, ...with_source(INITIAL, sources, "left", first.id) };
+  if (!twin) return left;
+  return { ...left, right: { ...left.left, source: twin.id } };
+}

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon explore`: write a page that draws, compares and probes materials in a browser."""
+
+import argparse
+from functools import partial
+
+from mxeon.cli import arguments
+from mxeon.cli.batch import run_batch
+from mxeon.cli.output import fail, status_of, warn
+from mxeon.errors import PASSED
+
+
+def add_parser(commands: arguments.Commands) -> None:
+    """Add the command and its options."""
+    summary = "write a page that draws, compares and probes materials in a browser"
+    command = arguments.add_command(commands, "explore", summary, run)
+    command.add_argument(
+        "files", nargs="*", metavar="FILE", help="MaterialX documents to show beside the models"
+    )
+    command.add_argument(
+        "--report", metavar="RUN", help="the folder of a run, whose diagnoses can be chosen too"
+    )
+    command.add_argument("--output", metavar="OUT", required=True, help="the .html file to write")
+    arguments.add_workers(command)
+    arguments.add_policy(command, runs_code=True)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the page and print its path; return the exit status."""
+    from mxeon.conformance.run import read_run
+    from mxeon.explorer import document_sources, page, page_data
+    from mxeon.io.files import write_text
+
+    results = read_run(options.report).results if options.report else ()
+    work = partial(document_sources, policy=arguments.policy(options))
+    documents = list(run_batch(work, options.files, options.workers, options.timeout))
+    for warning in (text for each in documents for text in each.warnings):
+        warn(warning)
+    errors = [each.error for each in documents if each.error]
+    if not errors:
+        write_text(options.output, page(page_data((each.value for each in documents), results)))
+        print(options.output)
+    return min((fail(*status_of(error)) for error in errors), default=PASSED)

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The explorer: one self-contained page that draws, compares and probes materials in a browser.
+
+Its program lies in `explorer/`, in TypeScript; what is built from it is `explorer.html` here.
+"""
+
+import json
+from collections.abc import Iterable
+from dataclasses import asdict, replace
+from importlib.resources import files
+from itertools import chain
+
+import MaterialX as mx
+
+import mxeon
+from mxeon.conformance.results import Result
+from mxeon.explorer.data import PageData, ShaderSource
+from mxeon.explorer.documents import document_sources
+from mxeon.explorer.sources import model_sources, node_sources, run_sources
+from mxeon.explorer.stills import stills
+from mxeon.shaders.functions import source
+
+__all__ = ["document_sources", "page", "page_data"]
+
+MARK = "%DATA%"  # in the template; the data take its place
+# Characters that could end the script element, or be read otherwise in HTML, as JSON writes them.
+ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
+
+
+def page_data(
+    documents: Iterable[tuple[ShaderSource, ...]] = (), results: Iterable[Result] = ()
+) -> PageData:
+    """The data of a page.
+
+    Parameters
+    ----------
+    documents : iterable of tuple of ShaderSource
+        What `document_sources` gives for each document.
+    results : iterable of Result
+        Of a run whose diagnoses can be chosen too.
+
+    Returns
+    -------
+    PageData
+    """
+    own = (
+        replace(each, id=f"document/{position}/{each.id}")
+        for position, group in enumerate(documents)
+        for each in group
+    )
+    return PageData(
+        mxeon.__version__,
+        mx.getVersionString(),
+        source("glsl"),
+        tuple(chain(node_sources(), own, run_sources(results), model_sources())),
+        stills(),
+    )
+
+
+def page(data: PageData) -> str:
+    """The page with its data, as one HTML text that loads nothing.
+
+    Parameters
+    ----------
+    data : PageData
+
+    Returns
+    -------
+    str
+        Text of documents stands in it as JSON without any character that HTML knows.
+
+    Examples
+    --------
+    >>> "</b>" in page(PageData("1", "1", "</b>", ()))
+    False
+    """
+    template = files("mxeon.explorer").joinpath("explorer.html").read_text(encoding="utf-8")
+    text = json.dumps(asdict(data), ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    before, _, after = template.partition(MARK)
+    return before + text.translate(ESCAPES) + after

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Documents as sources of a page: generated ESSL, and inputs with the ranges of their definitions."""
+
+import math
+from base64 import b64encode
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from xml.etree import ElementTree
+
+import MaterialX as mx
+import numpy as np
+
+from mxeon.errors import ImageError, MxeonError, printable
+from mxeon.explorer.data import Controls, Models, Port, ShaderSource, Texels
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.document.values import Plain, members
+from mxeon.shaders.generation import Input, Shader, generate
+from mxeon.shaders.hosts.textures import read_texture
+from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG
+
+LIBRARIES = ("eonlib", "stock")
+LAYOUT = ("comment", "newline")
+LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
+RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
+
+# What the libraries make of a diffuse node: the diagnoses of `mxeon check`, with the flag and without.
+MEANT = Models("eon", "qon")
+ACTUAL = {"eonlib": MEANT, "stock": Models("eon_clamped", "qon_fitted")}
+
+
+def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource, ...]:
+    """The materials of a document, each with eonlib and, where it can, with stock MaterialX.
+
+    Parameters
+    ----------
+    file : str
+        A MaterialX document; its name becomes the heading of its materials.
+    policy : Policy
+        Permissions, limits and search path.
+
+    Returns
+    -------
+    tuple of ShaderSource
+
+    Raises
+    ------
+    DocumentError
+        If no shader can be generated from the document.
+    ImageError
+        If an image that it names is no image.
+    """
+    name = " ".join(printable(Path(file).name).split())
+    sources: list[ShaderSource] = []
+    for library in LIBRARIES:
+        try:
+            shaders = generate(file, "essl", library=library, lights=True, policy=policy)
+        except MxeonError:
+            if library == LIBRARIES[0]:
+                raise
+            continue  # a node that stock MaterialX lacks
+        for shader in shaders:
+            text = document_text(shader.document)
+            title = f"{shader.element}, {library}"
+            source = shader_source(shader, text, f"{shader.name}/{library}", title, name, library)
+            sources.append(source)
+    return tuple(sources)
+
+
+def document_text(document: mx.Document) -> str:
+    """A document as XML; MaterialX's own writer leaves a `<` of an attribute as it is.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+        Whatever it includes is in it.
+
+    Returns
+    -------
+    str
+    """
+    root = _tree(document)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _tree(element: mx.Element) -> ElementTree.Element:
+    """An element with its children, but for comments and empty lines."""
+    named = {"name": element.getName()} if element.getName() else {}
+    attributes = {name: element.getAttribute(name) for name in element.getAttributeNames()}
+    tree = ElementTree.Element(element.getCategory(), named | attributes)
+    tree.extend(_tree(each) for each in element.getChildren() if each.getCategory() not in LAYOUT)
+    return tree
+
+
+def shader_source(
+    shader: Shader, document: str, name: str, title: str, group: str, library: str
+) -> ShaderSource:
+    """A generated shader as a source of a page.
+
+    Parameters
+    ----------
+    shader : Shader
+        ESSL with MaterialX's directional light.
+    document : str
+        Its MaterialX text.
+    name, title, group, library : str
+        As those of `ShaderSource`.
+
+    Returns
+    -------
+    ShaderSource
+    """
+    source = ShaderSource(
+        id=name,
+        title=title,
+        group=group,
+        note="",
+        library=library,
+        pixel=shader.stages["pixel"],
+        inputs=tuple(_ports(shader)),
+        controls=Controls(),
+        document=document,
+    )
+    node = _only_diffuse_node(shader)
+    if node is None:
+        return source
+    names = {port.path: port.name for port in source.inputs}
+    path = node.getNamePath()
+    color, roughness, flag = (
+        names.get(f"{path}/{each}", "") for each in ("color", "roughness", FLAG)
+    )
+    source = replace(source, controls=Controls(color, roughness, flag))
+    connected = any(
+        each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
+    )
+    if connected or not (color and roughness and _is_whole(source)):
+        return source
+    meant, actual = MEANT, ACTUAL[library]
+    if node.getCategory() == EON:
+        meant, actual = Models("eon", "eon"), Models("eon", "eon")
+    return replace(source, meant=meant, actual=actual)
+
+
+def _is_whole(source: ShaderSource) -> bool:
+    """Whether nothing weakens the lobe of a source: its weight and its opacity are the number 1."""
+    factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
+    return factors.get("weight") == factors.get("opacity") == 1.0
+
+
+def _only_diffuse_node(shader: Shader) -> mx.Node | None:
+    """The rough diffuse node that is all of a material; None if there is more or another."""
+    material = shader.document.getDescendant(shader.element)
+    upstream = {each.getUpstreamElement().getNamePath() for each in material.traverseGraph()}
+    nodes = [shader.document.getDescendant(path) for path in sorted(upstream)]
+    lobes = [node for node in nodes if node.getType() in ("BSDF", "EDF", "VDF", "surfaceshader")]
+    diffuse = [node for node in lobes if node.getCategory() in DIFFUSE_NODES]
+    others = [node for node in lobes if node.getCategory() not in (*DIFFUSE_NODES, "surface")]
+    return diffuse[0] if len(diffuse) == 1 and not others else None
+
+
+def _ports(shader: Shader) -> Iterator[Port]:
+    """The inputs of a shader that are numbers or images; members of structures one by one."""
+    for port in shader.inputs:
+        if port.type == "filename":
+            if port.value:
+                yield replace(_port(shader, port), image=_texels(str(port.value)))
+        else:
+            for name, kind, value in _numbers(port.name, port.type, port.value, shader.document):
+                yield replace(_port(shader, port), name=name, type=kind, value=_short(value))
+
+
+def _numbers(
+    name: str, kind: str, value: Plain, document: mx.Document
+) -> Iterator[tuple[str, str, Plain]]:
+    """Name, type and value of an input, or of the members of a structure, that is no text."""
+    if parts := members(kind, document):
+        values = value if isinstance(value, tuple) else ()
+        for (part, inner), member in zip(parts, values, strict=False):
+            yield from _numbers(f"{name}.{part}", inner, member, document)
+    elif value is not None and not isinstance(value, str):
+        yield name, kind, value
+
+
+def _port(shader: Shader, port: Input) -> Port:
+    """An input without a value, with its label and range."""
+    words = partial(_attribute, _descriptions(shader.document, port.path))
+    low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
+    label = words("uiname") or port.path.rpartition("/")[2].replace("_", " ")
+    # Words that choose from a list are numbers in the shader; frames of images do not move here.
+    shown = not (words("enum") or port.type == "filename" or "frame" in port.path)
+    return Port(
+        port.name,
+        port.type,
+        None,
+        port.path,
+        label,
+        low and low[0],
+        high and high[0],
+        shown=shown,
+    )
+
+
+def _descriptions(document: mx.Document, path: str) -> list[mx.Element]:
+    """The elements that describe an input: its own, and that of its node's definition."""
+    parent, _, name = path.rpartition("/")
+    node = document.getDescendant(parent) if parent else None
+    definition = node.getNodeDef() if isinstance(node, mx.Node) else None
+    inputs = (document.getDescendant(path), definition and definition.getActiveInput(name))
+    return [each for each in inputs if each is not None]
+
+
+def _attribute(elements: Iterable[mx.Element], name: str) -> str:
+    """The first of the elements' attributes of a name that has a text."""
+    return next(filter(None, (each.getAttribute(name) for each in elements)), "")
+
+
+def _least(text: str) -> tuple[float] | None:
+    """The first number of a text, in a tuple; None if it is none or not finite."""
+    try:
+        value = float(text.split(",")[0])
+    except ValueError:
+        return None
+    return (value,) if math.isfinite(value) else None
+
+
+def _short(value: Plain) -> Plain:
+    """A value with the shortest decimals that give the same float32."""
+    if isinstance(value, tuple):
+        return tuple(map(_short, value))
+    return float(str(np.float32(value))) if isinstance(value, float) else value
+
+
+def _texels(path: str) -> Texels | None:
+    """An image, reduced to LARGEST_IMAGE; None if there is no such file."""
+    if not Path(path).is_file():
+        return None
+    pixels = read_texture(path)
+    step = -(-max(pixels.shape[:2]) // LARGEST_IMAGE)
+    rows, columns = pixels.shape[0] // step, pixels.shape[1] // step
+    if not rows or not columns:
+        raise ImageError(f"{path}: must not be more than {LARGEST_IMAGE} times as long as wide")
+    blocks = pixels[: rows * step, : columns * step].reshape(rows, step, columns, step, -1)
+    mean = blocks.mean(axis=(1, 3))
+    rgba = np.ones((rows, columns, 4))
+    rgba[..., : mean.shape[-1]] = mean
+    codes = np.rint(255.0 * np.clip(rgba, 0.0, 1.0)).astype(np.uint8)
+    return Texels(columns, rows, b64encode(codes.tobytes()).decode())

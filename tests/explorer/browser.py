@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pages of the explorer in a headless Chromium, which fail a test by what they ask for or say."""
+
+import os
+from contextlib import contextmanager
+
+from playwright.sync_api import sync_playwright
+
+from mxeon.shaders.hosts.webgl import FLAGS, program
+
+# Few pixels, for a software driver.
+SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
+HAS = """fields => Object.entries(fields).every(([name, value]) =>
+    JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
+DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) != null"
+
+
+@contextmanager
+def launched(flags=FLAGS):
+    """A browser of its own."""
+    with sync_playwright() as playwright, started(playwright.chromium, flags) as browser:
+        yield browser
+
+
+@contextmanager
+def started(kind, flags):
+    """A browser of a kind that playwright knows, with these flags."""
+    browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=os.geteuid() != 0)
+    yield browser
+    browser.close()
+
+
+@contextmanager
+def opened(browser, address, allowed=(), drawn=True, script="", **options):
+    """The page at an address; messages that are not allowed, and requests, fail the test.
+
+    A script runs before those of the page. Unless it is to be drawn it has no WebGL, which costs a software driver most of its time.
+    """
+    asked, said = [], []
+    context = browser.new_context(**(SMALL | options))
+    page = context.new_page()
+    page.add_init_script(script)
+    if not drawn:
+        page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto(address)
+    until(page, DRAWN if drawn else "globalThis.mxeon !== undefined")
+    yield page
+    context.close()
+    start = address.partition("#")[0]
+    others = [url for url in asked if not url.startswith((start, "data:", "blob:"))]
+    assert not others, f"requests: {others}"
+    complaints = [text for text in said if not text.startswith(tuple(allowed))]
+    assert not complaints, f"messages: {complaints}"
+
+
+def until(page, expression, argument=None, seconds=120):
+    """Wait until an expression is true; playwright's own way needs what the page's policy forbids."""
+    for _ in range(20 * seconds):
+        if page.evaluate(expression, argument):
+            return
+        page.wait_for_timeout(50)
+    raise AssertionError(f"never true: {expression}")
+
+
+def state(page):
+    """The view that the page shows."""
+    return page.evaluate("mxeon.state()")
+
+
+def shows(page, **fields):
+    """Require that the page shows a view with these fields, soon."""
+    try:
+        until(page, HAS, fields, seconds=5)
+    except AssertionError:
+        view = state(page)
+        raise AssertionError(f"{ {name: view[name] for name in fields} }, not {fields}") from None
+
+
+def show(page, **patch):
+    """Show a view with other fields."""
+    page.evaluate("patch => mxeon.show({...mxeon.state(), ...patch})", patch)

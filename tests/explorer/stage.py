@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of the explorer's stage as arrays, and the views that the tests of it show."""
+
+import base64
+
+import numpy as np
+
+from mxeon.explorer import document_sources, page, page_data
+from mxeon.io.files import write_text
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.scene import sphere
+from tests.explorer.browser import opened, show, shows, until
+
+RHO = (0.8, 0.4, 0.1)
+ROUGHNESS = 0.9
+LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation
+VIEWPORT = {"width": 200, "height": 170}
+LIMIT = 120  # seconds for a picture, on a busy machine
+# Makes the page's clock so many times as fast: at 0 no device is slow, and pictures are never coarse.
+CLOCK = """speed => {
+    globalThis.clock ??= performance.now.bind(performance);
+    performance.now = () => speed * globalThis.clock();
+}"""
+READ = """side => {
+    const bytes = new Uint8Array(mxeon.stage.read(side).buffer);
+    let text = "";
+    for (let k = 0; k < bytes.length; k += 8192)
+        text += String.fromCharCode(...bytes.subarray(k, k + 8192));
+    return btoa(text);
+}"""
+
+
+def written(file, *names):
+    """Address of a page with some of the examples."""
+    documents = [document_sources(str(examples_folder() / f"{name}.mtlx")) for name in names]
+    write_text(file, page(page_data(documents)))
+    return file.as_uri()
+
+
+def opened_stage(browser, address, **options):
+    """The page, as narrow as a phone: a small picture."""
+    return opened(browser, address, **({"viewport": VIEWPORT} | options))
+
+
+def side(source, flag=True, sampler="exact"):
+    return {"source": source, "flag": flag, "sampler": sampler}
+
+
+def view(stage, left, right=None, light="side", **patch):
+    """Show two sources under one of LIGHTS, or none, and wait until the picture is final."""
+    azimuth, elevation = LIGHTS[light or "side"]
+    common = {
+        "left": left,
+        "right": right or left,
+        "shape": "sphere",
+        "azimuth": azimuth,
+        "elevation": elevation,
+        "light": 1 if light else 0,
+        "surroundings": "none",
+        "color": list(RHO),
+        "roughness": ROUGHNESS,
+        "paths": False,
+        "inputs": {},
+        "comparison": "wipe",
+        "exposure": 0,
+        "probe": None,
+    }
+    show(stage, **(common | patch))
+    shows(stage, **(common | patch))
+    settle(stage)
+
+
+def settle(stage):
+    """Wait until the picture is final."""
+    until(stage, "mxeon.stage.isSettled(mxeon.state())", seconds=LIMIT)
+
+
+def frame(stage, name=None, size=None):
+    """What `read` gives, row 0 at the top; paths are of another width and height."""
+    width, height = size or stage.evaluate("Object.values(mxeon.stage.size())")
+    data = np.frombuffer(base64.b64decode(stage.evaluate(READ, name)), dtype=np.float32)
+    return data.reshape(height, width, 4)[::-1]
+
+
+def picture(stage, name="left"):
+    """The square around the sphere, as the gl host has it."""
+    whole = frame(stage, name)
+    diameter = stage.evaluate("mxeon.stage.diameter()")
+    top, left = ((length - diameter) // 2 for length in whole.shape[:2])
+    square = whole[top : top + diameter, left : left + diameter]
+    assert (square[..., 3] == sphere(diameter).mask).all()
+    return square[..., :3]
+
+
+def towards(light):
+    """Unit vector towards one of LIGHTS."""
+    azimuth, elevation = np.radians(LIGHTS[light])
+    return (
+        float(np.sin(azimuth) * np.cos(elevation)),
+        float(np.sin(elevation)),
+        float(np.cos(azimuth) * np.cos(elevation)),
+    )
+
+
+def model_sources(stage):
+    """A source of each model, by the model's name."""
+    rows = stage.evaluate("mxeon.data.sources.filter(each => each.kind === 'model')")
+    return {row["model"]: row["id"] for row in reversed(rows)}

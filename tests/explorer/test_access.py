@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page for all readers: checked with axe-core, on a phone, and without WebGL2."""
+
+import json
+
+import pytest
+
+from mxeon.explorer import page, page_data
+from mxeon.explorer.documents import document_sources
+from mxeon.io.files import write_text
+from mxeon.shaders.library import examples_folder
+from tests.explorer.browser import opened, show, started, state, until
+from tests.explorer.build import MODULES, needs_modules
+
+# Without a driver for graphics, Chromium has no WebGL.
+NO_GRAPHICS = ("--disable-gpu", "--disable-software-rasterizer", "--no-proxy-server")
+VIEWS = {
+    "light": {},
+    "paths": {"comparison": "flicker", "paths": True, "samples": 1, "probe": [0.5, 0.3]},
+    "dark": {
+        "comparison": "difference",
+        "left": {"source": "model/qon", "flag": True, "sampler": "exact"},
+        "right": {"source": "variant/cycles_rho_cubed/4", "flag": True, "sampler": "exact"},
+        "wanted": [0.9, 0.9, 0.9],
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def documents(tmp_path_factory):
+    """Address of a page with two documents."""
+    names = ("clay", "standard_surface_rough_base")
+    sources = [document_sources(str(examples_folder() / f"{name}.mtlx")) for name in names]
+    file = tmp_path_factory.mktemp("documents") / "explorer.html"
+    write_text(file, page(page_data(sources)))
+    return file.as_uri()
+
+
+def findings(page):
+    """What axe-core finds wrong with the page as it is."""
+    return [
+        f"{each['id']}: {each['help']}: {each['nodes'][0]['html']}"
+        for each in page.evaluate("axe.run()")["violations"]
+    ]
+
+
+@pytest.fixture(scope="module")
+def checked(browser, documents):
+    """The page with axe-core, which the page's own policy would refuse."""
+    needs_modules()
+    with opened(browser, documents, bypass_csp=True) as page:
+        page.add_script_tag(path=MODULES / "axe-core" / "axe.min.js")
+        yield page
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_axe_finds_nothing(checked, name):
+    checked.emulate_media(color_scheme="dark" if name == "dark" else "light")
+    checked.evaluate("mxeon.show(mxeon.from_address(''))")
+    show(checked, **VIEWS[name])
+    assert findings(checked) == []
+
+
+def test_axe_would_find_a_picture_without_a_name(checked):
+    checked.evaluate("document.querySelector('canvas').removeAttribute('aria-label')")
+    assert [each for each in findings(checked) if "role-img-alt" in each]
+
+
+@pytest.fixture(scope="module")
+def phone(browser, documents):
+    """The page on a phone."""
+    options = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+    with opened(browser, documents, **options) as page:
+        yield page
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_a_phone_shows_all_without_scrolling_sideways(phone, name):
+    show(phone, **VIEWS[name])
+    assert phone.evaluate("document.documentElement.scrollWidth") == 390
+    wide = phone.evaluate(
+        "[...document.querySelectorAll('main *')].filter(each => !each.closest('.hidden, svg')"
+        " && each.getBoundingClientRect().right > 391).map(each => each.outerHTML)"
+    )
+    assert wide == []
+
+
+def test_the_picture_stays_in_sight_on_a_phone(phone):
+    phone.get_by_label("Roughness, number").scroll_into_view_if_needed()
+    box = phone.locator("canvas").bounding_box()
+    assert 0 <= box["y"] < box["y"] + box["height"] < 844
+
+
+def test_without_webgl2_there_are_pictures_and_all_numbers(browser, documents):
+    with (
+        started(browser.browser_type, NO_GRAPHICS) as other,
+        opened(other, documents, drawn=False) as page,
+    ):
+        assert "no WebGL2" in page.get_by_role("alert").inner_text()
+        stills = page.locator(".stills img")
+        until(page, "[...document.images].every(each => each.complete && each.naturalWidth)")
+        assert stills.count() == 4 and page.locator("canvas").count() == 0
+        assert "not EON" in page.locator(".side.right .verdict").inner_text()
+        assert "EON, clamped, float64" in page.locator(".values").inner_text()
+        page.get_by_label("Roughness, number").fill("0.5")
+        page.get_by_label("Roughness, number").blur()
+        assert state(page)["roughness"] == 0.5
+
+
+def test_the_page_says_its_language_and_headings_in_order(browser, address):
+    with opened(browser, address, drawn=False) as page:
+        assert page.evaluate("document.documentElement.lang") == "en"
+        levels = page.evaluate("[...document.querySelectorAll('h1, h2, h3')].map(e => e.tagName)")
+        assert levels[0] == "H1" and set(levels[1:]) == {"H2"}, json.dumps(levels)

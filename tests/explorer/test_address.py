@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A view in the address: it comes back as it was, and a bad one does no harm."""
+
+import pytest
+
+from tests.explorer.browser import opened, show, state, until
+
+# Every field of a view with a value that is not its first one.
+CHANGED = {
+    "left": {"source": "model/qon", "flag": False, "sampler": "cosine"},
+    "right": {"source": "variant/cycles_rho_cubed/4", "flag": False, "sampler": "cltc"},
+    "comparison": "difference",
+    "wipe": 0.125,
+    "scale": 2e-7,
+    "shown": "right",
+    "shape": "cloth",
+    "azimuth": -31.5,
+    "elevation": 12,
+    "light": 2.5,
+    "surroundings": "sky",
+    "exposure": -1.7,
+    "color": [0.1, 1 / 3, 1],
+    "roughness": 0.30000000000000004,
+    "wanted": [0, 0.25, 0.5],
+    "average": True,
+    "keep": False,
+    "paths": True,
+    "samples": 33,
+    "inputs": {"shader/eonlib": {"lobe_weight": 0.5, "shading_thin_walled": True}},
+    "probe": [0.625, 0.1],
+}
+
+
+@pytest.fixture(scope="module")
+def page(browser, address):
+    with opened(browser, address, drawn=False) as page:
+        yield page
+
+
+def test_a_view_of_other_values_everywhere_comes_back(page):
+    first = page.evaluate("mxeon.from_address('')")
+    assert set(CHANGED) == set(first)
+    assert all(CHANGED[name] != first[name] for name in CHANGED.keys() - {"keep"})
+    again = page.evaluate("view => mxeon.from_address(mxeon.to_address(view))", CHANGED)
+    assert again == CHANGED
+
+
+@pytest.mark.parametrize("name", sorted(CHANGED.keys() - {"keep"}))
+def test_each_field_is_in_the_address(page, name):
+    address = page.evaluate(
+        "([name, value]) => mxeon.to_address({...mxeon.from_address(''), [name]: value})",
+        [name, CHANGED[name]],
+    )
+    assert page.evaluate("address => mxeon.from_address(address)", address)[name] == CHANGED[name]
+    assert address
+
+
+def test_a_color_that_is_kept_follows_from_the_one_that_is_wanted(page):
+    view = page.evaluate("mxeon.from_address('keep=1&roughness=0.5&wanted=0.8,0.4,0.1')")
+    color = page.evaluate(
+        "[0.8, 0.4, 0.1].map(c => mxeon.models.eon_rho_from_albedo_normal(c, 0.5))"
+    )
+    assert view["keep"] and view["color"] == color
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        "roughness=NaN&color=1,2&wipe=&probe=x,y&samples=many",
+        "a=shader/nothing,1,exact&b=%3Cscript%3E,2,",
+        "shape=<img src=x onerror=alert(1)>&compare=constructor&surroundings=__proto__",
+        "input:shader/eonlib:lobe_color=1,2&input:shader/eonlib:nothing=3&input:__proto__:x=1",
+        "%E0%A4%A&&==&=&#%00",
+    ],
+)
+def test_what_cannot_be_read_keeps_its_first_value(page, part):
+    assert page.evaluate("address => mxeon.from_address(address)", part) == page.evaluate(
+        "mxeon.from_address('')"
+    )
+
+
+def test_numbers_out_of_range_come_to_its_ends(page):
+    view = page.evaluate("mxeon.from_address('roughness=7&color=-1,0.5,2&elevation=-1e9')")
+    assert (view["roughness"], view["color"], view["elevation"]) == (1, [0, 0.5, 1], -90)
+
+
+def test_the_address_follows_the_view_and_the_view_the_address(browser, address):
+    with opened(browser, f"{address}#roughness=0.25&shape=plane", drawn=False) as page:
+        assert (state(page)["roughness"], state(page)["shape"]) == (0.25, "plane")
+        show(page, exposure=1.5)
+        until(page, "location.hash.includes('exposure=1.5')")
+        page.evaluate("location.hash = 'roughness=0.75'")
+        until(page, "mxeon.state().roughness === 0.75")
+        assert state(page)["exposure"] == 0

@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`mxeon explore`: the page that it writes, and what it refuses."""
+
+import json
+import re
+from dataclasses import asdict, replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mxeon.cli import main
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
+from mxeon.errors import MISUSE
+from mxeon.errors import PASSED as PASSED_STATUS
+from mxeon.explorer import page, page_data
+from mxeon.explorer.documents import document_sources
+from mxeon.explorer.sources import RENDERERS
+from mxeon.explorer.stills import COLOR, LIGHT, picture
+from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.scene import sphere
+from tests.explorer.browser import opened, show, until
+
+LARGEST = 2 * 2**20  # bytes of the page without documents
+ROOT = Path(__file__).parents[2]
+CLAY = str(examples_folder() / "clay.mtlx")
+NASTY = "</script><script>globalThis.hit = 1</script><!--"
+
+
+def data_of(text):
+    """The data of a page, as a browser would read them."""
+    return json.loads(re.search(r'type="application/json">(.*?)</script>', text, re.DOTALL)[1])
+
+
+def test_the_page_is_one_small_file_that_names_no_other():
+    text = page(page_data())
+    assert len(text.encode()) < LARGEST
+    assert re.findall(r"(?:src|href)=[\"']?(?!data:)[\w/.:]+", text.split("<script")[0]) == []
+    assert "default-src 'none'" in text and "%" not in text.split("<style>")[0]
+
+
+def test_the_page_of_the_documentation_is_that_of_the_command():
+    kept, new = (ROOT / "docs" / "explore.html").read_text(), page(page_data())
+    data = [data_of(text) | {"stills": None} for text in (kept, new)]  # whose last bits may differ
+    assert data[0] == data[1], "make it again: python docs/explorer.py"
+    mark = 'type="application/json">'
+    for kept_part, new_part in zip(kept.split(mark), new.split(mark), strict=True):
+        assert (
+            kept_part.rpartition("</script>\n    <script>")[2]
+            == (new_part.rpartition("</script>\n    <script>")[2])
+        )
+
+
+def test_the_page_offers_every_model_and_every_defect():
+    sources = page_data().sources
+    models = {source.model for source in sources if source.kind == "model"}
+    defects = {row.name for row in KNOWN_DEFECTS}
+    assert models == {row.name for row in MODELS} | defects
+    assert {name for _, name, _, _ in RENDERERS} >= defects
+    assert len({source.id for source in sources}) == len(sources)
+
+
+def test_stills_are_pictures_of_the_models():
+    lambert, eon, clamped = map(picture, ("lambert", "eon", "eon_clamped"))
+    points = sphere(len(lambert))
+    cosine = np.where(points.mask, np.maximum(points.normal @ LIGHT, 0.0), 0.0)
+    # The frames of the directions are turned, which takes some roundings of float64.
+    assert np.abs(lambert - cosine[..., None] * COLOR).max() < 16 * 2**-53
+    assert (clamped - eon).max() > 0.1 and (clamped - eon).min() > -16 * 2**-53
+
+
+def test_each_variant_has_its_page():
+    for _, _, _, name in RENDERERS:
+        assert (ROOT / "docs" / "upstream" / f"{name}.md").is_file()
+
+
+def test_the_command_writes_documents_of_both_libraries(tmp_path, capsys):
+    out = tmp_path / "new" / "page.html"
+    assert main(["explore", CLAY, "--output", str(out)]) == PASSED_STATUS
+    assert capsys.readouterr().out == f"{out}\n"
+    sources = [each for each in data_of(out.read_text())["sources"] if each["group"] == "clay.mtlx"]
+    assert [each["id"] for each in sources] == [
+        f"document/0/{name}/{library}"
+        for library in ("eonlib", "stock")
+        for name in ("terracotta", "modeling_clay")
+    ]
+    for source in sources:
+        assert source["actual"]["on"] == ("eon" if "eonlib" in source["id"] else "eon_clamped")
+
+
+def test_inputs_have_the_ranges_of_their_definitions():
+    (source, *_) = document_sources(str(examples_folder() / "standard_surface_rough_base.mtlx"))
+    ports = {port.path.rpartition("/")[2]: port for port in source.inputs}
+    assert (ports["base"].min, ports["base"].max, ports["base"].label) == (0.0, 1.0, "Base")
+    assert (ports["specular_IOR"].min, ports["specular_IOR"].max) == (0.0, 3.0)  # uimin, uisoftmax
+    assert ports["base_color"].value == (0.5, 0.24, 0.13)
+    assert source.meant is None and source.controls.color == ""
+
+
+def test_images_travel_with_the_page():
+    (source, *_) = document_sources(str(examples_folder() / "brick.mtlx"))
+    images = [port for port in source.inputs if port.type == "filename"]
+    assert images and all(port.image is not None and not port.shown for port in images)
+    assert all(len(port.image.rgba) * 3 // 4 >= 4 * port.image.width for port in images)
+
+
+def test_a_node_of_eonlib_alone_has_no_stock_twin():
+    [source] = document_sources(str(examples_folder() / "eon_node.mtlx"))
+    assert source.library == "eonlib" and source.meant.off == "eon"
+
+
+@pytest.mark.parametrize("path", sorted(examples_folder().glob("*.mtlx")), ids=lambda p: p.stem)
+def test_the_text_of_a_document_is_the_document(path):
+    source = document_sources(str(path))[0]
+    again = document_sources_of(source.document)
+    inputs = [(each.name, each.value) for each in source.inputs]
+    assert inputs in [[(each.name, each.value) for each in one.inputs] for one in again]
+
+
+@pytest.mark.parametrize("inputs", [{"normal": (0.0, 0.0, 1.0)}, {"weight": 0.5}], ids=str)
+def test_a_node_with_more_than_color_and_roughness_is_not_one_model(inputs):
+    [plain], [source] = (document_sources_of(material_text(EON, each)) for each in ({}, inputs))
+    assert plain.meant is not None and source.meant is None
+
+
+def document_sources_of(text):
+    from mxeon.explorer.documents import shader_source
+    from mxeon.shaders.generation import generate
+
+    shaders = generate(text, "essl", lights=True)
+    return [shader_source(each, text, "x", "x", "x", "eonlib") for each in shaders]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["nowhere.mtlx"], "must be a readable file"),
+        ([CLAY, "nowhere.mtlx"], "must be a readable file"),
+        (["--report", "nowhere"], "nowhere"),
+        ([CLAY, "--maxSize", "10"], "raise it with --maxSize"),
+        ([CLAY, "--workers", "-1"], "workers must be at least 0"),
+    ],
+)
+def test_the_command_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_path, capsys):
+    out = tmp_path / "page.html"
+    assert main(["explore", *arguments, "--output", str(out)]) == MISUSE
+    said = capsys.readouterr().err
+    assert words in said and said.count("\n") == 1 and not out.exists()
+
+
+def test_a_page_that_was_there_stays_where_writing_fails(tmp_path, capsys):
+    folder = tmp_path / "page.html"
+    folder.mkdir()
+    assert main(["explore", "--output", str(folder)]) == MISUSE
+    assert list(tmp_path.iterdir()) == [folder] and capsys.readouterr().err.count("\n") == 1
+
+
+def test_code_of_a_document_needs_a_permission(tmp_path, capsys):
+    text = material_text(OREN_NAYAR).replace(
+        '<materialx version="1.39">',
+        """<materialx version="1.39">
+  <nodedef name="ND_mine" node="mine"><output name="out" type="color3"/></nodedef>
+  <implementation name="IM_mine" nodedef="ND_mine" target="essl" sourcecode="vec3(0.5)"/>""",
+    )
+    file = tmp_path / "mine.mtlx"
+    file.write_text(text)
+    out = str(tmp_path / "page.html")
+    assert main(["explore", str(file), "--output", out]) == MISUSE
+    assert "--allowCode" in capsys.readouterr().err
+    assert main(["explore", str(file), "--allowCode", "--output", out]) == PASSED_STATUS
+
+
+def result(host, subject, verdict, **distances):
+    """A result of the check of values with stock MaterialX."""
+    titles = {model(name).title: distance for name, distance in distances.items()}
+    return Result("value", "claim", subject, host, "stock", verdict, distances=titles)
+
+
+def test_the_diagnoses_of_a_run_can_be_chosen(tmp_path, monkeypatch):
+    node = f"{OREN_NAYAR}, {FLAG}"
+    results = (
+        result("gl", f"{node} true", FAILED, eon_clamped=1e-7, eon=0.1),
+        result("gl", f"{node} true", FAILED, lambert=0.0),  # of another check
+        result("gl", f"{node} false", PASSED, qon=1e-7, eon=0.1),
+        result("cycles", f"{node} false", FAILED, qon=0.2, eon_rho_cubed=1e-5),
+        result("cycles", "a document", NOT_RUN),
+    )
+    run = SimpleNamespace(results=results)
+    monkeypatch.setattr("mxeon.conformance.run.read_run", {"run": run}.__getitem__)
+    out = tmp_path / "page.html"
+    assert main(["explore", "--report", "run", "--output", str(out)]) == PASSED_STATUS
+    found = [each for each in data_of(out.read_text())["sources"] if each["id"].startswith("run/")]
+    assert [(each["model"], each["meant"]) for each in found] == [
+        ("eon_clamped", "eon"),
+        ("eon_rho_cubed", "qon"),
+    ]
+    assert found[1]["title"].startswith(f"cycles with stock, {node} false: ")
+
+
+@pytest.fixture
+def nasty(tmp_path):
+    """A document whose every word for readers is hostile."""
+    file = tmp_path / "<img src=x onerror='globalThis.hit=1'>&quot;.mtlx"
+    escaped = NASTY.replace("<", "&lt;").replace(">", "&gt;")
+    text = material_text(OREN_NAYAR, {"color": (0.5, 0.5, 0.5)})
+    text = text.replace('<input name="color"', f'<input name="color" uiname="{escaped}"')
+    text = text.replace("<materialx ", f'<materialx doc="{escaped}" ')
+    file.write_text(text)
+    return file
+
+
+def test_hostile_words_stay_words(browser, nasty, tmp_path):
+    out = tmp_path / "page.html"
+    assert main(["explore", str(nasty), "--workers", "0", "--output", str(out)]) == PASSED_STATUS
+    text = out.read_text()
+    assert text.count("</script>") == 2 and "<img" not in text
+    with opened(browser, out.as_uri()) as page:
+        assert page.evaluate("globalThis.hit === undefined && document.images.length === 0")
+        groups = page.get_by_label("Material A").locator("optgroup")
+        assert [each for each in groups.all() if each.get_attribute("label") == nasty.name]
+        assert NASTY in [port["label"] for port in data_of(text)["sources"][2]["inputs"]]
+
+
+def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
+    out = tmp_path / "page.html"
+    assert main(["explore", CLAY, "--workers", "0", "--output", str(out)]) == PASSED_STATUS
+    with opened(browser, out.as_uri()) as page:
+        view = page.evaluate("mxeon.state()")
+        assert view["color"] == [0.43, 0.15, 0.07] and view["roughness"] == 0.6
+        assert view["right"]["source"] == "document/0/terracotta/stock"
+        assert page.locator(".side.left .verdict strong").inner_text() == "EON"
+        sums = (
+            "mxeon.stage.read('left').reduce((sum, value, k) => sum + (k % 4 < 3 ? value : 0), 0)"
+        )
+        before = page.evaluate(sums)
+        weight = page.get_by_label("terracotta lobe: weight, number")
+        assert (weight.get_attribute("min"), weight.get_attribute("max")) == ("0", "1")
+        weight.fill("0.25")
+        weight.blur()
+        until(page, "Object.keys(mxeon.state().inputs).length > 0")
+        inputs = page.evaluate("mxeon.state().inputs")
+        assert {
+            inputs[f"document/0/terracotta/{library}"]["terracotta_lobe_weight"]
+            for library in ("eonlib", "stock")
+        } == {0.25}
+        until(page, f"before => {sums} < 0.5 * before", before)
+        assert page.locator(".side.left .verdict strong").inner_text() == "material"
+
+
+def test_the_data_are_the_fields_that_the_page_reads():
+    """Each dataclass has the fields of the type of its name in data.ts."""
+    text = (ROOT / "explorer" / "src" / "data.ts").read_text()
+    data = asdict(page_data([document_sources(CLAY)]))
+    kinds = {"PageData": data, "Still": data["stills"][0]}
+    kinds["ShaderSource"] = next(each for each in data["sources"] if each["kind"] == "shader")
+    kinds["ModelSource"] = next(each for each in data["sources"] if each["kind"] == "model")
+    kinds["Port"] = kinds["ShaderSource"]["inputs"][0]
+    for name, fields in kinds.items():
+        body = re.search(rf"export interface {name} {{(.*?)\n}}", text, re.DOTALL)[1]
+        assert set(re.findall(r"^  readonly (\w+):", body, re.MULTILINE)) == set(fields), name
+
+
+def test_a_shader_that_is_not_the_model_of_its_name_is_found_out(browser, tmp_path):
+    """A page that calls stock MaterialX by the name of a correct model."""
+    data = page_data()
+    sources = tuple(
+        replace(each, actual=each.meant) if each.id == "shader/stock" else each
+        for each in data.sources
+    )
+    file = tmp_path / "page.html"
+    file.write_text(page(replace(data, sources=sources)))
+    with opened(browser, f"{file.as_uri()}#azimuth=150") as sheet:
+        show(sheet, right={"source": "model/lambert", "flag": True, "sampler": "exact"})
+        until(sheet, "document.querySelector('.values').innerText.includes('float32')")
+        assert "The shader is not" not in sheet.locator(".values").inner_text()
+        show(sheet, left={"source": "shader/stock", "flag": True, "sampler": "exact"})
+        show(
+            sheet,
+            right={"source": "variant/genglsl_clamped_dot/0", "flag": True, "sampler": "exact"},
+        )
+        until(
+            sheet, "document.querySelector('.values').innerText.includes('The shader is not EON.')"
+        )

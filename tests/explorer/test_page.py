@@ -1,0 +1,368 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page for its readers: every control has its effect, by hand and by key."""
+
+import re
+import subprocess
+import sys
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+import mxeon
+from mxeon.models import eon_brdf
+from tests.explorer.browser import opened, show, shows, state, until
+
+CLIPBOARD = {"permissions": ["clipboard-read", "clipboard-write"]}
+# Roundings of float32 in a shader's value, of which it makes fewer than 64.
+SHADER = 64 * 2**-24
+
+
+@pytest.fixture(scope="module")
+def page(browser, address):
+    with opened(browser, address, **CLIPBOARD) as page:
+        yield page
+
+
+@pytest.fixture(autouse=True)
+def first_view(request):
+    """Begin each test that has the page with the first view."""
+    if "page" in request.fixturenames:
+        page = request.getfixturevalue("page")
+        page.evaluate("mxeon.show(mxeon.from_address(''))")
+
+
+# A number that depends on every pixel.
+PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
+
+
+@contextmanager
+def redrawn(page):
+    """Require that the radiance which is drawn changes."""
+    before = page.evaluate(PIXELS)
+    yield
+    until(page, f"before => {PIXELS} !== before", before)
+
+
+@contextmanager
+def recolored(page):
+    """Require that the picture on the screen changes, though its radiance does not."""
+    canvas = page.locator("canvas")
+    before, radiance = canvas.screenshot(), page.evaluate(PIXELS)
+    yield
+    for _ in range(50):
+        if canvas.screenshot() != before:
+            break
+        page.wait_for_timeout(100)
+    else:
+        raise AssertionError("the picture stays as it was")
+    assert page.evaluate(PIXELS) == radiance
+
+
+# Counts calls of WebGL until the end of the first frame, which a fence marks.
+COUNT = """
+globalThis.counts = {linkProgram: 0, drawArrays: 0, drawElements: 0, readPixels: 0};
+const proto = WebGL2RenderingContext.prototype;
+let first = true;
+for (const name of Object.keys(counts)) {
+  const call = proto[name];
+  proto[name] = function (...words) {
+    if (first) counts[name] += 1;
+    return call.apply(this, words);
+  };
+}
+const fence = proto.fenceSync;
+proto.fenceSync = function (...words) {
+  first = false;
+  return fence.apply(this, words);
+};
+"""
+
+
+def test_the_first_picture_waits_for_no_program_or_pixel_that_it_does_not_need(browser, address):
+    with opened(browser, address, script=COUNT) as page:
+        counts = page.evaluate("counts")
+    # The shape, its surroundings, two materials, and the screen.
+    assert 0 < counts["linkProgram"] <= 5 and 0 < counts["drawArrays"] <= 5
+    assert counts["drawElements"] == counts["readPixels"] == 0
+
+
+def fill(page, label, value):
+    page.get_by_label(label, exact=True).fill(str(value))
+    page.get_by_label(label, exact=True).blur()
+
+
+def choose(page, group, option):
+    page.get_by_role("group", name=group).get_by_role("radio", name=option, exact=True).check()
+
+
+SLIDERS = [
+    ("Roughness", "roughness", 0.5, redrawn),
+    ("Light around", "azimuth", 40, redrawn),
+    ("Light above", "elevation", -20, redrawn),
+    ("Light strength", "light", 0.5, redrawn),
+    ("Exposure", "exposure", 1.5, recolored),
+]
+
+
+@pytest.mark.parametrize(("label", "field", "value", "effect"), SLIDERS)
+def test_a_slider_changes_the_view_and_the_picture(page, label, field, value, effect):
+    with effect(page):
+        fill(page, f"{label}, number", value)
+        shows(page, **{field: value})
+    slider = page.get_by_label(re.compile(f"^{label}( [a-z]+)?$")).first
+    slider.focus()
+    slider.press("ArrowLeft")
+    assert state(page)[field] < value
+
+
+@pytest.mark.parametrize(
+    ("group", "option", "field", "value"),
+    [
+        ("Shape", "on a plane", "shape", "plane"),
+        ("Shape", "cloth", "shape", "cloth"),
+        ("Shape", "shader ball", "shape", "ball"),
+        ("Surroundings", "white", "surroundings", "uniform"),
+        ("Surroundings", "black", "surroundings", "none"),
+        ("Surroundings", "sky", "surroundings", "sky"),
+        ("Surroundings", "window", "surroundings", "window"),
+        ("Compare", "Difference", "comparison", "difference"),
+    ],
+)
+def test_a_choice_changes_the_view_and_the_picture(page, group, option, field, value):
+    with redrawn(page):
+        choose(page, group, option)
+        shows(page, **{field: value})
+
+
+def test_the_color_changes_the_picture_and_the_albedo(page):
+    albedo = page.locator(".albedos").inner_text()
+    with redrawn(page):
+        fill(page, "Color entered, green", 0.9)
+    shows(page, color=[0.8, 0.9, 0.1])
+    assert page.locator(".albedos").inner_text() != albedo
+    page.get_by_label("Color entered, picker").fill("#ffffff")
+    shows(page, color=[1, 1, 1])
+    rows = page.locator(".albedos tbody tr")
+    assert rows.nth(0).inner_text().count("1.000, 1.000, 1.000") == 2
+
+
+def test_another_material_is_drawn_and_judged(page):
+    with redrawn(page):
+        page.get_by_label("Material B").select_option("model/fon")
+    assert page.locator(".side.right .verdict strong").inner_text() == "FON"
+
+
+def test_the_flag_is_drawn_and_judged(page):
+    badge = page.locator(".side.right .verdict strong")
+    assert badge.inner_text() == "not EON"
+    page.locator(".side.right").get_by_label("energy_compensation").uncheck()
+    assert (
+        badge.inner_text() == "not QON"
+        and "surroundings" in page.locator(".side.right .verdict").inner_text()
+    )
+    page.locator(".side.left").get_by_label("energy_compensation").uncheck()
+    assert page.locator(".side.left .verdict strong").inner_text() == "QON"
+
+
+def test_a_reader_learns_which_is_eon_and_by_how_much_the_other_is_wrong(page):
+    assert page.locator(".side.left .verdict").inner_text().startswith("EON Correct")
+    verdict = page.locator(".side.right .verdict").inner_text()
+    here, anywhere = map(
+        float, re.search(r"up to (\S+) in this light and (\S+) in", verdict).groups()
+    )
+    assert "too bright where the light comes from behind" in verdict
+    error = page.locator(".values tr").last.locator("td").nth(1).inner_text()
+    assert error == f"+{here:g} too bright" and here < anywhere < 0.4
+
+
+def test_a_reader_learns_which_color_to_enter(page):
+    answer = page.locator(".answer output")
+    assert answer.inner_text() == "(0.836, 0.460, 0.125)"
+    choose(page, "Seen", "on average")
+    shows(page, average=True)
+    assert answer.inner_text() == "(0.828, 0.445, 0.118)"
+    fill(page, "To look like, red", 0.5)
+    shows(page, wanted=[0.5, 0.4, 0.1])
+    assert answer.inner_text() == "(0.546, 0.445, 0.118)"
+
+
+def test_a_color_that_is_kept_is_seen_at_every_roughness(page):
+    page.get_by_label("Enter it, and keep the color seen").check()
+    entered = []
+    for roughness in (1.0, 0.3):
+        fill(page, "Roughness, number", roughness)
+        assert "0.800, 0.400, 0.100" in page.locator(".albedos tbody tr").first.inner_text()
+        shows(page, roughness=roughness)
+        entered.append(state(page)["color"][0])
+    assert entered[0] > entered[1] > 0.8
+    fill(page, "Color entered, red", 0.5)
+    shows(page, keep=False)
+
+
+def test_a_color_out_of_reach_is_said_to_be(page):
+    page.get_by_label("Material A").select_option("model/qon")
+    fill(page, "To look like, red", 0.9)
+    assert "Out of reach" in page.locator(".wanted").inner_text()
+
+
+def test_paths_have_samplers_and_count_their_samples(page):
+    page.get_by_label("Path tracing, with light between surfaces").check()
+    fill(page, "Samples per pixel, number", 2)
+    page.locator(".side.right").get_by_label("Samples").select_option("cosine")
+    side = {"source": "shader/stock", "flag": True, "sampler": "cosine"}
+    shows(page, paths=True, samples=2, right=side)
+    until(
+        page, "document.querySelector('.picture .status').textContent.startsWith('2 of 2 samples')"
+    )
+    assert "noise" not in page.locator(".picture .status").inner_text()  # of 16 samples or more
+
+
+def test_the_scale_of_a_difference_is_written_and_drawn(page):
+    choose(page, "Compare", "Difference")
+    with recolored(page):
+        fill(page, "Scale, number", -2)
+    shows(page, scale=0.01)
+    assert "−0.01, B brighter" in page.locator(".legend").inner_text()
+
+
+def test_keys_choose_the_comparison_and_show_the_other_material(page):
+    page.locator("h1").click()
+    page.keyboard.press("d")
+    shows(page, comparison="difference")
+    page.keyboard.press("f")
+    shows(page, comparison="flicker", shown="right")
+    with redrawn(page):
+        page.get_by_role("button", name="Show A").click()
+    shows(page, shown="left")
+    page.keyboard.press("w")
+    shows(page, comparison="wipe")
+
+
+def test_keys_do_nothing_while_a_number_is_typed(page):
+    page.get_by_label("Roughness, number").focus()
+    page.keyboard.press("d")
+    shows(page, comparison="wipe")
+
+
+def in_sight(page):
+    """Frame of the picture, scrolled into sight."""
+    canvas = page.locator("canvas")
+    canvas.scroll_into_view_if_needed()
+    return canvas.bounding_box()
+
+
+def test_a_number_that_is_typed_stays_whatever_else_changes(page):
+    field = page.get_by_label("Roughness, number")
+    field.fill("")
+    for sign in "0.25":
+        field.press(sign)
+        show(page, exposure=float(ord(sign)) / 100)
+    assert field.input_value() == "0.25"
+    field.press("Enter")
+    shows(page, roughness=0.25)
+
+
+def drag(page, start, end):
+    """Drag in the picture, from and to a place in [0, 1]^2."""
+    box = in_sight(page)
+    (x0, y0), (x1, y1) = (
+        (box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end)
+    )
+    page.mouse.move(x0, y0)
+    page.mouse.down()
+    page.mouse.move((x0 + x1) / 2, (y0 + y1) / 2)
+    page.mouse.move(x1, y1)
+    page.mouse.up()
+
+
+def test_the_line_is_dragged_and_moved_by_keys(page):
+    with redrawn(page):
+        drag(page, (0.5, 0.2), (0.25, 0.2))
+    assert abs(state(page)["wipe"] - 0.25) < 0.01
+    page.get_by_role("slider", name="Wipe between A and B").press("ArrowRight")
+    assert abs(state(page)["wipe"] - 0.27) < 0.01
+
+
+def test_the_light_is_dragged_and_moved_by_keys(page):
+    drag(page, (0.75, 0.7), (0.6, 0.4))
+    view = state(page)
+    assert (view["azimuth"], view["elevation"]) != (180, 50) and view["probe"] is None
+    page.get_by_role("button", name="Light,").press("ArrowUp")
+    shows(page, elevation=min(view["elevation"] + 5, 90))
+
+
+def test_a_click_probes_a_point(page):
+    fill(page, "Light above, number", 20)
+    fill(page, "Light around, number", 30)
+    box = in_sight(page)
+    page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"])
+    assert np.allclose(state(page)["probe"], (0.6, 0.4), atol=0.01)
+    before = page.locator(".directions").inner_text()
+    page.get_by_role("button", name="Probe; arrow keys").press("ArrowDown")
+    until(page, "before => document.querySelector('.directions').innerText !== before", before)
+    page.get_by_role("button", name="Go to the largest difference").click()
+    shows(page, probe=None)
+
+
+def numbers(text):
+    return [float(word) for word in re.findall(r"[+-]?\d+\.\d+", text.replace("−", "-"))]
+
+
+def test_the_probe_shows_the_value_of_the_shader_and_the_reference(page):
+    until(page, "document.querySelector('.values').innerText.includes('float32')")
+    wo, wi = np.reshape(numbers(page.locator(".directions").inner_text()), (2, 3))
+    cells = [row.locator("td").all() for row in page.locator(".values tbody tr").all()]
+    value, reference = (numbers(cells[row][0].inner_text()) for row in (0, 1))
+    wo, wi = wo / np.linalg.norm(wo), wi / np.linalg.norm(wi)
+    expected = np.pi * eon_brdf(wo, wi, [0.8, 0.4, 0.1], 1.0) * wi[2]
+    assert np.allclose(reference, expected, atol=1e-3)  # directions are shown with four digits
+    assert np.allclose(value, reference, atol=SHADER)
+    assert "rounding" in cells[2][0].inner_text()
+
+
+def copied(page, side, what):
+    page.get_by_role("button", name=f"Copy {side} as {what}").click()
+    until(page, f"document.querySelector('.copies .said').textContent === '{side}, {what} copied.'")
+    return page.evaluate("navigator.clipboard.readText()")
+
+
+def test_the_python_line_runs_and_gives_the_value(page):
+    until(page, "document.querySelector('.values').innerText.includes('float32')")
+    for column, side in enumerate("AB"):
+        line = copied(page, side, "Python")
+        command = [sys.executable, "-c", line]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        cell = page.locator(".values tbody tr").first.locator("td").nth(column).inner_text()
+        assert np.allclose(
+            [float(word) for word in done.stdout.split()], numbers(cell), atol=SHADER
+        )
+
+
+def test_the_copied_document_is_the_material_in_sight(page):
+    show(page, roughness=0.25, color=[0.5, 0.25, 0.125])
+    page.locator(".side.left").get_by_label("energy_compensation").uncheck()
+    text = copied(page, "A", "MaterialX")
+    values = {port.name: port.value for port in mxeon.generate(text, "essl")[0].inputs}
+    assert values["lobe_color"] == (0.5, 0.25, 0.125) and values["lobe_roughness"] == 0.25
+    assert values["lobe_energy_compensation"] is False
+
+
+def test_the_copied_shader_is_the_one_that_is_drawn(page):
+    assert "oren_nayar_diffuse_bsdf" in copied(page, "B", "GLSL")
+    page.get_by_label("Material B").select_option("model/eon")
+    assert "vec3 eon_brdf(" in copied(page, "B", "GLSL")
+
+
+def test_what_cannot_be_copied_has_no_button_that_works(page):
+    page.get_by_label("Material B").select_option("variant/cycles_rho_cubed/4")
+    assert page.get_by_role("button", name="Copy B as MaterialX").is_disabled()
+    assert page.get_by_role("button", name="Copy B as GLSL").is_disabled()
+
+
+def test_the_link_is_the_address_of_the_view(page):
+    show(page, exposure=2)
+    until(page, "location.hash.includes('exposure=2')")
+    page.get_by_role("button", name="Copy a link").click()
+    until(page, "document.querySelector('header .said').textContent === 'Copied'")
+    assert page.evaluate("navigator.clipboard.readText()").endswith("#exposure=2")

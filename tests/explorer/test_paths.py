@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Path tracing on the stage: means are exact albedos, and exact sampling has the least noise."""
+
+import numpy as np
+import pytest
+
+from mxeon.models.table import model
+from mxeon.shaders.scene import sphere
+from tests.explorer.stage import (
+    CLOCK,
+    RHO,
+    ROUGHNESS,
+    frame,
+    model_sources,
+    opened_stage,
+    picture,
+    side,
+    view,
+    written,
+)
+from tests.support.tolerances import EON_WEIGHT
+
+SAMPLES = 16
+
+
+@pytest.fixture(scope="module")
+def stage(browser, tmp_path_factory):
+    address = written(tmp_path_factory.mktemp("explorer") / "paths.html", "brick")
+    with opened_stage(browser, address) as page:
+        page.evaluate(
+            "globalThis.said = []; mxeon.stage.onStatus(status => globalThis.said.push(status))"
+        )
+        page.evaluate(CLOCK, 0)
+        yield page
+
+
+@pytest.fixture(scope="module")
+def sources(stage):
+    return model_sources(stage)
+
+
+def traced(stage, left, right=None, **patch):
+    """Both sides after SAMPLES paths per pixel, and the last status of each kind."""
+    stage.evaluate("said.length = 0")
+    view(stage, left, right, **({"paths": True, "samples": SAMPLES} | patch))
+    return {status["kind"]: status for status in stage.evaluate("said")}
+
+
+def whole(stage, name):
+    """The pixels all of whose paths met the sphere, their centers' cosines, and the width."""
+    status = stage.evaluate("said.findLast(status => status.kind === 'drawn')")
+    pixels = frame(stage, name, (status["width"], status["height"]))
+    height, width = pixels.shape[:2]
+    diameter = 2 * round(min(width, height) / 2 / 1.14)
+    y, x = np.mgrid[:height, :width] + 0.5
+    squared = ((x - width / 2) ** 2 + (y - height / 2) ** 2) * 4 / diameter**2
+    kept = (pixels[..., 3] == 1.0) & (squared < 1.0)
+    return pixels[kept][:, :3], np.sqrt(1.0 - squared[kept])
+
+
+def test_a_white_furnace_keeps_every_exact_path(stage, sources):
+    white = {"color": [1, 1, 1], "light": None, "surroundings": "uniform"}
+    status = traced(stage, side(sources["eon"]), side(sources["fon"]), **white)
+    assert status["samples"]["done"] == SAMPLES
+    measured, _ = whole(stage, "left")
+    assert len(measured) > 500
+    assert np.abs(measured - 1.0).max() < EON_WEIGHT
+    assert whole(stage, "right")[0].mean() < 0.95
+
+
+@pytest.mark.parametrize(
+    ("name", "sampler"), [("eon", "exact"), ("qon", "cltc"), ("fon_white_lobe", "cosine")]
+)
+def test_means_of_paths_are_albedos(stage, sources, name, sampler):
+    uniform = {"light": None, "surroundings": "uniform"}
+    status = traced(stage, side(sources[name], sampler=sampler), **uniform)
+    measured, mu = whole(stage, "left")
+    off = measured.mean(axis=0) - model(name).albedo_dir(mu, RHO, ROUGHNESS).mean(axis=0)
+    # Six standard errors of a mean of this many pixels, each with the error that the stage states.
+    # A pixel spans a range of angles; its mean is off from the center's by less than a thousandth.
+    error = 6.0 * status["samples"]["noise"]["left"] / np.sqrt(len(measured)) + 1e-3
+    assert np.abs(off / RHO).max() < error
+    assert np.abs(off + 0.05).max() > error
+
+
+def test_exact_sampling_has_less_noise_than_cltc_and_cosine(stage, sources):
+    uniform = {"light": None, "surroundings": "uniform"}
+    noise = {}
+    for sampler in ("exact", "cltc", "cosine"):
+        status = traced(stage, side(sources["eon"], sampler=sampler), **uniform)["samples"]
+        noise[sampler] = status["noise"]["left"]
+        assert status["noise"]["right"] == noise[sampler]  # of the same paths
+    assert 5.0 * noise["exact"] < noise["cltc"] < noise["cosine"]
+
+
+def test_without_surroundings_a_convex_shape_is_drawn_like_without_paths(stage, sources):
+    view(stage, side(sources["eon"]))
+    direct = picture(stage)
+    traced(stage, side(sources["eon"]), samples=1)
+    measured, mu = whole(stage, "left")
+    inside = sphere(len(direct)).mask
+    lit = direct[inside].mean(axis=0)
+    assert np.abs(measured.mean(axis=0) / lit - 1.0).max() < 0.02
+    assert mu.min() < 0.2
+
+
+def test_what_has_no_model_says_that_it_cannot_be_traced(stage):
+    brick = stage.evaluate("mxeon.data.sources.find(each => each.id.includes('brick')).id")
+    status = traced(stage, side(brick), samples=1)
+    assert status["error"]["source"] == brick
+    assert "needs a material that is one diffuse node" in status["error"]["message"]
+    size = status["drawn"]["width"], status["drawn"]["height"]
+    assert frame(stage, "left", size).max() == 0.0

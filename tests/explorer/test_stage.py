@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pixels of the stage in a browser: those of the models, of the hosts and of exact albedos."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.image import PLAIN, TEXTURED
+from mxeon.conformance.checks.tolerances import ENVIRONMENT, VALUE
+from mxeon.explorer import documents
+from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
+from tests.explorer.browser import until
+from tests.explorer.stage import (
+    LIGHTS,
+    LIMIT,
+    RHO,
+    ROUGHNESS,
+    model_sources,
+    opened_stage,
+    picture,
+    side,
+    towards,
+    view,
+    written,
+)
+
+DOCUMENTS = ("brick", "mixed_lobes")
+ROWS = MODELS + KNOWN_DEFECTS
+
+
+@pytest.fixture(scope="module")
+def stage(browser, tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(documents, "LARGEST_IMAGE", 512)  # than which the images are smaller
+        address = written(tmp_path_factory.mktemp("explorer") / "stage.html", *DOCUMENTS)
+    with opened_stage(browser, address) as page:
+        yield page
+
+
+@pytest.fixture(scope="module")
+def sources(stage):
+    return model_sources(stage)
+
+
+EVALUATE = """([patch, pairs]) =>
+    pairs.map(pair => mxeon.stage.evaluate(pair, {...mxeon.state(), ...patch}))"""
+
+
+def parameter_of(row):
+    return () if row.parameter is None else (ROUGHNESS,)
+
+
+def exact(row, size, light):
+    """The model's picture in float64."""
+    points = sphere(size)
+    normal = points.normal[points.mask]
+    wo, wi = local_directions(normal, VIEW), local_directions(normal, towards(light))
+    lit = wi[:, 2] > 0.0
+    expected = np.zeros((size, size, 3))
+    values = np.zeros((len(normal), 3))
+    values[lit] = np.pi * wi[lit, 2:] * row.brdf(wo[lit], wi[lit], RHO, *parameter_of(row))
+    expected[points.mask] = values
+    return expected
+
+
+def error(measured, expected):
+    """Largest difference times cos(theta_o), as the checks of pictures have it."""
+    cosine = sphere(len(measured)).normal[..., 2:]
+    return (np.abs(measured - expected) * cosine).max()
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row):
+    view(stage, side(sources[row.name]), side(sources["lambert"]))
+    measured = picture(stage)
+    expected = exact(row, len(measured), "side")
+    assert error(measured, expected) < PLAIN.value
+    other = picture(stage, "right")
+    assert row.name == "lambert" or error(other, expected) > 1000 * PLAIN.value
+
+
+def white(row, mu):
+    """Directional albedo by cosine, in the closed form where there is one."""
+    arguments = (RHO, *parameter_of(row))
+    if row.albedo_dir:
+        return row.albedo_dir(mu, *arguments)
+    # The stage interpolates between so many angles.
+    angles = np.linspace(0.0, 1.0, 256)
+    table = albedo_dir_quadrature(row.brdf, angles, *arguments, nodes=32)
+    return np.stack([np.interp(mu, angles, table[:, k]) for k in range(3)], axis=-1)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, row):
+    view(stage, side(sources[row.name]), light=None, surroundings="uniform")
+    measured = picture(stage)
+    points = sphere(len(measured))
+    mu = points.normal[points.mask][:, 2]
+    # The clamp of one variant has a kink across the rectangles of 16 nodes, h apart: a jump of 1 in
+    # the slope costs h^2 / 12 per unit of its length, at most pi.
+    kink = (np.pi / 2 / 16) ** 2 / 12 * np.pi if row.name == "eon_clamped" else 0.0
+    assert np.abs(measured[points.mask] - white(row, mu)).max() < ENVIRONMENT.value + kink
+    assert np.abs(measured[points.mask] - 1.01 * white(row, mu)).max() > ENVIRONMENT.value + kink
+
+
+def compiled(host, library, flag):
+    text = material_text(OREN_NAYAR, {"color": RHO, "roughness": ROUGHNESS, FLAG: flag})
+    return host.compile(text, library=library)[0]
+
+
+# MaterialX's own EON takes arc cosines, which Mesa's driver has to 1.6e-4 (measured). An albedo
+# falls by up to 1 / 4 per radian, and two of them are multiplied.
+ARC_COSINE = 2 * 1.6e-4 / 4
+
+
+@pytest.mark.parametrize("light", LIGHTS)
+@pytest.mark.parametrize("flag", [True, False])
+def test_pixels_of_the_nodes_are_those_of_the_gl_host(stage, gl, flag, light):
+    view(stage, side("shader/eonlib", flag), side("shader/stock", flag), light=light)
+    for name, library in (("left", "eonlib"), ("right", "stock")):
+        measured = picture(stage, name)
+        scene = Scene(light, light=towards(light), size=len(measured))
+        expected = gl.picture(compiled(gl, library, flag), scene)
+        tolerance = ARC_COSINE if flag and library == "stock" else VALUE.value
+        assert error(measured, expected) < tolerance
+        assert error(measured, 1.001 * expected) > tolerance
+
+
+def test_the_stock_node_differs_from_eonlib_in_back_light(stage):
+    view(stage, side("shader/eonlib"), side("shader/stock"), light="back")
+    assert np.abs(picture(stage, "left") - picture(stage, "right")).max() > 0.05
+
+
+def test_the_flag_and_the_inputs_of_a_document_reach_its_shader(stage):
+    view(stage, side("shader/eonlib", True), side("shader/eonlib", False))
+    assert error(picture(stage, "left"), picture(stage, "right")) > 0.05
+    source = stage.evaluate("mxeon.data.sources.find(each => each.id.includes('brick')).id")
+    view(stage, side(source), inputs={source: {"brick_lobe_weight": 0.5}})
+    half = picture(stage)
+    view(stage, side(source))
+    assert np.abs(picture(stage) - 2.0 * half).max() < VALUE.value < half.max()
+
+
+@pytest.mark.parametrize(("name", "library"), [("brick", "eonlib"), ("mixed_lobes", "stock")])
+def test_pixels_of_documents_are_those_of_the_gl_host(stage, gl, name, library):
+    shader = gl.compile(str(examples_folder() / f"{name}.mtlx"), library=library)[0]
+    find = "([name, library]) => mxeon.data.sources.find(each => each.kind === 'shader' && "
+    find += "each.group.startsWith(name) && each.library === library)"
+    source = stage.evaluate(find, [name, library])
+    inputs = {port["name"]: port["value"] for port in source["inputs"] if port["value"] is not None}
+    view(stage, side(source["id"]), inputs={source["id"]: inputs})
+    measured = picture(stage)
+    scene = Scene("side", light=towards("side"), size=len(measured))
+    expected = gl.picture(shader, scene)
+    tolerance = TEXTURED if name == "brick" else PLAIN
+    assert error(measured, expected) < tolerance.value
+    assert error(measured, 1.1 * expected) > tolerance.value
+
+
+@pytest.mark.parametrize("name", ["studio", "sky", "window"])
+def test_surroundings_are_an_irradiance_times_the_albedo(stage, sources, name):
+    view(stage, side(sources["lambert"]), light=None, surroundings=name, color=[1, 1, 1])
+    irradiance = picture(stage)
+    assert irradiance.max() > 2.0 * irradiance[sphere(len(irradiance)).mask].min() > 0.0
+    view(stage, side("shader/eonlib"), side(sources["eon"]), light=None, surroundings=name)
+    points = sphere(len(irradiance))
+    expected = irradiance[points.mask] * white(model("eon"), points.normal[points.mask][:, 2])
+    for each in ("left", "right"):
+        measured = picture(stage, each)[points.mask]
+        # Both look the map up with the same expressions.
+        assert np.abs(measured - expected).max() < VALUE.value * irradiance.max()
+        assert np.abs(measured - irradiance[points.mask]).max() > 0.05
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+def test_single_values_are_those_of_numpy(stage, sources, row):
+    patch = {"left": side(sources[row.name]), "right": side("shader/eonlib")}
+    patch |= {"color": list(RHO), "roughness": ROUGHNESS}
+    random = np.random.default_rng(7)
+    vectors = random.normal(size=(2, 12, 3))
+    wo, wi = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    wo[:, 2], wi[:, 2] = abs(wo[:, 2]), abs(wi[:, 2])
+    wo[0] = 0.0, 0.0, 1.0
+    pairs = [{"wo": list(o), "wi": list(i)} for o, i in zip(wo, wi, strict=True)]
+    until(stage, f"{EVALUATE}.every(each => each)", [patch, pairs], seconds=LIMIT)
+    answers = stage.evaluate(EVALUATE, [patch, pairs])
+    for name, compared in (("left", row), ("right", model("eon"))):
+        measured = np.array([answer[name] for answer in answers])
+        expected = np.pi * wi[:, 2:] * compared.brdf(wo, wi, RHO, *parameter_of(compared))
+        assert np.abs(measured - expected).max() < VALUE.value
+        assert np.abs(measured - expected[::-1]).max() > VALUE.value
+
+
+def test_a_pick_has_the_directions_of_its_point(stage):
+    view(stage, side("shader/eonlib"))
+    size, diameter = stage.evaluate("[mxeon.stage.size(), mxeon.stage.diameter()]")
+    x, y = 0.5 + 0.3 * diameter / size["width"], 0.5 - 0.2 * diameter / size["height"]
+    pick = stage.evaluate("([x, y]) => mxeon.stage.pick(x, y, mxeon.state())", [x, y])
+    normal = np.array(pick["normal"])
+    assert np.abs(normal[:2] - (0.6, 0.4)).max() < 1.5 / diameter
+    wo = local_directions(normal[None], VIEW)[0]
+    wi = local_directions(normal[None], towards("side"))[0]
+    assert abs(pick["wo"][2] - wo[2]) < 1e-6
+    assert abs(pick["wi"][2] - wi[2]) < 1e-6
+    assert abs(np.dot(pick["wo"], pick["wi"]) - np.dot(wo, wi)) < 1e-6
+    assert abs(pick["wo"][1]) < 1e-15
+    assert stage.evaluate("mxeon.stage.pick(0.01, 0.01, mxeon.state())") is None

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page's models in float64 against NumPy's."""
+
+import numpy as np
+import pytest
+
+from mxeon.models.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.models.sampling import uniform_sample
+from mxeon.models.table import KNOWN_DEFECTS, MODELS
+from tests.explorer.browser import opened
+from tests.support.hemispheres import uniforms
+
+ROWS = MODELS + KNOWN_DEFECTS
+# A sine, an arc tangent or a square root of the browser's may differ from NumPy's by some units in
+# the last place, 2^-52, of the largest value of a sum; 2^12 of them are 1e-12.
+TWINS = 2**12 * 2**-52
+RHO = (0.0, 0.3, 0.8, 1.0)
+PARAMETERS = (0.0, 0.2, 0.7, 1.0)
+COSINES = (0.0, 1e-3, 0.05, 0.3, 0.77, 1.0)
+
+
+@pytest.fixture(scope="module")
+def page(browser, address):
+    with opened(browser, address, drawn=False) as page:
+        yield page
+
+
+@pytest.fixture(scope="module")
+def pairs():
+    """Pairs of directions, grazing and equal ones among them."""
+    wo, wi = (uniform_sample(uniforms(150, seed))[0] for seed in (7, 8))
+    grazing = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
+    return np.vstack([wo, grazing, wi[:9]]), np.vstack([wi, grazing[::-1], wi[:9]])
+
+
+def parameter(row, value):
+    return (value,) if row.parameter else ()
+
+
+def test_the_page_has_every_model(page):
+    names = page.evaluate(
+        "[...mxeon.models.MODELS, ...mxeon.models.KNOWN_DEFECTS].map(row =>"
+        " [row.name, row.title, row.parameter])"
+    )
+    expected = [[row.name, row.title, row.parameter] for row in ROWS]
+    assert sorted(names) == sorted(expected)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+def test_values_are_numpys(page, pairs, row):
+    wo, wi = pairs
+    values = page.evaluate(
+        """([name, wo, wi, rhos, parameters]) => parameters.map(parameter =>
+             rhos.map(rho => wo.map((each, k) =>
+               mxeon.models.model(name).brdf(each, wi[k], rho, parameter))))""",
+        [row.name, wo.tolist(), wi.tolist(), RHO, PARAMETERS],
+    )
+    for rows, value in zip(values, PARAMETERS, strict=True):
+        expected = row.brdf(wo, wi, RHO, *parameter(row, value)).T
+        scale = np.maximum(np.abs(expected), 1.0 / np.pi)
+        assert (np.abs(np.array(rows) - expected) / scale).max() < TWINS
+
+
+def test_a_wrong_constant_would_be_noticed(page, pairs):
+    wo, wi = pairs
+    eon, other = (
+        np.array(
+            page.evaluate(
+                f"""([wo, wi]) => wo.map((each, k) =>
+                    mxeon.models.model("eon").brdf(each, wi[k], 0.8, {roughness}))""",
+                [wo.tolist(), wi.tolist()],
+            )
+        )
+        for roughness in (0.7, 0.7 * (1.0 + 1e-10))
+    )
+    assert np.abs(eon - other).max() * np.pi > TWINS
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
+def test_albedos_are_numpys(page, row):
+    dirs, avgs = page.evaluate(
+        """([name, mus, rhos, parameters]) => {
+          const of = mxeon.models.model(name);
+          return [
+            parameters.map(parameter => mus.map(mu => rhos.map(rho =>
+              of.albedo_dir ? of.albedo_dir(mu, rho, parameter)
+                            : mxeon.models.albedo_dir(of, mu, rho, parameter, 16)))),
+            of.albedo_avg && parameters.map(p => rhos.map(rho => of.albedo_avg(rho, p)))];
+        }""",
+        [row.name, COSINES, RHO, PARAMETERS],
+    )
+    assert (avgs is None) == (row.albedo_avg is None)
+    for k, value in enumerate(PARAMETERS):
+        arguments = parameter(row, value)
+        if row.albedo_dir:
+            expected = row.albedo_dir(np.array(COSINES), RHO, *arguments)
+        else:
+            expected = albedo_dir_quadrature(row.brdf, COSINES, RHO, *arguments, nodes=16)
+        assert np.abs(np.array(dirs[k]) - expected).max() < TWINS
+        if row.albedo_avg:
+            assert np.abs(np.array(avgs[k]) - row.albedo_avg(RHO, *arguments)).max() < TWINS
+
+
+@pytest.mark.parametrize(
+    "invert", [eon_rho_from_albedo_normal, eon_rho_from_albedo_avg], ids=["normal", "average"]
+)
+def test_colors_to_enter_are_numpys(page, invert):
+    colors = np.linspace(0.0, 1.0, 21)
+    for roughness in PARAMETERS:
+        values = page.evaluate(
+            f"([colors, r]) => colors.map(c => mxeon.models.{invert.__name__}(c, r))",
+            [colors.tolist(), roughness],
+        )
+        assert np.abs(np.array(values) - invert(colors, roughness)).max() < TWINS
+
+
+@pytest.mark.parametrize("name", ["qon", "fon", "oren_nayar", "eon_rho_cubed"])
+@pytest.mark.parametrize("average", [False, True])
+def test_a_color_to_enter_gives_the_albedo_that_is_wanted(page, name, average):
+    seen = page.evaluate(
+        """([name, average]) => {
+          const {model, rho_from_albedo, albedo_dir, albedo_avg} = mxeon.models;
+          const rho = rho_from_albedo(model(name), 0.3, 0.7, average);
+          return average ? albedo_avg(model(name), rho, 0.7)
+                         : albedo_dir(model(name), 1.0, rho, 0.7, 16);
+        }""",
+        [name, average],
+    )
+    assert abs(seen - 0.3) < 2**-40  # bisection ends at 2^-49, and albedos grow with slope <= 2
