@@ -70,7 +70,7 @@ class Surface:
     """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
 
     What lies over the lobe depends on the directions alone, so that pictures of other colors
-    tell the lobe apart; see `mxeon.conformance.checks.probes.SurfaceProbe`.
+    tell the lobe apart; see `mxeon.conformance.checks.surface_probes.SurfaceProbe`.
 
     Attributes
     ----------

@@ -15,10 +15,10 @@ from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.probes import (
     PROBES,
-    SURFACE_PROBES,
     PairProbe,
     PictureProbe,
 )
+from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_definitions, check_texts
 from mxeon.conformance.known_issues import with_page

@@ -21,11 +21,11 @@ from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
 from mxeon.conformance.checks.probes import (
-    SURFACE_PROBES,
     NativeProbe,
     PairProbe,
     probe_type,
 )
+from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import Curve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
