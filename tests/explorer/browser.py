@@ -12,7 +12,7 @@ from mxeon.shaders.hosts.webgl import FLAGS, program
 SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
 HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
-DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) != null"
+DRAWN = "mxeon?.stage?.isSettled(mxeon.state())"
 
 
 @contextmanager

@@ -18,9 +18,29 @@ CLIPBOARD = {"permissions": ["clipboard-read", "clipboard-write"]}
 SHADER = 64 * 2**-24
 
 
+# Counts calls of WebGL until the end of the first frame, which a fence marks.
+COUNT = """
+globalThis.counts = {linkProgram: 0, drawArrays: 0, drawElements: 0, readPixels: 0};
+const proto = WebGL2RenderingContext.prototype;
+let first = true;
+for (const name of Object.keys(counts)) {
+  const call = proto[name];
+  proto[name] = function (...words) {
+    if (first) counts[name] += 1;
+    return call.apply(this, words);
+  };
+}
+const fence = proto.fenceSync;
+proto.fenceSync = function (...words) {
+  first = false;
+  return fence.apply(this, words);
+};
+"""
+
+
 @pytest.fixture(scope="module")
 def page(browser, address):
-    with opened(browser, address, **CLIPBOARD) as page:
+    with opened(browser, address, script=COUNT, **CLIPBOARD) as page:
         yield page
 
 
@@ -59,29 +79,8 @@ def recolored(page):
     assert page.evaluate(PIXELS) == radiance
 
 
-# Counts calls of WebGL until the end of the first frame, which a fence marks.
-COUNT = """
-globalThis.counts = {linkProgram: 0, drawArrays: 0, drawElements: 0, readPixels: 0};
-const proto = WebGL2RenderingContext.prototype;
-let first = true;
-for (const name of Object.keys(counts)) {
-  const call = proto[name];
-  proto[name] = function (...words) {
-    if (first) counts[name] += 1;
-    return call.apply(this, words);
-  };
-}
-const fence = proto.fenceSync;
-proto.fenceSync = function (...words) {
-  first = false;
-  return fence.apply(this, words);
-};
-"""
-
-
-def test_the_first_picture_waits_for_no_program_or_pixel_that_it_does_not_need(browser, address):
-    with opened(browser, address, script=COUNT) as page:
-        counts = page.evaluate("counts")
+def test_the_first_picture_waits_for_no_program_or_pixel_that_it_does_not_need(page):
+    counts = page.evaluate("counts")
     # The shape, its surroundings, two materials, and the screen.
     assert 0 < counts["linkProgram"] <= 5 and 0 < counts["drawArrays"] <= 5
     assert counts["drawElements"] == counts["readPixels"] == 0
