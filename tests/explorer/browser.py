@@ -14,6 +14,25 @@ HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
 DRAWN = "mxeon?.stage?.isSettled(mxeon.state())"
 
+# Counts calls of WebGL until the end of the first frame, which a fence marks.
+COUNT = """
+globalThis.counts = {linkProgram: 0, drawArrays: 0, drawElements: 0, readPixels: 0};
+const proto = WebGL2RenderingContext.prototype;
+let first = true;
+for (const name of Object.keys(counts)) {
+  const call = proto[name];
+  proto[name] = function (...words) {
+    if (first) counts[name] += 1;
+    return call.apply(this, words);
+  };
+}
+const fence = proto.fenceSync;
+proto.fenceSync = function (...words) {
+  first = false;
+  return fence.apply(this, words);
+};
+"""
+
 
 @contextmanager
 def launched(flags=FLAGS):
