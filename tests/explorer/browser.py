@@ -12,7 +12,26 @@ from mxeon.shaders.hosts.webgl import FLAGS, program
 SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}
 HAS = """fields => Object.entries(fields).every(([name, value]) =>
     JSON.stringify(mxeon.state()[name]) === JSON.stringify(value))"""
-DRAWN = "mxeon?.stage?.evaluate({wo: [0, 0, 1], wi: [0, 0, 1]}, mxeon.state()) != null"
+DRAWN = "mxeon?.stage?.isSettled(mxeon.state())"
+
+# Counts calls of WebGL until the end of the first frame, which a fence marks.
+COUNT = """
+globalThis.counts = {linkProgram: 0, drawArrays: 0, drawElements: 0, readPixels: 0};
+const proto = WebGL2RenderingContext.prototype;
+let first = true;
+for (const name of Object.keys(counts)) {
+  const call = proto[name];
+  proto[name] = function (...words) {
+    if (first) counts[name] += 1;
+    return call.apply(this, words);
+  };
+}
+const fence = proto.fenceSync;
+proto.fenceSync = function (...words) {
+  first = false;
+  return fence.apply(this, words);
+};
+"""
 
 
 @contextmanager

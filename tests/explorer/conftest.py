@@ -3,9 +3,9 @@
 
 import pytest
 
-from mxeon.explorer import page, page_data
+from mxeon import explorer
 from mxeon.io.files import write_text
-from tests.explorer.browser import launched
+from tests.explorer.browser import COUNT, launched, opened
 from tests.support.availability import available
 
 
@@ -20,5 +20,20 @@ def browser():
 def address(tmp_path_factory):
     """Address of the page without documents."""
     file = tmp_path_factory.mktemp("explorer") / "explorer.html"
-    write_text(file, page(page_data()))
+    write_text(file, explorer.page(explorer.page_data()))
     return file.as_uri()
+
+
+@pytest.fixture(scope="package")
+def shared_page(browser, address):
+    """The page without documents, which may use the clipboard."""
+    permissions = ["clipboard-read", "clipboard-write"]
+    with opened(browser, address, script=COUNT, permissions=permissions) as page:
+        yield page
+
+
+@pytest.fixture
+def page(shared_page):
+    """The page with its first view."""
+    shared_page.evaluate("mxeon.show(mxeon.from_address(''))")
+    return shared_page

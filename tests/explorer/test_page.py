@@ -2,35 +2,12 @@
 """The page for its readers: every control has its effect, by hand and by key."""
 
 import re
-import subprocess
-import sys
 from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
-import mxeon
-from mxeon.models import eon_brdf
-from tests.explorer.browser import opened, show, shows, state, until
-
-CLIPBOARD = {"permissions": ["clipboard-read", "clipboard-write"]}
-# Roundings of float32 in a shader's value, of which it makes fewer than 64.
-SHADER = 64 * 2**-24
-
-
-@pytest.fixture(scope="module")
-def page(browser, address):
-    with opened(browser, address, **CLIPBOARD) as page:
-        yield page
-
-
-@pytest.fixture(autouse=True)
-def first_view(request):
-    """Begin each test that has the page with the first view."""
-    if "page" in request.fixturenames:
-        page = request.getfixturevalue("page")
-        page.evaluate("mxeon.show(mxeon.from_address(''))")
-
+from tests.explorer.browser import show, shows, state, until
 
 # A number that depends on every pixel.
 PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + k)) % 65521, 0)"
@@ -59,29 +36,8 @@ def recolored(page):
     assert page.evaluate(PIXELS) == radiance
 
 
-# Counts calls of WebGL until the end of the first frame, which a fence marks.
-COUNT = """
-globalThis.counts = {linkProgram: 0, drawArrays: 0, drawElements: 0, readPixels: 0};
-const proto = WebGL2RenderingContext.prototype;
-let first = true;
-for (const name of Object.keys(counts)) {
-  const call = proto[name];
-  proto[name] = function (...words) {
-    if (first) counts[name] += 1;
-    return call.apply(this, words);
-  };
-}
-const fence = proto.fenceSync;
-proto.fenceSync = function (...words) {
-  first = false;
-  return fence.apply(this, words);
-};
-"""
-
-
-def test_the_first_picture_waits_for_no_program_or_pixel_that_it_does_not_need(browser, address):
-    with opened(browser, address, script=COUNT) as page:
-        counts = page.evaluate("counts")
+def test_the_first_picture_waits_for_no_program_or_pixel_that_it_does_not_need(page):
+    counts = page.evaluate("counts")
     # The shape, its surroundings, two materials, and the screen.
     assert 0 < counts["linkProgram"] <= 5 and 0 < counts["drawArrays"] <= 5
     assert counts["drawElements"] == counts["readPixels"] == 0
@@ -303,66 +259,3 @@ def test_a_click_probes_a_point(page):
     until(page, "before => document.querySelector('.directions').innerText !== before", before)
     page.get_by_role("button", name="Go to the largest difference").click()
     shows(page, probe=None)
-
-
-def numbers(text):
-    return [float(word) for word in re.findall(r"[+-]?\d+\.\d+", text.replace("−", "-"))]
-
-
-def test_the_probe_shows_the_value_of_the_shader_and_the_reference(page):
-    until(page, "document.querySelector('.values').innerText.includes('float32')")
-    wo, wi = np.reshape(numbers(page.locator(".directions").inner_text()), (2, 3))
-    cells = [row.locator("td").all() for row in page.locator(".values tbody tr").all()]
-    value, reference = (numbers(cells[row][0].inner_text()) for row in (0, 1))
-    wo, wi = wo / np.linalg.norm(wo), wi / np.linalg.norm(wi)
-    expected = np.pi * eon_brdf(wo, wi, [0.8, 0.4, 0.1], 1.0) * wi[2]
-    assert np.allclose(reference, expected, atol=1e-3)  # directions are shown with four digits
-    assert np.allclose(value, reference, atol=SHADER)
-    assert "rounding" in cells[2][0].inner_text()
-
-
-def copied(page, side, what):
-    page.get_by_role("button", name=f"Copy {side} as {what}").click()
-    until(page, f"document.querySelector('.copies .said').textContent === '{side}, {what} copied.'")
-    return page.evaluate("navigator.clipboard.readText()")
-
-
-def test_the_python_line_runs_and_gives_the_value(page):
-    until(page, "document.querySelector('.values').innerText.includes('float32')")
-    for column, side in enumerate("AB"):
-        line = copied(page, side, "Python")
-        command = [sys.executable, "-c", line]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        cell = page.locator(".values tbody tr").first.locator("td").nth(column).inner_text()
-        assert np.allclose(
-            [float(word) for word in done.stdout.split()], numbers(cell), atol=SHADER
-        )
-
-
-def test_the_copied_document_is_the_material_in_sight(page):
-    show(page, roughness=0.25, color=[0.5, 0.25, 0.125])
-    page.locator(".side.left").get_by_label("energy_compensation").uncheck()
-    text = copied(page, "A", "MaterialX")
-    values = {port.name: port.value for port in mxeon.generate(text, "essl")[0].inputs}
-    assert values["lobe_color"] == (0.5, 0.25, 0.125) and values["lobe_roughness"] == 0.25
-    assert values["lobe_energy_compensation"] is False
-
-
-def test_the_copied_shader_is_the_one_that_is_drawn(page):
-    assert "oren_nayar_diffuse_bsdf" in copied(page, "B", "GLSL")
-    page.get_by_label("Material B").select_option("model/eon")
-    assert "vec3 eon_brdf(" in copied(page, "B", "GLSL")
-
-
-def test_what_cannot_be_copied_has_no_button_that_works(page):
-    page.get_by_label("Material B").select_option("variant/cycles_rho_cubed/4")
-    assert page.get_by_role("button", name="Copy B as MaterialX").is_disabled()
-    assert page.get_by_role("button", name="Copy B as GLSL").is_disabled()
-
-
-def test_the_link_is_the_address_of_the_view(page):
-    show(page, exposure=2)
-    until(page, "location.hash.includes('exposure=2')")
-    page.get_by_role("button", name="Copy a link").click()
-    until(page, "document.querySelector('header .said').textContent === 'Copied'")
-    assert page.evaluate("navigator.clipboard.readText()").endswith("#exposure=2")

@@ -8,6 +8,7 @@ import { DIFFERENCE_COLORS } from "../stage/colors";
 import { COMPARISONS, type Comparison, type State } from "../state";
 import { LETTER, short_title, SIDES, source_of } from "../view";
 import { Choice, Slider } from "./fields";
+import { LightHandle, ProbeMark, WipeHandle } from "./handles";
 import type { ViewProps } from "./sides";
 import { Stills } from "./stills";
 
@@ -25,7 +26,6 @@ const TITLES: Readonly<Record<Comparison, string>> = {
 };
 const NEAR = 18; // pixels from the line within which it is taken
 const CLICK = 4; // pixels that a click may move
-const STEP = 0.02; // of the picture, for an arrow key
 
 type Drag = { kind: "wipe" | "light" | "click"; x: number; y: number } | null;
 
@@ -154,98 +154,6 @@ function Labels({ state, names }: { readonly state: State; readonly names: reado
         );
       })}
     </>
-  );
-}
-
-const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
-  ArrowLeft: [-1, 0],
-  ArrowRight: [1, 0],
-  ArrowUp: [0, -1],
-  ArrowDown: [0, 1],
-};
-
-/** Steps of an arrow key, if the event is one. */
-function arrow(event: KeyboardEvent): readonly [number, number] | null {
-  const steps = ARROWS[event.key] ?? null;
-  if (steps) event.preventDefault();
-  return steps;
-}
-
-function clamp(value: number): number {
-  return Math.min(Math.max(value, 0), 1);
-}
-
-function WipeHandle({ state, change }: ViewProps) {
-  return (
-    <div
-      class="wipe"
-      role="slider"
-      tabIndex={0}
-      aria-label="Wipe between A and B"
-      aria-valuemin={0}
-      aria-valuemax={100}
-      aria-valuenow={Math.round(100 * state.wipe)}
-      style={{ left: `${100 * state.wipe}%` }}
-      onKeyDown={(event) => {
-        const steps = arrow(event);
-        if (steps) change({ wipe: clamp(state.wipe + STEP * (steps[0] - steps[1])) });
-      }}
-    >
-      <span />
-    </div>
-  );
-}
-
-interface HandleProps extends ViewProps {
-  readonly at: readonly [number, number];
-}
-
-/** A handle's place, all of it inside the picture. */
-function position([x, y]: readonly [number, number]) {
-  const inside = (share: number): string => `clamp(16px, ${100 * share}%, 100% - 16px)`;
-  return { left: inside(x), top: inside(y) };
-}
-
-function LightHandle({ state, change, at }: HandleProps) {
-  const { azimuth, elevation } = state;
-  return (
-    <button
-      type="button"
-      class="light"
-      aria-label={`Light, ${azimuth.toFixed()} degrees around, ${elevation.toFixed()} above; arrow keys move it`}
-      style={position(at)}
-      onKeyDown={(event) => {
-        const steps = arrow(event);
-        if (!steps) return;
-        change({
-          azimuth: ((azimuth + 5 * steps[0] + 540) % 360) - 180,
-          elevation: Math.min(Math.max(elevation - 5 * steps[1], -90), 90),
-        });
-      }}
-    >
-      <svg viewBox="-12 -12 24 24" aria-hidden="true">
-        <circle r="5" />
-        {[0, 45, 90, 135, 180, 225, 270, 315].map((angle) => (
-          <line key={angle} x1="8" x2="11" transform={`rotate(${angle})`} />
-        ))}
-      </svg>
-    </button>
-  );
-}
-
-function ProbeMark({ change, at }: HandleProps) {
-  return (
-    <button
-      type="button"
-      class="mark"
-      aria-label="Probe; arrow keys move it"
-      style={position(at)}
-      onKeyDown={(event) => {
-        const steps = arrow(event);
-        if (steps)
-          change({ probe: [clamp(at[0] + STEP * steps[0]), clamp(at[1] + STEP * steps[1])] });
-      }}
-    />
   );
 }
 
