@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
+from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
-from mxeon.errors import MISUSE
+from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS
 from mxeon.explorer import page, page_data
+from mxeon.explorer.data import Models
+from mxeon.explorer.diagnosis import measured_models
 from mxeon.explorer.documents import document_sources
 from mxeon.explorer.sources import RENDERERS
 from mxeon.explorer.stills import COLOR, LIGHT, picture
@@ -262,6 +265,30 @@ def test_the_data_are_the_fields_that_the_page_reads():
     for name, fields in kinds.items():
         body = re.search(rf"export interface {name} {{(.*?)\n}}", text, re.DOTALL)[1]
         assert set(re.findall(r"^  readonly (\w+):", body, re.MULTILINE)) == set(fields), name
+
+
+def test_what_a_node_is_comes_from_its_values(monkeypatch):
+    assert measured_models("stock", OREN_NAYAR) == Models("eon_clamped", "qon_fitted")
+    direct = PairProbe.direct
+    monkeypatch.setattr(PairProbe, "direct", lambda probe, batch: 0.5 * direct(probe, batch))
+    measured_models.cache_clear()
+    try:
+        assert measured_models("stock", OREN_NAYAR) is None
+    finally:
+        measured_models.cache_clear()
+
+
+def test_without_the_host_no_material_is_called_a_model(monkeypatch):
+    def missing(name):
+        raise NotRun("no driver")
+
+    monkeypatch.setattr("mxeon.explorer.diagnosis.open_host", missing)
+    measured_models.cache_clear()
+    try:
+        shaders = [each for each in page_data().sources if each.kind == "shader"]
+        assert shaders and all(each.meant and each.actual is None for each in shaders)
+    finally:
+        measured_models.cache_clear()
 
 
 def test_a_shader_that_is_not_the_model_of_its_name_is_found_out(browser, tmp_path):

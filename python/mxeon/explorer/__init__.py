@@ -15,7 +15,8 @@ import MaterialX as mx
 import mxeon
 from mxeon.conformance.results import Result
 from mxeon.explorer.data import PageData, ShaderSource
-from mxeon.explorer.documents import document_sources
+from mxeon.explorer.diagnosis import measured_models
+from mxeon.explorer.documents import MEANT, document_sources
 from mxeon.explorer.sources import model_sources, node_sources, run_sources
 from mxeon.explorer.stills import stills
 from mxeon.shaders.functions import source
@@ -48,13 +49,20 @@ def page_data(
         for position, group in enumerate(documents)
         for each in group
     )
+    shaders = map(_diagnosed, chain(node_sources(), own))
     return PageData(
         mxeon.__version__,
         mx.getVersionString(),
         source("glsl"),
-        tuple(chain(node_sources(), own, run_sources(results), model_sources())),
+        tuple(chain(shaders, run_sources(results), model_sources())),
         stills(),
     )
+
+
+def _diagnosed(source: ShaderSource) -> ShaderSource:
+    """A source with the models that its node is, where it is one of the diffuse nodes."""
+    nodes = [node for node, models in MEANT.items() if models == source.meant]
+    return replace(source, actual=measured_models(source.library, nodes[0])) if nodes else source
 
 
 def page(data: PageData) -> str:

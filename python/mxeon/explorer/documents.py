@@ -18,16 +18,15 @@ from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Input, Shader, generate
 from mxeon.shaders.hosts.textures import read_texture
-from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG
+from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
 LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
 LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
-# What the libraries make of a diffuse node: the diagnoses of `mxeon check`, with the flag and without.
-MEANT = Models("eon", "qon")
-ACTUAL = {"eonlib": MEANT, "stock": Models("eon_clamped", "qon_fitted")}
+# What the diffuse nodes are meant to be, with the flag and without.
+MEANT = {OREN_NAYAR: Models("eon", "qon"), EON: Models("eon", "eon")}
 
 
 def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource, ...]:
@@ -137,10 +136,7 @@ def shader_source(
     )
     if connected or not (color and roughness and _is_whole(source)):
         return source
-    meant, actual = MEANT, ACTUAL[library]
-    if node.getCategory() == EON:
-        meant, actual = Models("eon", "eon"), Models("eon", "eon")
-    return replace(source, meant=meant, actual=actual)
+    return replace(source, meant=MEANT[node.getCategory()])
 
 
 def _is_whole(source: ShaderSource) -> bool:
