@@ -176,8 +176,8 @@ def _judged(root, place, text, targets):
 def _search(root, places, targets, found):
     """Mark places, all at once and, for the targets that refuse that, in halves."""
     refused = []
+    text, marks = _marked(root, places)
     for target in targets:
-        text, marks = _marked(root, places)
         try:
             sources = _sources(text, target)
         except DocumentError as error:

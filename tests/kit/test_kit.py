@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import warnings
+from functools import cache
 from pathlib import Path
 
 import MaterialX as mx
@@ -15,6 +16,7 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.io.images import write_exr
+from mxeon.kit import diagnosis, questions
 from mxeon.kit.check import check_kit
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import expected, judged, pixel_means
@@ -34,14 +36,30 @@ EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.p
 EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
 
 
+@pytest.fixture(scope="module", autouse=True)
+def remembered():
+    """What is expected of a model in a view, worked out once for all tests."""
+    once = cache(expected)
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (diagnosis, questions):
+            patch.setattr(module, "expected", once)
+        yield
+
+
+@cache
+def means(model, name):
+    """A model's means of the judged pixels of a view."""
+    return pixel_means(reference.model(model), VIEWS[name])
+
+
 def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
     """A kit, and pictures of these models with as much relative noise in each pixel."""
     rng = np.random.default_rng(seed)
     export_kit(folder, SIZE)
     for view in VIEWS.values():
-        row = reference.model(true if view.material.energy_compensation else false)
+        model = true if view.material.energy_compensation else false
         mask, image = judged(view.scene), np.zeros((SIZE, SIZE, 3))
-        values = pixel_means(row, view)
+        values = means(model, view.name)
         image[mask] = values * (1.0 + noise * rng.standard_normal(values.shape))
         write_exr(folder / "renders" / f"{view.name}.exr", image, {})
 

@@ -308,7 +308,8 @@ def test_lambert_has_no_interval():
     assert model("lambert").largest == 1.0
 
 
-def test_a_model_without_a_closed_form_of_its_albedo_refuses_to_give_one():
+def test_a_model_gives_the_closed_form_of_its_albedo_or_refuses():
+    assert model("eon").closed_albedo_dir is model("eon").albedo_dir
     with pytest.raises(ValueError, match="closed form of its albedo; got 'oren_nayar'"):
         _ = model("oren_nayar").closed_albedo_dir
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What text of a document reaches generated source is words, wherever it stands."""
 
+from functools import lru_cache
+
 import MaterialX as mx
 import pytest
 
@@ -18,11 +20,15 @@ KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
 
 @pytest.fixture(scope="module", autouse=True)
 def furnished(tmp_path_factory):
-    """A working folder with what the documents name; and no values of inputs, which are no source."""
+    """A working folder with what the documents name, each read once for all targets.
+
+    Without values of inputs, which are no source.
+    """
     folder = tmp_path_factory.mktemp("reach")
     reach.furnish(folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(generation, "_inputs", lambda *_: ())
+        patch.setattr(generation, "read_document", lru_cache(maxsize=1)(read_document))
         patch.chdir(folder)
         yield
 
