@@ -63,9 +63,11 @@ def test_check_of_stock_fails_and_names_the_defects(capsys):
     assert "EON with clamped dot(wo, wi)" in capsys.readouterr().out
 
 
-def test_check_takes_a_folder_as_library(capsys):
-    assert main(["check", PLASTER, "--library", str(eonlib_folder())]) == PASSED
-    assert "checks passed" in capsys.readouterr().out
+def test_check_takes_a_folder_as_library_and_prints_json_for_machines(capsys):
+    folder = str(eonlib_folder())
+    assert main(["check", PLASTER, "--library", folder, "--json"]) == PASSED
+    results = json.loads(capsys.readouterr().out)["results"]
+    assert folder in {each["library"] for each in results}
 
 
 def test_check_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys):
@@ -79,11 +81,6 @@ def test_render_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys, tmp_p
     output = tmp_path / "out.exr"
     assert main(["render", PLASTER, "--host", "cycles", "--output", str(output)]) == NOT_RUN
     assert "MXEON_CYCLES_PYTHON" in capsys.readouterr().err and not output.exists()
-
-
-def test_check_prints_json_for_machines(capsys):
-    assert main(["check", PLASTER, "--json"]) == PASSED
-    assert json.loads(capsys.readouterr().out)["results"]
 
 
 # --- misuse -------------------------------------------------------------------------------------
@@ -112,7 +109,7 @@ def test_generate_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_p
     [
         (["check", PLASTER, "--host", "abacus"], "host must be one of gl"),
         (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, stock"),
-        (["check", "nowhere.mtlx"], "must be a readable file"),
+        (["check", "nowhere.mtlx", "--host", "msl"], "must be a readable file"),
         (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
         (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),
         (["render", PLASTER, "--output", "out.exr", "--scene", "dusk"], "scene must be one of"),
