@@ -3,6 +3,7 @@
 
 import shutil
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 
@@ -22,6 +23,7 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import Task, make_plan
+from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.functions import names
 from mxeon.shaders.library import data_folder, eonlib_folder, examples_folder
@@ -321,10 +323,27 @@ def test_shaders_are_generated_where_no_picture_is_made():
     assert result.verdict == PASSED and result.control.caught
 
 
+def test_a_source_that_is_no_text_is_refused_in_one_line(copy):
+    library = Path(copy())
+    (library.parent / "genglsl" / "eon.glsl").write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match="eon.glsl: must be text in UTF-8"):
+        make_plan([], ["gl"], [library])
+
+
+def test_a_bundled_document_that_a_library_refuses_is_a_failed_check(copy):
+    library = Path(copy())
+    (library.parent / "genglsl" / "eon.glsl").write_text("")
+    run = check([examples_folder() / "plaster.mtlx"], ["gl"], [library])
+    assert not run.errors
+    assert any(row.check == "picture" and row.verdict == FAILED for row in run.results)
+
+
 def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_refused(copy):
     old = 'energy_compensation" type="boolean"'
     library = copy(DEFINITIONS, old, old.replace("tion", "ton"))
     wrong = [row for row in check([], ["gl"], [library]).results if row.verdict == FAILED]
     assert wrong[0].check == "definition"
     assert "there is no input energy_compensation" in wrong[0].diagnosis
-    assert any("the library refuses a document of the node" in row.diagnosis for row in wrong[1:])
+    assert any(
+        "the library refuses a document of mxeon's own" in row.diagnosis for row in wrong[1:]
+    )

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files that appear whole or not at all, on disks that are full: no file may exceed some bytes."""
 
+import os
 import resource
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -134,3 +136,23 @@ def test_a_figure_that_finds_no_room_is_an_error(tmp_path, suffix):
     with room_for(1000), pytest.raises(OSError, match=f"a.{suffix}"):
         sheet.plot("a", figure, suffix)
     assert not files(tmp_path)
+
+
+def test_a_pipe_is_not_replaced(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(OSError, match="not a regular file"):
+        write_text(pipe, "text")
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+
+
+def test_the_file_that_a_link_leads_to_is_replaced(tmp_path):
+    link = tmp_path / "link.txt"
+    link.symlink_to(tmp_path / "file.txt")
+    write_text(link, "text")
+    assert link.is_symlink() and (tmp_path / "file.txt").read_text() == "text"
+
+
+def test_an_empty_name_is_no_file():
+    with pytest.raises(OSError, match="not the name of a file"):
+        write_text("", "text")

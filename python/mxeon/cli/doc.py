@@ -2,9 +2,12 @@
 """`mxeon doc`: tables of node definitions, filled into Markdown or compared with a specification."""
 
 import argparse
+import errno
 import json
+import sys
 
 from mxeon.cli import arguments
+from mxeon.cli.output import warn
 from mxeon.errors import FAILED, PASSED, DocumentError, InputError, one_line
 
 
@@ -33,6 +36,7 @@ def add_parser(commands: arguments.Commands) -> None:
 def run(options: argparse.Namespace) -> int:
     """Fill or compare; return FAILED if a specification differs."""
     from mxeon.doc import compare, fill, library_tables, read_tables
+    from mxeon.doc.markdown import MARKER
 
     if options.json and not options.compare:
         raise InputError("--json must come with --compare: a template has no differences")
@@ -40,6 +44,8 @@ def run(options: argparse.Namespace) -> int:
     tables = library_tables(options.library)
     try:
         if not options.compare:
+            if not MARKER.search(text):
+                warn(f"{options.file}: there is no @MX_TABLE_node@ to fill")
             _write(fill(text, tables), options.output)
             return PASSED
         differences = compare(read_tables(text), tables)
@@ -67,6 +73,8 @@ def _write(text: str, path: str | None) -> None:
     from mxeon.io.files import write_text
 
     if path is None:
+        if sys.stdout is None:
+            raise OSError(errno.EBADF, "it is closed", "standard output")
         print(text, end="")
     else:
         write_text(path, text)

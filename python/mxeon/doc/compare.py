@@ -32,6 +32,9 @@ class Difference:
 
     def __str__(self) -> str:
         place = f"{self.node}.{self.port}" if self.port else self.node
+        if self.subject in ("node", "port"):
+            only = "specification" if self.specification else "library"
+            return f"{place}: only the {only} has this {self.subject}"
         return (
             f"{place}: {self.subject}: the specification has {self.specification or 'none'}, "
             f"the library {self.library or 'none'}"
@@ -69,7 +72,8 @@ def _of_node(table: Table, defined: Table | None) -> Iterator[Difference]:
             yield from _of_port(table.node, port, ours[port.name])
         else:
             yield Difference(table.node, port.name, "port", port.name, "")
-    for name in ours.keys() - {port.name for port in table.ports}:
+    stated = {port.name for port in table.ports}
+    for name in (name for name in ours if name not in stated):
         yield Difference(table.node, name, "port", "", name)
 
 

@@ -67,8 +67,10 @@ def read_tables(text: str) -> dict[str, Table]:
         if columns[:1] != ["port"]:
             continue
         node = heading.strip("` ")
-        if not node or node in tables:
-            raise DocumentError(f"each table of ports must follow a heading of its own: {node!r}")
+        if not node:
+            raise DocumentError("a table of ports must follow a heading that names its node")
+        if node in tables:
+            raise DocumentError(f"there must be one table of ports below the heading {node}")
         ports = tuple(_port(dict(zip(columns, row, strict=True))) for row in rows[1:] if row[0])
         tables[node] = Table(node, _resolved(ports))
     if not tables:

@@ -5,7 +5,7 @@ import errno
 import os
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 AnyPath = str | os.PathLike[str]
@@ -18,7 +18,8 @@ def replacing(path: AnyPath) -> Iterator[Path]:
     Parameters
     ----------
     path : path-like
-        Its folder is created if need be. A file already there is replaced whole.
+        Its folder is created if need be. A file already there is replaced whole; of a link, the file
+        that it leads to.
 
     Yields
     ------
@@ -28,9 +29,14 @@ def replacing(path: AnyPath) -> Iterator[Path]:
     Raises
     ------
     OSError
-        If the folder or the file cannot be written; nothing half-written stays behind.
+        If the folder or the file cannot be written, or something else than a file has the name;
+        nothing half-written stays behind.
     """
-    path = Path(path)
+    path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
+    if not path.name:
+        raise OSError(errno.EINVAL, "not the name of a file", str(path))
+    if path.exists() and not path.is_file():  # a device that is replaced is gone
+        raise OSError(errno.EINVAL, "not a regular file", str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{os.getpid()}.{path.name}")
     try:
@@ -43,7 +49,8 @@ def replacing(path: AnyPath) -> Iterator[Path]:
             error.filename = str(path)
         raise
     finally:
-        beside.unlink(missing_ok=True)
+        with suppress(OSError):  # of a folder that cannot be written: the first error says so
+            beside.unlink(missing_ok=True)
 
 
 def write_text(path: AnyPath, text: str) -> None:

@@ -20,9 +20,11 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 
 import mxeon
 from mxeon.errors import InputError, InterfaceError, LibraryError, PackageError
+from mxeon.io.files import regular
 from mxeon.shaders.nodes import DIFFUSE_NODES, NODEDEFS
 
 TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
+SOURCES = (".mtlx", ".glsl", ".osl")  # endings of the files that a library is made of
 REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
 
 LIBRARIES = ("eonlib", "stock")
@@ -128,16 +130,42 @@ def library_name(library: str | os.PathLike[str]) -> str:
     Raises
     ------
     InputError
-        If it is neither a name nor a folder that holds MaterialX documents.
+        If it is neither a name nor a folder that holds MaterialX documents, or a file of it is no
+        text in UTF-8.
+    OSError
+        If one cannot be read.
     """
     if library in LIBRARIES:
         return str(library)
-    if not any(Path(library).rglob("*.mtlx")):
+    documents = sorted(Path(library).rglob("*.mtlx")) if str(library) else []
+    if not documents:
         raise InputError(
             f"library must be one of {', '.join(LIBRARIES)}, or a folder that holds MaterialX "
             f"documents; got {str(library)!r}"
         )
-    return os.path.abspath(library)
+    library = os.path.abspath(library)
+    for path in (*documents, *_sources(library)):
+        _assert_text(path)
+    return library
+
+
+def _sources(library: str) -> list[Path]:
+    """Source files beside a folder that is loaded as a library."""
+    return [
+        path
+        for folder in library_folders(library)[1:]
+        for path in sorted(folder.rglob("*.*"))
+        if path.suffix in SOURCES and not path.is_dir()
+    ]
+
+
+def _assert_text(path: Path) -> None:
+    """Raise an error unless a path names a regular file of text in UTF-8."""
+    with open(path, "rb", opener=regular) as file:
+        try:
+            file.read().decode()
+        except UnicodeDecodeError:
+            raise InputError(f"{path}: must be text in UTF-8") from None
 
 
 @cache

@@ -41,6 +41,7 @@ from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.hosts import host_row, open_host
 from mxeon.shaders.hosts.base import Host
+from mxeon.shaders.library import examples_folder
 
 ROWS = {check.key: check for check in CHECKS}
 CLAIMS = {check.key: check.claim for check in CHECKS} | {
@@ -66,7 +67,7 @@ def not_run(task: Task, reason: str) -> Findings:
 
 def refused(task: Task, reason: str) -> Findings:
     """Findings of a task whose document, which is ours, the library makes invalid."""
-    meaning = f"the library refuses a document of the node: {reason}"
+    meaning = f"the library refuses a document of mxeon's own: {reason}"
     result = Result(
         task.check,
         CLAIMS[task.check],
@@ -159,10 +160,11 @@ class Judge:
         return {"results": judge_subject(probe, (ROWS[task.check],))}
 
     def _generate(self, task: Task) -> dict[str, Any]:
+        path = Path(task.subject)
         try:
-            records = generate_document(Path(task.subject), task.host, task.library, self._policy)
+            records = generate_document(path, task.host, task.library, self._policy)
         except DocumentError as error:
-            return {"errors": (str(error),)}
+            return _unread(path, error)
         return dict(zip(("results", "notes"), records, strict=True))
 
     def _document(self, task: Task, host: Host) -> dict[str, Any]:
@@ -170,8 +172,15 @@ class Judge:
         try:
             records = judge_document(path, host, self._reference, task.library, self._policy)
         except (DocumentError, ImageError) as error:
-            return {"errors": (str(error),)}
+            return _unread(path, error)
         return dict(zip(("results", "pictures", "notes"), records, strict=True))
+
+
+def _unread(path: Path, error: DocumentError | ImageError) -> dict[str, Any]:
+    """Findings of a document that cannot be read: of one of ours, the library is to blame."""
+    if path.resolve().is_relative_to(examples_folder()) and isinstance(error, DocumentError):
+        raise error
+    return {"errors": (str(error),)}
 
 
 def _with_pages(findings: Findings) -> Findings:
