@@ -269,6 +269,7 @@ def test_the_data_are_the_fields_that_the_page_reads():
 
 def test_what_a_node_is_comes_from_its_values(monkeypatch):
     assert measured_models("stock", OREN_NAYAR) == Models("eon_clamped", "qon_fitted")
+    assert page_data().judged
     direct = PairProbe.direct
     monkeypatch.setattr(PairProbe, "direct", lambda probe, batch: 0.5 * direct(probe, batch))
     measured_models.cache_clear()
@@ -285,8 +286,10 @@ def test_without_the_host_no_material_is_called_a_model(monkeypatch):
     monkeypatch.setattr("mxeon.explorer.diagnosis.open_host", missing)
     measured_models.cache_clear()
     try:
-        shaders = [each for each in page_data().sources if each.kind == "shader"]
+        data = page_data()
+        shaders = [each for each in data.sources if each.kind == "shader"]
         assert shaders and all(each.meant and each.actual is None for each in shaders)
+        assert not data.judged
     finally:
         measured_models.cache_clear()
 

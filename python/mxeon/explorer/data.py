@@ -165,3 +165,9 @@ class PageData:
     functions: str
     sources: tuple[ModelSource | ShaderSource, ...]
     stills: tuple[Still, ...] = field(default=())
+
+    @property
+    def judged(self) -> bool:
+        """Whether every shader that is meant to be a model is known to be one, or another."""
+        shaders = (source for source in self.sources if isinstance(source, ShaderSource))
+        return all(source.actual or not source.meant for source in shaders)
