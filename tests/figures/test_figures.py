@@ -11,7 +11,7 @@ import pytest
 
 from mxeon import figures
 from mxeon.figures import FIGURES, SECTIONS, claims, curves, renders, tracer
-from mxeon.figures.claims import FAILS, HOLDS, IN_PART, inversion, specification, verdict
+from mxeon.figures.claims import FAILS, HOLDS, IN_PART, inversion, sampling, specification, verdict
 from mxeon.models import table
 from mxeon.models.brdf import lambert_brdf
 
@@ -41,7 +41,11 @@ def output(tmp_path_factory, gl):
     """A small run: its page, its folder of figures and the steps it reported."""
     steps = []
     folder = tmp_path_factory.mktemp("figures")
-    page = figures.figures(folder, lambda all_steps: steps.extend(all_steps) or all_steps, **SMALL)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sampling, "DEGREES", sampling.DEGREES[[*range(0, 30, 2), -2, -1]])
+        page = figures.figures(
+            folder, lambda all_steps: steps.extend(all_steps) or all_steps, **SMALL
+        )
     return SimpleNamespace(page=page.read_text(), folder=folder / "figures", steps=steps)
 
 
