@@ -50,6 +50,7 @@ COARSE = (
     "inversion_nodes",
     "kit",
     "library",
+    "paths",
     "tracer",
     "upstream",
 )

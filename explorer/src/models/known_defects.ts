@@ -56,9 +56,9 @@ export const fon_white_lobe_albedo_dir: AlbedoDir = (mu, rho, roughness) =>
 export const qon_tinted_twice_albedo_dir: AlbedoDir = (mu, rho, sigma) =>
   rho * rho * qon_albedo_dir(mu, sigma);
 
-/** Directional albedo of QON as MaterialX 1.39.5 fits it; off by up to 0.063 at rho 1. */
+/** Directional albedo of QON as MaterialX 1.39.5 fits it; off by up to 0.068 at rho 1. */
 export const qon_fitted_albedo_dir: AlbedoDir = (mu, rho, sigma) => {
   const over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma ** 2;
   const under = 1.0 - 0.6076 * sigma - 0.4993 * mu * sigma + 2.0315 * sigma ** 2;
-  return (over / under) * rho;
+  return Math.min(over / under, 1.0) * rho;
 };

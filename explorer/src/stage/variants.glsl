@@ -60,5 +60,5 @@ vec3 qon_fitted_albedo_dir(float mu, vec3 rho, float sigma)
 {
     float over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma * sigma;
     float under = 1.0 - 0.6076 * sigma - 0.4993 * mu * sigma + 2.0315 * sigma * sigma;
-    return over / under * rho;
+    return min(over / under, 1.0) * rho;
 }
