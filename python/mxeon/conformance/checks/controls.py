@@ -31,6 +31,12 @@ class Altered:
         few: tuple[Batch, ...] = self.probe.few
         return few
 
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """The first: pictures of an environment take long on some hosts."""
+        first: tuple[Batch, ...] = self.probe.cosines[:1]
+        return first
+
     def direct(self, batch: Batch) -> Array:
         """Values of the changed batch, changed."""
         return self.values(batch, self.probe.direct(self.batch(batch)))
