@@ -34,8 +34,9 @@ def run(options: argparse.Namespace) -> int:
     results = read_run(options.report).results if options.report else ()
     work = partial(document_sources, policy=arguments.policy(options))
     documents = list(run_batch(work, options.files, options.workers, options.timeout))
-    for warning in (text for each in documents for text in each.warnings):
-        warn(warning)
+    texts = (str(text) for each in documents for text in each.warnings)
+    for text in dict.fromkeys(texts):  # both libraries may warn of one input
+        warn(text)
     errors = [each.error for each in documents if each.error]
     if not errors:
         data = page_data((each.value for each in documents), results)

@@ -22,7 +22,7 @@ from mxeon.shaders.nodes import FLAG
 # called the nearest.
 SAME, NEAR = 0.03, 0.3
 INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
-LIT = 1e-3
+LIT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
 
 Output: TypeAlias = Callable[[Batch, str], Array]  # values that a model gives for a batch
 
@@ -110,8 +110,7 @@ def _distance(
 ) -> float:
     """Root-mean-square distance of the measured values from those of a model with a fault.
 
-    A roughness above 1 is left out, which not every model takes; and light up to LIT, where factors of
-    the cosine cannot be told apart. Where the tolerance is that of a mean, values have noise and means
+    A roughness above 1 is left out, which not every model takes; and light up to LIT. Where the tolerance is that of a mean, values have noise and means
     are compared.
     """
     errors = []

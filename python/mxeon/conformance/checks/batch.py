@@ -118,11 +118,15 @@ def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str,
     color = np.clip(1.25 * color - 0.125, 0.0, 1.0)
     color[-(count // 16) :] = color[-(count // 16) :, :1]
     roughness = row.largest * np.clip(1.25 * roughness - 0.125, 0.0, 1.0)
+    return {"color": rounded(color.T), "roughness": rounded_roughness(roughness, row)}
+
+
+def rounded_roughness(roughness: Array, row: Model) -> Array:
+    """Roughnesses as float32 numbers, none of which exceeds the model's largest by a rounding."""
     largest = np.float32(row.largest)
     if float(largest) > row.largest:
         largest = np.nextafter(largest, np.float32(0.0))
-    roughness = np.minimum(roughness.astype(np.float32), largest)
-    return {"color": rounded(color.T), "roughness": roughness.astype(np.float64)}
+    return np.minimum(roughness.astype(np.float32), largest).astype(np.float64)
 
 
 def rounded(columns: Iterable[Array]) -> Array:

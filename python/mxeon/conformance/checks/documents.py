@@ -33,13 +33,14 @@ def generate_document(
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
-        generate(file, target, library=library, policy=policy)
+        shaders = generate(file, target, library=library, policy=policy)
     messages = [record.message for record in records]
     notes = [
         (str(message), file.name)
         for message in messages
         if isinstance(message, (CodeWarning, DocumentWarning))
     ]
+    error = float(not shaders)
     caught = _refused(file.read_bytes(), target, library)
     result = Result(
         CHECK,
@@ -47,9 +48,9 @@ def generate_document(
         file.name,
         host,
         library,
-        PASSED if caught else FAILED,
-        error=0,
-        unit="documents refused",
+        PASSED if error == 0 and caught else FAILED,
+        error=error,
+        unit="documents without a shader",
         tolerance=0,
         derivation="a count",
         control=Control("half of the document is cut off", float(caught), caught),

@@ -5,7 +5,14 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import Array, Batch, directions, random_inputs, rounded
+from mxeon.conformance.checks.batch import (
+    Array,
+    Batch,
+    directions,
+    random_inputs,
+    rounded,
+    rounded_roughness,
+)
 from mxeon.models.table import Model
 
 EACH = 256  # pairs of each kind
@@ -48,8 +55,8 @@ def special_pairs(rng: np.random.Generator, row: Model) -> Batch:
     count = len(wo)
     inputs = random_inputs(rng, count, row)
     inputs["color"] = _sprinkled(rng, inputs["color"], TINY)
-    inputs["roughness"] = _sprinkled(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
-    inputs["roughness"] = np.minimum(inputs["roughness"], np.nextafter(np.float32(row.largest), 0))
+    roughness = _sprinkled(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
+    inputs["roughness"] = rounded_roughness(roughness, row)
     return Batch(wo, wi, {**inputs, **node_inputs(rng, count)})
 
 
