@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hosts for the tests, each opened once in a session, when a test first asks for it."""
 
+import signal
+
 import pytest
 from coverage import Coverage
 
 from mxeon.conformance import reference as reference_host
+from mxeon.jobs.signals import ENDING
 from mxeon.shaders.hosts import open_host
 from tests.support.availability import available, required
 
 
 def pytest_configure():
-    """Refuse an unknown name of a required host before any test runs."""
+    """Undo what nohup or a job in the background ignores, and refuse an unknown host's name.
+
+    A signal that the starter of the tests ignores is ignored by each command that they start.
+    """
+    for number in ENDING:
+        if signal.getsignal(number) == signal.SIG_IGN:
+            default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+            signal.signal(number, default)
     try:
         required()
     except ValueError as error:
