@@ -149,14 +149,26 @@ def test_weight_scales_the_value(gl):
     assert np.array_equal(half, 0.5 * whole)
 
 
-def test_a_material_of_two_lobes_cannot_be_evaluated(gl):
+def test_nodes_are_evaluated_together_with_inputs_by_their_paths(gl):
     nodes = f"""<{EON} name="a" type="BSDF"/><{EON} name="b" type="BSDF"/>
       <add name="lobe" type="BSDF">
         <input name="in1" type="BSDF" nodename="a"/><input name="in2" type="BSDF" nodename="b"/>
       </add>"""
+    wo, wi = np.array([[0.0, 0.6, 0.8]]), np.array([[0.0, -0.8, 0.6]])
+    colors = {"a/color": (0.1, 0.2, 0.3), "b/color": (0.3, 0.2, 0.1)}
+    both = gl.evaluate(shader(nodes), wo, wi, colors, "direct")
+    one, other = (
+        gl.evaluate(shader(LOBES["eon"]), wo, wi, {"color": color, "roughness": 0.0}, "direct")
+        for color in colors.values()
+    )
+    assert np.allclose(both, one + other, rtol=1e-6)
+
+
+def test_a_material_without_a_bsdf_cannot_be_evaluated(gl):
+    text = document_text('<surface_unlit name="shading" type="surfaceshader"/>')
     wo = np.array([[0.0, 0.0, 1.0]])
-    with pytest.raises(ValueError, match="element 'look' must call one BSDF"):
-        gl.evaluate(shader(nodes), wo, wo, {}, "direct")
+    with pytest.raises(ValueError, match="element 'look' must call a BSDF"):
+        gl.evaluate(gl.compile(text)[0], wo, wo, {}, "direct")
 
 
 def test_an_unknown_branch_lists_the_known_ones(gl):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rough diffuse nodes, their inputs, and materials of one node as MaterialX text."""
+"""The BSDF nodes, their inputs, and materials of one node as MaterialX text."""
 
 from collections.abc import Mapping
 
@@ -25,6 +25,55 @@ INPUT_TYPES = {
     FLAG: "boolean",
 }
 
+# Inputs of the other BSDF nodes of pbrlib, by category, as their definitions have them.
+_MICROFACET = {
+    "roughness": "vector2",
+    "retroreflective": "boolean",
+    "thinfilm_thickness": "float",
+    "thinfilm_ior": "float",
+    "normal": "vector3",
+    "tangent": "vector3",
+    "distribution": "string",
+}
+BSDF_INPUTS: dict[str, dict[str, str]] = {
+    "burley_diffuse_bsdf": {
+        "weight": "float",
+        "color": "color3",
+        "roughness": "float",
+        "normal": "vector3",
+    },
+    "dielectric_bsdf": {
+        "weight": "float",
+        "tint": "color3",
+        "ior": "float",
+        **_MICROFACET,
+        "scatter_mode": "string",
+    },
+    "conductor_bsdf": {
+        "weight": "float",
+        "ior": "color3",
+        "extinction": "color3",
+        **_MICROFACET,
+    },
+    "generalized_schlick_bsdf": {
+        "weight": "float",
+        "color0": "color3",
+        "color82": "color3",
+        "color90": "color3",
+        "exponent": "float",
+        **_MICROFACET,
+        "scatter_mode": "string",
+    },
+    "translucent_bsdf": {"weight": "float", "color": "color3", "normal": "vector3"},
+    "sheen_bsdf": {
+        "weight": "float",
+        "color": "color3",
+        "roughness": "float",
+        "normal": "vector3",
+        "mode": "string",
+    },
+}
+
 SURFACE = """  <surface name="shading" type="surfaceshader">
     <input name="bsdf" type="BSDF" nodename="lobe" />
   </surface>
@@ -36,6 +85,26 @@ DOCUMENT = """<?xml version="1.0"?>
   </surfacematerial>
 </materialx>
 """
+
+
+FRAME = ("normal", "tangent")  # inputs that are vectors of the surface
+
+
+def input_types(category: str) -> Mapping[str, str]:
+    """Type of each input of a BSDF node, by name."""
+    return BSDF_INPUTS.get(category, INPUT_TYPES)
+
+
+def types_of(name: str) -> frozenset[str]:
+    """Types that an input of a name has in the nodes.
+
+    Examples
+    --------
+    >>> sorted(types_of("roughness"))
+    ['float', 'vector2']
+    """
+    tables = (INPUT_TYPES, *BSDF_INPUTS.values())
+    return frozenset(kinds[name] for kinds in tables if name in kinds)
 
 
 def value_text(value: ArrayLike) -> str:
@@ -64,15 +133,15 @@ def node_text(category: str, kind: str, name: str, inputs: str = "") -> str:
 
 
 def lobe_text(category: str, inputs: Mapping[str, ArrayLike], name: str = "lobe") -> str:
-    """XML of a rough diffuse node.
+    """XML of a BSDF node.
 
     Parameters
     ----------
     category : str
-        One of DIFFUSE_NODES.
+        A category of BSDF_INPUTS, or one of DIFFUSE_NODES.
     inputs : mapping of str to bool, float, str or a sequence of floats
-        Values by names of INPUT_TYPES. MaterialX ignores a normal that is not connected, so its
-        value comes from a node of its own.
+        Values by name. MaterialX ignores a normal that is not connected, so its value comes from a
+        node of its own; and a tangent likewise.
     name : str
         Name of the node.
 
@@ -81,15 +150,18 @@ def lobe_text(category: str, inputs: Mapping[str, ArrayLike], name: str = "lobe"
     KeyError
         If there is no input of that name.
     """
-    values = {each: value for each, value in inputs.items() if each != "normal"}
-    text = "".join(input_text(each, INPUT_TYPES[each], value) for each, value in values.items())
-    if "normal" not in inputs:
-        return node_text(category, "BSDF", name, text)
-    normal = input_text("value", "vector3", inputs["normal"])
-    text += f'    <input name="normal" type="vector3" nodename="{name}_normal" />\n'
-    return node_text("constant", "vector3", f"{name}_normal", normal) + node_text(
-        category, "BSDF", name, text
-    )
+    kinds = input_types(category)
+    text = constants = ""
+    for each, value in inputs.items():
+        if each in FRAME:
+            source = f"{name}_{each}"
+            constants += node_text(
+                "constant", "vector3", source, input_text("value", "vector3", value)
+            )
+            text += f'    <input name="{each}" type="vector3" nodename="{source}" />\n'
+        else:
+            text += input_text(each, kinds[each], value)
+    return constants + node_text(category, "BSDF", name, text)
 
 
 def document_text(nodes: str, name: str = "look") -> str:
@@ -108,5 +180,5 @@ def document_text(nodes: str, name: str = "look") -> str:
 def material_text(
     category: str, inputs: Mapping[str, ArrayLike] | None = None, name: str = "look"
 ) -> str:
-    """XML of a document whose material is one rough diffuse node; see `lobe_text`."""
+    """XML of a document whose material is one BSDF node; see `lobe_text`."""
     return document_text(lobe_text(category, inputs or {}) + SURFACE, name)

@@ -16,12 +16,6 @@ from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
-CHANGES = {
-    "weight": 0.5,
-    "color": (0.9, 0.1, 0.6),
-    "roughness": 0.3,
-    "normal": (0.0, 0.6, 0.8),
-}
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
 BRANCHES = ("direct", "environment", "transmission", "emission")
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
@@ -59,6 +53,12 @@ def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
     return np.where(np.isfinite(error), error, np.inf)
 
 
+def scaled(measured: Array, expected: Array) -> Array:
+    """Largest difference of each row, relative to the expected value where that exceeds 1."""
+    scale = np.maximum(1.0, np.abs(expected))
+    return absolute(measured / scale, expected / scale)
+
+
 def relative(measured: Array, expected: Array) -> Array:
     """Largest difference of each row, relative to the expected value."""
     return absolute(measured / expected, 1.0)
@@ -71,29 +71,29 @@ def of_mean(measured: Array, expected: Array) -> Array:
 
 def value(probe: Any, metric: Metric) -> Measurement:
     """Values against the model's, over all pairs of the probe."""
-    return _worst(metric, value_cases(probe))
+    return worst_of(metric, value_cases(probe))
 
 
 def value_cases(probe: Any) -> Iterator[Case]:
     """The cases of `value`."""
     for batch in probe.batches:
-        yield Case(batch, probe.direct(batch), batch.expected(probe.subject.model))
+        yield Case(batch, probe.direct(batch), probe.subject.expected(batch))
 
 
 def environment(probe: Any, metric: Metric) -> Measurement:
     """The environment branch against the closed form of the directional albedo."""
-    return _worst(metric, albedo_cases(probe))
+    return worst_of(metric, albedo_cases(probe))
 
 
 def albedo_cases(probe: Any) -> Iterator[Case]:
     """The cases of `environment`."""
     for batch in probe.cosines:
-        yield Case(batch, probe.albedo(batch), batch.albedo(probe.subject.model))
+        yield Case(batch, probe.albedo(batch), probe.subject.albedo(batch))
 
 
 def frame(probe: Any, metric: Metric) -> Measurement:
     """Values in turned frames, of which half have a normal that faces away, against those in none."""
-    return _worst(metric, frame_cases(probe))
+    return worst_of(metric, frame_cases(probe))
 
 
 def frame_cases(probe: Any) -> Iterator[Case]:
@@ -106,7 +106,7 @@ def frame_cases(probe: Any) -> Iterator[Case]:
 
 def surroundings(probe: Any, metric: Metric) -> Measurement:
     """The environment branch under an uneven sky, over that in a uniform one, against the sky."""
-    return _worst(metric, [surroundings_case(probe)])
+    return worst_of(metric, [surroundings_case(probe)])
 
 
 def surroundings_case(probe: Any) -> Case:
@@ -124,7 +124,7 @@ def quadrature(probe: Any, metric: Metric) -> Measurement:
         wo = np.array([[np.sqrt(1.0 - mu * mu), 0.0, mu]])
         batch = Batch(wo, wo, {"color": color, "roughness": roughness})
         cases.append(Case(batch, *integrated(probe, mu, color, roughness)))
-    return _worst(metric, cases)
+    return worst_of(metric, cases)
 
 
 def integrated(
@@ -150,13 +150,13 @@ def integrated(
 
 def black(probe: Any, metric: Metric) -> Measurement:
     """Values of a black surface against 0."""
-    batches = [batch.altered(color=BLACK) for batch in probe.few]
-    return _worst(metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
+    batches = [batch.altered(**probe.subject.black) for batch in probe.few]
+    return worst_of(metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
 
 
 def throughput(probe: Any, metric: Metric) -> Measurement:
-    """Throughput of an opaque node against 0, in every branch and for every weight."""
-    return _worst(metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch)))
+    """Throughput against 0 of an opaque node, in every branch and for every weight."""
+    return worst_of(metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch)))
 
 
 def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
@@ -168,7 +168,7 @@ def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
 def furnace(probe: Any, metric: Metric) -> Measurement:
     """Albedo of a white surface against 1."""
     batches = [batch.altered(color=WHITE, weight=1.0) for batch in probe.cosines]
-    return _worst(metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
+    return worst_of(metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
 
 
 def reciprocity(probe: Any, metric: Metric) -> Measurement:
@@ -180,13 +180,13 @@ def reciprocity(probe: Any, metric: Metric) -> Measurement:
             forward = probe.direct(batch) * batch.wo[:, 2:]
             backward = probe.direct(swapped) * batch.wi[:, 2:]
         cases.append(Case(batch, forward, backward))
-    return _worst(metric, cases)
+    return worst_of(metric, cases)
 
 
 def lambert(probe: Any, metric: Metric) -> Measurement:
     """Values at roughness 0 against Lambert's."""
     batches = [batch.altered(roughness=0.0) for batch in probe.few]
-    return _worst(
+    return worst_of(
         metric, (Case(batch, probe.direct(batch), batch.expected("lambert")) for batch in batches)
     )
 
@@ -215,12 +215,10 @@ def inputs(probe: Any, _: Metric) -> Measurement:
 def dead_inputs(probe: Any) -> list[str]:
     """The inputs of `inputs`."""
     batch = probe.few[0]
-    values = probe.direct(batch)
-    changes = {**CHANGES, FLAG: not probe.subject.flag}
     return [
         name
-        for name in probe.subject.inputs
-        if np.array_equal(values, probe.direct(batch.altered(**{name: changes[name]})))
+        for name, pair in probe.subject.changes.items()
+        if np.array_equal(*(probe.direct(batch.altered(**change)) for change in pair))
     ]
 
 
@@ -228,23 +226,17 @@ def finite(probe: Any, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
     batch, values, _expected = edge_case(probe)
     bad = ~np.isfinite(values).all(axis=1)
-    return Measurement(int(bad.sum()), _point(batch, int(bad.argmax())) if bad.any() else {})
+    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
 
 
 def edge_case(probe: Any) -> Case:
     """Values and albedos at the edges of the domain, beside 0."""
-    cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
-    rows = product(cosine, cosine, [0.0, 1.0, 2.0, np.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
-    mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
-    S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
-    wo = np.stack([S_o, 0.0 * S_o, mu_o], axis=-1)
-    wi = np.stack([S_i * np.cos(azimuth), S_i * np.sin(azimuth), mu_i], axis=-1)
-    batch = Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
+    batch = probe.edges
     values = np.concatenate([probe.direct(batch), probe.albedo(batch)], axis=1)
     return Case(batch, values, np.zeros_like(values))
 
 
-def _worst(metric: Metric, cases: Iterable[Case]) -> Measurement:
+def worst_of(metric: Metric, cases: Iterable[Case]) -> Measurement:
     """The worst row of (batch, measured, expected) cases."""
     worst = Measurement(-1.0, {})
     for batch, measured, expected in cases:
@@ -253,11 +245,11 @@ def _worst(metric: Metric, cases: Iterable[Case]) -> Measurement:
         if errors[row] > worst.error:
             expected = np.broadcast_to(expected, measured.shape)
             values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
-            worst = Measurement(float(errors[row]), {**_point(batch, row), **values})
+            worst = Measurement(float(errors[row]), {**point_of(batch, row), **values})
     return worst
 
 
-def _point(batch: Batch, row: int) -> dict[str, list[float]]:
+def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
     """Directions and inputs of one row of a batch."""
     columns: dict[str, Any] = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
     return {

@@ -5,6 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
+from mxeon.conformance.checks.batch import Array, Batch, random_inputs
+from mxeon.conformance.checks.special import special_inputs
+from mxeon.models import table as reference
 from mxeon.shaders.nodes import (
     EON,
     FLAG,
@@ -15,6 +20,14 @@ from mxeon.shaders.nodes import (
     material_text,
     node_text,
 )
+
+
+CHANGES = {
+    "weight": 0.5,
+    "color": (0.9, 0.1, 0.6),
+    "roughness": 0.3,
+    "normal": (0.0, 0.6, 0.8),
+}
 
 
 @dataclass(frozen=True)
@@ -57,6 +70,37 @@ class Subject:
         """MaterialX text of a material that is this node alone, with these inputs."""
         return material_text(self.node, self.with_flag(inputs or {}), self.node)
 
+    @property
+    def changes(self) -> dict[str, tuple[dict[str, Any], dict[str, Any]]]:
+        """For each input: inputs without and with a change of it alone, which must be seen."""
+        values = {**CHANGES, FLAG: not self.flag}
+        return {name: ({}, {name: values[name]}) for name in self.inputs}
+
+    @property
+    def black(self) -> dict[str, Any]:
+        """Inputs with which it reflects nothing."""
+        return {"color": (0.0, 0.0, 0.0)}
+
+    def passed(self, batch: Batch) -> Array:
+        """Throughput, (N, 3): an opaque node lets nothing through."""
+        return np.zeros((len(batch.wo), 3))
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random colors and roughnesses; see `mxeon.conformance.checks.batch.random_inputs`."""
+        return random_inputs(rng, count, reference.model(self.model))
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Colors and roughnesses of which half lie on an edge."""
+        return special_inputs(rng, count, reference.model(self.model))
+
+    def expected(self, batch: Batch) -> Array:
+        """pi f cos(theta_i) of the model, (N, 3)."""
+        return batch.expected(self.model)
+
+    def albedo(self, batch: Batch) -> Array:
+        """Directional albedo of the model, (N, 3)."""
+        return batch.albedo(self.model)
+
 
 SUBJECTS = (
     Subject(OREN_NAYAR, True, "eon"),
@@ -93,6 +137,10 @@ class Surface:
     libraries: tuple[str, ...] = ()
 
     inputs: ClassVar[tuple[str, ...]] = ()
+
+    def expected(self, batch: Batch) -> Array:
+        """pi f cos(theta_i) of the model, (N, 3)."""
+        return batch.expected(self.model)
 
     def document(self, inputs: Mapping[str, Any]) -> str:
         """MaterialX text of a material that is this shader alone."""

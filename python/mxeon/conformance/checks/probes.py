@@ -6,7 +6,7 @@ both answer in the same form, so a check is written once.
 """
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar, TypeAlias
@@ -22,17 +22,18 @@ from mxeon.conformance.checks.batch import (
     Array,
     Batch,
     directions,
-    random_inputs,
+    rounded,
 )
+from mxeon.conformance.checks.bsdfs import BsdfSubject
 from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.conformance.checks.special import (
+    diffuse_edges,
     node_inputs,
-    outside_pairs,
-    special_pairs,
-    turned_pairs,
+    outside_directions,
+    special_directions,
+    turned_directions,
+    turned_frames,
 )
-from mxeon.models import table as reference
-from mxeon.models.table import Model
 from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only, host_row
 from mxeon.shaders.hosts.base import Host
@@ -47,6 +48,7 @@ PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
 PICTURE_SIZE = 128
 TURNED = 1 << 12  # pairs in frames of their own
 
+Draw: TypeAlias = Callable[[np.random.Generator, int], dict[str, Array]]
 Mask: TypeAlias = NDArray[np.bool_]
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 
@@ -58,27 +60,22 @@ class PairProbe:
     kind: ClassVar[str] = "pairs"
 
     host: Host
-    subject: Subject
+    subject: Subject | BsdfSubject
     library: str
 
     @cached_property
     def _shader(self) -> Shader:
         return self.host.compile(self.subject.document(), library=self.library)[0]
 
-    @property
-    def _model(self) -> Model:
-        return reference.model(self.subject.model)
-
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """PAIRS random pairs, a quarter of each direction grazing; special ones; and outside ones."""
         rng = np.random.default_rng(SEED)
-        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
-        inputs = {**random_inputs(rng, PAIRS, self._model), **node_inputs(rng, PAIRS)}
+        pairs = directions(rng, PAIRS), directions(rng, PAIRS)
         return (
-            Batch(wo, wi, inputs),
-            special_pairs(rng, self._model),
-            outside_pairs(rng, self._model),
+            self._batch(rng, pairs, self.subject.random_inputs),
+            self._batch(rng, special_directions(rng), self.subject.special_inputs),
+            self._batch(rng, outside_directions(rng), self.subject.random_inputs),
         )
 
     @cached_property
@@ -92,10 +89,22 @@ class PairProbe:
         """Directions for the environment branch, which does not depend on `wi`."""
         return (*self.few, self.batches[-1])
 
+    @property
+    def edges(self) -> Batch:
+        """Pairs and inputs at the edges of the domain."""
+        return diffuse_edges()
+
     @cached_property
     def turned(self) -> Batch:
-        """TURNED pairs in frames of their own."""
-        return turned_pairs(np.random.default_rng(SEED), TURNED, self._model)
+        """TURNED pairs in frames of their own; half of the normals face away from the viewer."""
+        rng = np.random.default_rng(SEED)
+        frames = turned_frames(rng, TURNED)
+        count = len(frames)
+        wo, wi = turned_directions(rng, count), turned_directions(rng, count)
+        facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
+        normal = facing * rounded(frames[:, :, 2].T)
+        inputs = {**self.subject.random_inputs(rng, count), "normal": normal}
+        return Batch(wo, wi, inputs, frame=frames)
 
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""
@@ -108,6 +117,11 @@ class PairProbe:
     def throughput(self, batch: Batch, branch: str) -> Array:
         """The share of the light from below that passes the node, in one of BRANCHES, (N, 3)."""
         return self._evaluate(batch, branch, output="throughput")
+
+    def _batch(self, rng: np.random.Generator, pairs: tuple[Array, Array], inputs: Draw) -> Batch:
+        """Pairs with random inputs, weights and occlusions."""
+        wo, wi = pairs
+        return Batch(wo, wi, {**inputs(rng, len(wo)), **node_inputs(rng, len(wo))})
 
     def _evaluate(self, batch: Batch, branch: str, **options: Any) -> Array:
         inputs = self.subject.with_flag(batch.inputs)

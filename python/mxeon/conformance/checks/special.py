@@ -28,8 +28,8 @@ WEIGHTS = (-0.5, 0.0, 1e-3, 0.01, 0.5)
 OCCLUSIONS = (0.0, 1e-3, 0.5)
 
 
-def special_pairs(rng: np.random.Generator, row: Model) -> Batch:
-    """Exact directions, above the horizon or on it, with inputs of which many lie on an edge.
+def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
+    """Exact directions `wo` and `wi`, above the horizon or on it.
 
     A grid of cosines down to 1e-7 with equal, perpendicular and opposite azimuths; and with a random
     other direction: exact retro-reflection, the mirror direction, the viewer or the light along the
@@ -52,37 +52,49 @@ def special_pairs(rng: np.random.Generator, row: Model) -> Batch:
         (free, other),
     )
     wo, wi = (np.concatenate(each) for each in zip(*pairs, strict=True))
-    count = len(wo)
+    return wo, wi
+
+
+def special_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
+    """Colors and roughnesses of a diffuse model, of which half lie on an edge."""
     inputs = random_inputs(rng, count, row)
     inputs["color"] = _sprinkled(rng, inputs["color"], TINY)
     roughness = _sprinkled(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
     inputs["roughness"] = rounded_roughness(roughness, row)
-    return Batch(wo, wi, {**inputs, **node_inputs(rng, count)})
+    return inputs
 
 
-def outside_pairs(rng: np.random.Generator, row: Model) -> Batch:
-    """Pairs that no model has: light from below the horizon, and cosines that exceed 1."""
+def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
+    """Directions that no model has: light from below the horizon, and cosines that exceed 1."""
     below = directions(rng, EACH) * [1.0, 1.0, -1.0]
     high = _directions(HORIZON + (1.0 - HORIZON) * rng.random(EACH), 2.0 * np.pi * rng.random(EACH))
     straight = np.broadcast_to([0.0, 0.0, ABOVE_ONE], below.shape)
     wo = np.concatenate([high, straight, directions(rng, EACH)])
     wi = np.concatenate([below, directions(rng, EACH), straight])
-    return Batch(wo, wi, {**random_inputs(rng, len(wo), row), **node_inputs(rng, len(wo))})
+    return wo, wi
 
 
-def turned_pairs(rng: np.random.Generator, count: int, row: Model) -> Batch:
-    """Pairs in random frames; for half of them the node's normal faces away from the viewer."""
+def turned_frames(rng: np.random.Generator, count: int) -> Array:
+    """Axes of at most so many random frames, as columns; no normal points to a pole of the sky."""
     axes, _ = np.linalg.qr(rng.standard_normal((count, 3, 3)))
-    axes = axes[np.abs(axes[:, 1, 2]) <= POLE]
-    count = len(axes)
+    return np.asarray(axes[np.abs(axes[:, 1, 2]) <= POLE])
+
+
+def turned_directions(rng: np.random.Generator, count: int) -> Array:
+    """Directions for turned frames, (count, 3)."""
     low, high = TURNED
-    wo, wi = (
-        _directions(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
-        for _ in range(2)
-    )
-    facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
-    normal = facing * rounded(axes[:, :, 2].T)
-    return Batch(wo, wi, {**random_inputs(rng, count, row), "normal": normal}, frame=axes)
+    return _directions(low + (high - low) * rng.random(count), 2.0 * np.pi * rng.random(count))
+
+
+def diffuse_edges() -> Batch:
+    """Pairs, colors and roughnesses at the edges of the domain of a diffuse node."""
+    cosine = [0.0, 1e-30, 1e-6, 0.5, 1.0]
+    rows = product(cosine, cosine, [0.0, 1.0, 2.0, np.pi], [0.0, 1e-6, 1.0], [0.0, 0.5, 1.0])
+    mu_o, mu_i, azimuth, roughness, color = np.array(list(rows)).T
+    S_o, S_i = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2)
+    wo = np.stack([S_o, 0.0 * S_o, mu_o], axis=-1)
+    wi = np.stack([S_i * np.cos(azimuth), S_i * np.sin(azimuth), mu_i], axis=-1)
+    return Batch(wo, wi, {"color": np.stack([color] * 3, axis=-1), "roughness": roughness})
 
 
 def node_inputs(rng: np.random.Generator, count: int) -> dict[str, Array]:

@@ -112,7 +112,7 @@ class Host(ABC):
         output: str = "response",
         irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
-        """Values of a shader's one BSDF for pairs of directions.
+        """Values of a shader's BSDF for pairs of directions.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class Host(ABC):
         Unsupported
             If the host has no such verb.
         ValueError
-            If the shader does not call exactly one BSDF, or branch or output is unknown.
+            If the shader calls no BSDF, or branch or output is unknown.
         ShaderError
             If the host's compiler refuses the shader.
         """

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import Input, Shader
-from mxeon.shaders.nodes import INPUT_TYPES
+from mxeon.shaders.nodes import types_of
 
 # By branch: the closure type of the call that is repeated, and the one that takes its place. A BSDF
 # that only reflects is called in the first two branches alone.
@@ -35,13 +35,15 @@ FETCH = {
     "color3": "vec3 {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).xyz;",
 }
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
-SCALARS = ("float", "boolean")
-NORMAL = (0.0, 0.0, 1.0)
+FETCH["vector2"] = "vec2 {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).xy;"
+FETCH["integer"] = "int {0} = int(texelFetch(mxeon_{0}, mxeon_pixel, 0).x);"
+COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
+NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 ASKED = "throughput_asked"  # variable of an evaluation
 WIDTH = 1024  # pixels in a row of an evaluation
 
 Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
-Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 or 3 values by name
+Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values by name
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ DIALECTS = {
 
 @dataclass(frozen=True)
 class Call:
-    """How a generated shader calls its one BSDF.
+    """How a generated shader calls its BSDFs.
 
     Attributes
     ----------
@@ -155,19 +157,19 @@ def bsdf_call(
     Raises
     ------
     ValueError
-        If the shader does not call exactly one BSDF, or branch or output is unknown.
+        If the shader calls no BSDF, or branch or output is unknown.
     """
     for rule, word, known in (("branch", branch, tuple(CLOSURES)), ("output", output, OUTPUTS)):
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
     called, closure = CLOSURES[branch]
-    statements, result, names = _find_call(shader.stages["pixel"], called, shader.element)
+    statements, result, names = _find_calls(shader.stages["pixel"], called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     arguments[ASKED] = ("boolean", output == "throughput")
     ports = {port.name: port for port in shader.inputs}
     for name in names:
-        arguments[name] = _argument(ports.get(name), inputs)
+        arguments[name] = _argument(name, ports, inputs)
     value = f"{ASKED} ? {result}.throughput : {result}.response"
     return Call(statements.replace(called, closure), value, arguments)
 
@@ -180,7 +182,7 @@ def bsdf_evaluation(
     branch: str,
     output: str = OUTPUTS[0],
 ) -> tuple[str, Columns]:
-    """Pixel stage that evaluates the one BSDF of a generated shader, and its arguments.
+    """Pixel stage that evaluates the BSDF of a generated shader, and its arguments.
 
     Parameters
     ----------
@@ -192,12 +194,12 @@ def bsdf_evaluation(
     Returns
     -------
     str, dict of str to ndarray
-        The text, and float32 texels (N, 1 or 3) by sampler name.
+        The text, and float32 texels (N, 1 to 3) by sampler name.
 
     Raises
     ------
     ValueError
-        If the shader does not call exactly one BSDF, or branch or output is unknown.
+        If the shader calls no BSDF, or branch or output is unknown.
     """
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch, output)
@@ -241,39 +243,49 @@ def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
 
 
 def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
-    """Values of (type, values) as float32 rows of 1 or 3, by name."""
+    """Values of (type, values) as float32 rows of 1 to 3, by name."""
     return {
-        name: np.asarray(value, dtype=np.float32).reshape(-1, 1 if kind in SCALARS else 3)
+        name: np.asarray(value, dtype=np.float32).reshape(-1, COMPONENTS.get(kind, 3))
         for name, (kind, value) in arguments.items()
     }
 
 
-def _find_call(text: str, closure: str, element: str) -> tuple[str, str, list[str]]:
-    """Statements that evaluate the BSDF for a closure type, its result and its arguments."""
+def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[str]]:
+    """Statements that evaluate the BSDFs for a closure type, their result and their arguments.
+
+    The last call combines what the others before it return, or is the only one.
+    """
     # MaterialX before 1.39.5 calls the constructor itself.
     constructor = r"(?:makeClosureData|ClosureData)"
     match = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
     block = match[0] if match else ""
     calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block)
-    if len(calls) != 1:
+    if not calls:
         raise InputError(
-            f"element {element!r} must call one BSDF and nothing else to be evaluated; "
-            f"its shader calls {len(calls)}"
+            f"element {element!r} must call a BSDF to be evaluated; its shader calls none"
         )
-    (arguments, result), end = calls[0], f", {calls[0][1]});"
-    return block[: block.index(end) + len(end)], result, arguments.split(", ")
+    end, results = f", {calls[-1][1]});", [result for _, result in calls]
+    names = [name for arguments, _ in calls for name in arguments.split(", ")]
+    arguments = [name for name in dict.fromkeys(names) if name not in results]
+    return block[: block.index(end) + len(end)], results[-1], arguments
 
 
-def _argument(port: Input | None, inputs: Mapping[str, Any]) -> tuple[str, ArrayLike]:
-    """Type and value of a BSDF's argument; one that is no input of the shader is the normal."""
+def _argument(
+    name: str, ports: Mapping[str, Input], inputs: Mapping[str, Any]
+) -> tuple[str, ArrayLike]:
+    """Type and value of a BSDF's argument; one that is no input of the shader is of the surface."""
+    port = ports.get(name)
     if port is None:
-        return "vector3", inputs.get("normal", NORMAL)
-    name = port.path.rsplit("/", 1)[-1]
-    if name in inputs and port.type != INPUT_TYPES.get(name, port.type):
+        tangent = "tangent" in name.lower() or "tworld" in name.lower()
+        return "vector3", inputs.get(*(("tangent", TANGENT) if tangent else ("normal", NORMAL)))
+    key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
+    types = types_of(key.rsplit("/", 1)[-1])
+    if key in inputs and types and port.type not in types:
+        required = " or ".join(sorted(types))
         raise InterfaceError(
-            f"input {name} must have the type {INPUT_TYPES[name]} to be evaluated; got {port.type}"
+            f"input {key} must have the type {required} to be evaluated; got {port.type}"
         )
-    return port.type, inputs.get(name, port.value)
+    return port.type, inputs.get(key, port.value)
 
 
 def _main(

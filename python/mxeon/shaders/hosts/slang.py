@@ -29,6 +29,7 @@ ENTRY = "mxeon_main"
 THREADS = 64  # in a group
 READ = {
     1: "{kind} {name} = {kind}(mxeon_{name}[mxeon_row]);",
+    2: "float2 {name} = float2(mxeon_{name}[2 * mxeon_row], mxeon_{name}[2 * mxeon_row + 1]);",
     3: "float3 {name} = float3(mxeon_{name}[3 * mxeon_row], mxeon_{name}[3 * mxeon_row + 1], "
     "mxeon_{name}[3 * mxeon_row + 2]);",
 }
@@ -58,7 +59,7 @@ void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
 GLSL = """typealias vec3 = float3;
 #define mix lerp
 """
-KINDS = {"boolean": "bool"}
+KINDS = {"boolean": "bool", "integer": "int"}
 
 DEVICES = ("vulkan", "cpu")  # the first that works
 

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of the other BSDF nodes of pbrlib, with the pairs and the quadratures that they need."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.checks.bsdfs import BsdfSubject
+from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.special import outside_directions, special_directions
+
+PAIRS = 1 << 14
+FEW = 1 << 12
+ALBEDOS = 1 << 10  # directions of view whose albedo is asked
+MATERIALS = 64  # whose values are integrated
+NODES = 48  # of a quadrature, in cosine and in azimuth
+
+
+@dataclass(frozen=True, eq=False)
+class BsdfProbe(PairProbe):
+    """A node of pbrlib on a host that evaluates any pairs."""
+
+    kind: ClassVar[str] = "closed pairs"
+
+    subject: BsdfSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """PAIRS random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        rng = np.random.default_rng(SEED)
+        pairs = directions(rng, PAIRS), directions(rng, PAIRS)
+        return (
+            self._batch(rng, pairs, self.subject.random_inputs),
+            self._batch(rng, special_directions(rng), self.subject.special_inputs),
+            self._batch(rng, outside_directions(rng), self.subject.random_inputs),
+        )
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of the random pairs and the special ones."""
+        pairs, special, *_ = self.batches
+        return pairs.first(FEW), special
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """Directions of view for albedos, which do not depend on `wi`."""
+        pairs, special, *_ = self.batches
+        return pairs.first(ALBEDOS), special.first(ALBEDOS)
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Exact directions and inputs on their edges, roughness 0 among them."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = special_directions(rng)
+        inputs = self.subject.special_inputs(rng, len(wo))
+        if "roughness" in inputs:
+            inputs["roughness"][::4] = 0.0
+        return Batch(wo, wi, inputs)
+
+    @cached_property
+    def integrated(self) -> tuple[Batch, Array]:
+        """MATERIALS materials in each NODES^2 directions of light, and the weights of their values.
+
+        The weighted sum of pi f cos over a material's directions is its directional albedo.
+        """
+        rng = np.random.default_rng(SEED)
+        wo, inputs = directions(rng, MATERIALS), self.subject.random_inputs(rng, MATERIALS)
+        wi, weights = self._nodes(wo, inputs)
+        each = np.repeat(np.arange(MATERIALS), wi.shape[1])
+        spread = {name: values[each] for name, values in inputs.items()}
+        return Batch(wo[each], wi.reshape(-1, 3), spread), weights
+
+    def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
+        """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
+        x, w = np.polynomial.legendre.leggauss(NODES)
+        t = 0.5 * (x + 1.0)
+        mu = t * t * (3.0 - 2.0 * t)  # dense at the horizon and around the normal
+        slope = 6.0 * t * (1.0 - t) * 0.5 * w
+        azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
+        phi = azimuth + 2.0 * np.pi * (np.arange(NODES) + 0.5) / NODES
+        radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
+        side = -1.0 if self.subject.row.transmits else 1.0
+        columns = (radius * np.cos(phi), radius * np.sin(phi), side * mu[:, np.newaxis] + 0.0 * phi)
+        wi = rounded(columns).reshape(len(wo), -1, 3)
+        weights = np.repeat(slope * 2.0 / NODES, NODES)
+        return wi, np.broadcast_to(weights, wi.shape[:2])
+
+
+@dataclass(frozen=True, eq=False)
+class FittedProbe(BsdfProbe):
+    """A node whose shader takes its albedo from a fit."""
+
+    kind: ClassVar[str] = "fitted pairs"
+
+
+@dataclass(frozen=True, eq=False)
+class MicrofacetProbe(BsdfProbe):
+    """A node of microfacets, whose values are large near the mirror direction."""
+
+    kind: ClassVar[str] = "microfacet pairs"
+
+
+BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, FittedProbe, MicrofacetProbe)}
