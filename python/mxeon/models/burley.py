@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Burley's diffuse model, as in [MaterialXPBR2026], section `burley_diffuse_bsdf`."""
+"""Burley's diffuse model, as in [MaterialX2026], section `burley_diffuse_bsdf`."""
 
 import numpy as np
 
@@ -41,7 +41,7 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
 
     References
     ----------
-    [MaterialXPBR2026], section `burley_diffuse_bsdf`; [Burley2012], section 5.3.
+    [MaterialX2026], section `burley_diffuse_bsdf`; [Burley2012], section 5.3.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
 
     References
     ----------
-    [MaterialXPBR2026], sections `burley_diffuse_bsdf` and Directional Albedo.
+    [MaterialX2026], sections `burley_diffuse_bsdf` and Directional Albedo.
 
     Examples
     --------

@@ -54,7 +54,7 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
     References
     ----------
-    [MaterialXPBR2026], sections `sheen_bsdf` and Directional Albedo and Energy Conservation.
+    [MaterialX2026], sections `sheen_bsdf` and Directional Albedo and Energy Conservation.
 
     Examples
     --------

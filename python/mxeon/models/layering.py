@@ -59,7 +59,7 @@ def throughput(albedo: ArrayLike) -> Array:
 
     References
     ----------
-    [MaterialXPBR2026], section `layer`.
+    [MaterialX2026], section `layer`.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
 
     References
     ----------
-    [MaterialXPBR2026], section `layer`.
+    [MaterialX2026], section `layer`.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 
     References
     ----------
-    [MaterialXPBR2026], section `mix`.
+    [MaterialX2026], section `mix`.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
     References
     ----------
-    [MaterialXPBR2026], section `add`.
+    [MaterialX2026], section `add`.
 
     Examples
     --------
@@ -189,7 +189,7 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
     References
     ----------
-    [MaterialXPBR2026], section `multiply`.
+    [MaterialX2026], section `multiply`.
 
     Examples
     --------

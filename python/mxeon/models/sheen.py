@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sheen of [MaterialXPBR2026], section `sheen_bsdf`: values in 1/sr and without the cosine.
+"""Sheen of [MaterialX2026], section `sheen_bsdf`: values in 1/sr and without the cosine.
 
 The node's input `color` is a tint that scales the lobe; its albedos are those at unit color.
 """
@@ -22,7 +22,7 @@ __all__ = [
     "zeltner_matrix",
 ]
 
-# Roughness that the Zeltner lobe has at least: [MaterialXPBR2026], Zeltner Sheen Model.
+# Roughness that the Zeltner lobe has at least: [MaterialX2026], Zeltner Sheen Model.
 ZELTNER_LEAST_ROUGHNESS = 0.01
 
 # Roughness and sum of cosines that divide are at least this, lest a quotient overflow by itself.
@@ -65,7 +65,7 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
 
     References
     ----------
-    [MaterialXPBR2026], section `sheen_bsdf`, Conty-Kulla sheen equations; [ContyKulla2017], Eq. (2).
+    [MaterialX2026], section `sheen_bsdf`, Conty-Kulla sheen equations; [ContyKulla2017], Eq. (2).
 
     Examples
     --------
@@ -106,7 +106,7 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
     References
     ----------
-    [MaterialXPBR2026], Zeltner Sheen Model; [Zeltner2022], whose omega_i is wo here.
+    [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], whose omega_i is wo here.
 
     Examples
     --------
@@ -146,7 +146,7 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
     References
     ----------
-    [MaterialXPBR2026], Zeltner Sheen Model, Directional Albedo.
+    [MaterialX2026], Zeltner Sheen Model, Directional Albedo.
 
     Examples
     --------
@@ -159,7 +159,7 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
-    """Entries a and b of M^-1: [MaterialXPBR2026], Zeltner Sheen Model, Fitted Coefficients."""
+    """Entries a and b of M^-1: [MaterialX2026], Zeltner Sheen Model, Fitted Coefficients."""
     x, y = mu, np.maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
     a = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x**2 + 2.60994 * x * y)
     slope = 0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y**2
@@ -215,7 +215,7 @@ def _zeltner_formula(wo: Array, wi: Array, unit: Array, roughness: Array) -> Arr
 
 
 def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
-    """E of the text: [MaterialXPBR2026], Zeltner Sheen Model, Directional Albedo."""
+    """E of the text: [MaterialX2026], Zeltner Sheen Model, Directional Albedo."""
     x, y = mu, np.maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
     s = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y))
     m = y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y**2))) / (0.046391 + y)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diffuse transmission, as in [MaterialXPBR2026], section `translucent_bsdf`."""
+"""Diffuse transmission, as in [MaterialX2026], section `translucent_bsdf`."""
 
 import numpy as np
 
@@ -35,7 +35,7 @@ def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
 
     References
     ----------
-    [MaterialXPBR2026], section `translucent_bsdf`, Lambertian transmittance equation.
+    [MaterialX2026], section `translucent_bsdf`, Lambertian transmittance equation.
 
     Examples
     --------
