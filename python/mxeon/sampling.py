@@ -18,6 +18,8 @@ from mxeon.models.sampling import (
     ltc_sample,
     uniform_pdf,
     uniform_sample,
+    zeltner_pdf,
+    zeltner_sample,
 )
 
 __all__ = [
@@ -37,4 +39,6 @@ __all__ = [
     "ltc_sample",
     "uniform_pdf",
     "uniform_sample",
+    "zeltner_pdf",
+    "zeltner_sample",
 ]

@@ -34,6 +34,10 @@ QUADRATURE = 150 * ROUNDING * 1.05 + 64 * 1e-14
 # One rounding of a number in [1/2, 1].
 ONE_ROUNDING = 2.0 * ROUNDING
 
+# Values of sheen and of Burley's model, relative to the value and 1 / pi, times 1 / roughness:
+# 40 roundings and a power of at most 0.5 / roughness, whose base takes 10.
+SHEEN = (40 + 2 * FUNCTION + 10) * ROUNDING
+
 # Turning a pair about the normal rounds each component three times, so s moves by 9 roundings of
 # S_o S_i and the value by as much of the largest |s / t|, beside the roundings of BRDF.
 ROTATION = BRDF + 12.0 * ROUNDING

@@ -12,6 +12,8 @@ import numpy as np
 from mxeon.models.arrays import ArrayLike, Numbers
 from mxeon.models.tiling import blocks, channels_first
 
+_LARGEST = float(np.finfo(np.float64).max)
+
 # Closed ranges of the quantities, by name: least, largest, as printed.
 RANGES = {
     "mu": (0.0, 1.0, "[0, 1]"),
@@ -19,6 +21,9 @@ RANGES = {
     "roughness": (0.0, 1.0, "[0, 1]"),
     "sigma": (0.0, 0.5 * np.pi, "[0, pi/2]"),
     "color": (0.0, 1.0, "[0, 1]"),
+    "amount": (0.0, 1.0, "[0, 1]"),
+    "weight": (0.0, _LARGEST, "[0, inf)"),
+    "albedo": (-_LARGEST, _LARGEST, "(-inf, inf)"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
@@ -93,6 +98,15 @@ def checked_directions(name: str, value: ArrayLike) -> Numbers:
     for block in blocks(array.shape[:-1]):
         if not are_directions(channels_first(array[block])):
             refuse_direction(name, array)
+    return array
+
+
+def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 3), none of whose directions points above the horizon."""
+    array = checked_triples(name, value)
+    z = array[..., 2]
+    if (z > 0.0).any():
+        _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > 0.0), "z = ")
     return array
 
 
