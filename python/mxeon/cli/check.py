@@ -31,6 +31,12 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="NAME",
         help=f"{arguments.LIBRARY}; may be repeated",
     )
+    command.add_argument(
+        "--node",
+        action="append",
+        metavar="NAME",
+        help="judge the nodes of this category alone (sheen_bsdf), or all; may be repeated",
+    )
     arguments.add_report(command)
     command.add_argument(
         "--resume", action="store_true", help="continue the interrupted run in the report's DIR"
@@ -56,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
 
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
-    hosts = options.host or ("gl",)
+    hosts, nodes = options.host or ("gl",), options.node or ()
     result = check(
         options.files,
         host_names() if "all" in hosts else hosts,
@@ -68,6 +74,7 @@ def run(options: argparse.Namespace) -> int:
         scheduler=options.scheduler,
         wait=options.waitForWorkers,
         policy=arguments.policy(options),
+        nodes=nodes,
         progress=progress_bar("mxeon check"),
     )
     return show_run(result, options)

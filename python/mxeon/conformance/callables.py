@@ -3,7 +3,7 @@
 
 import platform
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
 
@@ -20,7 +20,8 @@ from mxeon.conformance.checks.batch import (
     random_inputs,
 )
 from mxeon.conformance.checks.evaluate import judge_check
-from mxeon.conformance.checks.special import special_pairs
+from mxeon.conformance.checks.nodes import CHANGES, Changes, OfModel
+from mxeon.conformance.checks.special import diffuse_edges, special_directions, special_inputs
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.results import PASSED, Run
 from mxeon.errors import InputError
@@ -49,7 +50,7 @@ class Function:
 
 
 @dataclass(frozen=True)
-class Claim:
+class Claim(OfModel):
     """The model that a function has to be, in place of a node.
 
     Attributes
@@ -61,6 +62,11 @@ class Claim:
     model: str
     inputs = ("color", "roughness")
     flag = None
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        """For each input: inputs without and with a change of it alone, which must be seen."""
+        return {name: ({}, {name: CHANGES[name]}) for name in self.inputs}
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +84,14 @@ class CallableProbe:
         """PAIRS random pairs, and special ones."""
         rng, row = np.random.default_rng(SEED), reference.model(self.subject.model)
         wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
-        special = special_pairs(rng, row)
-        inputs = {name: special.inputs[name] for name in self.subject.inputs}
-        return Batch(wo, wi, random_inputs(rng, PAIRS, row)), replace(special, inputs=inputs)
+        exact = special_directions(rng)
+        special = Batch(*exact, special_inputs(rng, len(exact[0]), row))
+        return Batch(wo, wi, random_inputs(rng, PAIRS, row)), special
+
+    @property
+    def edges(self) -> Batch:
+        """Pairs and inputs at the edges of the domain."""
+        return diffuse_edges()
 
     @property
     def few(self) -> tuple[Batch, ...]:

@@ -1,21 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagnosis of a failure: the known model, defect or fault that explains it, or its place."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import Any, TypeAlias
+from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import FEW, Array, Batch
+from mxeon.conformance.checks.batch import FEW, Array, Batch, Candidate
+from mxeon.conformance.checks.bsdf_measures import layering_cases, transmission_cases
 from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
 from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.checks.tolerances import ALBEDOS, LOBES, VALUES, Tolerance
+from mxeon.conformance.checks.tolerances import (
+    ALBEDOS,
+    LOBES,
+    THROUGHPUTS,
+    VALUES,
+    Tolerance,
+)
 from mxeon.conformance.faults import DIRECT, ENVIRONMENT, Fault, scaled_by
 from mxeon.conformance.regions import Mask, smallest
 from mxeon.models import table as reference
-from mxeon.models.table import Model
 from mxeon.shaders.nodes import FLAG
 
 # Share of the distance to any other explanation up to which one explains all, and up to which it is
@@ -23,8 +29,6 @@ from mxeon.shaders.nodes import FLAG
 SAME, NEAR = 0.03, 0.3
 INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
 LIT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
-
-Output: TypeAlias = Callable[[Batch, str], Array]  # values that a model gives for a batch
 
 
 @dataclass(frozen=True)
@@ -63,62 +67,88 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
 @lru_cache(maxsize=2)  # several checks of a subject fail for one reason
 def of_value(probe: Any) -> Diagnosis:
     """The explanation of the probe's values for pairs of directions."""
-    cases = list(value_cases(probe))
-    rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
+    candidates = probe.subject.value_candidates
     return _explained(
-        probe, cases, rows.values(), DIRECT, Batch.expected, (VALUES | LOBES)[probe.kind]
+        probe, list(value_cases(probe)), candidates, DIRECT, _tolerance(probe, VALUES)
     )
 
 
 @lru_cache(maxsize=2)
 def of_albedo(probe: Any) -> Diagnosis:
     """The explanation of the probe's environment branch."""
+    candidates = probe.subject.albedo_candidates
     cases = list(albedo_cases(probe))
-    rows = [row for row in reference.MODELS + reference.KNOWN_DEFECTS if row.albedo_dir]
-    return _explained(probe, cases, rows, ENVIRONMENT, Batch.albedo, ALBEDOS[probe.kind])
+    return _explained(probe, cases, candidates, ENVIRONMENT, _tolerance(probe, ALBEDOS))
+
+
+@lru_cache(maxsize=2)
+def of_throughput(probe: Any) -> Diagnosis:
+    """The explanation of the throughput of a layer for light from above."""
+    return _of_rest(probe, list(layering_cases(probe)))
+
+
+@lru_cache(maxsize=2)
+def of_transmission(probe: Any) -> Diagnosis:
+    """The explanation of the throughput of a layer for light through the base."""
+    return _of_rest(probe, list(transmission_cases(probe)))
+
+
+def _of_rest(probe: Any, cases: Sequence[Case]) -> Diagnosis:
+    """The explanation of throughputs, by albedos or by none."""
+    *albedos, nothing = probe.subject.albedo_candidates
+    candidates = [Candidate(each.title, partial(_rest, each)) for each in albedos]
+    candidates.append(Candidate("all light passes", partial(_rest, nothing)))
+    return _explained(probe, cases, candidates, (), _tolerance(probe, THROUGHPUTS))
+
+
+def _rest(candidate: Candidate, batch: Batch) -> Array:
+    """The light that a candidate's albedo leaves."""
+    return np.maximum(1.0 - candidate.values(batch), 0.0)
+
+
+def _tolerance(probe: Any, tolerances: Mapping[str, Tolerance]) -> Tolerance:
+    """The tolerance of a probe's kind; that of a lobe where it is one below others."""
+    return {**tolerances, **LOBES}[probe.kind]
 
 
 def _explained(
     probe: Any,
     cases: Sequence[Case],
-    rows: Iterable[Model],
+    candidates: Sequence[Candidate],
     faults: Sequence[Fault],
-    output: Output,
     tolerance: Tolerance,
 ) -> Diagnosis:
-    """The explanation of cases, by models and by faults on the way to the subject's model."""
+    """The explanation of cases, by candidates and by faults on the way to the first, the own one."""
     unbounded = not_finite(cases)
     if unbounded:
         return Diagnosis(unbounded)
     short = [Case(batch.first(FEW), *(each[:FEW] for each in rest)) for batch, *rest in cases]
-    models = {row.title: _distance(short, row, Fault(""), output, tolerance) for row in rows}
-    own = reference.model(probe.subject.model)
+    own = candidates[0]
+    models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         faults = (*faults, scaled_by(_factor(short)))
-        distances = {
-            fault.text: _distance(short, own, fault, output, tolerance) for fault in faults
-        }
+        distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
         text = _fault(distances, models, own.title, tolerance.value)
         if text:
             return Diagnosis(text, models)
-    return Diagnosis(_model(probe, cases, ranking, tolerance), models)
+    return Diagnosis(_model(probe, cases, ranking, own.title, tolerance), models)
 
 
 def _distance(
-    cases: Sequence[Case], row: Model, fault: Fault, output: Output, tolerance: Tolerance
+    cases: Sequence[Case], candidate: Candidate, fault: Fault, tolerance: Tolerance
 ) -> float:
-    """Root-mean-square distance of the measured values from those of a model with a fault.
+    """Root-mean-square distance of the measured values from those of a candidate with a fault.
 
-    A roughness above 1 is left out, which not every model takes; and light up to LIT. Where the tolerance is that of a mean, values have noise and means
-    are compared.
+    A roughness above 1 is left out, which not every model takes; and light up to LIT. Where the
+    tolerance is that of a mean, values have noise and means are compared.
     """
     errors = []
     for case in cases:
-        batch = fault.batch(case.batch)
-        roughness = np.minimum(batch.inputs["roughness"], row.largest)
-        values = fault.values(case.batch, output(batch.altered(roughness=roughness), row.name))
-        kept = (case.batch.inputs["roughness"] <= np.float64(1.0)) & (case.batch.wi[:, 2] > LIT)
+        values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
+        kept = case.batch.rough <= 1.0
+        if "albedo" not in tolerance.unit:
+            kept &= np.abs(case.batch.wi[:, 2]) > LIT
         error = (case.measured - values)[kept]
         errors.append(error.mean(axis=0, keepdims=True) if tolerance.metric is of_mean else error)
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
@@ -150,10 +180,13 @@ def _flag(probe: Any, title: str) -> str:
 
 
 def _model(
-    probe: Any, cases: Sequence[Case], ranking: Sequence[tuple[str, float]], tolerance: Tolerance
+    probe: Any,
+    cases: Sequence[Case],
+    ranking: Sequence[tuple[str, float]],
+    own: str,
+    tolerance: Tolerance,
 ) -> str:
     """The nearest model, the region that is wrong, or that no model is near."""
-    own = reference.model(probe.subject.model).title
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     wrong: list[Mask] = [error > tolerance.value for error in errors]
     (first, least), (_, rival) = ranking[:2]

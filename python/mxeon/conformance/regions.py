@@ -10,6 +10,7 @@ from mxeon.conformance.checks.batch import Array, Batch
 
 Mask = NDArray[np.bool_]
 
+COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
 LARGEST = 0.6  # share of the pairs that a region may have to be worth its name
 DENSITY = 0.1  # least share of a region's pairs that have to be wrong
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
@@ -72,11 +73,12 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
 
 def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     count = len(batch.wo)
-    weight, occlusion, roughness = (
-        np.broadcast_to(batch.inputs.get(name, 1.0), count)
-        for name in ("weight", "occlusion", "roughness")
+    roughness = batch.rough
+    weight, occlusion = (
+        np.broadcast_to(batch.inputs.get(name, 1.0), count) for name in ("weight", "occlusion")
     )
-    color = np.broadcast_to(batch.inputs["color"], (count, 3))
+    colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
+    color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
     yield "with a negative weight", weight < 0.0
     yield "with weight 0", weight == 0.0
     yield "with weight 0 or below", weight <= 0.0

@@ -19,7 +19,7 @@ from mxeon.conformance.checks.measures import (
 )
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.sky import sky
-from mxeon.conformance.checks.tolerances import FRAME, OPAQUE, SURROUNDINGS
+from mxeon.conformance.checks.tolerances import FRAMES, OPAQUE, SURROUNDINGS
 from mxeon.conformance.diagnosis import Diagnosis, not_finite, of_value, region
 from mxeon.conformance.faults import normal_ignored
 from mxeon.conformance.regions import smallest
@@ -90,12 +90,14 @@ def of_throughput(probe: Any) -> Diagnosis:
 def of_frame(probe: Any) -> Diagnosis:
     """Whether the normal is dropped or not turned, in the first branch that is wrong."""
     for case, branch in zip(frame_cases(probe), ("direct", "environment"), strict=True):
-        wrong = absolute(case.measured, case.expected) > FRAME.value
+        tolerance = FRAMES[probe.kind]
+        wrong = tolerance.metric(case.measured, case.expected) > tolerance.value
         if not wrong.any():
             continue
-        expected = Batch.expected if branch == "direct" else Batch.albedo
-        dropped = expected(normal_ignored(case.batch), probe.subject.model)
-        if absolute(case.measured, dropped).max() <= FRAME.value:
+        subject = probe.subject
+        expected = subject.expected if branch == "direct" else subject.albedo
+        dropped = expected(normal_ignored(case.batch))
+        if tolerance.metric(case.measured, dropped).max() <= tolerance.value:
             text = "the node's normal is ignored: the surface's takes its place"
         else:
             text = not_finite([case]) or region([case.batch], [wrong]) or UNKNOWN

@@ -56,7 +56,9 @@ class PbrNode:
     value : callable (wo, wi, inputs) -> ndarray, shape (N, 3)
         BSDF in 1/sr without the cosine, for weight 1.
     albedo : callable (wo, inputs) -> ndarray, shape (N, 3)
-        Directional albedo E for weight 1, with all tints.
+        Directional albedo E for weight 1, with all tints; 1 where its integral exceeds 1.
+    integral : callable (wo, inputs) -> ndarray, shape (N, 3), or None
+        The integral of its values, where that exceeds 1 for some inputs; None for the albedo.
     fixed : mapping of str to str
         Inputs that select the mode.
     layerable : bool
@@ -76,6 +78,7 @@ class PbrNode:
     inputs: tuple[str, ...]
     value: Callable[[Array, Array, Inputs], Array]
     albedo: Callable[[Array, Inputs], Array]
+    integral: Callable[[Array, Inputs], Array] | None = None
     fixed: Mapping[str, str] = field(default_factory=dict)
     layerable: bool = False
     transmits: bool = False
@@ -101,6 +104,11 @@ def node(name: str) -> PbrNode:
     if name not in rows:
         raise ValueError(f"node must be one of {', '.join(rows)}; got {name!r}")
     return rows[name]
+
+
+def _bounded(albedo: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
+    """An albedo that counts as 1 where it exceeds 1; the text is silent on it."""
+    return lambda mu, roughness: np.minimum(albedo(mu, roughness), 1.0)
 
 
 def _tinted(
@@ -134,6 +142,29 @@ def _sheen(
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
 
 
+def _fitted_conty_kulla(wo: Array, inputs: Inputs) -> Array:
+    """MaterialX's rational fit of the Conty-Kulla albedo, without the color."""
+    x, y = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
+    above = 13.673 - 68.78018 * x + 799.08825 * y - 905.00061 * x * y
+    above += 60.28956 * x * x + 1086.96473 * y * y
+    below = 1.0 + 61.57746 * x + 442.78211 * y + 2597.49308 * x * y
+    below += 121.81241 * x * x + 3045.55075 * y * y
+    return np.repeat(np.clip(above / below, 0.0, 1.0)[:, np.newaxis], 3, axis=-1)
+
+
+def _fitted_burley(wo: Array, inputs: Inputs) -> Array:
+    """MaterialX's fit of Burley's albedo."""
+    x, r = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
+    smooth = 0.97619 - 0.488095 * (1.0 - x) ** 5
+    rough = 1.55754 + (-2.02221 + (2.56283 - 1.06244 * x) * x) * x
+    return np.asarray(((1.0 - r) * smooth + r * rough)[:, np.newaxis] * inputs["color"])
+
+
+def _colored(albedo: Callable[[Array, Inputs], Array]) -> Callable[[Array, Inputs], Array]:
+    """An albedo times the color."""
+    return lambda wo, inputs: np.asarray(albedo(wo, inputs) * inputs["color"])
+
+
 COLOR_ROUGHNESS = ("color", "roughness")
 NODES = (
     PbrNode(
@@ -145,6 +176,7 @@ NODES = (
         lambda wo, inputs: burley_albedo_dir(
             np.minimum(wo[:, 2], 1.0), inputs["color"], inputs["roughness"]
         ),
+        variants=(Variant("MaterialX's fit of its albedo", albedo=_fitted_burley),),
     ),
     PbrNode(
         "translucent",
@@ -161,11 +193,18 @@ NODES = (
         "sheen_bsdf",
         COLOR_ROUGHNESS,
         _sheen(conty_kulla_brdf),
+        _tinted(_bounded(conty_kulla_albedo_dir)),
         _tinted(conty_kulla_albedo_dir),
         fixed={"mode": "conty_kulla"},
         layerable=True,
         fitted=True,
-        variants=(Variant("albedo without the color", albedo=_untinted(conty_kulla_albedo_dir)),),
+        variants=(
+            Variant(
+                "its albedo without the color", albedo=_untinted(_bounded(conty_kulla_albedo_dir))
+            ),
+            Variant("MaterialX's fit of its albedo", albedo=_colored(_fitted_conty_kulla)),
+            Variant("MaterialX's fit of its albedo without the color", albedo=_fitted_conty_kulla),
+        ),
     ),
     PbrNode(
         "zeltner",
@@ -177,6 +216,6 @@ NODES = (
         fixed={"mode": "zeltner"},
         layerable=True,
         reciprocal=False,
-        variants=(Variant("albedo without the color", albedo=_untinted(zeltner_albedo_dir)),),
+        variants=(Variant("its albedo without the color", albedo=_untinted(zeltner_albedo_dir)),),
     ),
 )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Batches of pairs of directions with the inputs of a node, and random ones."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -79,6 +79,14 @@ class Batch:
         """Factor of an albedo, (N, 1) or (1, 1): the weight; a negative one counts as 0."""
         return np.maximum(np.reshape(self.inputs.get("weight", 1.0), (-1, 1)), 0.0)
 
+    @property
+    def rough(self) -> Array:
+        """Roughness of each pair, the larger of two; 0 where there is none, (N,)."""
+        roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
+        if roughness.shape[-1:] == (2,):
+            roughness = roughness.max(axis=-1)
+        return np.broadcast_to(roughness, len(self.wo))
+
     def expected(self, model: str) -> Array:
         """pi f cos(theta_i) of a model or a known defect with weight and occlusion, (N, 3).
 
@@ -97,6 +105,20 @@ class Batch:
         parameter = [self.inputs["roughness"]] if row.parameter else []
         mu = np.minimum(self.wo[:, 2], 1.0)
         return self.strength * row.closed_albedo_dir(mu, self.inputs["color"], *parameter)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A function that may explain some values.
+
+    Attributes
+    ----------
+    title : str
+    values : callable (batch) -> ndarray, shape (N, 3)
+    """
+
+    title: str
+    values: Callable[[Batch], Array]
 
 
 def directions(rng: np.random.Generator, count: int) -> Array:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of the other BSDF nodes of pbrlib, with the pairs and the quadratures that they need."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -33,9 +33,9 @@ class BsdfProbe(PairProbe):
         rng = np.random.default_rng(SEED)
         pairs = directions(rng, PAIRS), directions(rng, PAIRS)
         return (
-            self._batch(rng, pairs, self.subject.random_inputs),
-            self._batch(rng, special_directions(rng), self.subject.special_inputs),
-            self._batch(rng, outside_directions(rng), self.subject.random_inputs),
+            self._batch(rng, self._lit(pairs), self.subject.random_inputs),
+            self._batch(rng, self._lit(special_directions(rng)), self.subject.special_inputs),
+            self._batch(rng, self._lit(outside_directions(rng)), self.subject.random_inputs),
         )
 
     @cached_property
@@ -54,11 +54,17 @@ class BsdfProbe(PairProbe):
     def edges(self) -> Batch:
         """Exact directions and inputs on their edges, roughness 0 among them."""
         rng = np.random.default_rng(SEED)
-        wo, wi = special_directions(rng)
+        wo, wi = self._lit(special_directions(rng))
         inputs = self.subject.special_inputs(rng, len(wo))
         if "roughness" in inputs:
             inputs["roughness"][::4] = 0.0
         return Batch(wo, wi, inputs)
+
+    @cached_property
+    def turned(self) -> Batch:
+        """Pairs in frames of their own, with the light on the side of the node's."""
+        batch = super().turned
+        return replace(batch, wi=batch.wi * [1.0, 1.0, self._side])
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
@@ -73,6 +79,15 @@ class BsdfProbe(PairProbe):
         spread = {name: values[each] for name, values in inputs.items()}
         return Batch(wo[each], wi.reshape(-1, 3), spread), weights
 
+    def _lit(self, pairs: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Pairs with the light on the side from which the node scatters it."""
+        wo, wi = pairs
+        return wo, wi * [1.0, 1.0, self._side]
+
+    @property
+    def _side(self) -> float:
+        return -1.0 if self.subject.row.transmits else 1.0
+
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
         """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
         x, w = np.polynomial.legendre.leggauss(NODES)
@@ -82,8 +97,11 @@ class BsdfProbe(PairProbe):
         azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
         phi = azimuth + 2.0 * np.pi * (np.arange(NODES) + 0.5) / NODES
         radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
-        side = -1.0 if self.subject.row.transmits else 1.0
-        columns = (radius * np.cos(phi), radius * np.sin(phi), side * mu[:, np.newaxis] + 0.0 * phi)
+        columns = (
+            radius * np.cos(phi),
+            radius * np.sin(phi),
+            self._side * mu[:, np.newaxis] + 0.0 * phi,
+        )
         wi = rounded(columns).reshape(len(wo), -1, 3)
         weights = np.repeat(slope * 2.0 / NODES, NODES)
         return wi, np.broadcast_to(weights, wi.shape[:2])

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: the other BSDF nodes of pbrlib, in each of their modes."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import Array, Batch
+from mxeon.conformance.checks.batch import Array, Batch, Candidate
+from mxeon.conformance.checks.nodes import Changes
 from mxeon.models import pbrlib
-from mxeon.models.pbrlib import PbrNode
+from mxeon.models.pbrlib import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
 SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, fixed in a document
@@ -26,7 +28,6 @@ RANGES: dict[str, tuple[float, float]] = {  # of an input's random values
     "extinction": (0.0, 6.0),
     "exponent": (1.0, 8.0),
 }
-Changes: TypeAlias = tuple[dict[str, Any], dict[str, Any]]
 CHANGES: dict[str, Changes] = {
     "weight": ({}, {"weight": 0.5}),
     **{name: ({}, {name: (0.9, 0.1, 0.6)}) for name in COLORS},
@@ -45,7 +46,9 @@ CHANGES: dict[str, Changes] = {
 }
 BLACK = ("color", "tint", "color0", "color90")
 
+NOTHING = Candidate("nothing at all", lambda batch: np.zeros((len(batch.wo), 3)))
 LEAST_ALPHA = 1e-3  # of random pairs
+LEAST_SHEEN = 0.01  # roughness of the other lobes, which the Zeltner sheen has at least
 ROUGH_EDGES = (1e-4, 0.01, 1.0)  # special values of alpha
 SHEEN_EDGES = (0.01, 0.05, 1.0)  # special roughnesses of a lobe that has one
 
@@ -136,17 +139,37 @@ class BsdfSubject:
 
     def expected(self, batch: Batch) -> Array:
         """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
-        return expected_value(self.row, self.row.value, batch)
+        return _expected(self.row, self.row.value, batch)
 
     def albedo(self, batch: Batch) -> Array:
         """Directional albedo with weight, (N, 3)."""
-        return batch.strength * self.row.albedo(batch.wo, _whole(batch))
+        return _albedo(self.row.albedo, batch)
+
+    def integral(self, batch: Batch) -> Array:
+        """Integral of the values with weight, (N, 3)."""
+        return _albedo(self.row.integral or self.row.albedo, batch)
 
     def passed(self, batch: Batch) -> Array:
         """Throughput, (N, 3): the share of the light from below that passes."""
         if not self.row.layerable:
             return np.zeros((len(batch.wo), 3))
         return np.maximum(1.0 - self.albedo(batch), 0.0)
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """The row's own function of directions, and its variants."""
+        functions = [(self.row.title, self.row.value)]
+        functions += [(each.title, each.value) for each in self.row.variants if each.value]
+        own = (Candidate(title, partial(_expected, self.row, value)) for title, value in functions)
+        return (*own, NOTHING)
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        """The row's own albedo, and its variants."""
+        functions = [(self.row.title, self.row.albedo)]
+        functions += [(each.title, each.albedo) for each in self.row.variants if each.albedo]
+        own = (Candidate(title, partial(_albedo, albedo)) for title, albedo in functions)
+        return (*own, NOTHING)
 
     def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
         components = {"float": (), "vector2": (2,)}.get(input_types(self.node)[name], (3,))
@@ -161,13 +184,18 @@ class BsdfSubject:
     def _roughness(self, uniform: Array) -> Array:
         """Roughness of numbers in [0, 1]: half of the anisotropic ones are the same twice."""
         if not self.anisotropic:
-            return np.clip(1.25 * uniform - 0.125, LEAST_ALPHA, 1.0)
+            return np.clip(1.25 * uniform - 0.125, LEAST_SHEEN, 1.0)
         alpha = LEAST_ALPHA ** (1.0 - uniform)
         alpha[::2] = alpha[::2, :1]
         return alpha
 
 
-def expected_value(row: PbrNode, value: Any, batch: Batch) -> Array:
+def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
+    """A directional albedo with weight, (N, 3)."""
+    return batch.strength * albedo(batch.wo, _whole(batch))
+
+
+def _expected(row: PbrNode, value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:
     """pi f |cos(theta_i)| of a function of `wo, wi, inputs` on the row's side of the horizon."""
     side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if row.transmits else 1.0)
     wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)

@@ -16,11 +16,15 @@ Control = Callable[[Any], "Altered"]
 
 @dataclass(frozen=True)
 class Altered:
-    """A probe made wrong: its batches changed on the way in, its values on the way out."""
+    """A probe made wrong: its batches changed on the way in, its values on the way out.
+
+    Responses and throughputs are values of their own.
+    """
 
     probe: Any
     batch: Callable[[Batch], Batch] = lambda batch: batch
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
+    throughputs: Callable[[Batch, Array], Array] = lambda batch, values: values
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.probe, name)
@@ -47,7 +51,7 @@ class Altered:
 
     def throughput(self, batch: Batch, branch: str) -> Array:
         """Throughputs of the changed batch, changed."""
-        return self.values(batch, self.probe.throughput(self.batch(batch), branch))
+        return self.throughputs(batch, self.probe.throughput(self.batch(batch), branch))
 
 
 def with_inputs(**inputs: Any) -> Control:
@@ -59,15 +63,29 @@ def gray(probe: Any) -> Altered:
     """A control that loses the color: every channel gets the mean of the three."""
 
     def mean_color(batch: Batch) -> Batch:
-        mean = np.mean(batch.inputs["color"], axis=-1, keepdims=True)
-        return batch.altered(color=np.repeat(mean, 3, axis=-1))
+        colors = {
+            name: np.repeat(np.mean(values, axis=-1, keepdims=True), 3, axis=-1)
+            for name, values in batch.inputs.items()
+            if name != "normal" and np.shape(values)[-1:] == (3,)
+        }
+        return batch.altered(**colors)
 
     return Altered(probe, batch=mean_color)
 
 
 def take_response(probe: Any) -> Altered:
     """A control that takes the response for another output."""
-    return Altered(probe, values=lambda batch, values: probe.direct(batch))
+    return Altered(probe, throughputs=lambda batch, values: probe.direct(batch))
+
+
+def pass_all(probe: Any) -> Altered:
+    """A control whose throughput is 1."""
+    return Altered(probe, throughputs=lambda batch, values: np.ones_like(values))
+
+
+def scale(factor: float) -> Control:
+    """A control whose values are multiplied by a factor."""
+    return lambda probe: Altered(probe, values=lambda batch, values: factor * values)
 
 
 def drop_changes(probe: Any) -> Altered:

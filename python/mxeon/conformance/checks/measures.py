@@ -99,7 +99,7 @@ def frame(probe: Any, metric: Metric) -> Measurement:
 def frame_cases(probe: Any) -> Iterator[Case]:
     """The cases of `frame`."""
     batch = probe.turned
-    local = replace(batch.altered(normal=(0.0, 0.0, 1.0)), frame=None)
+    local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
     for output in (probe.direct, probe.albedo):
         yield Case(batch, output(batch), output(local))
 
@@ -151,12 +151,16 @@ def integrated(
 def black(probe: Any, metric: Metric) -> Measurement:
     """Values of a black surface against 0."""
     batches = [batch.altered(**probe.subject.black) for batch in probe.few]
-    return worst_of(metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
+    return worst_of(
+        metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches)
+    )
 
 
 def throughput(probe: Any, metric: Metric) -> Measurement:
     """Throughput against 0 of an opaque node, in every branch and for every weight."""
-    return worst_of(metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch)))
+    return worst_of(
+        metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch))
+    )
 
 
 def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
@@ -168,17 +172,20 @@ def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
 def furnace(probe: Any, metric: Metric) -> Measurement:
     """Albedo of a white surface against 1."""
     batches = [batch.altered(color=WHITE, weight=1.0) for batch in probe.cosines]
-    return worst_of(metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
+    return worst_of(
+        metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches)
+    )
 
 
 def reciprocity(probe: Any, metric: Metric) -> Measurement:
     """f(wo, wi) against f(wi, wo), both times both cosines."""
     cases: list[Case] = []
     for batch in probe.few:
-        swapped = replace(batch, wo=batch.wi, wi=batch.wo)
+        side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # light through the surface
+        swapped = replace(batch, wo=side * batch.wi, wi=side * batch.wo)
         with np.errstate(invalid="ignore"):  # inf x 0 is no number, which `absolute` notices
             forward = probe.direct(batch) * batch.wo[:, 2:]
-            backward = probe.direct(swapped) * batch.wi[:, 2:]
+            backward = probe.direct(swapped) * np.abs(batch.wi[:, 2:])
         cases.append(Case(batch, forward, backward))
     return worst_of(metric, cases)
 

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: the rough diffuse nodes, each with the model it has to be."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from functools import partial
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import Array, Batch, random_inputs
+from mxeon.conformance.checks.batch import Array, Batch, Candidate, random_inputs
 from mxeon.conformance.checks.special import special_inputs
 from mxeon.models import table as reference
+from mxeon.models.table import Model
 from mxeon.shaders.nodes import (
     EON,
     FLAG,
@@ -22,6 +24,55 @@ from mxeon.shaders.nodes import (
 )
 
 
+class OfModel:
+    """What a subject has that has to be one of the diffuse models."""
+
+    model: str
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """Its model, known defects, and the other models, by their values."""
+        rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
+        return self._candidates(rows.values(), Batch.expected)
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        """Its model, the other models, and known defects, by their albedos."""
+        rows = [row for row in reference.MODELS + reference.KNOWN_DEFECTS if row.albedo_dir]
+        return self._candidates(rows, Batch.albedo)
+
+    @property
+    def black(self) -> dict[str, Any]:
+        """Inputs with which it reflects nothing."""
+        return {"color": (0.0, 0.0, 0.0)}
+
+    def expected(self, batch: Batch) -> Array:
+        """pi f cos(theta_i) of the model, (N, 3)."""
+        return batch.expected(self.model)
+
+    def albedo(self, batch: Batch) -> Array:
+        """Directional albedo of the model, (N, 3)."""
+        return batch.albedo(self.model)
+
+    def passed(self, batch: Batch) -> Array:
+        """Throughput, (N, 3): an opaque node lets nothing through."""
+        return np.zeros((len(batch.wo), 3))
+
+    def _candidates(
+        self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
+    ) -> tuple[Candidate, ...]:
+        """Candidates of rows, the own one first."""
+        ordered = sorted(rows, key=lambda row: row.name != self.model)
+        return tuple(Candidate(row.title, partial(_limited, row, output)) for row in ordered)
+
+
+def _limited(row: Model, output: Callable[[Batch, str], Array], batch: Batch) -> Array:
+    """Output of a model where no roughness exceeds its largest."""
+    roughness = np.minimum(batch.inputs["roughness"], row.largest)
+    return output(batch.altered(roughness=roughness), row.name)
+
+
+Changes: TypeAlias = tuple[dict[str, Any], dict[str, Any]]  # inputs before and after
 CHANGES = {
     "weight": 0.5,
     "color": (0.9, 0.1, 0.6),
@@ -31,7 +82,7 @@ CHANGES = {
 
 
 @dataclass(frozen=True)
-class Subject:
+class Subject(OfModel):
     """A node with its flag and the model it has to be.
 
     Attributes
@@ -71,19 +122,10 @@ class Subject:
         return material_text(self.node, self.with_flag(inputs or {}), self.node)
 
     @property
-    def changes(self) -> dict[str, tuple[dict[str, Any], dict[str, Any]]]:
+    def changes(self) -> dict[str, Changes]:
         """For each input: inputs without and with a change of it alone, which must be seen."""
         values = {**CHANGES, FLAG: not self.flag}
         return {name: ({}, {name: values[name]}) for name in self.inputs}
-
-    @property
-    def black(self) -> dict[str, Any]:
-        """Inputs with which it reflects nothing."""
-        return {"color": (0.0, 0.0, 0.0)}
-
-    def passed(self, batch: Batch) -> Array:
-        """Throughput, (N, 3): an opaque node lets nothing through."""
-        return np.zeros((len(batch.wo), 3))
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random colors and roughnesses; see `mxeon.conformance.checks.batch.random_inputs`."""
@@ -92,14 +134,6 @@ class Subject:
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Colors and roughnesses of which half lie on an edge."""
         return special_inputs(rng, count, reference.model(self.model))
-
-    def expected(self, batch: Batch) -> Array:
-        """pi f cos(theta_i) of the model, (N, 3)."""
-        return batch.expected(self.model)
-
-    def albedo(self, batch: Batch) -> Array:
-        """Directional albedo of the model, (N, 3)."""
-        return batch.albedo(self.model)
 
 
 SUBJECTS = (
@@ -110,7 +144,7 @@ SUBJECTS = (
 
 
 @dataclass(frozen=True)
-class Surface:
+class Surface(OfModel):
     """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
 
     What lies over the lobe depends on the directions alone, so that pictures of other colors
@@ -137,10 +171,6 @@ class Surface:
     libraries: tuple[str, ...] = ()
 
     inputs: ClassVar[tuple[str, ...]] = ()
-
-    def expected(self, batch: Batch) -> Array:
-        """pi f cos(theta_i) of the model, (N, 3)."""
-        return batch.expected(self.model)
 
     def document(self, inputs: Mapping[str, Any]) -> str:
         """MaterialX text of a material that is this shader alone."""

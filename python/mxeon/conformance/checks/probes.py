@@ -103,7 +103,8 @@ class PairProbe:
         wo, wi = turned_directions(rng, count), turned_directions(rng, count)
         facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
         normal = facing * rounded(frames[:, :, 2].T)
-        inputs = {**self.subject.random_inputs(rng, count), "normal": normal}
+        axes = {"normal": normal, "tangent": rounded(frames[:, :, 0].T)}
+        inputs = {**self.subject.random_inputs(rng, count), **axes}
         return Batch(wo, wi, inputs, frame=frames)
 
     def direct(self, batch: Batch) -> Array:

@@ -10,10 +10,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance import diagnosis, wiring
-from mxeon.conformance.checks import measures, tolerances
+from mxeon.conformance.checks import bsdf_measures, measures, tolerances
+from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
+    pass_all,
+    scale,
     scale_cosine,
     take_response,
     with_inputs,
@@ -21,10 +24,21 @@ from mxeon.conformance.checks.controls import (
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.models.pbrlib import NODES
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 ANY = ("eon", "qon")
+OTHERS = tuple(row.name for row in NODES)
+LAYERS = tuple(row.name for row in NODES if row.layerable)
+OPAQUE = tuple(row.name for row in NODES if not row.layerable)
+BLACK = tuple(subject.model for subject in BSDFS if subject.black)
+RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
+
+
+def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of the other BSDF nodes."""
+    return dict.fromkeys(tolerances.BSDF_KINDS, tolerance)
 
 
 @dataclass(frozen=True)
@@ -74,10 +88,10 @@ CHECKS = (
     Check(
         "value",
         "The value is the model's for every pair of directions, back-lit and grazing ones included.",
-        ANY,
+        (*ANY, *OTHERS),
         measures.value,
-        "roughness is dropped",
-        with_inputs(roughness=0.0),
+        "every channel gets the mean color",
+        gray,
         tolerances.VALUES,
     ),
     Check(
@@ -91,8 +105,8 @@ CHECKS = (
     ),
     Check(
         "environment",
-        "The environment branch gives the directional albedo in closed form.",
-        ANY,
+        "The environment branch gives the directional albedo.",
+        (*ANY, *OTHERS),
         measures.environment,
         "every channel gets the mean color",
         gray,
@@ -122,8 +136,8 @@ CHECKS = (
     ),
     Check(
         "black",
-        "A black surface reflects nothing.",
-        ANY,
+        "A black surface scatters nothing.",
+        (*ANY, *BLACK),
         measures.black,
         "reflectance is 0.001",
         with_inputs(color=(0.001, 0.001, 0.001)),
@@ -131,16 +145,17 @@ CHECKS = (
             "pairs": tolerances.ZERO,
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
+            **of_bsdfs(tolerances.ZERO),
         },
     ),
     Check(
         "frame",
-        "The value depends on the angles to the normal alone, which is turned to the viewer.",
-        ANY,
+        "The value depends on the directions in the surface's frame, turned to the viewer.",
+        (*ANY, *OTHERS),
         measures.frame,
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
-        {"pairs": tolerances.FRAME},
+        tolerances.FRAMES,
         diagnose=wiring.of_frame,
     ),
     Check(
@@ -156,21 +171,21 @@ CHECKS = (
     Check(
         "throughput",
         "No light from below passes: the throughput is 0 in every branch and for every weight.",
-        ANY,
+        (*ANY, *OPAQUE),
         measures.throughput,
         "the response is taken for the throughput",
         take_response,
-        {"pairs": tolerances.OPAQUE},
+        {"pairs": tolerances.OPAQUE, **of_bsdfs(tolerances.OPAQUE)},
         diagnose=wiring.of_throughput,
     ),
     Check(
         "reciprocity",
         "Exchanging the two directions does not change the BRDF.",
-        ANY,
+        (*ANY, *RECIPROCAL),
         measures.reciprocity,
         "the value carries cos(theta_o) once more",
         scale_cosine(1),
-        {"pairs": tolerances.RECIPROCITY},
+        {"pairs": tolerances.RECIPROCITY, **of_bsdfs(tolerances.BSDF_VALUE)},
     ),
     Check(
         "lambert",
@@ -203,7 +218,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        ANY,
+        (*ANY, *OTHERS),
         measures.inputs,
         "every change is dropped",
         drop_changes,
@@ -211,17 +226,66 @@ CHECKS = (
             "pairs": tolerances.count_of("inputs"),
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
+            **of_bsdfs(tolerances.count_of("inputs")),
         },
         diagnose=wiring.of_inputs,
     ),
     Check(
         "finite",
         "No value at the edges of the domain is infinite or not a number.",
-        ANY,
+        (*ANY, *OTHERS),
         measures.finite,
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
-        {"pairs": tolerances.count_of("values")},
+        {"pairs": tolerances.count_of("values"), **of_bsdfs(tolerances.count_of("values"))},
         diagnose=wiring.of_finite,
+    ),
+    Check(
+        "layering",
+        "The throughput of a layer is 1 - E for light from above, for every weight.",
+        LAYERS,
+        bsdf_measures.layering,
+        "all light passes",
+        pass_all,
+        tolerances.THROUGHPUTS,
+        diagnose=diagnosis.of_throughput,
+    ),
+    Check(
+        "transmission",
+        "The throughput of a layer is 1 - E for light through the base as well.",
+        LAYERS,
+        bsdf_measures.transmission,
+        "all light passes",
+        pass_all,
+        tolerances.THROUGHPUTS,
+        diagnose=diagnosis.of_transmission,
+    ),
+    Check(
+        "layer",
+        "A layer over a white base returns all light.",
+        LAYERS,
+        bsdf_measures.layer,
+        "all light passes",
+        pass_all,
+        of_bsdfs(tolerances.LAYER),
+        diagnose=diagnosis.of_throughput,
+    ),
+    Check(
+        "integral",
+        "Values integrate to the directional albedo of the equations.",
+        OTHERS,
+        bsdf_measures.integral,
+        "values are 2 % too large",
+        scale(1.02),
+        of_bsdfs(tolerances.BSDF_INTEGRAL),
+    ),
+    Check(
+        "energy",
+        "No albedo exceeds 1, nor what the equations have.",
+        OTHERS,
+        bsdf_measures.energy,
+        "values are twice as large",
+        scale(2.0),
+        of_bsdfs(tolerances.BSDF_INTEGRAL),
     ),
 )

@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM
-from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative
+from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
 from mxeon.conformance.checks.special import TURNED
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
@@ -206,7 +206,61 @@ CYCLES_NOISE = Tolerance(
     "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
 )
 
+SCALED = "pi f cos, relative above 1"
+BSDF_VALUE = Tolerance(
+    rounded_up(32 * ROUNDING),
+    SCALED,
+    scaled,
+    "32 roundings of float32, 2^-24 each, of the value or of 1; rounded up",
+)
+BSDF_ALBEDO = Tolerance(
+    rounded_up(32 * ROUNDING),
+    "albedo",
+    scaled,
+    "32 roundings of float32, 2^-24 each, of the albedo or of 1; rounded up",
+)
+BSDF_FRAME = Tolerance(1e-4, SCALED, scaled, "to be derived")
+ALBEDO_FIT = 2e-3  # largest error of the fits of albedos, see fits/
+FITTED_ALBEDO = Tolerance(
+    ALBEDO_FIT + BSDF_ALBEDO.value,
+    "albedo",
+    absolute,
+    "the fit's 2e-3, and the roundings of an albedo in closed form",
+)
+BSDF_INTEGRAL = Tolerance(
+    1e-3,
+    "albedo",
+    absolute,
+    "the quadrature's own error on the equations, measured",
+)
+LAYER = Tolerance(
+    ALBEDO_FIT + BSDF_INTEGRAL.value,
+    "light",
+    absolute,
+    "the fit's 2e-3, and the quadrature's error",
+)
+
 # By kind of probe: those of a value, and of an albedo.
-VALUES = {"pairs": VALUE, "pictures": CYCLES_RAY, "planes": TESTRENDER}
+VALUES = {
+    "pairs": VALUE,
+    "pictures": CYCLES_RAY,
+    "planes": TESTRENDER,
+    "closed pairs": BSDF_VALUE,
+    "fitted pairs": BSDF_VALUE,
+}
 LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER}
-ALBEDOS = {"pairs": ENVIRONMENT, "pictures": CYCLES_NOISE, "planes": TESTRENDER_NOISE}
+ALBEDOS = {
+    "pairs": ENVIRONMENT,
+    "pictures": CYCLES_NOISE,
+    "planes": TESTRENDER_NOISE,
+    "closed pairs": BSDF_ALBEDO,
+    "fitted pairs": FITTED_ALBEDO,
+}
+THROUGHPUTS = {"closed pairs": BSDF_ALBEDO, "fitted pairs": FITTED_ALBEDO}
+FRAMES = {
+    "pairs": FRAME,
+    "closed pairs": BSDF_FRAME,
+    "fitted pairs": BSDF_FRAME,
+    "microfacet pairs": BSDF_FRAME,
+}
+BSDF_KINDS = ("closed pairs", "fitted pairs", "microfacet pairs")

@@ -38,6 +38,7 @@ def check(
     scheduler: str | None = None,
     wait: float = WAIT,
     policy: Policy = DEFAULT,
+    nodes: Sequence[str] = (),
     progress: Callable[[Iterable[Any], int], Iterable[Any]] = lambda tasks, total: tasks,
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
@@ -66,6 +67,8 @@ def check(
         Seconds that its cluster may be without a worker that fits.
     policy : Policy
         Permissions and limits of documents.
+    nodes : sequence of str
+        Categories of the nodes to judge; none for all.
     progress : callable (iterable, int) -> iterable
         Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
 
@@ -83,7 +86,7 @@ def check(
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """
-    planned = make_plan(files, hosts, libraries, policy, resumable=folder is not None)
+    planned = make_plan(files, hosts, libraries, policy, resumable=folder is not None, nodes=nodes)
     # An executor that cannot work must not touch the folder.
     with (
         _executor(policy, workers, timeout, scheduler, wait) as executor,

@@ -6,6 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.checks.documents import generate_document
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
@@ -192,6 +194,9 @@ def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
     """The probe of a subject on a host."""
     probe = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}
+    bsdfs = {bsdf.title: bsdf for bsdf in BSDFS}
+    if title in bsdfs:
+        return BSDF_PROBES[bsdfs[title].kind](host, bsdfs[title], library)
     if title in surfaces:
         return SURFACE_PROBES[probe](host, surfaces[title], library)
     return probe(host, next(row for row in SUBJECTS + NATIVE if row.title == title), library)

@@ -18,6 +18,7 @@ import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance.checks import functions
+from mxeon.conformance.checks.bsdfs import BSDFS, BsdfSubject
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
 from mxeon.conformance.checks.probes import (
@@ -46,6 +47,7 @@ from mxeon.shaders.nodes import INVERSIONS
 HOST, DEFINITION, SOURCE = "host", "definition", "source"
 CURVE, PICTURE = "curve", "picture"
 FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
+ALL = "all"  # in place of the nodes' names
 TWINS, EVERY_NODE = functions.SUBJECT, "every node"
 
 
@@ -126,6 +128,7 @@ def make_plan(
     libraries: Sequence[str],
     policy: Policy = DEFAULT,
     resumable: bool = False,
+    nodes: Sequence[str] = (),
 ) -> Plan:
     """The tasks of a run, those of one host and library beside each other.
 
@@ -137,6 +140,9 @@ def make_plan(
     policy : Policy
     resumable : bool
         Whether to list the files that the run depends on.
+    nodes : sequence of str
+        Categories of the nodes to judge, and nothing else is judged but `files`; none or ALL for
+        every check.
 
     Returns
     -------
@@ -145,12 +151,13 @@ def make_plan(
     Raises
     ------
     ValueError
-        If a host or a library is unknown; lists the known ones.
+        If a host, a library or a node is unknown; lists the known ones.
     ImportError
         If this MaterialX is too old.
     """
     check_version()
     _assert_known("host", hosts, host_names())
+    _assert_known("node", nodes, (*node_names(), ALL))
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
     tasks: list[Task] = []
@@ -166,6 +173,10 @@ def make_plan(
             tasks += _on_host(host, library, paths)
     for host in hosts:
         tasks += _native(host)
+    if nodes and ALL not in nodes:
+        chosen = {*_titles(nodes), *map(str, files)}
+        tasks = [task for task in tasks if task.subject in chosen]
+        documents = documents if files else []
     return Plan(
         version=mxeon.__version__,
         software=_software(),
@@ -174,6 +185,21 @@ def make_plan(
         options=_options(policy),
         files=digests(dict.fromkeys(documents), policy, libraries) if resumable else {},
     )
+
+
+def node_names() -> tuple[str, ...]:
+    """Categories of the nodes that are judged."""
+    return tuple(dict.fromkeys(row.node for row in _rows()))
+
+
+def _titles(nodes: Sequence[str]) -> set[str]:
+    """Titles of the subjects that are nodes of these categories."""
+    return {row.title for row in _rows() if row.node in nodes}
+
+
+def _rows() -> list[Subject | BsdfSubject | Surface]:
+    """The nodes that are judged."""
+    return [*SUBJECTS, *BSDFS, *SURFACES]
 
 
 def subjects(library: str) -> list[Subject]:
@@ -204,6 +230,9 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
+    if probe is PairProbe:
+        for bsdf in BSDFS:
+            yield from _checks_of(bsdf, bsdf.kind, host, library)
     if row.surfaces:
         for surface in SURFACES:
             if (library if library in LIBRARIES else "eonlib") in (surface.libraries or LIBRARIES):
@@ -219,7 +248,9 @@ def _native(host: str) -> Iterator[Task]:
             yield from _checks_of(subject, NativeProbe.kind, host, "its own nodes")
 
 
-def _checks_of(subject: Subject | Surface, kind: str, host: str, library: str) -> Iterator[Task]:
+def _checks_of(
+    subject: Subject | Surface | BsdfSubject, kind: str, host: str, library: str
+) -> Iterator[Task]:
     """Tasks of one subject: the checks that apply to it."""
     for check in CHECKS:
         if applies(check, subject, kind, host):
