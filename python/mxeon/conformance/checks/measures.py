@@ -151,16 +151,12 @@ def integrated(
 def black(probe: Any, metric: Metric) -> Measurement:
     """Values of a black surface against 0."""
     batches = [batch.altered(**probe.subject.black) for batch in probe.few]
-    return worst_of(
-        metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches)
-    )
+    return worst_of(metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches))
 
 
 def throughput(probe: Any, metric: Metric) -> Measurement:
     """Throughput against 0 of an opaque node, in every branch and for every weight."""
-    return worst_of(
-        metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch))
-    )
+    return worst_of(metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch)))
 
 
 def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
@@ -172,9 +168,7 @@ def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
 def furnace(probe: Any, metric: Metric) -> Measurement:
     """Albedo of a white surface against 1."""
     batches = [batch.altered(color=WHITE, weight=1.0) for batch in probe.cosines]
-    return worst_of(
-        metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches)
-    )
+    return worst_of(metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches))
 
 
 def reciprocity(probe: Any, metric: Metric) -> Measurement:
