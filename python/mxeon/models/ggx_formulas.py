@@ -29,6 +29,12 @@ def smith_lambda(mu: Array, alpha: Array) -> Array:
     return np.sqrt(alpha * alpha + (1.0 - alpha) * (1.0 + alpha) * mu * mu)
 
 
+def mean_alpha(roughness: Array) -> Array:
+    """alpha = sqrt(alpha_x alpha_y): Height-Correlated Smith Masking-Shadowing."""
+    alpha: Array = np.sqrt(roughness[0]) * np.sqrt(roughness[1])
+    return alpha
+
+
 def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
     """G2 / (4 mu_o mu_i); no limit where both directions graze, and 0 there."""
     return reciprocal(2.0 * (smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o))

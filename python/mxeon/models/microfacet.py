@@ -8,19 +8,18 @@ value grows beyond bounds and counts as 0; value times cosine is 0 there for any
 In retroreflective mode wo is replaced by its mirror image about the normal.
 """
 
-from collections.abc import Callable, Mapping
-
 import numpy as np
 
-from mxeon.models import fresnel_formulas as fresnel
-from mxeon.models import ggx_formulas as ggx
-from mxeon.models.arguments import channel_count, checked, checked_directions, checked_pairs
-from mxeon.models.arrays import Array, ArrayLike, Numbers
-from mxeon.models.evaluation import evaluate_material
-from mxeon.models.ggx_albedo import albedo
-
-# Fresnel reflectance of a cosine, and its average, with the parameters bound.
-Fresnel = tuple[Callable[[Array], Array], Callable[[], Array]]
+from mxeon.models.arguments import checked
+from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.microfacet_lobe import (
+    CONDUCTOR,
+    DIELECTRIC,
+    SCHLICK,
+    Lobe,
+    evaluate_lobe,
+    uncompensated,
+)
 
 
 def dielectric_brdf(
@@ -79,13 +78,9 @@ def dielectric_brdf(
     vectors = {"tint": np.atleast_1d(checked("tint", tint))}
     numbers = {"ior": checked("ior", ior)}
 
-    def bound(tint: Array, ior: Array) -> Fresnel:
-        return (
-            lambda c: fresnel.dielectric(c, ior)[np.newaxis],
-            lambda: fresnel.dielectric_avg(ior)[np.newaxis],
-        )
-
-    return _brdf(wo, wi, roughness, vectors, numbers, bound, retroreflective, compensate)
+    return evaluate_lobe(
+        _lobe(compensate), DIELECTRIC, wo, wi, roughness, vectors, numbers, retroreflective
+    )
 
 
 def conductor_brdf(
@@ -139,13 +134,9 @@ def conductor_brdf(
         "extinction": np.atleast_1d(checked("extinction", extinction)),
     }
 
-    def bound(ior: Array, extinction: Array) -> Fresnel:
-        return (
-            lambda c: fresnel.conductor(c, ior, extinction),
-            lambda: fresnel.conductor_avg(ior, extinction),
-        )
-
-    return _brdf(wo, wi, roughness, vectors, {}, bound, retroreflective, compensate)
+    return evaluate_lobe(
+        _lobe(compensate), CONDUCTOR, wo, wi, roughness, vectors, {}, retroreflective
+    )
 
 
 def generalized_schlick_brdf(
@@ -208,51 +199,11 @@ def generalized_schlick_brdf(
     vectors = {name: np.atleast_1d(checked(name, value)) for name, value in colors.items()}
     numbers = {"exponent": checked("exponent", exponent)}
 
-    def bound(color0: Array, color82: Array, color90: Array, exponent: Array) -> Fresnel:
-        return (
-            lambda c: fresnel.schlick(c, color0, color82, color90, exponent),
-            lambda: fresnel.schlick_avg(color0, color82, color90, exponent),
-        )
-
-    return _brdf(wo, wi, roughness, vectors, numbers, bound, retroreflective, compensate)
+    return evaluate_lobe(
+        _lobe(compensate), SCHLICK, wo, wi, roughness, vectors, numbers, retroreflective
+    )
 
 
-def compensation(mu_o: Array, roughness: Array, F_ss: Array) -> Array:
-    """1 + F_ss (1 - E_ss) / E_ss at alpha = sqrt(alpha_x alpha_y): Energy Compensation."""
-    E_ss = albedo(mu_o, mean_alpha(roughness))
-    return 1.0 + F_ss * ((1.0 - E_ss) / E_ss)
-
-
-def mean_alpha(roughness: Array) -> Array:
-    """alpha = sqrt(alpha_x alpha_y): Height-Correlated Smith Masking-Shadowing."""
-    alpha: Array = np.sqrt(roughness[0]) * np.sqrt(roughness[1])
-    return alpha
-
-
-def _brdf(
-    wo: ArrayLike,
-    wi: ArrayLike,
-    roughness: ArrayLike,
-    vectors: Mapping[str, Numbers],
-    numbers: Mapping[str, Numbers],
-    bound: Callable[..., Fresnel],
-    retroreflective: bool,
-    compensate: bool,
-) -> Array:
-    """Microfacet BRDF with the Fresnel curve that `bound` makes of the material's parameters."""
-    directions = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    lobe = {"roughness": checked_pairs("roughness", roughness)}
-    channels = channel_count(vectors)
-
-    def value(wo: Array, wi: Array, roughness: Array, **material: Array) -> Array:
-        if retroreflective:
-            wo = np.stack([-wo[0], -wo[1], wo[2]])
-        F, F_ss = bound(**material)
-        wh, cosine = ggx.half_vector(wo, wi)
-        visibility = ggx.visibility(wo[2], wi[2], mean_alpha(roughness))
-        f = F(cosine) * (ggx.ndf(wh, roughness) * visibility)
-        if compensate:
-            f = f * compensation(wo[2], roughness, F_ss())
-        return f * material["tint"] if "tint" in material else f
-
-    return evaluate_material(value, directions | lobe | dict(vectors), numbers, channels)
+def _lobe(compensate: bool) -> Lobe:
+    """The lobe of the specification, with or without its energy compensation."""
+    return Lobe() if compensate else Lobe(factor=uncompensated)

@@ -10,17 +10,16 @@ no kink remains. An albedo in retroreflective mode is the same: the mirror image
 normal sees the same surface.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models import fresnel_formulas as fresnel
 from mxeon.models.arguments import channel_count, checked, checked_directions, checked_pairs
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
-from mxeon.models.ggx_formulas import smith_lambda
-from mxeon.models.microfacet import compensation, mean_alpha
+from mxeon.models.ggx_formulas import mean_alpha, smith_lambda
+from mxeon.models.microfacet_lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve, missing
 
 # Gauss-Legendre nodes in r per panel, panels, nodes per quadrant of phi, and elements per block.
 NODES, PANELS, QUADRANT, BLOCK = 20, 3, 24, 2**3
@@ -65,20 +64,8 @@ def dielectric_albedo_dir(
     """
     vectors = {"tint": np.atleast_1d(checked("tint", tint))}
 
-    def single(c: Array, tint: Array, ior: Array) -> Array:
-        return tint * fresnel.dielectric(c, ior)
-
-    def average(tint: Array, ior: Array) -> Array:
-        return fresnel.dielectric_avg(ior)[np.newaxis]
-
-    return _albedo(
-        wo,
-        roughness,
-        vectors,
-        {"ior": checked("ior", ior)},
-        single,
-        average if compensate else None,
-    )
+    numbers = {"ior": checked("ior", ior)}
+    return _albedo(DIELECTRIC, wo, roughness, vectors, numbers, compensate)
 
 
 def conductor_albedo_dir(
@@ -123,8 +110,7 @@ def conductor_albedo_dir(
         "ior": np.atleast_1d(checked("ior", ior)),
         "extinction": np.atleast_1d(checked("extinction", extinction)),
     }
-    average = fresnel.conductor_avg if compensate else None
-    return _albedo(wo, roughness, vectors, {}, fresnel.conductor, average)
+    return _albedo(CONDUCTOR, wo, roughness, vectors, {}, compensate)
 
 
 def generalized_schlick_albedo_dir(
@@ -170,8 +156,7 @@ def generalized_schlick_albedo_dir(
     colors = {"color0": color0, "color82": color82, "color90": color90}
     vectors = {name: np.atleast_1d(checked(name, value)) for name, value in colors.items()}
     numbers = {"exponent": checked("exponent", exponent)}
-    average = fresnel.schlick_avg if compensate else None
-    return _albedo(wo, roughness, vectors, numbers, fresnel.schlick, average)
+    return _albedo(SCHLICK, wo, roughness, vectors, numbers, compensate)
 
 
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
@@ -213,21 +198,19 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     array([0.837774, 0.874089])
     """
 
-    def single(c: Array) -> Array:
-        return np.ones((1, *c.shape))
-
-    return _albedo(wo, roughness, {}, {}, single, None)[..., 0][()]
+    white = {"ior": np.zeros(1), "extinction": np.zeros(1)}
+    return _albedo(CONDUCTOR, wo, roughness, white, {}, False)[..., 0][()]
 
 
 def _albedo(
+    curve: Curve,
     wo: ArrayLike,
     roughness: ArrayLike,
     vectors: Mapping[str, Numbers],
     numbers: Mapping[str, Numbers],
-    single: Callable[..., Array],
-    average: Callable[..., Array] | None,
+    compensate: bool,
 ) -> Array:
-    """Albedo with the Fresnel curve `single`, compensated with its `average` if there is one."""
+    """Albedo of a lobe with this Fresnel curve, whose checked inputs `vectors` and `numbers` are."""
     wo, roughness = checked_directions("wo", wo), checked_pairs("roughness", roughness)
 
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
@@ -235,14 +218,13 @@ def _albedo(
         spread = {
             k: v[:, np.newaxis, np.newaxis] if k in vectors else v for k, v in material.items()
         }
-        E: Array = np.sum(single(c, **spread) * weight, axis=(1, 2))
-        if average:
-            E = E * compensation(wo[2], roughness, average(**material))
-        return E
+        E: Array = np.sum(curve.at(c, **spread) * weight, axis=(1, 2))
+        if compensate:
+            E = E * (1.0 + curve.average(**material) * missing(wo[2], roughness))
+        return E * material["tint"] if "tint" in material else E
 
-    channels = channel_count(vectors) if vectors else 1
     arguments = {"wo": wo, "roughness": roughness, **vectors}
-    return evaluate_material(value, arguments, numbers, channels, BLOCK)
+    return evaluate_material(value, arguments, numbers, channel_count(vectors), BLOCK)
 
 
 def _slope_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
@@ -300,7 +282,11 @@ def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     x = np.concatenate([k + x for k in range(PANELS)]) / PANELS
     weight = np.concatenate([weight] * PANELS) / PANELS
     extent = np.arcsinh(length / scale)
-    return scale * np.sinh(extent * x), weight * extent * scale * np.cosh(extent * x)
+    rise = np.exp(extent * x)
+    fall = 1.0 / rise
+    half = 0.5 * scale
+    # sinh and cosh of one exponential, which takes a third of the time.
+    return half * (rise - fall), weight * extent * half * (rise + fall)
 
 
 @lru_cache(maxsize=2)
