@@ -12,10 +12,19 @@ from mxeon.models.albedo import (
     qon_albedo_avg,
     qon_albedo_dir,
 )
+from mxeon.models.ggx_albedo import ggx_albedo_dir
+from mxeon.models.microfacet_albedo import (
+    conductor_albedo_dir,
+    dielectric_albedo_dir,
+    generalized_schlick_albedo_dir,
+    ggx_albedo_dir_anisotropic,
+)
 from mxeon.models.quadrature import albedo_dir_quadrature
 
 __all__ = [
     "albedo_dir_quadrature",
+    "conductor_albedo_dir",
+    "dielectric_albedo_dir",
     "eon_albedo_avg",
     "eon_albedo_dir",
     "eon_albedo_dir_approx",
@@ -23,6 +32,9 @@ __all__ = [
     "fon_albedo_dir",
     "fon_albedo_dir_approx",
     "fon_loss",
+    "generalized_schlick_albedo_dir",
+    "ggx_albedo_dir",
+    "ggx_albedo_dir_anisotropic",
     "qon_albedo_avg",
     "qon_albedo_dir",
 ]

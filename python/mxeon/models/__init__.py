@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diffuse reflection models in NumPy: values, albedos, inversion and sampling.
+"""Reflection models in NumPy: values, albedos, inversion and sampling.
 
 The models import NumPy alone. A call uses the caller's thread, unless `threads` asks for more.
 """
@@ -15,15 +15,38 @@ from mxeon.models.brdf import (
     qon_fujii_brdf,
 )
 from mxeon.models.evaluation import threads
+from mxeon.models.fresnel import (
+    fresnel_conductor,
+    fresnel_conductor_avg,
+    fresnel_dielectric,
+    fresnel_dielectric_avg,
+    fresnel_schlick,
+    fresnel_schlick_avg,
+)
+from mxeon.models.ggx import ggx_ndf, smith_g1, smith_g2, smith_g2_anisotropic
+from mxeon.models.microfacet import conductor_brdf, dielectric_brdf, generalized_schlick_brdf
 
 __all__ = [
+    "conductor_brdf",
+    "dielectric_brdf",
     "eon_brdf",
     "eon_brdf_approx",
     "fon_brdf",
+    "fresnel_conductor",
+    "fresnel_conductor_avg",
+    "fresnel_dielectric",
+    "fresnel_dielectric_avg",
+    "fresnel_schlick",
+    "fresnel_schlick_avg",
+    "generalized_schlick_brdf",
+    "ggx_ndf",
     "lambert_brdf",
     "oren_nayar_brdf",
     "qon_brdf",
     "qon_footnote_brdf",
     "qon_fujii_brdf",
+    "smith_g1",
+    "smith_g2",
+    "smith_g2_anisotropic",
     "threads",
 ]

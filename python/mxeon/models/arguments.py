@@ -24,6 +24,16 @@ RANGES = {
     "amount": (0.0, 1.0, "[0, 1]"),
     "weight": (0.0, _LARGEST, "[0, inf)"),
     "albedo": (-_LARGEST, _LARGEST, "(-inf, inf)"),
+    "mu_o": (0.0, 1.0, "[0, 1]"),
+    "mu_i": (0.0, 1.0, "[0, 1]"),
+    "alpha": (0.0, 1.0, "[0, 1]"),
+    "tint": (0.0, 1.0, "[0, 1]"),
+    "color0": (0.0, 1.0, "[0, 1]"),
+    "color82": (0.0, 1.0, "[0, 1]"),
+    "color90": (0.0, 1.0, "[0, 1]"),
+    "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
+    "ior": (0.0, 1e50, "[0, 1e50]"),
+    "extinction": (0.0, 1e50, "[0, 1e50]"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
@@ -118,6 +128,14 @@ def checked_triples(name: str, value: ArrayLike) -> Numbers:
     return array
 
 
+def checked_pairs(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 2) inside the range that its name has in `RANGES`."""
+    array = checked(name, value)
+    if array.shape[-1:] != (2,):
+        raise ValueError(f"{name} must have shape (..., 2); got shape {array.shape}")
+    return array
+
+
 def are_directions(components: Numbers) -> bool:
     """Whether all vectors of shape (3, ...) are unit and on or above the horizon."""
     x, y, z = components
@@ -176,6 +194,23 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
         apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
         shapes = ", ".join(str(array.shape) for array in arrays)
         raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
+
+
+def channel_count(colors: Mapping[str, Numbers]) -> int:
+    """Number of channels to which colors of shape (..., C) broadcast.
+
+    Raises
+    ------
+    ValueError
+        If they do not; names them and their numbers of channels.
+    """
+    counts = [int(color.shape[-1]) for color in colors.values()]
+    largest = max(counts)
+    if any(count not in (1, largest) for count in counts):
+        raise ValueError(
+            f"{', '.join(colors)} must have equal numbers of channels; got {', '.join(map(str, counts))}"
+        )
+    return largest
 
 
 def _real(name: str, value: ArrayLike) -> Numbers:

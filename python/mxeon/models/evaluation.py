@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Evaluation of reflection formulas over broadcast arguments, in blocks that fit a cache."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -15,8 +15,8 @@ from mxeon.models.arguments import (
     lead_shape,
     refuse_direction,
 )
-from mxeon.models.arrays import Array, ArrayLike
-from mxeon.models.tiling import blocks, tile, with_axes
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.tiling import BLOCK, blocks, tile, with_axes
 
 _threads: ContextVar[int] = ContextVar("threads", default=1)
 
@@ -112,6 +112,58 @@ def evaluate(
             out[block][..., channel] = value
 
     _for_each(fill, list(blocks(shape)))
+    return out
+
+
+def evaluate_material(
+    formula: Callable[..., Array],
+    vectors: Mapping[str, Numbers],
+    numbers: Mapping[str, Numbers],
+    channels: int,
+    size: int = BLOCK,
+) -> Array:
+    """Values of a formula over broadcast arguments that were checked, block by block.
+
+    Parameters
+    ----------
+    formula : callable
+        `formula(**arguments)` for one block: of `vectors` each with its last axis first, (C, ...),
+        of `numbers` (...), all float64; returns (channels, ...). Axes of length 1 stay so.
+    vectors, numbers : dict of str to ndarray
+        Directions, colors and pairs, shapes (..., C); the others, shapes (...).
+    channels : int
+        Channels of the result.
+    size : int
+        Elements per block; fewer where the formula keeps many numbers for each.
+
+    Returns
+    -------
+    ndarray, shape (..., channels), float64
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not broadcast.
+
+    Examples
+    --------
+    >>> color, mu = np.array([0.5, 1.0]), np.array(0.4)
+    >>> evaluate_material(lambda color, mu: color * mu, {"color": color}, {"mu": mu}, 2)
+    array([0.2, 0.4])
+    """
+    shape = lead_shape(vectors, numbers)
+    arguments = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
+    arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
+    out = np.empty((*shape, channels))
+
+    def fill(block: tuple[slice, ...]) -> None:
+        parts = {name: tile(array, block) for name, array in arrays.items()}
+        values = formula(
+            **{name: parts[name][0] if name in numbers else parts[name] for name in parts}
+        )
+        out[block] = np.moveaxis(np.broadcast_to(values, (channels, *out[block].shape[:-1])), 0, -1)
+
+    _for_each(fill, list(blocks(shape, size)))
     return out
 
 

@@ -11,13 +11,15 @@ from mxeon.models.arrays import Array, Numbers
 BLOCK = 2**15
 
 
-def blocks(shape: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
-    """Indices that tile an array, each selecting at most about `BLOCK` elements.
+def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
+    """Indices that tile an array, each selecting at most about `size` elements.
 
     Parameters
     ----------
     shape : tuple of int
         Shape of the array.
+    size : int
+        Elements per block.
 
     Yields
     ------
@@ -30,14 +32,14 @@ def blocks(shape: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
     [(slice(0, 1, None), slice(None, None, None)), (slice(1, 2, None), slice(None, None, None))]
     """
     axis, inner = len(shape), 1
-    while axis > 0 and inner * shape[axis - 1] <= BLOCK:
+    while axis > 0 and inner * shape[axis - 1] <= size:
         axis -= 1
         inner *= shape[axis]
     whole = (slice(None),) * (len(shape) - axis)
     if axis == 0:
         yield whole
         return
-    step = max(1, BLOCK // inner)
+    step = max(1, size // inner)
     for outer in np.ndindex(shape[: axis - 1]):
         for start in range(0, shape[axis - 1], step):
             yield (*(slice(i, i + 1) for i in outer), slice(start, start + step), *whole)

@@ -6,7 +6,7 @@ Directions leave the surface, local frame with the normal +z. Random numbers `u`
 
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_directions, lead_shape
+from mxeon.models.arguments import checked, checked_directions, checked_pairs, lead_shape
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 
 
@@ -186,10 +186,7 @@ def _broadcastable(vectors: dict[str, Numbers], numbers: dict[str, ArrayLike]) -
 
 def _checked_pairs(u: ArrayLike) -> Array:
     """Checked random numbers of shape (..., 2), as a float64 array."""
-    pairs = np.asarray(checked("u", u), np.float64)
-    if pairs.shape[-1:] != (2,):
-        raise ValueError(f"u must have shape (..., 2); got shape {pairs.shape}")
-    return pairs
+    return np.asarray(checked_pairs("u", u), np.float64)
 
 
 def _uniform_density(wi: Numbers) -> Array:
