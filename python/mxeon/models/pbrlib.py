@@ -13,6 +13,12 @@ import numpy as np
 
 from mxeon.models.arrays import Array
 from mxeon.models.burley import burley_albedo_dir, burley_brdf
+from mxeon.models.microfacet import conductor_brdf, dielectric_brdf, generalized_schlick_brdf
+from mxeon.models.microfacet_albedo import (
+    conductor_albedo_dir,
+    dielectric_albedo_dir,
+    generalized_schlick_albedo_dir,
+)
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -56,9 +62,10 @@ class PbrNode:
     value : callable (wo, wi, inputs) -> ndarray, shape (N, 3)
         BSDF in 1/sr without the cosine, for weight 1.
     albedo : callable (wo, inputs) -> ndarray, shape (N, 3)
-        Directional albedo E for weight 1, with all tints; 1 where its integral exceeds 1.
+        Directional albedo E for weight 1, with all tints; 1 where its integral exceeds 1. Of
+        anisotropic microfacets it is that at the geometric mean of both alphas, as G2 is.
     integral : callable (wo, inputs) -> ndarray, shape (N, 3), or None
-        The integral of its values, where that exceeds 1 for some inputs; None for the albedo.
+        The integral of its values, where that is another number for some inputs.
     fixed : mapping of str to str
         Inputs that select the mode.
     layerable : bool
@@ -69,6 +76,8 @@ class PbrNode:
         Whether a shader needs a fit for its albedo.
     reciprocal : bool
         Whether exchanging the directions does not change the value.
+    mirror : mapping of str to value
+        Inputs with which it reflects all light; none if there are none.
     variants : tuple of Variant
     """
 
@@ -84,6 +93,7 @@ class PbrNode:
     transmits: bool = False
     fitted: bool = False
     reciprocal: bool = True
+    mirror: Mapping[str, object] = field(default_factory=dict)
     variants: tuple[Variant, ...] = ()
 
 
@@ -165,7 +175,76 @@ def _colored(albedo: Callable[[Array, Inputs], Array]) -> Callable[[Array, Input
     return lambda wo, inputs: np.asarray(albedo(wo, inputs) * inputs["color"])
 
 
+def _isotropic(inputs: Inputs) -> Array:
+    """Geometric mean of the two components of a roughness, twice."""
+    mean = np.sqrt(inputs["roughness"].prod(axis=-1, keepdims=True))
+    return np.repeat(mean, 2, axis=-1)
+
+
+def _schlick(inputs: Inputs) -> tuple[Array, Array, Array]:
+    """The colors of the generalized Schlick curve."""
+    return inputs["color0"], inputs["color82"], inputs["color90"]
+
+
+WHITE = (1.0, 1.0, 1.0)
 COLOR_ROUGHNESS = ("color", "roughness")
+MICROFACET = (
+    PbrNode(
+        "dielectric",
+        "dielectric microfacets",
+        "dielectric_bsdf",
+        ("tint", "ior", "roughness"),
+        lambda wo, wi, inputs: dielectric_brdf(
+            wo, wi, inputs["tint"], inputs["roughness"], inputs["ior"]
+        ),
+        lambda wo, inputs: dielectric_albedo_dir(
+            wo, inputs["tint"], _isotropic(inputs), inputs["ior"]
+        ),
+        lambda wo, inputs: dielectric_albedo_dir(
+            wo, inputs["tint"], inputs["roughness"], inputs["ior"]
+        ),
+        fixed={"scatter_mode": "R"},
+        layerable=True,
+        reciprocal=False,
+        mirror={"ior": 0.0, "tint": WHITE},
+    ),
+    PbrNode(
+        "conductor",
+        "conductor microfacets",
+        "conductor_bsdf",
+        ("ior", "extinction", "roughness"),
+        lambda wo, wi, inputs: conductor_brdf(
+            wo, wi, inputs["roughness"], inputs["ior"], inputs["extinction"]
+        ),
+        lambda wo, inputs: conductor_albedo_dir(
+            wo, _isotropic(inputs), inputs["ior"], inputs["extinction"]
+        ),
+        lambda wo, inputs: conductor_albedo_dir(
+            wo, inputs["roughness"], inputs["ior"], inputs["extinction"]
+        ),
+        reciprocal=False,
+        mirror={"ior": (0.0, 0.0, 0.0)},
+    ),
+    PbrNode(
+        "schlick",
+        "generalized Schlick microfacets",
+        "generalized_schlick_bsdf",
+        ("color0", "color82", "color90", "exponent", "roughness"),
+        lambda wo, wi, inputs: generalized_schlick_brdf(
+            wo, wi, *_schlick(inputs), inputs["roughness"], inputs["exponent"]
+        ),
+        lambda wo, inputs: generalized_schlick_albedo_dir(
+            wo, *_schlick(inputs), _isotropic(inputs), inputs["exponent"]
+        ),
+        lambda wo, inputs: generalized_schlick_albedo_dir(
+            wo, *_schlick(inputs), inputs["roughness"], inputs["exponent"]
+        ),
+        fixed={"scatter_mode": "R"},
+        layerable=True,
+        reciprocal=False,
+        mirror=dict.fromkeys(("color0", "color82", "color90"), WHITE),
+    ),
+)
 NODES = (
     PbrNode(
         "burley",
@@ -218,4 +297,5 @@ NODES = (
         reciprocal=False,
         variants=(Variant("its albedo without the color", albedo=_untinted(zeltner_albedo_dir)),),
     ),
+    *MICROFACET,
 )

@@ -120,5 +120,51 @@ class MicrofacetProbe(BsdfProbe):
 
     kind: ClassVar[str] = "microfacet pairs"
 
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Those of any node, and pairs near the mirror direction."""
+        return (*super().batches, self.mirrored[0])
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of the random pairs, the special ones, and FEW near the mirror direction."""
+        return (*super().few, self.mirrored[0].first(FEW))
+
+    @cached_property
+    def mirrored(self) -> tuple[Batch, Batch]:
+        """Two lights near the mirror direction of each view, by normals that the view sees."""
+        rng = np.random.default_rng(SEED)
+        wo, inputs = directions(rng, PAIRS), self.subject.random_inputs(rng, PAIRS)
+        first, second = (
+            reflected(wo, inputs["roughness"], rng.random(PAIRS), rng.random(PAIRS))
+            for _ in range(2)
+        )
+        above = (np.minimum(first[:, 2], second[:, 2]) > 0.0) & (wo[:, 2] > 0.0)
+        pair = Batch(wo, first, inputs).where(above), Batch(wo, second, inputs).where(above)
+        return pair
+
+    def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
+        """Directions and weights of a quadrature over the normals that each view sees.
+
+        The roughness is made the same in both directions, since only then E_ss is that of the lobe.
+        """
+        inputs["roughness"][:, 1] = inputs["roughness"][:, 0]
+        x, w = np.polynomial.legendre.leggauss(NODES)
+        height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(NODES) + 0.5) / NODES)
+        count = height.size
+        views, alpha = (np.repeat(each, count, axis=0) for each in (wo, inputs["roughness"]))
+        u = np.tile(height.ravel(), len(wo)), np.tile(around.ravel(), len(wo))
+        wi = reflected(views, alpha, *u)
+        lit = wi[:, 2] > 0.0
+        wi[~lit] = (0.0, 0.0, 1.0)
+        density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
+        weights = np.tile(np.meshgrid(0.5 * w, np.ones(NODES))[0].ravel() / NODES, len(wo))
+        return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
+
+
+def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
+    """Mirror images of views about normals that they see, float32 numbers, (N, 3)."""
+    return rounded(ggx_sample(wo, height, around, alpha)[0].T)
+
 
 BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, FittedProbe, MicrofacetProbe)}
