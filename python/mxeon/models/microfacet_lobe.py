@@ -37,6 +37,7 @@ DIELECTRIC = Curve(
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)
 SCHLICK = Curve(fresnel.schlick, fresnel.schlick_avg)
+WHITE = Curve(lambda c, tint: np.ones((1, *c.shape)), lambda tint: np.ones(1))
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from mxeon.models.sampling.cltc import cltc_pdf, cltc_sample, eon_cltc_pdf, eon_
 from mxeon.models.sampling.eon import eon_pdf, eon_sample
 from mxeon.models.sampling.hemisphere import cosine_pdf, cosine_sample, uniform_pdf, uniform_sample
 from mxeon.models.sampling.ltc import ltc0_pdf, ltc0_sample, ltc_pdf, ltc_sample
+from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 from mxeon.models.sampling.zeltner import zeltner_pdf, zeltner_sample
 
 __all__ = [
@@ -27,6 +28,8 @@ __all__ = [
     "eon_cltc_sample",
     "eon_pdf",
     "eon_sample",
+    "ggx_pdf",
+    "ggx_sample",
     "ltc0_pdf",
     "ltc0_sample",
     "ltc_pdf",

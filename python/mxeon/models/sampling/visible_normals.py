@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Importance sampling of GGX reflection by visible normals.
+
+The surface is stretched until its microfacets are a hemisphere; their visible normals are then
+half vectors of the stretched `wo` and a direction drawn uniformly on a spherical cap.
+"""
+
+import numpy as np
+
+from mxeon.models import ggx_formulas as ggx
+from mxeon.models.arguments import checked_directions, checked_pairs, lead_shape
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.sampling.hemisphere import around, unpack_uniforms
+
+
+def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
+    """Direction reflected by a visible GGX normal, may be below the horizon; and its density.
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Unit vectors on or above the horizon.
+    u : array_like, shape (..., 2)
+        Independent uniform random numbers, in [0, 1).
+    roughness : array_like, shape (..., 2)
+        alpha along tangent and bitangent, dimensionless, in [0, 1].
+
+    Returns
+    -------
+    wi : ndarray, shape (..., 3), float64
+        Unit vectors; those with z < 0 are wasted, their weight is 0.
+    pdf : float64 or ndarray, shape (...)
+        1/sr. Where an alpha is 0 there is no density, and it counts as 0.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Value times cosine over density is F G2 / G1(wo).
+
+    References
+    ----------
+    [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
+
+    Examples
+    --------
+    >>> wi, pdf = ggx_sample([0.6, 0.0, 0.8], [0.25, 0.5], [0.5, 0.25])
+    >>> wi.round(6), round(float(pdf), 6)
+    (array([-0.835004,  0.      ,  0.550244]), 0.649904)
+    """
+    u1, u2 = unpack_uniforms(u)
+    vectors = {"wo": checked_directions("wo", wo), "u": np.stack([u1, u2], axis=-1)}
+    view, (u1, u2), alpha = _components(
+        vectors | {"roughness": checked_pairs("roughness", roughness)}
+    )
+    wh = _visible_normal(view, u1, u2, alpha)
+    wi = np.moveaxis(2.0 * np.sum(view * wh, axis=0) * wh - view, 0, -1)
+    return wi, _density(view, wh, alpha)
+
+
+def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
+    """Density of `ggx_sample` at `wi`, above the horizon, in solid angle.
+
+        pdf = G1(wo) D(wh) / (4 mu_o)
+
+    Parameters
+    ----------
+    wo, wi : array_like, shape (..., 3)
+        Unit vectors on or above the horizon.
+    roughness : array_like, shape (..., 2)
+        alpha along tangent and bitangent, dimensionless, in [0, 1].
+
+    Returns
+    -------
+    float64 or ndarray, shape (...)
+        1/sr; its integral over the hemisphere is the probability that no sample is wasted.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    References
+    ----------
+    [Heitz2014], Eqs. (16), (43).
+
+    Examples
+    --------
+    >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
+    0.455389
+    """
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
+    vectors["roughness"] = checked_pairs("roughness", roughness)
+    view, light, alpha = _components(vectors)
+    return _density(view, ggx.half_vector(view, light)[0], alpha)
+
+
+def _components(vectors: dict[str, Numbers]) -> list[Array]:
+    """Vectors, broadcast against each other, as float64 arrays with the components first."""
+    lead = lead_shape(vectors, {})
+    spread = [np.broadcast_to(v, lead + v.shape[-1:]) for v in vectors.values()]
+    return [np.moveaxis(np.asarray(vector, np.float64), -1, 0) for vector in spread]
+
+
+def _density(wo: Array, wh: Array, roughness: Array) -> Array:
+    """G1(wo) D(wh) / (4 mu_o), components first; G1 / mu_o is finite at grazing."""
+    masking = 0.5 * ggx.reciprocal(wo[2] + ggx.stretched_length(wo, roughness))
+    density: Array = masking * ggx.ndf(wh, roughness)
+    return density
+
+
+def _visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
+    """Visible normal for two random numbers, components first: [Dupuy2023], Listing 3."""
+    stretched = np.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
+    length = np.sqrt(np.sum(stretched * stretched, axis=0))
+    # A smooth surface seen at grazing has a length of 0 and one normal, whatever is drawn.
+    stretched = stretched / np.where(length > 0.0, length, 1.0)
+    # A point of the cap above -z of the stretched view.
+    down = (1.0 + stretched[2]) * u1
+    z = 1.0 - down
+    cap = np.moveaxis(around(z, np.sqrt(down * (1.0 + z)), u2), -1, 0)
+    x, y, z = cap + stretched
+    normal = np.stack([roughness[0] * x, roughness[1] * y, np.maximum(z, 0.0)])
+    length = np.sqrt(np.sum(normal * normal, axis=0))
+    upright = np.stack([0.0 * z, 0.0 * z, 1.0 + 0.0 * z])
+    return np.where(length > 0.0, normal / np.where(length > 0.0, length, 1.0), upright)
