@@ -86,7 +86,7 @@ def test_the_printed_average_is_the_integral():
         assert abs(fresnel_dielectric_avg(0.7) - average(0.7)) < 1e-13
 
 
-@pytest.mark.parametrize("metal", [METALS[0], METALS[2], WEAK[0], WEAK[2]], ids=str)
+@pytest.mark.parametrize("metal", [METALS[2], WEAK[0]], ids=str)
 def test_the_average_of_a_conductor_agrees_with_adaptive_quadrature(metal):
     with mp.workdps(16):
         assert abs(fresnel_conductor_avg(*metal)[0] - average(*metal)) < tolerances.CONDUCTOR
