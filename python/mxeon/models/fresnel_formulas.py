@@ -85,15 +85,19 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     """
     n2 = (ior + 1j * extinction) ** 2
     split = np.clip(np.sqrt(1.0 - n2).real, 0.0, 1.0)
+    below, above = bool((split > 0.0).any()), bool((split < 1.0).any())
     total = np.zeros(np.broadcast_shapes(ior.shape, extinction.shape))
     t = STEP * np.arange(-STEPS, STEPS + 1)
     X = np.exp(np.pi * np.sinh(t))
     for x, weight in zip(
         X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2, strict=True
     ):
-        low, high = split * x, split + (1.0 - split) * x
-        total += weight * split * low * conductor(low, ior, extinction)
-        total += weight * (1.0 - split) * high * conductor(high, ior, extinction)
+        if below:
+            mu = split * x
+            total += weight * split * mu * conductor(mu, ior, extinction)
+        if above:
+            mu = split + (1.0 - split) * x
+            total += weight * (1.0 - split) * mu * conductor(mu, ior, extinction)
     return np.minimum(2.0 * total, 1.0)
 
 
