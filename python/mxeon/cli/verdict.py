@@ -47,7 +47,8 @@ def _print_not_run(run: Run) -> None:
 
 
 def _print_failed(run: Run) -> None:
+    """Print the checks that failed, and those that differ where they may."""
     for result in run.results:
-        if result.verdict == "failed":
+        if result.verdict in ("failed", "differs"):
             where = f"{result.location}, {result.check}, {result.subject}"
-            print(one_line(f"failed: {where}: {result.explanation}"))
+            print(one_line(f"{result.verdict}: {where}: {result.explanation}"))

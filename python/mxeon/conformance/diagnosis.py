@@ -41,10 +41,13 @@ class Diagnosis:
         The model, defect or fault that explains them; or where they are wrong.
     distances : dict of str to float
         Root-mean-square distance to every model and defect, by title, in units of pi f cos.
+    permitted : bool
+        Whether a function that the specification leaves open gives all values.
     """
 
     text: str = ""
     distances: dict[str, float] = field(default_factory=dict)
+    permitted: bool = False
 
 
 def sentence(distances: Sequence[tuple[str, float]]) -> str:
@@ -132,7 +135,19 @@ def _explained(
         text = _fault(distances, models, own.title, tolerance.value)
         if text:
             return Diagnosis(text, models)
-    return Diagnosis(_model(probe, cases, ranking, own.title, tolerance), models)
+    text = _model(probe, cases, ranking, own.title, tolerance)
+    return Diagnosis(text, models, _permitted(cases, candidates, ranking[0][0], tolerance))
+
+
+def _permitted(
+    cases: Sequence[Case], candidates: Sequence[Candidate], title: str, tolerance: Tolerance
+) -> bool:
+    """Whether the candidate of a title is permitted, and every value is its."""
+    candidate = next(each for each in candidates if each.title == title)
+    return candidate.permitted and all(
+        tolerance.metric(case.measured, candidate.values(case.batch)).max() <= tolerance.value
+        for case in cases
+    )
 
 
 def _distance(
@@ -149,15 +164,16 @@ def _distance(
         kept = case.batch.rough <= 1.0
         if "albedo" not in tolerance.unit:
             kept &= np.abs(case.batch.wi[:, 2]) > LIT
-        error = (case.measured - values)[kept]
+        error = ((case.measured - values) / tolerance.scale(case.expected))[kept]
         errors.append(error.mean(axis=0, keepdims=True) if tolerance.metric is of_mean else error)
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 
 def _factor(cases: Sequence[Case]) -> float:
     """The factor by which the expected values come nearest to the measured ones."""
-    squares = sum(float(np.sum(case.expected**2)) for case in cases)
-    products = sum(float(np.sum(case.expected * case.measured)) for case in cases)
+    scaled = [(case, np.maximum(1.0, np.abs(case.expected)) ** 2) for case in cases]
+    squares = sum(float(np.sum(case.expected**2 / scale)) for case, scale in scaled)
+    products = sum(float(np.sum(case.expected * case.measured / scale)) for case, scale in scaled)
     return products / squares if squares else 1.0
 
 

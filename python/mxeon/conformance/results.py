@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError
 from mxeon.shaders.hosts.base import Identity
 
-PASSED, FAILED, NOT_RUN = "passed", "failed", "not run"
-VERDICTS = (PASSED, FAILED, NOT_RUN)
+PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
+VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 
 
@@ -52,7 +52,7 @@ class Result:
     host, library : str
         The host it ran on, and the data library it used.
     verdict : str
-        PASSED, FAILED or NOT_RUN.
+        PASSED, FAILED or NOT_RUN; DIFFERS where the error is what the specification leaves open.
     error, tolerance : float or None
         Measured and allowed, in `unit`; a check passes at error <= tolerance.
     unit, derivation : str
@@ -133,7 +133,7 @@ class Summary:
         FAILED if any check failed, else NOT_RUN if any or all did not run or the run is not
         finished, else PASSED.
     counts : dict of str to int
-        Number of checks that ended as PASSED, FAILED, NOT_RUN.
+        Number of checks that ended with each of VERDICTS.
     sentence : str
         The same for a reader.
     """
@@ -175,18 +175,24 @@ def summarize(
 
 def _summarize_results(results: Sequence[Result]) -> Summary:
     tally = Counter(result.verdict for result in results)
-    counts = {verdict: tally[verdict] for verdict in (PASSED, FAILED, NOT_RUN)}
+    counts = {verdict: tally[verdict] for verdict in VERDICTS}
     total = len(results)
     if counts[FAILED]:
         failed = Counter(result.location for result in results if result.verdict == FAILED)
         listed = "; ".join(f"{count} on {location}" for location, count in failed.items())
         return Summary(FAILED, counts, f"{counts[FAILED]} of {total} checks failed: {listed}.")
-    if not counts[PASSED]:
+    if not counts[PASSED] + counts[DIFFERS]:
         return Summary(NOT_RUN, counts, "No check ran.")
     if counts[NOT_RUN]:
         sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} checks did not run."
         return Summary(NOT_RUN, counts, sentence)
     hosts = " and ".join(dict.fromkeys(result.location for result in results))
+    if counts[DIFFERS]:
+        sentence = (
+            f"{counts[PASSED]} of {total} checks passed on {hosts}; {counts[DIFFERS]} differ where "
+            "the specification leaves it open."
+        )
+        return Summary(PASSED, counts, sentence)
     return Summary(PASSED, counts, f"All {total} checks passed on {hosts}.")
 
 

@@ -7,18 +7,22 @@ Inputs come as a mapping by the names of the node's ports, each (N,) or (N, comp
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
 
+from mxeon.models import materialx_fits
 from mxeon.models.arrays import Array
 from mxeon.models.burley import burley_albedo_dir, burley_brdf
+from mxeon.models.fresnel import fresnel_dielectric
 from mxeon.models.microfacet import conductor_brdf, dielectric_brdf, generalized_schlick_brdf
 from mxeon.models.microfacet_albedo import (
     conductor_albedo_dir,
     dielectric_albedo_dir,
     generalized_schlick_albedo_dir,
 )
+from mxeon.models.microfacet_defects import MICROFACET_DEFECTS, MicrofacetDefect
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -40,11 +44,14 @@ class Variant:
     value : callable (wo, wi, inputs) -> ndarray, shape (N, 3), or None
         As in PbrNode; None where its values are the node's.
     albedo : callable (wo, inputs) -> ndarray, shape (N, 3), or None
+    permitted : bool
+        Whether the specification leaves it open.
     """
 
     title: str
     value: Callable[[Array, Array, Inputs], Array] | None = None
     albedo: Callable[[Array, Inputs], Array] | None = None
+    permitted: bool = False
 
 
 @dataclass(frozen=True)
@@ -152,27 +159,21 @@ def _sheen(
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
 
 
-def _fitted_conty_kulla(wo: Array, inputs: Inputs) -> Array:
-    """MaterialX's rational fit of the Conty-Kulla albedo, without the color."""
-    x, y = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
-    above = 13.673 - 68.78018 * x + 799.08825 * y - 905.00061 * x * y
-    above += 60.28956 * x * x + 1086.96473 * y * y
-    below = 1.0 + 61.57746 * x + 442.78211 * y + 2597.49308 * x * y
-    below += 121.81241 * x * x + 3045.55075 * y * y
-    return np.repeat(np.clip(above / below, 0.0, 1.0)[:, np.newaxis], 3, axis=-1)
-
-
-def _fitted_burley(wo: Array, inputs: Inputs) -> Array:
-    """MaterialX's fit of Burley's albedo."""
-    x, r = np.minimum(wo[:, 2], 1.0), inputs["roughness"]
-    smooth = 0.97619 - 0.488095 * (1.0 - x) ** 5
-    rough = 1.55754 + (-2.02221 + (2.56283 - 1.06244 * x) * x) * x
-    return np.asarray(((1.0 - r) * smooth + r * rough)[:, np.newaxis] * inputs["color"])
-
-
 def _colored(albedo: Callable[[Array, Inputs], Array]) -> Callable[[Array, Inputs], Array]:
     """An albedo times the color."""
     return lambda wo, inputs: np.asarray(albedo(wo, inputs) * inputs["color"])
+
+
+def _variants(category: str) -> tuple[Variant, ...]:
+    """Known variants of a microfacet node; the text leaves the form of the compensation open."""
+    return tuple(
+        Variant(each.title, partial(_defect, each, category), permitted=each.name in OPEN)
+        for each in MICROFACET_DEFECTS
+    )
+
+
+def _defect(defect: MicrofacetDefect, category: str, wo: Array, wi: Array, inputs: Inputs) -> Array:
+    return defect.value(category, wo, wi, inputs)
 
 
 def _isotropic(inputs: Inputs) -> Array:
@@ -186,6 +187,7 @@ def _schlick(inputs: Inputs) -> tuple[Array, Array, Array]:
     return inputs["color0"], inputs["color82"], inputs["color90"]
 
 
+OPEN = ("compensation_half", "compensation_f0", "compensation_view", "materialx_compensation")
 WHITE = (1.0, 1.0, 1.0)
 COLOR_ROUGHNESS = ("color", "roughness")
 MICROFACET = (
@@ -207,6 +209,19 @@ MICROFACET = (
         layerable=True,
         reciprocal=False,
         mirror={"ior": 0.0, "tint": WHITE},
+        variants=(
+            *_variants("dielectric_bsdf"),
+            Variant(
+                "MaterialX's fit of its albedo without the tint",
+                albedo=lambda wo, inputs: materialx_fits.layer_albedo(
+                    wo,
+                    inputs,
+                    fresnel_dielectric(1.0, inputs["ior"])[:, np.newaxis],
+                    1.0,
+                    fresnel_dielectric(np.minimum(wo[:, 2], 1.0), inputs["ior"])[:, np.newaxis],
+                ),
+            ),
+        ),
     ),
     PbrNode(
         "conductor",
@@ -224,6 +239,7 @@ MICROFACET = (
         ),
         reciprocal=False,
         mirror={"ior": (0.0, 0.0, 0.0)},
+        variants=_variants("conductor_bsdf"),
     ),
     PbrNode(
         "schlick",
@@ -243,6 +259,7 @@ MICROFACET = (
         layerable=True,
         reciprocal=False,
         mirror=dict.fromkeys(("color0", "color82", "color90"), WHITE),
+        variants=_variants("generalized_schlick_bsdf"),
     ),
 )
 NODES = (
@@ -255,7 +272,7 @@ NODES = (
         lambda wo, inputs: burley_albedo_dir(
             np.minimum(wo[:, 2], 1.0), inputs["color"], inputs["roughness"]
         ),
-        variants=(Variant("MaterialX's fit of its albedo", albedo=_fitted_burley),),
+        variants=(Variant("MaterialX's fit of its albedo", albedo=materialx_fits.burley_albedo),),
     ),
     PbrNode(
         "translucent",
@@ -281,8 +298,13 @@ NODES = (
             Variant(
                 "its albedo without the color", albedo=_untinted(_bounded(conty_kulla_albedo_dir))
             ),
-            Variant("MaterialX's fit of its albedo", albedo=_colored(_fitted_conty_kulla)),
-            Variant("MaterialX's fit of its albedo without the color", albedo=_fitted_conty_kulla),
+            Variant(
+                "MaterialX's fit of its albedo", albedo=_colored(materialx_fits.conty_kulla_albedo)
+            ),
+            Variant(
+                "MaterialX's fit of its albedo without the color",
+                albedo=materialx_fits.conty_kulla_albedo,
+            ),
         ),
     ),
     PbrNode(

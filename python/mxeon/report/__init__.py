@@ -36,7 +36,8 @@ def to_json(run: Run) -> str:
         what is missing is null. Keys:
 
         - format: this layout's number, raised when a key changes or goes.
-        - verdict: "passed", "failed" or "not run"; counts: the number of checks with each.
+        - verdict: "passed", "failed" or "not run", and "differs" of a check where the
+          specification leaves the difference open; counts: the number of checks with each.
         - sentence: the same in words.
         - missing: texts, the items that an interrupted run has not finished.
         - errors: texts, one for each document that was refused.

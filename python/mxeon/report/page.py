@@ -15,7 +15,16 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Curve, Picture, Result, Run
+from mxeon.conformance.results import (
+    DIFFERS,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    Curve,
+    Picture,
+    Result,
+    Run,
+)
 from mxeon.io.images import difference, difference_scale, srgb_encoded
 from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
 
@@ -24,7 +33,12 @@ MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
 # Materials whose pictures are inside the page, about a megabyte each; others are linked.
 SHOWN_MATERIALS = 60
 # CSS class of each verdict, and a sign for readers who cannot see the color.
-LOOKS = {PASSED: ("passed", "✓"), FAILED: ("failed", "✗"), NOT_RUN: ("not-run", "–")}
+LOOKS = {
+    PASSED: ("passed", "✓"),
+    DIFFERS: ("differs", "≠"),
+    FAILED: ("failed", "✗"),
+    NOT_RUN: ("not-run", "–"),
+}
 
 
 @dataclass(frozen=True)
@@ -54,7 +68,9 @@ class Check:
     def verdict(self) -> str:
         """The worst verdict of the results."""
         verdicts = {result.verdict for result in self.results}
-        return next(verdict for verdict in (FAILED, NOT_RUN, PASSED) if verdict in verdicts)
+        return next(
+            verdict for verdict in (FAILED, NOT_RUN, DIFFERS, PASSED) if verdict in verdicts
+        )
 
     @property
     def tightest(self) -> Result | None:
@@ -64,10 +80,10 @@ class Check:
 
     @property
     def diagnoses(self) -> dict[str, list[str]]:
-        """Subjects that failed, by diagnosis."""
+        """Subjects that failed or differ, by diagnosis."""
         subjects: dict[str, list[str]] = {}
         for one in self.results:
-            if one.verdict == FAILED:
+            if one.verdict in (FAILED, DIFFERS):
                 words = one.diagnosis if one.error is None or share(one) > 1.0 else one.explanation
                 subjects.setdefault(words, []).append(one.subject)
         return subjects
@@ -254,4 +270,5 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
         plots=plots(run.curves),
         verdicts=tuple(LOOKS),
         FAILED=FAILED,
+        DIFFERS=DIFFERS,
     )

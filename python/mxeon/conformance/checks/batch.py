@@ -115,10 +115,13 @@ class Candidate:
     ----------
     title : str
     values : callable (batch) -> ndarray, shape (N, 3)
+    permitted : bool
+        Whether the specification leaves it open.
     """
 
     title: str
     values: Callable[[Batch], Array]
+    permitted: bool = False
 
 
 def directions(rng: np.random.Generator, count: int) -> Array:

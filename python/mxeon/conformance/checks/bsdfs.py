@@ -158,18 +158,24 @@ class BsdfSubject:
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
         """The row's own function of directions, and its variants."""
-        functions = [(self.row.title, self.row.value)]
-        functions += [(each.title, each.value) for each in self.row.variants if each.value]
-        own = (Candidate(title, partial(_expected, self.row, value)) for title, value in functions)
-        return (*own, NOTHING)
+        own = Candidate(self.row.title, partial(_expected, self.row, self.row.value))
+        others = (
+            Candidate(each.title, partial(_expected, self.row, each.value), each.permitted)
+            for each in self.row.variants
+            if each.value
+        )
+        return (own, *others, NOTHING)
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         """The row's own albedo, and its variants."""
-        functions = [(self.row.title, self.row.albedo)]
-        functions += [(each.title, each.albedo) for each in self.row.variants if each.albedo]
-        own = (Candidate(title, partial(_albedo, albedo)) for title, albedo in functions)
-        return (*own, NOTHING)
+        own = Candidate(self.row.title, partial(_albedo, self.row.albedo))
+        others = (
+            Candidate(each.title, partial(_albedo, each.albedo), each.permitted)
+            for each in self.row.variants
+            if each.albedo
+        )
+        return (own, *others, NOTHING)
 
     def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
         components = {"float": (), "vector2": (2,)}.get(input_types(self.node)[name], (3,))

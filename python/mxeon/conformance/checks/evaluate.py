@@ -13,7 +13,7 @@ from mxeon.conformance.checks.measures import Measurement, integrated
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Curve, Result
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control, Curve, Result
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.hosts.base import RendererWarning
 
@@ -100,9 +100,10 @@ def judge_measurements(
     Result
     """
     caught = wrong.error > tolerance.value
+    verdict = DIFFERS if diagnosis.permitted else FAILED
     return Result(
         **fields,
-        verdict=PASSED if right.error <= tolerance.value and caught else FAILED,
+        verdict=PASSED if right.error <= tolerance.value and caught else verdict,
         error=right.error,
         unit=tolerance.unit,
         tolerance=tolerance.value,

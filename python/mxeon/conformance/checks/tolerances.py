@@ -7,7 +7,9 @@ The tests and the benchmarks that judge the same quantities import them.
 import math
 from dataclasses import dataclass
 
-from mxeon.conformance.checks.batch import LOBE_RIM, RIM
+import numpy as np
+
+from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.bsdf_probes import LEAST_TURNED
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
@@ -40,6 +42,12 @@ class Tolerance:
     unit: str
     metric: Metric
     derivation: str
+
+    def scale(self, expected: Array) -> Array:
+        """Numbers that errors are divided by, which are 1 but for large scaled values, (N, 1)."""
+        if self.metric is not scaled:
+            return np.ones((len(expected), 1))
+        return np.maximum(1.0, np.abs(expected).max(axis=-1, keepdims=True))
 
 
 def rounded_up(value: float) -> float:
