@@ -198,7 +198,7 @@ def fresnel_schlick(
     Notes
     -----
     The specification does not clamp F, and neither does this function: where `color0` is dark,
-    `color82` small and `color90` bright, it falls below 0, to -0.033 at mu = 0.5 for 0, 0 and 1
+    `color82` small and `color90` bright, it falls below 0, to -0.127 at mu = 0.26 for 0, 0 and 1
     with exponent 5. It never exceeds 1.
 
     References
