@@ -124,6 +124,16 @@ def test_the_albedo_is_converged_over_slopes(name, monkeypatch):
     assert (np.abs(values - more) / np.maximum(more, 1.0)).max() < tolerances.SLOPES
 
 
+def test_a_critical_angle_costs_accuracy(monkeypatch):
+    wo = unit(np.array([1e-4, 0.3, 0.72, 1.0]))[:, None]
+    alpha = np.array([[0.02, 0.02], [0.3, 0.3], [1.0, 1.0]])
+    values = dielectric_albedo_dir(wo, 1.0, alpha, 0.7)
+    monkeypatch.setattr(microfacet_albedo, "NODES", 48)
+    monkeypatch.setattr(microfacet_albedo, "QUADRANT", 48)
+    error = np.abs(values - dielectric_albedo_dir(wo, 1.0, alpha, 0.7)).max()
+    assert tolerances.SLOPES < error < tolerances.SLOPES_CRITICAL
+
+
 def test_a_white_surface_returns_all_light():
     mu = np.array([1e-4, 0.01, 0.3, 1.0])[:, None]
     alpha = np.array([0.0, 1e-4, 0.01, 0.3, 1.0])
