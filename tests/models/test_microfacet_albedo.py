@@ -54,9 +54,12 @@ def unit(mu, phi=0.0):
 
 
 def test_the_albedo_is_converged(monkeypatch):
-    values = ggx_albedo_dir(MU[:, None], ALPHA)
-    monkeypatch.setattr(ggx_albedo, "NODES", 64)
-    assert np.abs(values - ggx_albedo_dir(MU[:, None], ALPHA)).max() < tolerances.E_SS
+    mu = np.append(MU, [0.0, 1e-14, 1e-10, 1e-8, 1e-6])[:, None]
+    small = np.geomspace(1e-9, 1e-5, 5)
+    values, small_values = ggx_albedo_dir(mu, ALPHA), ggx_albedo_dir(mu, small)
+    monkeypatch.setattr(ggx_albedo, "NODES", 96)
+    assert np.abs(values - ggx_albedo_dir(mu, ALPHA)).max() < tolerances.E_SS
+    assert np.abs(small_values - ggx_albedo_dir(mu, small)).max() < tolerances.E_SS_SMALL
 
 
 def test_the_albedo_agrees_with_a_quadrature_over_slopes(monkeypatch):
@@ -122,6 +125,16 @@ def test_the_albedo_is_converged_over_slopes(name, monkeypatch):
     monkeypatch.setattr(microfacet_albedo, "QUADRANT", 32)
     more = albedo(wo, alpha)
     assert (np.abs(values - more) / np.maximum(more, 1.0)).max() < tolerances.SLOPES
+
+
+def test_a_critical_angle_costs_accuracy(monkeypatch):
+    wo = unit(np.array([1e-4, 0.3, 0.72, 1.0]))[:, None]
+    alpha = np.array([[0.02, 0.02], [0.3, 0.3], [1.0, 1.0]])
+    values = dielectric_albedo_dir(wo, 1.0, alpha, 0.7)
+    monkeypatch.setattr(microfacet_albedo, "NODES", 48)
+    monkeypatch.setattr(microfacet_albedo, "QUADRANT", 48)
+    error = np.abs(values - dielectric_albedo_dir(wo, 1.0, alpha, 0.7)).max()
+    assert tolerances.SLOPES < error < tolerances.SLOPES_CRITICAL
 
 
 def test_a_white_surface_returns_all_light():

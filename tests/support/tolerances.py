@@ -235,4 +235,6 @@ MICROFACET = (80 + 60) * ROUNDING
 
 # E_ss, and albedos by slopes in units of the larger of 1 and the albedo: as their docstrings promise.
 E_SS = 1e-10
+E_SS_SMALL = 2e-8
 SLOPES = 5e-6
+SLOPES_CRITICAL = 3e-2

@@ -34,7 +34,7 @@ def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
     Notes
     -----
     Where an alpha is 0, D is a delta function, which has no value; it counts as 0.
-    Accuracy: relative error below 1e-14.
+    Accuracy: relative error below 2e-14.
 
     References
     ----------
@@ -124,7 +124,7 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
 
     Notes
     -----
-    Accuracy: relative error below 1e-14.
+    Accuracy: relative error below 2e-14.
 
     References
     ----------
@@ -172,7 +172,7 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
     Notes
     -----
     The specification takes `smith_g2` at sqrt(alpha_x alpha_y) instead. Both agree where alpha_x and
-    alpha_y do. Accuracy: relative error below 1e-14.
+    alpha_y do. Accuracy: relative error below 2e-14.
 
     References
     ----------

@@ -43,7 +43,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
     Notes
     -----
-    Accuracy: absolute error below 1e-10 for alpha >= 1e-6 and every mu, 1e-8 below. At alpha 0, the mirror, it
+    Accuracy: absolute error below 1e-10 for alpha >= 1e-4 and every mu, 2e-8 below. At alpha 0, the mirror, it
     is 1, the limit at every mu > 0.
     Form: with u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the azimuth integral
     of (u / (u - k))^2, k = (1 - alpha^2) (mu + mu_i)^2, is elementary. In half sums and half

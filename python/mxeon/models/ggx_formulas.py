@@ -55,17 +55,6 @@ def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
     return reciprocal(2.0 * (length_o * wi[2] + length_i * wo[2]))
 
 
-def visible_ndf(wo: Array, wh: Array, roughness: Array) -> Array:
-    """Density of visible normals, G1(wo) max(wo . wh, 0) D(wh) / mu_o: [Heitz2014], Eq. (16).
-
-    G1 / mu_o = 2 / (mu_o + |(alpha_x x, alpha_y y, z)|) keeps it finite at grazing.
-    """
-    ahead = np.maximum(np.sum(wo * wh, axis=0), 0.0)
-    masking = 2.0 * reciprocal(wo[2] + stretched_length(wo, roughness))
-    density: Array = masking * ahead * ndf(wh, roughness)
-    return density
-
-
 def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
     """Unit half vector, and its cosine with either direction; (0, 0, 1) of opposite directions."""
     total = wo + wi

@@ -50,8 +50,8 @@ def dielectric_albedo_dir(
 
     Notes
     -----
-    Accuracy: see `ggx_albedo_dir_anisotropic`; below `ior` 1, where F has an infinite slope at the
-    critical angle, 1e-3. At alpha 0 it is that of the mirror, tint F(mu_o).
+    Accuracy: see `ggx_albedo_dir_anisotropic`; for `ior` below 1, where F has an infinite slope at
+    the critical angle, the error is up to 3e-2. At alpha 0 it is that of the mirror, tint F(mu_o).
 
     References
     ----------

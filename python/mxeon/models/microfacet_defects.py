@@ -29,6 +29,24 @@ NODES: dict[str, tuple[Curve, tuple[str, ...], tuple[str, ...]]] = {
 }
 
 
+# MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 6.4e-2 off
+# in [1e-4, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
+# numerators of A and B, denominators of A and B.
+ALBEDO_FIT = np.array(
+    [
+        [0.1003, 0.9345, 1.0, 1.0],
+        [-0.6303, -2.323, -1.765, 0.2281],
+        [9.748, 2.229, 8.263, 15.94],
+        [-2.038, -3.748, 11.53, -55.83],
+        [29.34, 1.424, 28.96, 13.08],
+        [-8.245, -0.7684, -7.507, 41.26],
+        [-26.44, 1.436, -36.11, 54.9],
+        [19.99, 0.2913, 15.86, 300.2],
+        [-5.448, 0.6286, 33.37, -285.1],
+    ]
+)
+
+
 @dataclass(frozen=True)
 class MicrofacetDefect:
     """A known wrong variant of the three microfacet nodes.
@@ -113,6 +131,31 @@ def _compensated_by(cosine: Callable[[Pair], Array]) -> Callable[[Pair], Array]:
     return factor
 
 
+def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
+    """Directional albedo of GGX with a Schlick curve, by the fit of MaterialX 1.39.5.
+
+    Examples
+    --------
+    >>> fitted_albedo(np.array([0.1]), np.array([0.01]), 1.0, 1.0).round(3)
+    array([0.93])
+    """
+    x, y = np.broadcast_arrays(mu, alpha)
+    powers = np.stack(
+        [x**0, x, y, x * y, x * x, y * y, x * x * y, x * y * y, x * x * y * y], axis=-1
+    )
+    fit = np.einsum("...k,kj->...j", powers, ALBEDO_FIT)
+    A, B = (np.clip(fit[..., k] / fit[..., k + 2], 0.0, 1.0) for k in (0, 1))
+    albedo: Array = F0 * A + F90 * B
+    return albedo
+
+
+def _fitted_half(pair: Pair) -> Array:
+    """Compensation of MaterialX 1.39.5: F at the half vector, and the fit for E_ss."""
+    alpha = np.maximum(ggx.mean_alpha(pair.roughness), 1e-6)
+    E = fitted_albedo(np.clip(pair.wo[2], 1e-6, 1.0), alpha, 1.0, 1.0)
+    return 1.0 + pair.curve.at(pair.cosine, **pair.material) * ((1.0 - E) / E)
+
+
 def _separable(pair: Pair) -> Array:
     """G1(wo) G1(wi) / (4 mu_o mu_i) at sqrt(alpha_x alpha_y)."""
     alpha = ggx.mean_alpha(pair.roughness)
@@ -142,6 +185,11 @@ MICROFACET_DEFECTS = (
         "compensation_view",
         "compensation with F at the view direction",
         Lobe(_compensated_by(lambda pair: np.minimum(pair.wo[2], 1.0))),
+    ),
+    MicrofacetDefect(
+        "compensation_fitted",
+        "compensation with F at the half vector and MaterialX's fit of E_ss",
+        Lobe(_fitted_half),
     ),
     MicrofacetDefect(
         "smith_separable", "masking and shadowing uncorrelated", Lobe(visibility=_separable)
