@@ -16,7 +16,7 @@ from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader, generate
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.hosts.textures import irradiance, read_latlong
-from mxeon.shaders.nodes import EON, OREN_NAYAR
+from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
 from mxeon.shaders.scene import FURNACE, SCENES, Scene, sphere
 from tests.support.documents import material
 from tests.support.tolerances import PICTURE

@@ -125,7 +125,8 @@ def _explained(
     unbounded = not_finite(cases)
     if unbounded:
         return Diagnosis(unbounded)
-    short = [Case(batch.first(FEW), *(each[:FEW] for each in rest)) for batch, *rest in cases]
+    few = getattr(probe, "diagnosed", FEW)
+    short = [Case(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     own = candidates[0]
     models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])

@@ -187,7 +187,7 @@ def _schlick(inputs: Inputs) -> tuple[Array, Array, Array]:
     return inputs["color0"], inputs["color82"], inputs["color90"]
 
 
-OPEN = ("compensation_half", "compensation_f0", "compensation_view", "materialx_compensation")
+OPEN = ("compensation_half", "compensation_f0", "compensation_view", "compensation_fitted")
 WHITE = (1.0, 1.0, 1.0)
 COLOR_ROUGHNESS = ("color", "roughness")
 MICROFACET = (

@@ -13,8 +13,8 @@ from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.special import outside_directions, special_directions
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
-PAIRS = 1 << 14
-FEW = 1 << 12
+PAIRS = 1 << 13
+FEW = 1 << 11
 ALBEDOS = 1 << 8  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
 LEAST_TURNED = 0.1  # roughness in turned frames
@@ -27,6 +27,7 @@ class BsdfProbe(PairProbe):
     """A node of pbrlib on a host that evaluates any pairs."""
 
     kind: ClassVar[str] = "closed pairs"
+    diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
 
     subject: BsdfSubject
 
@@ -59,7 +60,7 @@ class BsdfProbe(PairProbe):
         rng = np.random.default_rng(SEED)
         wo, wi = self._lit(special_directions(rng))
         inputs = self.subject.special_inputs(rng, len(wo))
-        for name, step in (("roughness", 4), ("ior", 3)):
+        for name, step in (("roughness", 4), ("ior", 3), ("extinction", 6)):
             if name in inputs:
                 inputs[name][::step] = 0.0
         return Batch(wo, wi, inputs)
@@ -132,6 +133,7 @@ class MicrofacetProbe(BsdfProbe):
     """A node of microfacets, whose values are large near the mirror direction."""
 
     kind: ClassVar[str] = "microfacet pairs"
+    diagnosed: ClassVar[int] = 1 << 8  # their references take long
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -158,9 +160,10 @@ class MicrofacetProbe(BsdfProbe):
     def mirrored(self) -> tuple[Batch, Batch]:
         """Two lights near the mirror direction of each view, by normals that the view sees."""
         rng = np.random.default_rng(SEED)
-        wo, inputs = directions(rng, PAIRS), self.subject.random_inputs(rng, PAIRS)
+        count = 2 * FEW
+        wo, inputs = directions(rng, count), self.subject.random_inputs(rng, count)
         first, second = (
-            reflected(wo, inputs["roughness"], rng.random(PAIRS), rng.random(PAIRS))
+            reflected(wo, inputs["roughness"], rng.random(count), rng.random(count))
             for _ in range(2)
         )
         above = (np.minimum(first[:, 2], second[:, 2]) > 0.0) & (wo[:, 2] > 0.0)

@@ -19,13 +19,13 @@ COLORS = ("color", "tint", "color0", "color82", "color90")
 EDGES: dict[str, tuple[float, ...]] = {  # of half of an input's special values
     **dict.fromkeys(COLORS, (0.0, 1e-3, 1.0)),
     "ior": (1.0, 1.5, 3.0),
-    "extinction": (0.0, 3.0),
+    "extinction": (0.2, 3.0),
     "exponent": (1.0, 5.0),
 }
 RANGES: dict[str, tuple[float, float]] = {  # of an input's random values
     **dict.fromkeys(COLORS, (0.0, 1.0)),
     "ior": (0.5, 3.0),
-    "extinction": (0.0, 6.0),
+    "extinction": (0.2, 6.0),
     "exponent": (1.0, 8.0),
 }
 CHANGES: dict[str, Changes] = {

@@ -155,6 +155,7 @@ def judge_check(check: Check, probe: Any) -> Result:
                 diagnosis = check.diagnose(probe)
     except (NotRun, ShaderError) as error:
         return not_measured(fields, error)
+    diagnosis = replace(diagnosis, permitted=check.open and diagnosis.permitted)
     if diagnosis.text:
         diagnosis = replace(diagnosis, text="; ".join([diagnosis.text, *notes]))
     return judge_measurements(fields, tolerance, right, check.variant, wrong, diagnosis)

@@ -63,6 +63,8 @@ class Check:
         Whether the check can be asked about a subject of those models on the host of a name.
     diagnose : callable (probe) -> Diagnosis
         Explanation of a failure.
+    open : bool
+        Whether an error differs, and does not fail, where a permitted function explains all values.
     """
 
     key: str
@@ -74,6 +76,7 @@ class Check:
     tolerances: Mapping[str, Tolerance]
     applies: Callable[[Any, str], bool] = lambda subject, host: True
     diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
+    open: bool = False
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -95,6 +98,7 @@ CHECKS = (
         "every channel gets the mean color",
         gray,
         tolerances.VALUES,
+        open=True,
     ),
     Check(
         "lobe",
@@ -115,6 +119,7 @@ CHECKS = (
         tolerances.ALBEDOS,
         has_environment,
         diagnosis.of_albedo,
+        open=True,
     ),
     Check(
         "albedo",
@@ -280,6 +285,7 @@ CHECKS = (
         "values are 2 % too large",
         scale(1.02),
         of_bsdfs(tolerances.BSDF_INTEGRAL),
+        open=True,
     ),
     Check(
         "energy",
@@ -307,6 +313,7 @@ CHECKS = (
         "every channel gets the mean color",
         gray,
         {"microfacet pairs": tolerances.SHAPE},
+        open=True,
     ),
     Check(
         "retroreflection",

@@ -47,7 +47,8 @@ class Tolerance:
         """Numbers that errors are divided by, which are 1 but for large scaled values, (N, 1)."""
         if self.metric is not scaled:
             return np.ones((len(expected), 1))
-        return np.maximum(1.0, np.abs(expected).max(axis=-1, keepdims=True))
+        largest: Array = np.abs(expected).max(axis=-1, keepdims=True)
+        return np.maximum(1.0, largest)
 
 
 def rounded_up(value: float) -> float:
