@@ -121,7 +121,9 @@ def test_the_environment_is_looked_up_at_the_normal(host):
         assert (expected.start <= values).all() and (values <= expected.stop).all()
 
 
-@pytest.mark.parametrize("subject", [each for each in BSDFS if each.anisotropic][:1])
+@pytest.mark.parametrize(
+    "subject", [each for each in BSDFS if each.anisotropic][:1], ids=lambda each: each.model
+)
 def test_a_lobe_of_microfacets_sums_as_many_directions_on_every_host(host, gl, subject):
     ours, theirs = (BsdfProbe(each, subject, "stock") for each in (host, gl))
     batch = ours.cosines[0]

@@ -226,3 +226,20 @@ PRINTED = 0.11
 # direction twice, 8e-4 in all, and the sum changes at most 2.5 times as fast; with 64 directions in
 # place of 1024 it is off by 3e-2.
 SUMMED_DIRECTIONS = 2e-3
+
+# --- microfacets, float64 ----------------------------------------------------------------------
+
+# Fresnel reflectance of a dielectric of index >= 1 and its average, relative: at most 40 roundings
+# and a logarithm, in sums whose terms are at most four times the sum.
+FRESNEL = 4.0 * (40 + FUNCTION) * ROUNDING
+
+# Reflectance of a conductor, absolute, as its docstring promises.
+CONDUCTOR = 1e-12
+
+# Value of a microfacet BRDF, relative, for alpha >= 0.05. A component of the half vector is off by
+# 2 roundings, by which D moves 2 / alpha times as much: 80 roundings; 60 others.
+MICROFACET = (80 + 60) * ROUNDING
+
+# E_ss, and albedos by slopes in units of the larger of 1 and the albedo: as their docstrings promise.
+E_SS = 1e-10
+SLOPES = 5e-6

@@ -11,7 +11,7 @@ from mxeon.models.arrays import Array
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
 
-# Least index whose inverse enters: F_ss is 1 to rounding from 1e-8 on, and n^3 does not overflow.
+# Indices below count as this one where 1 / n enters: F_ss is 1 to rounding, and n^3 stays finite.
 LEAST = 1e-50
 
 # Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
@@ -28,8 +28,8 @@ def dielectric(mu: Array, ior: Array) -> Array:
     gap = (ior - 1.0) * (ior + 1.0)
     g2 = gap + mu * mu
     g = np.sqrt(np.maximum(g2, 0.0))
-    total = g + mu
-    amplitude = gap / np.where(total > 0.0, total * total, 1.0)
+    total = np.where(g2 > 0.0, g + mu, 1.0)
+    amplitude = gap / total / total
     plus = mu * g + (1.0 - mu) * (1.0 + mu)
     minus = mu * g - (1.0 - mu) * (1.0 + mu)
     ratio = minus / np.where(plus > 0.0, plus, 1.0)
@@ -72,8 +72,8 @@ def dielectric_avg(ior: Array) -> Array:
     ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior) for the same interface from its other side.
     """
     inside = ior < 1.0
-    n = np.where(inside, 1.0 / np.maximum(np.where(inside, ior, 1.0), LEAST), ior)
-    F = _external_avg(n)
+    gap = np.where(inside, (1.0 - ior) / np.maximum(ior, LEAST), ior - 1.0)
+    F = _external_avg(np.maximum(gap, 0.0))
     return np.where(inside, (1.0 - ior) * (1.0 + ior) + ior * ior * F, F)
 
 
@@ -85,15 +85,19 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     """
     n2 = (ior + 1j * extinction) ** 2
     split = np.clip(np.sqrt(1.0 - n2).real, 0.0, 1.0)
+    below, above = bool((split > 0.0).any()), bool((split < 1.0).any())
     total = np.zeros(np.broadcast_shapes(ior.shape, extinction.shape))
     t = STEP * np.arange(-STEPS, STEPS + 1)
     X = np.exp(np.pi * np.sinh(t))
     for x, weight in zip(
         X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2, strict=True
     ):
-        low, high = split * x, split + (1.0 - split) * x
-        total += weight * split * low * conductor(low, ior, extinction)
-        total += weight * (1.0 - split) * high * conductor(high, ior, extinction)
+        if below:
+            mu = split * x
+            total += weight * split * mu * conductor(mu, ior, extinction)
+        if above:
+            mu = split + (1.0 - split) * x
+            total += weight * (1.0 - split) * mu * conductor(mu, ior, extinction)
     return np.minimum(2.0 * total, 1.0)
 
 
@@ -112,24 +116,24 @@ def _schlick_a(color0: Array, color82: Array, color90: Array, exponent: Array) -
     return (color0 + (color90 - color0) * m**exponent) * (1.0 - color82) / (COS_THETA_MAX * m**6)
 
 
-def _external_avg(n: Array) -> Array:
-    """F_ss for n >= 1.
+def _external_avg(gap: Array) -> Array:
+    """F_ss for n = 1 + gap >= 1.
 
     F_ss = (sinh^2 t - (n - 1)) / (2 cosh^2 t) + tanh(t/2) (3 n + 1) / (6 (n + 1))
            + n sinh^2 t log(tanh(t/2)) / (2 cosh^3 t) + n (2 t coth(2 t) - 1) / (cosh t sinh 2 t)
     """
-    t = np.log(n)
-    sinh, cosh = 0.5 * (n - 1.0) * (n + 1.0) / n, 0.5 * (n + 1.0 / n)
-    half = (n - 1.0) / (n + 1.0)
+    n = 1.0 + gap
+    t = np.log1p(gap)
+    sinh, cosh = 0.5 * gap * (n + 1.0) / n, 0.5 * (n + 1.0 / n)
+    half = gap / (n + 1.0)
     double = 2.0 * sinh * cosh
-    open_ = n > 1.0
-    log = np.log(np.where(open_, half, 1.0))
+    log = np.log(np.where(gap > 0.0, half, 1.0))
     excess = _x_coth_x_minus_1(2.0 * t, double, cosh * cosh + sinh * sinh)
     return (
-        0.5 * (sinh * sinh - (n - 1.0)) / cosh**2
+        0.5 * (sinh * sinh - gap) / cosh**2
         + half * (3.0 * n + 1.0) / (6.0 * (n + 1.0))
         + 0.5 * n * sinh * sinh * log / cosh**3
-        + n * excess / np.where(open_, cosh * double, 1.0)
+        + n * excess / np.where(gap > 0.0, cosh * double, 1.0)
     )
 
 

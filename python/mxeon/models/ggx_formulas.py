@@ -9,6 +9,9 @@ import numpy as np
 
 from mxeon.models.arrays import Array
 
+# Sums of cosines below count as 0: D alone is at most 1e162.
+LEAST = 1e-140
+
 
 def ndf(wh: Array, roughness: Array) -> Array:
     """D: GGX Normal Distribution Function; no division by alpha; 0 where an alpha is 0.
@@ -74,6 +77,6 @@ def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
 
 
 def reciprocal(x: Array) -> Array:
-    """1 / x, and 0 where x is 0."""
-    positive = x > 0.0
-    return np.where(positive, 1.0 / np.where(positive, x, 1.0), 0.0)
+    """1 / x, and 0 where x is so small that a product with D could overflow."""
+    large = x > LEAST
+    return np.where(large, 1.0 / np.where(large, x, 1.0), 0.0)

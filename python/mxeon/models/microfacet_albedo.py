@@ -22,7 +22,7 @@ from mxeon.models.ggx_formulas import mean_alpha, smith_lambda
 from mxeon.models.microfacet_lobe import CONDUCTOR, DIELECTRIC, SCHLICK, WHITE, Curve, missing
 
 # Gauss-Legendre nodes in r per panel, panels, nodes per quadrant of phi, and elements per block.
-NODES, PANELS, QUADRANT, BLOCK = 16, 3, 16, 2**3
+NODES, PANELS, QUADRANT, BLOCK = 20, 3, 20, 2**3
 
 # Least cosine of wo, and largest r: beyond, less than 1e-12 of the light is left.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
@@ -233,7 +233,7 @@ def _slope_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
     # wo . h / h_z = mu_o + r A cos(omega), and its slope has the squared length g r^2.
     A = np.hypot(x * alpha_x, y * alpha_y)
     tilted = A > 0.0
-    scale = np.minimum(mu_o / np.where(tilted, A, mu_o), 1.0)
+    scale = mu_o / np.maximum(A, mu_o)
     omega, weight_omega = _quadrants(scale, bool(np.all(alpha_x == alpha_y)))
     cos_0 = np.where(tilted, x * alpha_x, 1.0) / np.where(tilted, A, 1.0)
     sin_0 = y * alpha_y / np.where(tilted, A, 1.0)

@@ -2,13 +2,18 @@
 """Measurements of the other BSDF nodes of pbrlib: energy, layering, and their frames."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import Array, Batch
+from mxeon.conformance.checks.batch import Array, Batch, rounded
 from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
 
+FEW = 1 << 12
+LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
+LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
+LEAST_COSINE = 0.1  # of the same
 LIGHT = ("direct", "environment")  # branches that light a base from above
 
 
@@ -34,8 +39,8 @@ def transmission_cases(probe: Any) -> Iterator[Case]:
 
 
 def _throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
-    for batch in probe.cosines:
-        yield Case(batch, probe.throughput(batch, branch), probe.subject.passed(batch))
+    for batch, albedo in zip(probe.cosines, probe.albedos, strict=True):
+        yield Case(batch, probe.throughput(batch, branch), np.maximum(1.0 - albedo, 0.0))
 
 
 def layer(probe: Any, metric: Metric) -> Measurement:
@@ -49,19 +54,76 @@ def layer(probe: Any, metric: Metric) -> Measurement:
 def energy(probe: Any, metric: Metric) -> Measurement:
     """Albedos above 1, and above what the node's own equations have."""
     views, albedo = _integral(probe)
-    allowed = np.maximum(1.0, probe.subject.integral(views))
+    allowed = np.maximum(1.0, probe.integrals)
     return worst_of(metric, [Case(views, np.maximum(albedo, allowed), allowed)])
+
+
+def lossless(probe: Any, metric: Metric) -> Measurement:
+    """Albedo of a lobe that reflects all light, integrated from the host's values, against 1."""
+    batch, weights = probe.integrated
+    mirror = batch.altered(**probe.subject.row.mirror)
+    views, albedo = _summed(probe, mirror, weights)
+    return worst_of(metric, [Case(views, albedo, np.ones_like(albedo))])
+
+
+def shape(probe: Any, metric: Metric) -> Measurement:
+    """Ratio of two values of one view against that of the equations: compensation cancels."""
+    batch, other = (each.first(FEW) for each in probe.mirrored)
+    first, second = probe.subject.expected(batch), probe.subject.expected(other)
+    lit = (np.minimum(first, second) > LEAST_VALUE).all(axis=1)
+    lit &= np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2])) >= LEAST_COSINE
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = (probe.direct(batch) / first) / (probe.direct(other) / second)
+    return worst_of(metric, [Case(batch.where(lit), ratio[lit], np.ones_like(ratio[lit]))])
+
+
+def retroreflection(probe: Any, metric: Metric) -> Measurement:
+    """Values in retroreflective mode against those of the mirrored view."""
+    cases = []
+    for batch in probe.few:
+        mirrored = replace(batch, wo=batch.wo * [-1.0, -1.0, 1.0])
+        measured = probe.direct(batch.altered(retroreflective=True))
+        cases.append(Case(batch, measured, probe.direct(mirrored.altered(retroreflective=False))))
+    return worst_of(metric, cases)
+
+
+def anisotropy(probe: Any, metric: Metric) -> Measurement:
+    """Values with a turned tangent against those of directions turned the other way."""
+    batch = probe.mirrored[0].first(FEW)
+    batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_COSINE)
+    batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_ALPHA))
+    angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
+    cosine, sine, zero = np.cos(angle), np.sin(angle), np.zeros(len(angle))
+    tangent = rounded([cosine, sine, zero])
+    turned = replace(
+        batch.altered(tangent=(1.0, 0.0, 0.0)),
+        wo=_turned_back(batch.wo, tangent),
+        wi=_turned_back(batch.wi, tangent),
+    )
+    measured = probe.direct(batch.altered(tangent=tangent))
+    return worst_of(metric, [Case(batch, measured, probe.direct(turned))])
+
+
+def _turned_back(w: Array, tangent: Array) -> Array:
+    """Directions in the frame of a tangent in the surface."""
+    along = w[:, 0] * tangent[:, 0] + w[:, 1] * tangent[:, 1]
+    across = w[:, 1] * tangent[:, 0] - w[:, 0] * tangent[:, 1]
+    return rounded([along, across, w[:, 2]])
 
 
 def integral(probe: Any, metric: Metric) -> Measurement:
     """Directional albedo, integrated from the host's values, against that of the equations."""
     views, albedo = _integral(probe)
-    return worst_of(metric, [Case(views, albedo, probe.subject.integral(views))])
+    return worst_of(metric, [Case(views, albedo, probe.integrals)])
 
 
 def _integral(probe: Any) -> tuple[Batch, Array]:
     """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
-    batch, weights = probe.integrated
+    return _summed(probe, *probe.integrated)
+
+
+def _summed(probe: Any, batch: Batch, weights: Array) -> tuple[Batch, Array]:
+    """Views of materials in many directions of light, and their albedos, (N, 3)."""
     count, nodes = weights.shape
     values = probe.direct(batch).reshape(count, nodes, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)

@@ -11,11 +11,14 @@ from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, round
 from mxeon.conformance.checks.bsdfs import BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.special import outside_directions, special_directions
+from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
 PAIRS = 1 << 14
 FEW = 1 << 12
-ALBEDOS = 1 << 10  # directions of view whose albedo is asked
+ALBEDOS = 1 << 8  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
+LEAST_TURNED = 0.1  # roughness in turned frames
+LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth
 
 
@@ -52,12 +55,13 @@ class BsdfProbe(PairProbe):
 
     @cached_property
     def edges(self) -> Batch:
-        """Exact directions and inputs on their edges, roughness 0 among them."""
+        """Exact directions and inputs on their edges, roughness and index 0 among them."""
         rng = np.random.default_rng(SEED)
         wo, wi = self._lit(special_directions(rng))
         inputs = self.subject.special_inputs(rng, len(wo))
-        if "roughness" in inputs:
-            inputs["roughness"][::4] = 0.0
+        for name, step in (("roughness", 4), ("ior", 3)):
+            if name in inputs:
+                inputs[name][::step] = 0.0
         return Batch(wo, wi, inputs)
 
     @cached_property
@@ -73,11 +77,20 @@ class BsdfProbe(PairProbe):
         The weighted sum of pi f cos over a material's directions is its directional albedo.
         """
         rng = np.random.default_rng(SEED)
-        wo, inputs = directions(rng, MATERIALS), self.subject.random_inputs(rng, MATERIALS)
+        mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(MATERIALS)
+        radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(MATERIALS)
+        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+        inputs = self.subject.random_inputs(rng, MATERIALS)
         wi, weights = self._nodes(wo, inputs)
         each = np.repeat(np.arange(MATERIALS), wi.shape[1])
         spread = {name: values[each] for name, values in inputs.items()}
         return Batch(wo[each], wi.reshape(-1, 3), spread), weights
+
+    @cached_property
+    def integrals(self) -> Array:
+        """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
+        batch, weights = self.integrated
+        return self.subject.integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
 
     def _lit(self, pairs: tuple[Array, Array]) -> tuple[Array, Array]:
         """Pairs with the light on the side from which the node scatters it."""
@@ -130,6 +143,17 @@ class MicrofacetProbe(BsdfProbe):
         """FEW of the random pairs, the special ones, and FEW near the mirror direction."""
         return (*super().few, self.mirrored[0].first(FEW))
 
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """Directions of view for albedos, with the same roughness in both directions."""
+        return tuple(map(isotropic, super().cosines))
+
+    @cached_property
+    def turned(self) -> Batch:
+        """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain."""
+        batch = super().turned
+        return batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TURNED))
+
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
         """Two lights near the mirror direction of each view, by normals that the view sees."""
@@ -162,9 +186,14 @@ class MicrofacetProbe(BsdfProbe):
         return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
 
 
+def isotropic(batch: Batch) -> Batch:
+    """A batch whose roughness is the same in both directions."""
+    return batch.altered(roughness=np.repeat(batch.inputs["roughness"][:, :1], 2, axis=1))
+
+
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
     """Mirror images of views about normals that they see, float32 numbers, (N, 3)."""
-    return rounded(ggx_sample(wo, height, around, alpha)[0].T)
+    return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
 BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, FittedProbe, MicrofacetProbe)}

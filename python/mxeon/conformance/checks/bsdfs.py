@@ -18,7 +18,7 @@ SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, f
 COLORS = ("color", "tint", "color0", "color82", "color90")
 EDGES: dict[str, tuple[float, ...]] = {  # of half of an input's special values
     **dict.fromkeys(COLORS, (0.0, 1e-3, 1.0)),
-    "ior": (0.0, 1.0, 1.5, 3.0),
+    "ior": (1.0, 1.5, 3.0),
     "extinction": (0.0, 3.0),
     "exponent": (1.0, 5.0),
 }

@@ -36,6 +36,12 @@ class Altered:
         return few
 
     @property
+    def albedos(self) -> tuple[Array, ...]:
+        """Those of the first."""
+        first: tuple[Array, ...] = self.probe.albedos[:1]
+        return first
+
+    @property
     def cosines(self) -> tuple[Batch, ...]:
         """The first: pictures of an environment take long on some hosts."""
         first: tuple[Batch, ...] = self.probe.cosines[:1]
@@ -86,6 +92,11 @@ def pass_all(probe: Any) -> Altered:
 def scale(factor: float) -> Control:
     """A control whose values are multiplied by a factor."""
     return lambda probe: Altered(probe, values=lambda batch, values: factor * values)
+
+
+def offset(probe: Any) -> Altered:
+    """A control to whose values a thousandth is added."""
+    return Altered(probe, values=lambda batch, values: values + 1e-3)
 
 
 def drop_changes(probe: Any) -> Altered:

@@ -54,8 +54,8 @@ def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
 
 
 def scaled(measured: Array, expected: Array) -> Array:
-    """Largest difference of each row, relative to the expected value where that exceeds 1."""
-    scale = np.maximum(1.0, np.abs(expected))
+    """Largest difference of each row, relative to its largest expected value where that exceeds 1."""
+    scale = np.maximum(1.0, np.abs(expected).max(axis=-1, keepdims=True))
     return absolute(measured / scale, expected / scale)
 
 
@@ -87,8 +87,8 @@ def environment(probe: Any, metric: Metric) -> Measurement:
 
 def albedo_cases(probe: Any) -> Iterator[Case]:
     """The cases of `environment`."""
-    for batch in probe.cosines:
-        yield Case(batch, probe.albedo(batch), probe.subject.albedo(batch))
+    for batch, expected in zip(probe.cosines, probe.albedos, strict=True):
+        yield Case(batch, probe.albedo(batch), expected)
 
 
 def frame(probe: Any, metric: Metric) -> Measurement:

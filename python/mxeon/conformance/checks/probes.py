@@ -89,6 +89,11 @@ class PairProbe:
         """Directions for the environment branch, which does not depend on `wi`."""
         return (*self.few, self.batches[-1])
 
+    @cached_property
+    def albedos(self) -> tuple[Array, ...]:
+        """Directional albedos of `cosines`."""
+        return tuple(map(self.subject.albedo, self.cosines))
+
     @property
     def edges(self) -> Batch:
         """Pairs and inputs at the edges of the domain."""
@@ -163,6 +168,11 @@ class PictureProbe:
         """The points in a white environment."""
         scene = replace(FURNACE, size=self.size)
         return tuple(self._batch(scene, inputs) for inputs in self._inputs)
+
+    @cached_property
+    def albedos(self) -> tuple[Array, ...]:
+        """Directional albedos of `cosines`."""
+        return tuple(map(self.subject.albedo, self.cosines))
 
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""

@@ -15,6 +15,7 @@ from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
+    offset,
     pass_all,
     scale,
     scale_cosine,
@@ -24,12 +25,13 @@ from mxeon.conformance.checks.controls import (
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.models.pbrlib import NODES
+from mxeon.models.pbrlib import MICROFACET, NODES
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 ANY = ("eon", "qon")
 OTHERS = tuple(row.name for row in NODES)
+MICROFACETS = tuple(row.name for row in MICROFACET)
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
@@ -139,8 +141,8 @@ CHECKS = (
         "A black surface scatters nothing.",
         (*ANY, *BLACK),
         measures.black,
-        "reflectance is 0.001",
-        with_inputs(color=(0.001, 0.001, 0.001)),
+        "a thousandth is added to every value",
+        offset,
         {
             "pairs": tolerances.ZERO,
             "pictures": tolerances.ZERO,
@@ -287,5 +289,41 @@ CHECKS = (
         "values are twice as large",
         scale(2.0),
         of_bsdfs(tolerances.BSDF_INTEGRAL),
+    ),
+    Check(
+        "lossless",
+        "A lobe that reflects all light returns all of it, at every roughness.",
+        MICROFACETS,
+        bsdf_measures.lossless,
+        "values are 2 % too large",
+        scale(1.02),
+        {"microfacet pairs": tolerances.MICROFACET_VALUE},
+    ),
+    Check(
+        "shape",
+        "Two lights of one view give values in the ratio of D F G2.",
+        MICROFACETS,
+        bsdf_measures.shape,
+        "every channel gets the mean color",
+        gray,
+        {"microfacet pairs": tolerances.SHAPE},
+    ),
+    Check(
+        "retroreflection",
+        "The retroreflective lobe is the mirror lobe of the mirrored view.",
+        MICROFACETS,
+        bsdf_measures.retroreflection,
+        "the flag is dropped",
+        with_inputs(retroreflective=False),
+        {"microfacet pairs": tolerances.BSDF_VALUE},
+    ),
+    Check(
+        "anisotropy",
+        "The lobe turns with the tangent.",
+        MICROFACETS,
+        bsdf_measures.anisotropy,
+        "the tangent is dropped",
+        with_inputs(tangent=(1.0, 0.0, 0.0)),
+        {"microfacet pairs": tolerances.ANISOTROPY},
     ),
 )

@@ -8,6 +8,8 @@ import math
 from dataclasses import dataclass
 
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM
+from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
+from mxeon.conformance.checks.bsdf_probes import LEAST_TURNED
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
 from mxeon.conformance.checks.special import TURNED
@@ -219,7 +221,13 @@ BSDF_ALBEDO = Tolerance(
     scaled,
     "32 roundings of float32, 2^-24 each, of the albedo or of 1; rounded up",
 )
-BSDF_FRAME = Tolerance(1e-4, SCALED, scaled, "to be derived")
+BSDF_FRAME = Tolerance(
+    rounded_up(4 * 5 * ROUNDING / (TURNED[0] * LEAST_TURNED)),
+    SCALED,
+    scaled,
+    "five roundings of a half vector, 2^-24 each, over the least cosine, 1/4, and the least alpha, "
+    "0.1, times the fourth power of the distribution; rounded up",
+)
 ALBEDO_FIT = 2e-3  # largest error of the fits of albedos, see fits/
 FITTED_ALBEDO = Tolerance(
     ALBEDO_FIT + BSDF_ALBEDO.value,
@@ -232,6 +240,30 @@ BSDF_INTEGRAL = Tolerance(
     "albedo",
     absolute,
     "the quadrature's own error on the equations, measured",
+)
+LEAST_ALBEDO = 0.4  # of GGX at unit Fresnel: 0.44 at alpha 1 and grazing
+MICROFACET_FIT = 4e-3  # largest error of a microfacet lobe's albedo, made of several fits
+MICROFACET_VALUE = Tolerance(
+    rounded_up(ALBEDO_FIT / LEAST_ALBEDO),
+    SCALED,
+    scaled,
+    "the fit of E_ss, 2e-3, over its least value, 0.4: as much as the compensation is off, relative",
+)
+MICROFACET_ALBEDO = Tolerance(
+    MICROFACET_FIT, "albedo", absolute, "three fits, whose errors come to 4e-3 at most"
+)
+SHAPE = Tolerance(
+    rounded_up(64 * ROUNDING),
+    "relative",
+    absolute,
+    "two values of 32 roundings of float32 each, 2^-24; rounded up",
+)
+ANISOTROPY = Tolerance(
+    rounded_up(4 * 2 * ROUNDING / (LEAST_COSINE * LEAST_ALPHA)),
+    SCALED,
+    scaled,
+    "two roundings of a turned direction, 2^-24 each, over the least cosine, 0.1, and the least "
+    "alpha, 0.05, times the fourth power of the distribution; rounded up",
 )
 LAYER = Tolerance(
     ALBEDO_FIT + BSDF_INTEGRAL.value,
@@ -247,6 +279,7 @@ VALUES = {
     "planes": TESTRENDER,
     "closed pairs": BSDF_VALUE,
     "fitted pairs": BSDF_VALUE,
+    "microfacet pairs": MICROFACET_VALUE,
 }
 LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER}
 ALBEDOS = {
@@ -255,8 +288,13 @@ ALBEDOS = {
     "planes": TESTRENDER_NOISE,
     "closed pairs": BSDF_ALBEDO,
     "fitted pairs": FITTED_ALBEDO,
+    "microfacet pairs": MICROFACET_ALBEDO,
 }
-THROUGHPUTS = {"closed pairs": BSDF_ALBEDO, "fitted pairs": FITTED_ALBEDO}
+THROUGHPUTS = {
+    "closed pairs": BSDF_ALBEDO,
+    "fitted pairs": FITTED_ALBEDO,
+    "microfacet pairs": MICROFACET_ALBEDO,
+}
 FRAMES = {
     "pairs": FRAME,
     "closed pairs": BSDF_FRAME,

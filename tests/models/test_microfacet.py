@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Microfacet BRDFs: limits, invariants, agreement with the printed equations in 50 digits."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from mxeon.models import (
+    conductor_brdf,
+    dielectric_brdf,
+    fresnel_conductor_avg,
+    fresnel_dielectric_avg,
+    fresnel_schlick_avg,
+    generalized_schlick_brdf,
+    ggx_ndf,
+    smith_g1,
+    smith_g2,
+    smith_g2_anisotropic,
+)
+from mxeon.models.ggx_albedo import ggx_albedo_dir
+from mxeon.models.microfacet_defects import MICROFACET_DEFECTS, NODES, averaged_channels
+from tests.support import tolerances
+from tests.support.hemispheres import hemisphere
+
+GOLD = [0.183, 0.421, 1.373], [3.424, 2.346, 1.77]
+COLORS = [0.9, 0.2, 0.0], [0.5, 1.0, 0.1], [1.0, 0.8, 1.0]
+BRDFS = {
+    "dielectric_bsdf": lambda wo, wi, alpha, *a: dielectric_brdf(
+        wo, wi, [0.2, 1.0, 0.5], alpha, 1.5, *a
+    ),
+    "conductor_bsdf": lambda wo, wi, alpha, *a: conductor_brdf(wo, wi, alpha, *GOLD, *a),
+    "generalized_schlick_bsdf": lambda wo, wi, alpha, *a: generalized_schlick_brdf(
+        wo, wi, *COLORS, alpha, 5.0, *a
+    ),
+}
+INPUTS = {
+    "dielectric_bsdf": {"tint": [0.2, 1.0, 0.5], "ior": 1.5},
+    "conductor_bsdf": {"ior": GOLD[0], "extinction": GOLD[1]},
+    "generalized_schlick_bsdf": dict(zip(("color0", "color82", "color90"), COLORS, strict=True))
+    | {"exponent": 5.0},
+}
+every_node = pytest.mark.parametrize("name", BRDFS)
+
+
+def unit(mu, phi):
+    """Unit vectors with cosine `mu`."""
+    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return np.stack(np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), mu), axis=-1)
+
+
+def pairs(count, seed=1):
+    """Random directions and roughness, alpha >= 0.05."""
+    rng = np.random.default_rng(seed)
+    wo, wi = (unit(rng.random(count), 2.0 * np.pi * rng.random(count)) for _ in range(2))
+    return wo, wi, 0.05 + 0.95 * rng.random((count, 2))
+
+
+def fresnel_exact(name, c, channel):
+    """Fresnel reflectance as the specification prints it."""
+    if name == "generalized_schlick_bsdf":
+        r0, t, r90 = (mp.mpf(color[channel]) for color in COLORS)
+        m = mp.mpf(1) / 7
+        a = (r0 + (r90 - r0) * (1 - m) ** 5) * (1 - t) / (m * (1 - m) ** 6)
+        return r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6
+    if name == "dielectric_bsdf":
+        g = mp.sqrt(mp.mpf(1.5) ** 2 + c * c - 1)
+        ratio = (c * (g + c) - 1) / (c * (g - c) + 1)
+        return (g - c) ** 2 / (g + c) ** 2 * (1 + ratio**2) / 2
+    n, k = (mp.mpf(part[channel]) for part in GOLD)
+    s = 1 - c * c
+    ab = mp.sqrt((n * n - k * k - s) ** 2 + 4 * n * n * k * k)
+    a = mp.sqrt((ab + n * n - k * k - s) / 2)
+    rs = (ab - 2 * a * c + c * c) / (ab + 2 * a * c + c * c)
+    rp = rs * (c * c * ab - 2 * a * c * s + s * s) / (c * c * ab + 2 * a * c * s + s * s)
+    return (rs + rp) / 2
+
+
+def exact(name, wo, wi, roughness, channel):
+    """The printed BRDF in 50 digits, without compensation and tint."""
+    wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
+    ax, ay = (mp.mpf(float(alpha)) for alpha in roughness)
+    h = [a + b for a, b in zip(wo, wi, strict=True)]
+    length = mp.sqrt(sum(x * x for x in h))
+    h = [x / length for x in h]
+    D = 1 / (mp.pi * ax * ay * ((h[0] / ax) ** 2 + (h[1] / ay) ** 2 + h[2] ** 2) ** 2)
+    lo, li = (mp.sqrt(ax * ay + (1 - ax * ay) * w[2] ** 2) for w in (wo, wi))
+    G2 = 2 * wo[2] * wi[2] / (lo * wi[2] + li * wo[2])
+    return D * fresnel_exact(name, length / 2, channel) * G2 / (4 * wo[2] * wi[2])
+
+
+@every_node
+def test_values_agree_with_the_printed_equations_in_50_digits(name):
+    wo, wi, alpha = pairs(12)
+    values = BRDFS[name](wo, wi, alpha, False, False)
+    tint = [0.2, 1.0, 0.5] if name == "dielectric_bsdf" else [1.0, 1.0, 1.0]
+    with mp.workdps(50):
+        for n, channel in np.ndindex(values.shape):
+            expected = tint[channel] * exact(name, wo[n], wi[n], alpha[n], channel)
+            error = abs(values[n, channel] - expected)
+            assert error <= tolerances.MICROFACET * max(abs(expected), 1e-3)
+
+
+@every_node
+def test_without_compensation_the_value_is_reciprocal(name):
+    wo, wi, alpha = pairs(200)
+    forth, back = BRDFS[name](wo, wi, alpha, False, False), BRDFS[name](wi, wo, alpha, False, False)
+    assert np.allclose(forth, back, rtol=tolerances.MICROFACET, atol=0.0)
+
+
+@every_node
+def test_compensation_is_that_of_the_albedo_at_the_mean_alpha(name):
+    wo, wi, alpha = pairs(50)
+    F_ss = {
+        "dielectric_bsdf": fresnel_dielectric_avg(1.5),
+        "conductor_bsdf": fresnel_conductor_avg(*GOLD),
+        "generalized_schlick_bsdf": fresnel_schlick_avg(*COLORS, 5.0),
+    }[name]
+    E = ggx_albedo_dir(wo[:, 2], np.sqrt(alpha[:, 0] * alpha[:, 1]))[:, None]
+    expected = BRDFS[name](wo, wi, alpha, False, False) * (1.0 + F_ss * (1.0 - E) / E)
+    value = BRDFS[name](wo, wi, alpha)
+    assert np.allclose(value, expected, rtol=tolerances.MICROFACET, atol=0.0)
+
+
+@every_node
+def test_retroreflection_mirrors_the_view_about_the_normal(name):
+    wo, wi, alpha = pairs(50)
+    mirrored = BRDFS[name](wo * [-1.0, -1.0, 1.0], wi, alpha)
+    assert np.array_equal(BRDFS[name](wo, wi, alpha, True), mirrored)
+
+
+@every_node
+def test_anisotropy_turns_with_the_tangent(name):
+    wo, wi, alpha = pairs(50)
+    turned = [np.stack([-w[:, 1], w[:, 0], w[:, 2]], axis=-1) for w in (wo, wi)]
+    value = BRDFS[name](*turned, alpha[:, ::-1])
+    assert np.allclose(value, BRDFS[name](wo, wi, alpha), rtol=tolerances.MICROFACET, atol=0.0)
+
+
+@every_node
+def test_values_are_finite_on_the_closed_domain(name):
+    mu = np.array([0.0, 5e-324, 1e-160, 1e-8, 0.5, 1.0 - 1e-16, 1.0])
+    ends = np.array([0.0, 5e-324, 1e-160, 1e-4, 0.5, 1.0])
+    wo = unit(mu, 0.0)[:, None, None, None, None]
+    wi = unit(mu[:, None], np.array([0.0, 2.0, np.pi]))[:, :, None, None]
+    alpha = np.stack(np.meshgrid(ends, ends), axis=-1)
+    values = BRDFS[name](wo, wi, alpha)
+    assert np.isfinite(values).all()
+    assert name == "generalized_schlick_bsdf" or (values >= 0.0).all()
+    assert (values[..., 0, :, :] == 0.0).all()  # a mirror has no value
+
+
+def test_the_distribution_covers_the_surface_once():
+    wh, weights = hemisphere(1.0)
+    for alpha in ([0.3, 0.3], [0.4, 0.9], [1.0, 1.0]):
+        assert abs(np.sum(ggx_ndf(wh, alpha) * wh[:, 2] * weights) - 1.0) < 1e-10
+
+
+def test_masking_is_a_fraction_and_both_forms_agree_for_isotropic_roughness():
+    wo, wi, alpha = pairs(200)
+    isotropic = alpha[:, [0, 0]]
+    G2, exact_G2 = (
+        smith_g2(wo[:, 2], wi[:, 2], alpha[:, 0]),
+        smith_g2_anisotropic(wo, wi, isotropic),
+    )
+    assert np.allclose(G2, exact_G2, rtol=tolerances.MICROFACET, atol=0.0)
+    assert (G2 > 0.0).all() and (smith_g1(wo, isotropic) * (1.0 + 1e-15) >= G2).all()
+    assert smith_g1([1.0, 0.0, 0.0], [0.5, 0.5]) == smith_g2(0.0, 0.0, 0.5) == 0.0
+    assert smith_g1([1.0, 0.0, 0.0], [0.0, 0.0]) == smith_g2(0.5, 0.7, 0.0) == 1.0
+
+
+DEFECTS = {defect.name: defect for defect in MICROFACET_DEFECTS}
+
+
+@every_node
+@pytest.mark.parametrize("defect", DEFECTS.values(), ids=DEFECTS)
+def test_a_known_defect_differs_from_the_specification(defect, name):
+    wo, wi, alpha = pairs(20)
+    value = defect.value(name, wo, wi, INPUTS[name] | {"roughness": alpha})
+    assert value.shape == (20, 3)
+    assert np.max(np.abs(value / BRDFS[name](wo, wi, alpha) - 1.0)) > 1e-3
+
+
+def test_defects_agree_with_the_specification_where_they_should():
+    wo, wi, alpha = pairs(20)
+    white = {"color0": 1.0, "color82": 1.0, "color90": 1.0, "exponent": 5.0, "roughness": alpha}
+    value = generalized_schlick_brdf(wo, wi, 1.0, 1.0, 1.0, alpha, 5.0, True)
+    for name in ("compensation_half", "compensation_f0", "compensation_view"):
+        same = DEFECTS[name].value("generalized_schlick_bsdf", wo, wi, white, True)
+        assert np.allclose(same, value, rtol=tolerances.MICROFACET, atol=0.0)
+    isotropic = white | {"roughness": alpha[:, [0, 0]]}
+    value = generalized_schlick_brdf(wo, wi, 1.0, 1.0, 1.0, alpha[:, [0, 0]], 5.0)
+    same = DEFECTS["smith_anisotropic"].value("generalized_schlick_bsdf", wo, wi, isotropic)
+    assert np.allclose(same, value, rtol=tolerances.MICROFACET, atol=0.0)
+
+
+def test_an_averaged_albedo_has_the_mean_of_its_channels():
+    assert averaged_channels(np.array([[0.3, 0.6, 0.0]])).round(12).tolist() == [[0.3, 0.3, 0.3]]
+    assert set(NODES) == set(BRDFS)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Albedos of the microfacet BRDFs: limits, invariants, agreement of independent quadratures."""
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from mxeon.albedo import (
+    conductor_albedo_dir,
+    dielectric_albedo_dir,
+    generalized_schlick_albedo_dir,
+    ggx_albedo_dir,
+    ggx_albedo_dir_anisotropic,
+)
+from mxeon.models import (
+    conductor_brdf,
+    dielectric_brdf,
+    fresnel_dielectric,
+    generalized_schlick_brdf,
+    ggx_albedo,
+    microfacet_albedo,
+)
+from tests.support import tolerances
+from tests.support.hemispheres import hemisphere
+
+ALPHA = np.geomspace(1e-4, 1.0, 9)
+MU = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 13), 1.0 - np.geomspace(1e-12, 0.1, 4)]))
+GOLD = [0.183, 1.373], [3.424, 1.77]
+COLORS = [0.9, 0.2], 0.5, 1.0
+NODES = {
+    "dielectric_bsdf": (
+        lambda wo, wi, alpha, *a: dielectric_brdf(wo, wi, [0.2, 1.0], alpha, 1.5, *a),
+        lambda wo, alpha: dielectric_albedo_dir(wo, [0.2, 1.0], alpha, 1.5),
+    ),
+    "conductor_bsdf": (
+        lambda wo, wi, alpha, *a: conductor_brdf(wo, wi, alpha, *GOLD, *a),
+        lambda wo, alpha: conductor_albedo_dir(wo, alpha, *GOLD),
+    ),
+    "generalized_schlick_bsdf": (
+        lambda wo, wi, alpha, *a: generalized_schlick_brdf(wo, wi, *COLORS, alpha, 5.0, *a),
+        lambda wo, alpha: generalized_schlick_albedo_dir(wo, *COLORS, alpha, 5.0),
+    ),
+}
+every_node = pytest.mark.parametrize("name", NODES)
+
+
+def unit(mu, phi=0.0):
+    """Unit vectors with cosine `mu`."""
+    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return np.stack(np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), mu), axis=-1)
+
+
+# --- E_ss --------------------------------------------------------------------------------------
+
+
+def test_the_albedo_is_converged(monkeypatch):
+    values = ggx_albedo_dir(MU[:, None], ALPHA)
+    monkeypatch.setattr(ggx_albedo, "NODES", 64)
+    assert np.abs(values - ggx_albedo_dir(MU[:, None], ALPHA)).max() < tolerances.E_SS
+
+
+def test_the_albedo_agrees_with_a_quadrature_over_slopes(monkeypatch):
+    monkeypatch.setattr(microfacet_albedo, "NODES", 32)
+    monkeypatch.setattr(microfacet_albedo, "QUADRANT", 48)
+    alpha, mu = np.array([0.03, 0.1, 0.3, 1.0]), np.array([1e-3, 0.1, 0.7])[:, None]
+    slopes = ggx_albedo_dir_anisotropic(unit(mu), np.stack([alpha, alpha], axis=-1))
+    assert np.abs(slopes - ggx_albedo_dir(mu, alpha)).max() < tolerances.E_SS
+
+
+def test_the_albedo_agrees_with_adaptive_quadrature_of_the_printed_integral():
+    mu, alpha = 0.3, 0.5
+
+    def integrand(phi, mu_i):
+        s = np.sqrt((1.0 - mu**2) * (1.0 - mu_i**2)) * np.cos(phi)
+        hz2 = (mu + mu_i) ** 2 / (2.0 + 2.0 * (s + mu * mu_i))
+        D = 1.0 / (np.pi * alpha**2 * ((1.0 - hz2) / alpha**2 + hz2) ** 2)
+        smith = [np.sqrt(alpha**2 + (1.0 - alpha**2) * m**2) for m in (mu, mu_i)]
+        return D * mu_i / (2.0 * (smith[0] * mu_i + smith[1] * mu))
+
+    half, _ = dblquad(integrand, 0.0, 1.0, 0.0, np.pi, epsabs=1e-12, epsrel=1e-12)
+    assert abs(ggx_albedo_dir(mu, alpha) - 2.0 * half) < tolerances.E_SS
+
+
+def test_the_albedo_lies_between_its_limits_on_the_closed_domain():
+    mu = np.array([0.0, 5e-324, 1e-160, 1e-8, 1e-3, 0.5, 1.0 - 1e-16, 1.0])
+    alpha = np.array([0.0, 5e-324, 1e-160, 1e-9, 1e-4, 0.5, 1.0])
+    E = ggx_albedo_dir(mu[:, None], alpha)
+    assert (E > 0.3).all() and (E <= 1.0).all() and (E[:, 0] == 1.0).all()
+    assert abs(ggx_albedo_dir(1.0, 1.0) - (1.0 - np.log(2.0))) < tolerances.E_SS
+
+
+def test_at_small_alpha_the_albedo_is_a_function_of_mu_over_alpha():
+    scaled = [ggx_albedo_dir(np.array([0.3, 1.0, 4.0]) * a, a) for a in (1e-12, 1e-10, 1e-8)]
+    assert np.ptp(scaled, axis=0).max() < 1e-7
+
+
+# --- albedos with Fresnel ----------------------------------------------------------------------
+
+
+@every_node
+@pytest.mark.parametrize("alpha", [(0.5, 0.5), (0.3, 0.8)], ids=str)
+def test_the_albedo_is_the_integral_of_the_value(name, alpha):
+    brdf, albedo = NODES[name]
+    for mu, phi in ((0.9, 0.0), (0.3, 1.0)):
+        wo = unit(mu, phi)
+        wi, weights = hemisphere(mu, 64)
+        for retroreflective in (False, True):
+            value = brdf(wo, wi, alpha, retroreflective)
+            integral = np.einsum("nc,n,n->c", value, wi[:, 2], weights)
+            assert np.abs(albedo(wo, alpha) - integral).max() < tolerances.SLOPES
+
+
+@every_node
+def test_the_albedo_is_converged_over_slopes(name, monkeypatch):
+    albedo = NODES[name][1]
+    wo = unit(np.array([1e-4, 1e-2, 0.5, 1.0]), 0.7)[:, None]
+    alpha = np.array(
+        [[1e-4, 1e-4], [1e-3, 1e-3], [0.02, 0.02], [0.3, 0.3], [1.0, 1.0], [0.05, 0.6]]
+    )
+    values = albedo(wo, alpha)
+    monkeypatch.setattr(microfacet_albedo, "NODES", 32)
+    monkeypatch.setattr(microfacet_albedo, "QUADRANT", 32)
+    more = albedo(wo, alpha)
+    assert (np.abs(values - more) / np.maximum(more, 1.0)).max() < tolerances.SLOPES
+
+
+def test_a_white_surface_returns_all_light():
+    mu = np.array([1e-4, 0.01, 0.3, 1.0])[:, None]
+    alpha = np.array([0.0, 1e-4, 0.01, 0.3, 1.0])
+    pairs = np.stack([alpha, alpha], axis=-1)
+    for E in (
+        generalized_schlick_albedo_dir(unit(mu), 1.0, 1.0, 1.0, pairs, 5.0),
+        dielectric_albedo_dir(unit(mu), 1.0, pairs, 0.0),
+        conductor_albedo_dir(unit(mu), pairs, 0.0, 3.0),
+    ):
+        assert np.abs(E - 1.0).max() < tolerances.SLOPES
+
+
+def test_without_compensation_light_is_lost():
+    E = dielectric_albedo_dir(unit(0.5), 1.0, [1.0, 1.0], 0.0, compensate=False)
+    assert abs(E[0] - ggx_albedo_dir(0.5, 1.0)) < tolerances.SLOPES
+
+
+def test_a_mirror_has_the_albedo_of_its_fresnel_reflectance():
+    mu = np.array([0.01, 0.3, 1.0])
+    E = dielectric_albedo_dir(unit(mu), 1.0, [0.0, 0.0], 1.5)[:, 0]
+    assert np.abs(E - fresnel_dielectric(mu, 1.5)).max() < tolerances.SLOPES
+
+
+def test_the_masking_of_the_specification_gains_energy_on_anisotropic_surfaces():
+    along = ggx_albedo_dir_anisotropic([unit(1e-3), unit(1e-3, 0.5 * np.pi)], [0.001, 1.0])
+    assert along[0] < 0.04 and along[1] > 30.0
+
+
+@every_node
+def test_albedos_are_finite_on_the_closed_domain(name):
+    mu = np.array([0.0, 5e-324, 1e-8, 1.0 - 1e-16, 1.0])
+    ends = np.array([0.0, 5e-324, 1e-160, 1e-4, 1.0])
+    E = NODES[name][1](unit(mu)[:, None, None], np.stack(np.meshgrid(ends, ends), axis=-1))
+    assert np.isfinite(E).all() and (E >= 0.0).all()
