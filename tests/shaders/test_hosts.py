@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mxeon.conformance.checks.bsdf_probes import BsdfProbe
+from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.errors import ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import fragment
-from tests.support.tolerances import TWIN_ALBEDO, TWIN_VALUE
+from tests.support.tolerances import SUMMED_DIRECTIONS, TWIN_ALBEDO, TWIN_VALUE
 
 HOSTS = ("gl", "webgl", "vulkan", "slang")
 COUNT = 20_000
@@ -117,6 +119,17 @@ def test_the_environment_is_looked_up_at_the_normal(host):
             shader, normal, normal, {**inputs, "normal": normal}, "environment", irradiance=sky
         )
         assert (expected.start <= values).all() and (values <= expected.stop).all()
+
+
+@pytest.mark.parametrize(
+    "subject", [each for each in BSDFS if each.anisotropic][:1], ids=lambda each: each.model
+)
+def test_a_lobe_of_microfacets_sums_as_many_directions_on_every_host(host, gl, subject):
+    ours, theirs = (BsdfProbe(each, subject, "stock") for each in (host, gl))
+    batch = ours.cosines[0]
+    np.testing.assert_allclose(
+        ours.albedo(batch), theirs.albedo(batch), rtol=0.0, atol=SUMMED_DIRECTIONS
+    )
 
 
 def test_an_unknown_function_is_refused(host):

@@ -174,6 +174,7 @@ class Host(base.Host):
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         textures |= raster.environment(irradiance)
         program = self._program(vertex, pixel)
+        _set(program, raster.EVALUATION)
         frame = self._draw(program, self._textures(program, textures), size)
         return frame.reshape(-1, 3)[:count]
 

@@ -15,6 +15,12 @@ from mxeon.shaders.scene import Scene, sphere
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
+
+# Directions over which a shader of microfacets sums its environment: see docs/hosts.md for the error
+# of each number, and its cost. The environment has no smaller versions of itself.
+EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
+PICTURE = {"u_envRadianceSamples": 64, "u_envRadianceMips": 1}
+DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # every sum is 0
 TRIANGLE = {  # attributes of its three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
@@ -62,7 +68,8 @@ def inputs(shader: Shader) -> dict[str, Any]:
 
 def light(scene: Scene) -> dict[str, Any]:
     """Values of the uniforms of the viewer and the distant light."""
-    values: dict[str, Any] = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE), "u_envRadianceMips": 1}
+    values: dict[str, Any] = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE)}
+    values |= DARK if scene.environment is None else PICTURE
     values["u_numActiveLightSources"] = 0  # or the program keeps the last scene's
     if scene.light is not None:
         values |= {

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts import base, fragment
+from mxeon.shaders.hosts import base, fragment, raster
 from mxeon.shaders.hosts.base import TURN, Identity
 
 try:
@@ -206,7 +206,8 @@ class Host(base.Host):
         if irradiance is not None:
             tinted = {"tex": self._texture(irradiance), "sampler": sampler}
         values = {"u_envRadiance": white, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
-        return {"pixelCB": {**values, "u_envMatrix": slangpy.float4x4(TURN.astype(np.float32))}}
+        matrix = slangpy.float4x4(TURN.astype(np.float32))
+        return {"pixelCB": {**values, **raster.EVALUATION, "u_envMatrix": matrix}}
 
 
 def _kernel_text(names: Iterable[str], body: Sequence[str]) -> str:

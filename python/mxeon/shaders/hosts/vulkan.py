@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts import base, fragment
+from mxeon.shaders.hosts import base, fragment, raster
 from mxeon.shaders.hosts.base import TURN, Identity
 
 try:
@@ -50,13 +50,14 @@ DECLARATION = re.compile(
 
 # Values of block members that must not be 0.
 UNIFORMS = {"u_envMatrix": tuple(TURN.ravel()), "u_envLightIntensity": (1.0,)}
+UNIFORMS |= {name: (number,) for name, number in raster.EVALUATION.items()}
 STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
 STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
 BLOCK_SIZE = 1 << 14
 
 CORNERS = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
 FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filtered
-FLOATS = {1: "r32float", 4: "rgba32float"}  # components -> format
+FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # components -> format
 WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
 
 Bindings: TypeAlias = dict[int, tuple[dict[str, Any], Any]]  # kind and resource by number
@@ -202,7 +203,7 @@ class Host(base.Host):
         return layout, self._device.create_bind_group(layout=layout, entries=entries)
 
     def _texture(self, texels: NDArray[Any]) -> Any:
-        """A texture of 8-bit, float16 or float32 texels, of one component, of three or of four."""
+        """A texture of 8-bit, float16 or float32 texels, of one to four components."""
         height, width, components = texels.shape
         if components == 3:  # there are no textures of three
             texels = np.pad(texels, ((0, 0), (0, 0), (0, 1)))
@@ -257,6 +258,7 @@ def _std140(members: str) -> bytes:
         alignment, size = STD140[kind]
         offset = -(-offset // alignment) * alignment
         values = UNIFORMS.get(name, ())
-        struct.pack_into(f"<{len(values)}f", data, offset, *values)
+        form = "i" if kind == "int" else "f"
+        struct.pack_into(f"<{len(values)}{form}", data, offset, *values)
         offset += size
     return bytes(data)

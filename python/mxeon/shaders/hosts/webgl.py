@@ -147,7 +147,7 @@ class Host(base.Host):
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
         textures |= raster.environment(irradiance)
         stages = {"vertex": vertex, "pixel": pixel}
-        frame = self._draw(stages, UNIFORMS, textures, size)
+        frame = self._draw(stages, UNIFORMS | raster.EVALUATION, textures, size)
         return frame.reshape(-1, 3)[:count]
 
     def _draw(
