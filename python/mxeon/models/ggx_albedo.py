@@ -10,6 +10,7 @@ from mxeon.models.ggx_formulas import smith_lambda
 
 # Gauss-Legendre nodes per panel, panels between wo and the normal, and elements per block.
 NODES, PANELS, BLOCK = 28, 3, 2**10
+RULE = np.polynomial.legendre.leggauss(NODES)
 
 # Least scale of the nodes and least elevation of wo, in radian: nothing changes by more than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
@@ -84,8 +85,7 @@ def albedo(mu: Array, alpha: Array) -> Array:
 
 def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
     """Nodes and weights on [0, length], denser towards 0 from `scale` on, axis of nodes first."""
-    x, weight = np.polynomial.legendre.leggauss(NODES)
-    x, weight = (v.reshape(-1, *(1,) * np.ndim(length * scale)) for v in (x, weight))
+    x, weight = (v.reshape(-1, *(1,) * np.ndim(length * scale)) for v in RULE)
     extent = np.arcsinh(length / scale)
     step = extent / panels
     y = [step * (k + 0.5 + 0.5 * x) for k in range(panels)]
