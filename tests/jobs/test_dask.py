@@ -17,6 +17,7 @@ from mxeon.jobs import dask as cluster
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import need, once, process, square
+from tests.support.plans import keep_checks
 
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
 # Dask leaves the sockets open by which it looks for a free port.
@@ -165,7 +166,8 @@ def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch):
     assert "\n" not in str(error.value)
 
 
-def test_a_farm_finds_what_one_machine_finds(pair, tmp_path):
+def test_a_farm_finds_what_one_machine_finds(pair, tmp_path, monkeypatch):
+    keep_checks(monkeypatch, "value", "reciprocity", "curve", "picture")
     found = check([EXAMPLE], scheduler=pair, folder=tmp_path)
     assert found.results == check([EXAMPLE]).results and not found.missing
 
