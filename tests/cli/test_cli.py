@@ -23,6 +23,7 @@ from mxeon.shaders.hosts import host_names
 from mxeon.shaders.library import eonlib_folder, examples_folder
 from mxeon.shaders.scene import SCENES
 from tests.support.documents import material
+from tests.support.plans import keep_checks
 
 CLAY = str(examples_folder() / "clay.mtlx")
 PLASTER = str(examples_folder() / "plaster.mtlx")
@@ -43,7 +44,8 @@ def one_line(text):
 # --- status -------------------------------------------------------------------------------------
 
 
-def test_check_passes_and_writes_a_report(tmp_path, capsys):
+def test_check_passes_and_writes_a_report(tmp_path, capsys, monkeypatch):
+    keep_checks(monkeypatch, "value", "curve", "picture")
     assert main(["check", PLASTER, "--report", str(tmp_path / "report")]) == PASSED
     printed = capsys.readouterr().out
     assert "checks passed" in printed and "report.html" in printed
@@ -58,12 +60,14 @@ def test_check_passes_and_writes_a_report(tmp_path, capsys):
     }
 
 
-def test_check_of_stock_fails_and_names_the_defects(capsys):
+def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):
+    keep_checks(monkeypatch, "value")
     assert main(["check", PLASTER, "--library", "stock"]) == FAILED
     assert "EON with clamped dot(wo, wi)" in capsys.readouterr().out
 
 
-def test_check_takes_a_folder_as_library_and_prints_json_for_machines(capsys):
+def test_check_takes_a_folder_as_library_and_prints_json_for_machines(capsys, monkeypatch):
+    keep_checks(monkeypatch, "definition", "value")
     folder = str(eonlib_folder())
     assert main(["check", PLASTER, "--library", folder, "--json"]) == PASSED
     results = json.loads(capsys.readouterr().out)["results"]

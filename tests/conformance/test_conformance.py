@@ -25,6 +25,7 @@ from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.hosts.base import Host, Identity
 from mxeon.shaders.library import examples_folder
+from tests.support.plans import keep_checks
 
 EON, QON, NODE = SUBJECTS
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
@@ -239,7 +240,10 @@ def test_the_sources_of_every_target_use_every_input():
     assert all(each.control.caught for each in results)
 
 
-def test_a_document_that_cannot_be_read_is_an_error_and_the_others_are_judged(tmp_path):
+def test_a_document_that_cannot_be_read_is_an_error_and_the_others_are_judged(
+    tmp_path, monkeypatch
+):
+    keep_checks(monkeypatch, "picture")
     bad = tmp_path / "cut.mtlx"
     bad.write_text("<materialx")
     run = check([bad, EXAMPLES[0]], ["gl"])
@@ -376,7 +380,8 @@ def test_a_subject_writes_a_document_with_its_flag():
     assert 'name="roughness" type="float" value="0.5"' in text
 
 
-def test_a_black_material_passes(tmp_path):
+def test_a_black_material_passes(tmp_path, monkeypatch):
+    keep_checks(monkeypatch, "picture")
     path = tmp_path / "black.mtlx"
     path.write_text(SUBJECTS[0].document({"color": (0.0, 0.0, 0.0)}), encoding="utf-8")
     (result,) = [each for each in check([path]).results if each.check == "picture"]

@@ -23,6 +23,7 @@ from mxeon.conformance.run.journal_lines import NAME, to_line
 from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.library import examples_folder
+from tests.support.plans import keep_checks
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
@@ -358,8 +359,18 @@ def wait_for_lines(path, count, process):
         time.sleep(0.01)
 
 
-def test_a_killed_run_is_resumed_to_the_same_end(tmp_path):
-    command = [sys.executable, "-m", "mxeon", "check", str(EXAMPLE), "--report", str(tmp_path)]
+KEPT = ("value", "reciprocity", "curve", "picture")
+SHORT = f"""import builtins, sys
+from mxeon.__main__ import main
+from tests.support.plans import keep_checks
+keep_checks(builtins, *{KEPT})
+sys.exit(main())"""
+
+
+def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
+    keep_checks(monkeypatch, *KEPT)
+    monkeypatch.chdir(Path(__file__).parents[2])
+    command = [sys.executable, "-c", SHORT, "check", str(EXAMPLE), "--report", str(tmp_path)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     wait_for_lines(tmp_path / NAME, 4, process)
     os.kill(process.pid, signal.SIGKILL)

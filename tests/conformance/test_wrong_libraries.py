@@ -28,6 +28,7 @@ from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.functions import names
 from mxeon.shaders.library import data_folder, eonlib_folder, examples_folder
 from mxeon.shaders.nodes import EON, INVERSIONS
+from tests.support.plans import keep_checks
 
 ON, OFF, NODE = SUBJECTS
 MDL, OSL = "libraries/eonlib_genmdl_impl.mtlx", "libraries/eonlib_genosl_impl.mtlx"
@@ -330,7 +331,8 @@ def test_a_source_that_is_no_text_is_refused_in_one_line(copy):
         make_plan([], ["gl"], [library])
 
 
-def test_a_bundled_document_that_a_library_refuses_is_a_failed_check(copy):
+def test_a_bundled_document_that_a_library_refuses_is_a_failed_check(copy, monkeypatch):
+    keep_checks(monkeypatch, "picture")
     library = Path(copy())
     (library.parent / "genglsl" / "eon.glsl").write_text("")
     run = check([examples_folder() / "plaster.mtlx"], ["gl"], [library])
@@ -338,7 +340,10 @@ def test_a_bundled_document_that_a_library_refuses_is_a_failed_check(copy):
     assert any(row.check == "picture" and row.verdict == FAILED for row in run.results)
 
 
-def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_refused(copy):
+def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_refused(
+    copy, monkeypatch
+):
+    keep_checks(monkeypatch, "definition", "value")
     old = 'energy_compensation" type="boolean"'
     library = copy(DEFINITIONS, old, old.replace("tion", "ton"))
     wrong = [row for row in check([], ["gl"], [library]).results if row.verdict == FAILED]

@@ -6,9 +6,7 @@ import subprocess
 import sys
 from contextlib import ExitStack, contextmanager
 
-import dask
 import pytest
-from distributed import LocalCluster
 
 import mxeon
 from mxeon.conformance.run import check
@@ -17,6 +15,7 @@ from mxeon.jobs import dask as cluster
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import need, once, process, square
+from tests.support.plans import keep_checks
 
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
 # Dask leaves the sockets open by which it looks for a free port.
@@ -35,6 +34,8 @@ def run(work, items, address, timeout=60.0):
 @contextmanager
 def farm(*workers):
     """A scheduler's address; each worker is the environment variables that it has more."""
+    from distributed import LocalCluster  # slow to import, in every process that collects tests
+
     with ExitStack() as stack:
         options = {"n_workers": 0, "dashboard_address": ":0", "protocol": "tcp"}
         started = stack.enter_context(LocalCluster(**options))
@@ -85,6 +86,8 @@ def test_a_worker_killed_at_work_costs_nothing(pair, tmp_path):
 
 
 def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
+    import dask
+
     with dask.config.set({"distributed.scheduler.allowed-failures": 0}), farm({}) as address:
         (outcome,) = run(_sleep, [60.0], address, timeout=1.0).values()
     assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
@@ -165,7 +168,8 @@ def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch):
     assert "\n" not in str(error.value)
 
 
-def test_a_farm_finds_what_one_machine_finds(pair, tmp_path):
+def test_a_farm_finds_what_one_machine_finds(pair, tmp_path, monkeypatch):
+    keep_checks(monkeypatch, "value", "reciprocity", "curve", "picture")
     found = check([EXAMPLE], scheduler=pair, folder=tmp_path)
     assert found.results == check([EXAMPLE]).results and not found.missing
 

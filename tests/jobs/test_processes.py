@@ -18,9 +18,8 @@ from tests.support.faults import square
 
 # What any process could ask for: the standard library, what is installed, Blender's modules, and
 # what Python looks for when it starts.
-NAMES = {*sys.stdlib_module_names, *packages_distributions(), "bpy", "_cycles", "mathutils"}
+NAMES = {*sys.stdlib_module_names, "bpy", "_cycles", "mathutils"}
 NAMES |= {"sitecustomize", "usercustomize", "numpy", "mxeon"}
-NAMES = sorted(name for name in NAMES if name.isidentifier())
 PLANT = "import os\nos.write(os.open({!r}, os.O_CREAT | os.O_WRONLY), __file__.encode())\n"
 SCRIPT = """import sys  # as pip writes it
 from mxeon.__main__ import main
@@ -70,11 +69,17 @@ def run(folder, *arguments):
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
+@pytest.fixture(scope="module")
+def names():
+    """NAMES and those of what is installed, which is slow to find out."""
+    return sorted(name for name in NAMES.union(packages_distributions()) if name.isidentifier())
+
+
 @pytest.fixture
-def hostile(tmp_path):
+def hostile(tmp_path, names):
     """A working folder, and folders for documents and results in it, with all these modules."""
     for folder in (tmp_path, tmp_path / "in", tmp_path / "out"):
-        plant(folder, NAMES, PLANT.format(str(tmp_path / "RAN")))
+        plant(folder, names, PLANT.format(str(tmp_path / "RAN")))
     return tmp_path
 
 

@@ -16,6 +16,7 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.io.images import write_exr
+from mxeon.kit import check as judging
 from mxeon.kit import diagnosis, questions
 from mxeon.kit.check import check_kit
 from mxeon.kit.encoding import fault
@@ -39,10 +40,12 @@ EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_r
 @pytest.fixture(scope="module", autouse=True)
 def remembered():
     """What is expected of a model in a view, worked out once for all tests."""
-    once = cache(expected)
     with pytest.MonkeyPatch.context() as patch:
-        for module in (diagnosis, questions):
-            patch.setattr(module, "expected", once)
+        for function in (expected, pixel_means):
+            once = cache(function)
+            for module in (diagnosis, questions, judging):
+                if hasattr(module, function.__name__):
+                    patch.setattr(module, function.__name__, once)
         yield
 
 
@@ -52,10 +55,24 @@ def means(model, name):
     return pixel_means(reference.model(model), VIEWS[name])
 
 
+EXPORTED = {}  # the files of a kit by their names, exported once
+
+
+def write_kit(folder):
+    """A kit without pictures, in an empty folder or over another kit."""
+    if not EXPORTED:
+        export_kit(folder, SIZE)
+        for file in filter(Path.is_file, folder.rglob("*")):
+            EXPORTED[file.relative_to(folder)] = file.read_bytes()
+    for name, data in EXPORTED.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_bytes(data)
+
+
 def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
     """A kit, and pictures of these models with as much relative noise in each pixel."""
     rng = np.random.default_rng(seed)
-    export_kit(folder, SIZE)
+    write_kit(folder)
     for view in VIEWS.values():
         model = true if view.material.energy_compensation else false
         mask, image = judged(view.scene), np.zeros((SIZE, SIZE, 3))
@@ -425,7 +442,7 @@ def test_a_description_of_another_format_is_refused(tmp_path, text):
     ],
 )
 def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):
-    export_kit(tmp_path, 64)
+    write_kit(tmp_path)
     content = json.loads((tmp_path / "kit.json").read_text())
     (tmp_path / "kit.json").write_text(json.dumps(content | {key: value}))
     assert main(["kit", "check", str(tmp_path)]) == 2

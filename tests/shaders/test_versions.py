@@ -15,6 +15,7 @@ from mxeon.shaders import generation, generators, library
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import UntestedVersionWarning, check_closure_calls, load_library
 from tests.support.documents import lobe, material
+from tests.support.plans import keep_checks
 
 EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
 DEFINITION = "void eon_diffuse_bsdf(ClosureData closureData, float weight, inout BSDF bsdf)"
@@ -52,6 +53,7 @@ def test_an_untested_version_runs_with_a_warning(fresh, monkeypatch, name):
 
 
 def test_the_report_of_an_untested_version_says_so(monkeypatch):
+    keep_checks(monkeypatch, "definition", "value", "picture")
     monkeypatch.setattr(mx, "getVersionString", lambda: "1.40.0")
     with warnings.catch_warnings(action="ignore"):
         run = check([EXAMPLE])
@@ -82,7 +84,8 @@ def test_another_closure_interface_is_refused_for_its_node_and_target(other_inte
     assert generation.generate(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'), "glsl")
 
 
-def test_checks_of_another_closure_interface_are_not_run(other_interface):
+def test_checks_of_another_closure_interface_are_not_run(other_interface, monkeypatch):
+    keep_checks(monkeypatch, "value")
     verdicts = {result.subject: result.verdict for result in check([EXAMPLE]).results}
     assert verdicts["oren_nayar_diffuse_bsdf, energy_compensation true"] == NOT_RUN
     assert verdicts["eon_diffuse_bsdf"] == PASSED

@@ -97,7 +97,7 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
         If scipy, of the `kit` extra, is not installed.
     """
     try:
-        from scipy.stats import t
+        from scipy.special import stdtrit  # scipy.stats is slow to import
     except ModuleNotFoundError as error:
         raise PackageError("kit check needs scipy: pip install 'mxeon[kit]'") from error
 
@@ -105,7 +105,7 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
     false_rate = share * (1.0 - CONFIDENCE) / total
     largest = 0.0
     for each in pictures:
-        reach = t.isf(false_rate / 2.0, each.squares)[:, None] * each.deviation
+        reach = -stdtrit(each.squares, false_rate / 2.0)[:, None] * each.deviation
         largest = max(largest, float(np.max(np.abs(each.mean) / (each.slack + reach))))
     return largest
 

@@ -241,11 +241,12 @@ def check_closure_calls(text: str, target: str) -> None:
         The target it was generated for, for the message.
     """
     for name in DIFFUSE_NODES:
-        definition = re.search(rf"\bvoid {name}\(", text)
+        # Patterns begin with letters, for which `re` searches fast.
+        definition = re.search(rf"void {name}(?<!\wvoid {name})\(", text)
         if not definition:  # the node is not used, or not eonlib's
             continue
         parameters = _arguments(text, definition.end())
-        for call in re.finditer(rf"(?<!void )\b{name}\w*\(", text):
+        for call in re.finditer(rf"{name}(?<!void {name})(?<!\w{name})\w*\(", text):
             if call[0] != f"{name}(" or len(_arguments(text, call.end())) != len(parameters):
                 raise InterfaceError(
                     f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "

@@ -33,7 +33,7 @@ from mxeon.shaders.scene import Scene
 try:
     from playwright import sync_api
 except ImportError:
-    sync_api = None  # type: ignore[assignment]
+    sync_api = None
 
 PROGRAM = "MXEON_CHROMIUM"  # environment variable that names the browser
 FLAGS = (

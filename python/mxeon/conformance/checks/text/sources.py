@@ -102,13 +102,19 @@ def _is_ours(subject: Subject, target: str, library: str) -> Result:
     return counted(OURS, f"{subject.title}, {target}", library, count, control, meaning)
 
 
+def _uses(name: str) -> re.Pattern[str]:
+    """The variable of an input as a whole word; begins with its letters, for which `re` is fast."""
+    word = variable(name)
+    return re.compile(rf"{word}(?<!\w{word})(?!\w)")
+
+
 def _without_use(text: str, name: str) -> str:
     """The text with the declaration of an input, and without its uses."""
     word = variable(name)
     head, declaration, rest = text.partition(word)
-    return head + declaration + re.sub(rf"\b{word}\b", "x", rest)
+    return head + declaration + _uses(name).sub("x", rest)
 
 
 def _unused(text: str, subject: Subject) -> list[str]:
     """Inputs whose variable does not occur twice: in its declaration and in a use."""
-    return [name for name in subject.inputs if len(re.findall(rf"\b{variable(name)}\b", text)) < 2]
+    return [name for name in subject.inputs if len(_uses(name).findall(text)) < 2]
