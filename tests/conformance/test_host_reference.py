@@ -12,6 +12,7 @@ from mxeon.conformance.reference.lobes import furnace
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models import pbrlib
 from mxeon.models.brdf import eon_brdf, qon_brdf
+from mxeon.models.burley import burley_albedo_dir
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -239,10 +240,10 @@ def test_a_picture_of_a_layer_over_white_in_a_furnace_is_white(mode, brdf, albed
 def test_the_albedo_over_a_picture_is_interpolated_closely():
     mu = np.linspace(0.0, 1.0, 299)
     wo = np.stack([np.sqrt(1.0 - mu**2), 0.0 * mu, mu], axis=1)
-    for roughness in (0.02, 0.3, 1.0):
+    for roughness in (0.02, 0.3, 1.0):  # of which the first exceeds 1
         inputs = {"color": np.ones((1, 3)), "roughness": np.array([roughness])}
         values = furnace(wo, 1.0)(pbrlib.node("conty_kulla"), inputs, False).value
-        truth = conty_kulla_albedo_dir(mu, roughness)[:, None]
+        truth = np.minimum(conty_kulla_albedo_dir(mu, roughness), 1.0)[:, None]
         assert np.abs(values - truth).max() < 1e-8
 
 
@@ -255,6 +256,14 @@ def test_what_no_polynomial_follows_is_not_interpolated():
     inputs = {"color": np.ones((1, 3)), "roughness": np.array([0.5])}
     values = furnace(wo, 1.0)(step, inputs, False).value
     assert np.array_equal(values[:, 0], mu > 0.5)
+
+
+def test_burley_shows_its_albedo_in_a_furnace():
+    text = material("""<burley_diffuse_bsdf name="lobe" type="BSDF">
+      <input name="roughness" type="float" value="0.7"/></burley_diffuse_bsdf>""")
+    wo = np.array([[0.6, 0.0, 0.8]])
+    values = Reference().evaluate(generate(text, "glsl")[0], wo, wo, {}, "environment")
+    assert np.allclose(values, burley_albedo_dir(0.8, 0.18, 0.7), rtol=1e-7)
 
 
 def test_transmission_is_lit_from_behind():

@@ -85,11 +85,13 @@ def _albedo(node: PbrNode, wo: Values, inputs: Inputs, points: NDArray[np.bool_]
     """Albedo at `points`, of which `wo` are the directions."""
     constant = all(len(value) == 1 for value in inputs.values())
     # Only albedos without a closed form take long.
-    if node.fitted and constant and len(wo) > DEGREES[0] and _turns(inputs):
-        albedo = _interpolated(node, wo, inputs)
-        if albedo is not None:
-            return albedo
-    return node.albedo(wo, _at(inputs, points))
+    if not (node.fitted and constant and _turns(inputs)):
+        return node.albedo(wo, _at(inputs, points))
+    # The symmetric points of a sphere have cosines that differ by roundings.
+    rounded: Values = np.round(np.minimum(wo[:, 2], 1.0), 13)
+    mu, indices = np.unique(rounded, return_inverse=True)
+    albedo = _interpolated(node, mu, inputs) if len(mu) > DEGREES[0] else None
+    return (_over_cosines(node, mu, inputs) if albedo is None else albedo)[indices]
 
 
 def _turns(inputs: Inputs) -> bool:
@@ -98,17 +100,20 @@ def _turns(inputs: Inputs) -> bool:
     return roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
 
 
-def _interpolated(node: PbrNode, wo: Values, inputs: Inputs) -> Values | None:
+def _over_cosines(node: PbrNode, mu: Values, inputs: Inputs) -> Values:
+    """Albedo of directions with these cosines."""
+    wo = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), np.zeros_like(mu), mu], axis=1)
+    return node.albedo(wo, _at(inputs, np.ones(len(mu), bool)))
+
+
+def _interpolated(node: PbrNode, mu: Values, inputs: Inputs) -> Values | None:
     """Albedo by Chebyshev interpolation in mu^(1/4), or None where it converges too slowly."""
     for degree in DEGREES:
         x = chebyshev.chebpts1(degree + 1)
-        mu = (0.5 * (1.0 + x)) ** 4
-        nodes = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), np.zeros_like(mu), mu], axis=1)
-        values = node.albedo(nodes, _at(inputs, np.ones(len(mu), bool)))
+        values = _over_cosines(node, (0.5 * (1.0 + x)) ** 4, inputs)
         scale = np.where(np.arange(degree + 1) == 0, 1.0, 2.0) / (degree + 1)
         coefficients = scale[:, None] * (chebyshev.chebvander(x, degree).T @ values)
         if np.abs(coefficients[-degree // 8 :]).max() < TAIL:
-            at = 2.0 * np.minimum(wo[:, 2], 1.0) ** 0.25 - 1.0
-            result: Any = chebyshev.chebval(at, coefficients).T
+            result: Any = chebyshev.chebval(2.0 * mu**0.25 - 1.0, coefficients).T
             return np.asarray(result, np.float64)
     return None
