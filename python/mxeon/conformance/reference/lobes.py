@@ -88,7 +88,7 @@ def _albedo(node: PbrNode, wo: Values, inputs: Inputs, points: NDArray[np.bool_]
     if not (node.fitted and constant and _turns(inputs)):
         return node.albedo(wo, _at(inputs, points))
     # The symmetric points of a sphere have cosines that differ by roundings.
-    rounded: Values = np.round(np.minimum(wo[:, 2], 1.0), 13)
+    rounded = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
     mu, indices = np.unique(rounded, return_inverse=True)
     albedo = _interpolated(node, mu, inputs) if len(mu) > DEGREES[0] else None
     return (_over_cosines(node, mu, inputs) if albedo is None else albedo)[indices]
