@@ -19,7 +19,8 @@ HEAD = """<!-- Made by `python docs/gallery.py`. -->
 # Gallery
 
 Every material of the folder `examples/`, rendered with eonlib on the `gl` host: a sphere, lit from
-the side by one distant light. Below each document is the command that renders its first material.
+the side by one distant light, or in white surroundings if the document is called a furnace. Below each
+document is the command that renders its first material.
 
 """
 
@@ -29,10 +30,15 @@ def materials(document):
     return [each.get("name") for each in ElementTree.parse(document).iter("surfacematerial")]
 
 
+def scene(document):
+    """Name of the scene that shows a document."""
+    return "furnace" if "furnace" in document.stem else "side"
+
+
 def render(document, material):
     """Render one material into the folder of pictures."""
     command = [sys.executable, "-m", "mxeon", "render", str(document), "--element", material]
-    command += ["--host", "gl", "--scene", "side", "--size", str(SIZE)]
+    command += ["--host", "gl", "--scene", scene(document), "--size", str(SIZE)]
     subprocess.run([*command, "--output", str(PICTURES / f"{material}.png")], check=True)
 
 
@@ -42,10 +48,10 @@ def section(document):
     names = materials(document)
     head = "| " + " | ".join(names) + " |\n" + "|---" * len(names) + "|\n"
     pictures = " | ".join(f"![{name}](images/gallery/{name}.png)" for name in names)
-    command = f"    mxeon render examples/{document.name} --element {names[0]} --scene side "
+    command = f"    mxeon render examples/{document.name} --element {names[0]} "
     return (
         f"## {document.stem}\n\n{description.removeprefix('<!-- ').removesuffix(' -->')}\n\n"
-        f"{head}| {pictures} |\n\n{command}--output {names[0]}.png\n"
+        f"{head}| {pictures} |\n\n{command}--scene {scene(document)} --output {names[0]}.png\n"
     )
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the brick images of this folder: `python make_textures.py [FOLDER]`.
+"""Makes the images of this folder: `python make_textures.py [FOLDER]`.
 
 Colors are chosen as sRGB code values, as in a paint program. Only sums, products and square
 roots of seeded random numbers enter, which IEEE 754 rounds alike everywhere, so that the
-pixels are the same on every machine. Both images tile. They are twice as wide as high, which
+pixels are the same on every machine. All images tile. They are twice as wide as high, which
 keeps bricks in shape under a latitude-longitude mapping.
 """
 
@@ -21,6 +21,10 @@ SEED = 20250304
 PALE, DARK = np.array([0.72, 0.40, 0.28]), np.array([0.52, 0.22, 0.16])
 BURNT, MORTAR = np.array([0.33, 0.21, 0.20]), np.array([0.68, 0.65, 0.59])
 BURNT_SHARE = 0.12
+
+# The same of wood: early and late growth of a year, and how many years there are.
+EARLY, LATE = np.array([0.72, 0.47, 0.26]), np.array([0.42, 0.22, 0.11])
+YEARS = 14
 
 
 def tileable_noise(rng, shape, cells):
@@ -75,6 +79,22 @@ def images():
     return np.clip(color, 0.0, 1.0), np.clip(roughness, 0.0, 1.0)
 
 
+def wood():
+    """The color image of wood, sRGB code values in [0, 1]; the grain runs down."""
+    rng = np.random.default_rng(SEED + 1)
+    shape = (ROWS * BRICK[0], COLUMNS * BRICK[1])
+    bend = tileable_noise(rng, shape, (2, 7))
+    fibers = tileable_noise(rng, shape, (6, 128)) - 0.5
+    pores = tileable_noise(rng, shape, (16, 192))
+    year = np.arange(shape[1]) * YEARS / shape[1] + 2.5 * bend + 0.15 * fibers
+    part = year - np.floor(year)
+    # Late growth darkens slowly and ends at once.
+    late = part * part * np.clip(8.0 * (1.0 - part), 0.0, 1.0)
+    color = EARLY + (LATE - EARLY) * late[..., None]
+    dark = 1.0 + 0.25 * fibers - 0.3 * np.clip(4.0 * pores - 3.2, 0.0, 1.0)
+    return np.clip(color * dark[..., None], 0.0, 1.0)
+
+
 def quantized(image):
     """The image in 8 bits, with a channel axis."""
     return np.floor(np.atleast_3d(image) * 255.0 + 0.5).astype(np.uint8)
@@ -94,10 +114,11 @@ def save(path, pixels, space):
 
 
 def main(folder):
-    """Writes both images into `folder`."""
+    """Writes the images into `folder`."""
     color, roughness = images()
     save(Path(folder) / "brick_color.png", quantized(color), "srgb_rec709_scene")
     save(Path(folder) / "brick_roughness.png", quantized(roughness), "data")
+    save(Path(folder) / "wood_color.png", quantized(wood()), "srgb_rec709_scene")
 
 
 if __name__ == "__main__":

@@ -61,7 +61,7 @@ def test_materials_have_names_of_their_own():
     materials = functools.reduce(
         operator.iadd, (read_document(path).content.getMaterialNodes() for path in DOCUMENTS), []
     )
-    assert len({node.getName() for node in materials}) == len(materials) == 23
+    assert len({node.getName() for node in materials}) == len(materials) == 34
 
 
 def test_the_wedge_has_the_same_roughnesses_with_and_without_compensation():
@@ -79,6 +79,42 @@ def test_the_examples_use_every_node_that_leads_to_rough_diffuse_reflection():
     assert lobes | shaders | {"mix", "add", "multiply", "image"} <= set(used)
 
 
+def test_the_examples_use_every_other_lobe_of_pbrlib_that_is_judged():
+    used = sum((categories(read_document(path).content) for path in DOCUMENTS), Counter())
+    lobes = {"sheen_bsdf", "dielectric_bsdf", "conductor_bsdf", "generalized_schlick_bsdf"}
+    assert lobes | {"layer"} <= set(used)
+
+
+def test_velvet_has_both_modes_of_sheen_and_is_otherwise_the_same():
+    document = read_document(examples_folder() / "velvet.mtlx").content
+    sheens = document.getNodes("sheen_bsdf")
+    inputs = [
+        {each.getName(): each.getValueString() for each in node.getInputs()} for node in sheens
+    ]
+    assert [each.pop("mode") for each in inputs] == ["conty_kulla", "zeltner"]
+    assert inputs[0] == inputs[1]
+
+
+def test_the_brushed_metals_are_anisotropic_in_the_same_steps():
+    document = read_document(examples_folder() / "brushed_metal_wedge.mtlx").content
+    steps = [
+        [tuple(lobe.getInputValue("roughness")) for lobe in document.getNodes(category)]
+        for category in ("generalized_schlick_bsdf", "conductor_bsdf")
+    ]
+    assert steps[0] == steps[1] and all(x > y for x, y in steps[0])
+
+
+def test_everything_in_the_layered_furnace_is_white():
+    document = read_document(examples_folder() / "layered_white_furnace.mtlx").content
+    colors = [
+        tuple(port.getValue())
+        for node in document.getNodes()
+        for port in node.getInputs()
+        if port.getType() == "color3"
+    ]
+    assert colors == [(1.0, 1.0, 1.0)]
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """Folder of freshly made textures."""
@@ -91,7 +127,10 @@ def pixels(path):
     return oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8)
 
 
-@pytest.mark.parametrize("name", ["brick_color.png", "brick_roughness.png"])
+IMAGES = ("brick_color.png", "brick_roughness.png", "wood_color.png")
+
+
+@pytest.mark.parametrize("name", IMAGES)
 def test_the_script_makes_the_textures_pixel_for_pixel(made, name):
     np.testing.assert_array_equal(pixels(made / name), pixels(TEXTURES / name))
 
@@ -101,7 +140,7 @@ def test_no_other_texture_is_bundled_and_none_is_large(made):
     assert all(path.stat().st_size < 200_000 for path in TEXTURES.iterdir())
 
 
-@pytest.mark.parametrize("name", ["brick_color.png", "brick_roughness.png"])
+@pytest.mark.parametrize("name", IMAGES)
 @pytest.mark.parametrize("axis", [0, 1])
 def test_textures_tile_without_a_seam(name, axis):
     image = pixels(TEXTURES / name).astype(float)

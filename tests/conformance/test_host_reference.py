@@ -1,18 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The models as a host: graphs of diffuse lobes, and what they cannot say."""
+"""The models as a host: graphs of lobes and layers, and what they cannot say."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mxeon.conformance.checks.image import judge_document
 from mxeon.conformance.reference import Host as Reference
-from mxeon.errors import NotRun
+from mxeon.conformance.reference import lobes
+from mxeon.conformance.reference.lobes import TAIL, furnace
+from mxeon.errors import NotRun, OutsideModel
+from mxeon.models import pbrlib
 from mxeon.models.brdf import eon_brdf, qon_brdf
+from mxeon.models.burley import burley_albedo_dir
+from mxeon.models.microfacet import generalized_schlick_brdf
+from mxeon.models.microfacet_albedo import conductor_albedo_dir
+from mxeon.models.sheen import (
+    conty_kulla_albedo_dir,
+    conty_kulla_brdf,
+    zeltner_albedo_dir,
+    zeltner_brdf,
+)
 from mxeon.shaders.document.reading import DocumentWarning
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.nodes import EON, OREN_NAYAR
-from mxeon.shaders.scene import FRONT, FURNACE, Scene
+from mxeon.shaders.scene import FRONT, FURNACE, SIDE, VIEW, Scene, sphere
 from tests.support.documents import connected, lobe, material
 
 A = f'<{EON} name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.1"/></{EON}>'
@@ -127,11 +141,21 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
     "nodes, scene, words",
     [
         (
-            f"""{A}<dielectric_bsdf name="gloss" type="BSDF"/><layer name="lobe" type="BSDF">
-            <input name="top" type="BSDF" nodename="gloss"/>
-            <input name="base" type="BSDF" nodename="a"/></layer>""",
+            """<subsurface_bsdf name="lobe" type="BSDF"/>""",
             FRONT,
-            "no model for node 'layer'",
+            "no model for node 'subsurface_bsdf'",
+        ),
+        (
+            """<dielectric_bsdf name="lobe" type="BSDF">
+            <input name="thinfilm_thickness" type="float" value="300"/></dielectric_bsdf>""",
+            SMALL,
+            "no model for input 'thinfilm_thickness' of node 'dielectric_bsdf'",
+        ),
+        (
+            """<dielectric_bsdf name="lobe" type="BSDF">
+            <input name="scatter_mode" type="string" value="RT"/></dielectric_bsdf>""",
+            SMALL,
+            "no model for this mode of node 'dielectric_bsdf'",
         ),
         (
             f"""<normalmap name="bump" type="vector3"/><{EON} name="lobe" type="BSDF">
@@ -147,7 +171,14 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
         ),
         (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
     ],
-    ids=["layer", "normal map", "color space", "image of an environment"],
+    ids=[
+        "subsurface",
+        "thin film",
+        "transmission",
+        "normal map",
+        "color space",
+        "image of an environment",
+    ],
 )
 def test_what_the_models_do_not_cover_did_not_run(nodes, scene, words):
     shader = generate(material(nodes), "glsl")[0]
@@ -184,3 +215,166 @@ def test_an_ignored_connection_leaves_the_default():
     with pytest.warns(DocumentWarning, match="which MaterialX ignores"):
         shown = center(material(graph + connected(color='nodename="ng"')))
     assert shown == pytest.approx(color(0.18, 0.18, 0.18), abs=1e-3)
+
+
+SHEEN = """<sheen_bsdf name="{name}" type="BSDF"><input name="color" type="color3" value="{color}"/>
+  <input name="roughness" type="float" value="0.3"/>
+  <input name="mode" type="string" value="{mode}"/></sheen_bsdf>"""
+WHITE = f"""<{EON} name="base" type="BSDF">
+  <input name="color" type="color3" value="1, 1, 1"/></{EON}>"""
+LAYER = """<layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename="{top}"/>
+  <input name="base" type="BSDF" nodename="{base}"/></layer>"""
+SHEENS = (
+    ("conty_kulla", conty_kulla_brdf, conty_kulla_albedo_dir),
+    ("zeltner", zeltner_brdf, zeltner_albedo_dir),
+)
+every_sheen = pytest.mark.parametrize("mode, brdf, albedo", SHEENS, ids=lambda each: str(each))
+
+
+def layered(mode, color="0.5, 1, 0.25"):
+    """Sheen over a white base."""
+    top = SHEEN.format(name="top", mode=mode, color=color)
+    return material(top + WHITE + LAYER.format(top="top", base="base"))
+
+
+@every_sheen
+def test_a_layer_darkens_its_base_by_its_albedo(mode, brdf, albedo):
+    shader = generate(layered(mode), "glsl")[0]
+    wo, wi = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, -0.8, 0.6]])
+    tint = np.array([0.5, 1.0, 0.25])
+    values = Reference().evaluate(shader, wo, wi, {}, "direct")
+    left = 1.0 - tint * albedo(0.8, 0.3)
+    expected = 0.6 * (brdf(wo, wi, tint, 0.3) + left * eon_brdf(wo, wi, 1.0, 0.0))
+    assert np.allclose(values, expected, rtol=1e-9)
+    # The tint is part of the albedo, so what it does not reflect reaches the base.
+    assert np.allclose(Reference().evaluate(shader, wo, wi, {}, "environment"), 1.0, rtol=1e-12)
+
+
+@every_sheen
+def test_a_picture_of_a_layer_over_white_in_a_furnace_is_white(mode, brdf, albedo):
+    scene = Scene("furnace", environment=1.0, size=32)
+    image = Reference().picture(generate(layered(mode), "glsl")[0], scene)
+    assert np.allclose(image[image > 0.0], 1.0, rtol=1e-12) and (image > 0.0).sum() > 2000
+
+
+def test_the_albedo_over_a_picture_is_interpolated_closely():
+    mu = np.linspace(0.01, 1.0, 1001)
+    wo = np.stack([np.sqrt(1.0 - mu**2), 0.0 * mu, mu], axis=1)
+    for roughness in (0.02, 0.3, 1.0):  # of which the first exceeds 1
+        inputs = {"color": np.ones((1, 3)), "roughness": np.array([roughness])}
+        values = furnace(wo, 1.0)(pbrlib.node("conty_kulla"), inputs, False).value
+        truth = conty_kulla_albedo_dir(mu, roughness)[:, None]
+        assert np.abs(values - truth).max() < 10.0 * TAIL
+
+
+def test_what_no_polynomial_follows_is_not_interpolated():
+    mu = np.linspace(0.01, 1.0, 1001)
+    wo = np.stack([np.sqrt(1.0 - mu**2), 0.0 * mu, mu], axis=1)
+    step = replace(
+        pbrlib.node("conty_kulla"), integral=lambda wo, inputs: inputs["color"] * (wo[:, 2:] > 0.5)
+    )
+    inputs = {"color": np.ones((1, 3)), "roughness": np.array([0.5])}
+    values = furnace(wo, 1.0)(step, inputs, False).value
+    assert np.array_equal(values[:, 0], mu > 0.5)
+
+
+def test_brushed_metal_is_turned_with_the_tangent_of_the_sphere():
+    text = material("""<generalized_schlick_bsdf name="lobe" type="BSDF">
+      <input name="color0" type="color3" value="0.9, 0.6, 0.3"/>
+      <input name="color82" type="color3" value="0.5, 0.7, 0.9"/>
+      <input name="roughness" type="vector2" value="0.3, 0.1"/></generalized_schlick_bsdf>""")
+    shader, scene = generate(text, "glsl")[0], Scene("side", light=SIDE.light, size=9)
+    image = Reference().picture(shader, scene)
+    normal = sphere(9).normal[2, 6]
+    x = np.array([normal[2], 0.0, -normal[0]]) / np.hypot(normal[0], normal[2])
+    frame = np.stack([x, np.cross(normal, x), normal])
+    wo, wi = frame @ VIEW, frame @ SIDE.light
+    colors = [0.9, 0.6, 0.3], [0.5, 0.7, 0.9], [1.0, 1.0, 1.0]
+    value = generalized_schlick_brdf(wo, wi, *colors, [0.3, 0.1], 5.0)
+    assert np.allclose(image[2, 6], np.pi * value * wi[2], rtol=1e-6)
+
+
+def test_the_albedo_of_brushed_metal_is_interpolated_closely(monkeypatch):
+    random = np.random.default_rng(5)
+    mu, phi = 0.05 + 0.95 * random.random(1000), random.uniform(-np.pi, np.pi, 1000)
+    wo = np.stack([np.sqrt(1 - mu**2) * f(phi) for f in (np.cos, np.sin)] + [mu], axis=1)
+    inputs = {"ior": np.full((1, 3), 0.2), "extinction": np.full((1, 3), 3.0)}
+    inputs["roughness"] = np.array([[0.3, 0.2]])
+    row = pbrlib.node("conductor")
+    values = furnace(wo, 1.0)(row, inputs, False).value[:20]
+    truth = conductor_albedo_dir(wo[:20], [0.3, 0.2], [0.2], [3.0])
+    assert np.abs(values - truth).max() < 10.0 * TAIL
+    inputs["roughness"] = np.array([[1.0, 1e-3]])
+    monkeypatch.setattr(lobes, "ANISOTROPIC", ((8, 4),))
+    with pytest.raises(NotRun, match="so anisotropic a lobe takes too long"):
+        furnace(wo, 1.0)(row, inputs, False)
+
+
+def test_burley_shows_its_albedo_in_a_furnace():
+    text = material("""<burley_diffuse_bsdf name="lobe" type="BSDF">
+      <input name="roughness" type="float" value="0.7"/></burley_diffuse_bsdf>""")
+    wo = np.array([[0.6, 0.0, 0.8]])
+    values = Reference().evaluate(generate(text, "glsl")[0], wo, wo, {}, "environment")
+    assert np.allclose(values, burley_albedo_dir(0.8, 0.18, 0.7), rtol=1e-7)
+
+
+def test_transmission_is_lit_from_behind():
+    text = material("""<translucent_bsdf name="lobe" type="BSDF"/>""")
+    shader = generate(text, "glsl")[0]
+    wo, wi = np.array([[0.6, 0.0, 0.8]] * 2), np.array([[0.0, -0.8, 0.6], [0.0, 0.8, -0.6]])
+    values = Reference().evaluate(shader, wo, wi, {}, "direct")
+    assert np.allclose(values, [[0.0] * 3, [0.6 / np.pi] * 3])
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        LAYER.format(top="", base="a").replace('<input name="top" type="BSDF" nodename=""/>', "")
+        + A,
+        LAYER.format(top="a", base="b") + A + B,
+    ],
+    ids=["no top", "a top that hides its base"],
+)
+def test_a_layer_without_a_top_or_with_a_diffuse_one_shows_one_lobe(nodes):
+    assert np.array_equal(center(material(nodes)), center(material(A.replace('"a"', '"lobe"'))))
+
+
+def test_a_lobe_scaled_to_nothing_hides_nothing():
+    nodes = SHEEN.format(name="top", mode="zeltner", color="1, 1, 1") + A
+    nodes += """<multiply name="faint" type="BSDF"><input name="in1" type="BSDF" nodename="top"/>
+      <input name="in2" type="float" value="0"/></multiply>"""
+    shown = center(material(nodes + LAYER.format(top="faint", base="a")))
+    assert np.array_equal(shown, color(0.8, 0.4, 0.1))
+
+
+@pytest.mark.parametrize(
+    "nodes, error, words",
+    [
+        (
+            A
+            + B
+            + """<mix name="lobe" type="BSDF"><input name="fg" type="BSDF" nodename="a"/>
+            <input name="bg" type="BSDF" nodename="b"/><input name="mix" type="float" value="2"/>
+            </mix>""",
+            OutsideModel,
+            r"node 'lobe': amount must lie in \[0, 1\]; got 2.0",
+        ),
+        (
+            """<sheen_bsdf name="lobe" type="BSDF">
+            <input name="roughness" type="float" value="1.5"/></sheen_bsdf>""",
+            OutsideModel,
+            r"node 'lobe': roughness must lie in \[0, 1\]; got 1.5",
+        ),
+        (
+            """<anisotropic_vdf name="fog" type="VDF"/><sheen_bsdf name="top" type="BSDF"/>
+            <layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename="top"/>
+            <input name="base" type="VDF" nodename="fog"/></layer>""",
+            NotRun,
+            "no model for a layer over a volume",
+        ),
+    ],
+    ids=["mix", "sheen", "volume"],
+)
+def test_what_lies_beyond_the_layers_is_said(nodes, error, words):
+    with pytest.raises(error, match=words):
+        center(material(nodes))

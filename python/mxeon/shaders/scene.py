@@ -145,6 +145,15 @@ def local_directions(
     return unit
 
 
+def tangents(normal: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unit tangents (N, 3) of the sphere at unit normals (N, 3): eastward, 0 at the poles of y."""
+    east = np.stack([normal[:, 2], np.zeros(len(normal)), -normal[:, 0]], axis=1)
+    unit: NDArray[np.float64] = east / np.maximum(
+        np.linalg.norm(east, axis=1, keepdims=True), 1e-30
+    )
+    return unit
+
+
 @lru_cache(maxsize=16)
 def sphere_directions(size: int, direction: tuple[float, float, float]) -> NDArray[np.float64]:
     """A direction in the frames of the visible points of the sphere, row after row, (N, 3)."""

@@ -7,23 +7,23 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from mxeon.conformance.reference.graph import Graph, Lobe
+from mxeon.conformance.reference.graph import Graph
+from mxeon.conformance.reference.lobes import furnace, lit
 from mxeon.errors import NotRun
-from mxeon.models import table
 from mxeon.shaders import hosts
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.scene import VIEW, Scene, sphere, sphere_directions
+from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
 # Any target will do: the document behind the shader is what is evaluated.
 ROW = hosts.Row("reference", target="glsl", module=__name__)
 
 
 class Host(base.Host):
-    """The models of `mxeon.models.table`."""
+    """The models of `mxeon.models.table` and the nodes of `mxeon.models.pbrlib`."""
 
     name = ROW.name
     target = ROW.target
@@ -42,11 +42,11 @@ class Host(base.Host):
         """
         points = sphere(scene.size)
         normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
+        wo = _local(normal, VIEW)
         if scene.light is not None:
-            wo, wi = (sphere_directions(scene.size, each) for each in (VIEW, scene.light))
-            lobe = _lit(wo, wi, np.pi)
+            lobe = lit(wo, _local(normal, scene.light), np.pi)
         elif isinstance(scene.environment, float):
-            lobe = _furnace(normal[:, 2], scene.environment)
+            lobe = furnace(wo, scene.environment)
         else:
             raise NotRun("reference: environment must be uniform; got an image")
         image = np.zeros(points.normal.shape)
@@ -79,32 +79,17 @@ class Host(base.Host):
             raise NotRun(
                 "reference: only the response to a light or a uniform environment is known"
             )
-        lobe = _furnace(wo[:, 2], 1.0) if branch == "environment" else _lit(wo, wi, 1.0)
+        lobe = furnace(wo, 1.0) if branch == "environment" else lit(wo, wi, 1.0)
         values: NDArray[np.float64] = Graph(shader.document, None, lobe, inputs).element(
             shader.element
         )
         return values
 
 
-def _lit(wo: NDArray[Any], wi: NDArray[Any], irradiance: float) -> Lobe:
-    """Lobe under a distant light: its irradiance times f cos(theta_i), 0 below the horizon."""
-    lit = (wo[:, 2] > 0.0) & (wi[:, 2] > 0.0)
-
-    def lobe(name: str, rho: ArrayLike, parameter: ArrayLike) -> NDArray[np.float64]:
-        value = np.zeros((len(wo), 3))
-        rho = np.broadcast_to(rho, value.shape)[lit]
-        parameter = np.broadcast_to(parameter, len(wo))[lit]
-        brdf = table.model(name).brdf(wo[lit], wi[lit], rho, parameter)
-        value[lit] = irradiance * brdf * wi[lit, 2:]
-        return value
-
-    return lobe
-
-
-def _furnace(mu: NDArray[Any], radiance: float) -> Lobe:
-    """Lobe in a uniform environment: its directional albedo."""
-
-    def lobe(name: str, rho: ArrayLike, parameter: ArrayLike) -> NDArray[np.float64]:
-        return radiance * table.model(name).closed_albedo_dir(mu, rho, parameter)
-
-    return lobe
+def _local(normal: NDArray[np.float64], direction: tuple[float, ...]) -> NDArray[np.float64]:
+    """A direction in the frames of the sphere, tangent +x and normal +z, as unit vectors (N, 3)."""
+    tangent = tangents(normal)
+    axes = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    local = axes @ np.asarray(direction)
+    unit: NDArray[np.float64] = local / np.linalg.norm(local, axis=1, keepdims=True)
+    return unit

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Material graphs of diffuse lobes evaluated in NumPy, over all the points of a picture at once.
+"""Material graphs evaluated in NumPy, over all the points of a picture at once.
 
-A graph may contain rough diffuse lobes; mix, add and multiply; values, arithmetic and images; nodes
-that are nodegraphs of these. Any other node is NotRun, with its name.
+A graph may contain rough diffuse lobes and the nodes of `mxeon.models.pbrlib`; layer, mix, add and
+multiply; values, arithmetic and images; nodes that are nodegraphs of these. Any other node is NotRun,
+with its name.
 """
 
 from __future__ import annotations
@@ -15,16 +16,23 @@ from typing import Any, TypeAlias
 
 import MaterialX as mx
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from mxeon.errors import NotRun, OutsideModel
+from mxeon.conformance.reference.lobes import Lobe
+from mxeon.conformance.reference.nodes import (
+    COMBINATIONS,
+    LOBES,
+    combined,
+    definition,
+    node_lobe,
+    plain,
+)
+from mxeon.errors import NotRun
 from mxeon.io.images import srgb_decoded
+from mxeon.models.layering import Bsdf
 from mxeon.shaders.document.graphs import reachable
 from mxeon.shaders.hosts.textures import read_texture
-from mxeon.shaders.nodes import DIFFUSE_NODES, EON
 
-# Values of a lobe of weight one, (N, 3), from the name of its model, its color and its roughness.
-Lobe: TypeAlias = Callable[[str, ArrayLike, ArrayLike], NDArray[np.float64]]
 Path: TypeAlias = tuple[str, ...]  # see Graph
 Step: TypeAlias = tuple[Callable[..., Any], tuple[Path, ...]]
 
@@ -40,10 +48,18 @@ OPERATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Any]]] = {
     "sqrt": (("in",), np.sqrt),
     "convert": (("in",), lambda value: value),
     "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
-    "surface": (("bsdf", "opacity"), mul),
+    "surface": (
+        ("bsdf", "edf", "opacity"),
+        lambda bsdf, edf, opacity: bsdf.value * opacity + edf,
+    ),
     "surfacematerial": (("surfaceshader",), lambda shader: shader),
 }
-CLOSURES = ("BSDF", "EDF", "surfaceshader")  # black where nothing is connected
+# Where nothing is connected: black, and for a lobe nothing at all, which hides nothing.
+UNCONNECTED = {
+    "BSDF": Bsdf(np.zeros(3), np.ones(3)),
+    "EDF": 0.0,
+    "surfaceshader": 0.0,
+}
 CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
 
 
@@ -54,10 +70,10 @@ class Graph:
     ----------
     document : MaterialX.Document
     texcoord : ndarray, shape (N, 2)
-    lobe : callable (model name, color, roughness) -> ndarray, shape (N, 3)
-        Values of a diffuse lobe of weight one at these points.
+    lobe : callable
+        Lobe at these points; see `mxeon.conformance.reference.lobes`.
     inputs : mapping of str to array
-        Inputs of diffuse lobes that take the place of the document's.
+        Inputs of lobes that take the place of the document's.
 
     Notes
     -----
@@ -77,6 +93,7 @@ class Graph:
         self._texcoord = texcoord
         self._lobe = lobe
         self._inputs = inputs or {}
+        self._layered = False  # whether throughputs are needed
         self._elements: dict[Path, Any] = {}
         self._steps: dict[Path, Step] = {}
 
@@ -120,12 +137,14 @@ class Graph:
     def _node_step(self, path: Path) -> Step:
         node = self._elements[path]
         category = node.getCategory()
-        if category in DIFFUSE_NODES:
-            names: tuple[str, ...] = ("normal", "color", "roughness", "weight")
-            diffuse = partial(self._diffuse, node.getNamePath())
-            if category == EON:
-                return partial(diffuse, True), self._sources(path, names)
-            return diffuse, self._sources(path, ("energy_compensation", *names))
+        if category in LOBES:
+            names = tuple(port.getName() for port in definition(node).getActiveInputs())
+            sources = self._sources(path, names)
+            return lambda *values: self._lobe_of(
+                node, dict(zip(names, values, strict=True))
+            ), sources
+        if category in COMBINATIONS and node.getType() == "BSDF":
+            return self._combination(path, node)
         if category == "image":
             return partial(self._image, node), ()
         if category in OPERATIONS:
@@ -137,9 +156,17 @@ class Graph:
             raise NotRun(f"reference: there is no model for node {category!r}")
         return lambda value: value, (self._inner(path, outputs[0].getConnectedNode()),)
 
+    def _combination(self, path: Path, node: Any) -> Step:
+        """Step of a node that combines lobes."""
+        ports, operation = COMBINATIONS[node.getCategory()]
+        if node.getCategory() == "layer":
+            self._layered = True
+            if definition(node).getActiveInput("base").getType() != "BSDF":
+                raise NotRun("reference: there is no model for a layer over a volume")
+        return partial(combined, node.getNamePath(), operation), self._sources(path, ports)
+
     def _sources(self, path: Path, names: tuple[str, ...]) -> tuple[Path, ...]:
-        lobe = self._elements[path].getCategory() in DIFFUSE_NODES
-        values = self._inputs if lobe else {}
+        values = self._inputs if self._elements[path].getCategory() in LOBES else {}
         return tuple(
             self._constant(path, name, values[name]) if name in values else self._source(path, name)
             for name in names
@@ -165,9 +192,9 @@ class Graph:
         value = port.getValue()
         if value is None and declared:  # a connection that MaterialX ignores
             value = declared.getValue()
-        if port.getType() in CLOSURES:
-            return 0.0
-        return self._linear(port, _plain(value)) if port.getType() == "color3" else _plain(value)
+        if port.getType() in UNCONNECTED:
+            return UNCONNECTED[port.getType()]
+        return self._linear(port, plain(value)) if port.getType() == "color3" else plain(value)
 
     def _port(self, path: Path, name: str) -> Any:
         """Input of a node, or else of its nodedef."""
@@ -200,31 +227,8 @@ class Graph:
             raise NotRun(f"reference: there is no transform for color space {space!r}")
         return srgb_decoded(value)
 
-    def _diffuse(
-        self,
-        name: str,
-        compensated: Any,
-        normal: Any,
-        color: Any,
-        roughness: Any,
-        weight: Any,
-    ) -> NDArray[np.float64]:
-        if normal is not None:
-            raise NotRun("reference: there are no models for a normal other than the surface's")
-        model = "eon" if compensated else "qon"
-        weight = np.reshape(weight, (-1, 1))
-        if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
-            rule = f"weight must lie in [0, 1]; got {beyond[0]:g}"
-            raise OutsideModel(f"reference: node {name!r}: {rule}")
-        # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
-        rounded = np.float32(roughness) == np.float32(np.pi / 2.0)
-        roughness = np.where(rounded & (not compensated), np.pi / 2.0, roughness)
-        try:
-            lobe = self._lobe(model, color, np.reshape(roughness, -1))
-        except ValueError as error:
-            raise OutsideModel(f"reference: node {name!r}: {error}") from None
-        values: NDArray[np.float64] = lobe * weight
-        return values
+    def _lobe_of(self, node: Any, inputs: Mapping[str, Any]) -> Bsdf:
+        return node_lobe(node, inputs, self._lobe, self._layered)
 
     def _image(self, node: Any) -> Any:
         """Bilinear, periodic look-up; texel centers at half-integers, v = 0 at the bottom."""
@@ -253,10 +257,3 @@ class Graph:
         upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
         value = lower * (1.0 - v) + upper * v
         return self._linear(file, value) if channels == 3 else value
-
-
-def _plain(value: Any) -> Any:
-    """A MaterialX value as a bool, a string, an array or None."""
-    if value is None or isinstance(value, (bool, str)):
-        return value
-    return np.asarray(value if isinstance(value, (int, float)) else tuple(value), dtype=np.float64)

@@ -100,5 +100,5 @@ def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
     squared = np.square(a * x + b * z) + np.square(a * y) + np.square(z)
-    density: Array = z / np.pi * np.square(a / squared)
-    return density
+    pdf: Array = z / np.pi * np.square(a / squared)
+    return pdf

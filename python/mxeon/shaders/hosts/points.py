@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts.fragment import RENAME
-from mxeon.shaders.scene import sphere
+from mxeon.shaders.scene import sphere, tangents
 
 MARGIN = 1  # points beyond each edge, for the derivatives of the last row and column
 SAMPLER = "mxeon_points"
@@ -85,11 +85,10 @@ def vertices(size: int) -> dict[str, NDArray[np.float32]]:
     """
     points = sphere(size, margin=MARGIN)
     flat = points.normal.reshape(-1, 3)
-    tangent = np.stack([flat[:, 2], np.zeros(len(flat)), -flat[:, 0]], axis=1)
     attributes = {
         "i_position": points.position.reshape(-1, 3),
         "i_normal": flat,
-        "i_tangent": tangent / np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-30),
+        "i_tangent": tangents(flat),
         "i_texcoord_0": points.texcoord.reshape(-1, 2),
     }
     return {name: values.astype("f4") for name, values in attributes.items()}

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values and throughputs of one lobe at all the points of a picture, under each kind of light."""
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from mxeon.errors import NotRun
+from mxeon.models import table
+from mxeon.models.layering import Bsdf, throughput
+from mxeon.models.pbrlib import PbrNode
+
+Values: TypeAlias = NDArray[np.float64]
+Inputs: TypeAlias = Mapping[str, Values]
+Albedo: TypeAlias = Callable[[Values, Inputs], Values]
+
+# A lobe of weight one from its node, its inputs, each one value or one for each point, and whether
+# its throughput is asked for.
+Lobe: TypeAlias = Callable[[PbrNode, Inputs, bool], Bsdf]
+
+# An albedo is interpolated over a picture if its last coefficients are below this, far below a host's
+# rounding: degrees in sqrt(mu) and in cos(2 phi).
+TAIL = 2e-7
+ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
+ANISOTROPIC = ((32, 16), (48, 32))
+FEW = 1000  # directions, whose albedos are as soon computed one by one
+
+
+def diffuse(name: str, category: str) -> PbrNode:
+    """A model of the Oren-Nayar family as the row of a node."""
+    model = table.model(name)
+    return PbrNode(
+        name,
+        model.title,
+        category,
+        ("color", "roughness"),
+        lambda wo, wi, inputs: model.brdf(wo, wi, inputs["color"], inputs["roughness"]),
+        lambda wo, inputs: model.closed_albedo_dir(wo[:, 2], inputs["color"], inputs["roughness"]),
+    )
+
+
+def lit(wo: Values, wi: Values, irradiance: float) -> Lobe:
+    """Lobe under a distant light: its irradiance times f |cos(theta_i)|, 0 on the dark side."""
+    above = wo[:, 2] > 0.0
+
+    def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+        value = np.zeros(wo.shape)
+        shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
+        f = node.value(wo[shown], wi[shown], _at(inputs, shown))
+        value[shown] = irradiance * f * np.abs(wi[shown, 2:])
+        left = np.zeros(wo.shape)
+        if layered and node.layerable:
+            left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above))
+        return Bsdf(value, left)
+
+    return lobe
+
+
+def furnace(wo: Values, radiance: float) -> Lobe:
+    """Lobe in a uniform environment: its directional albedo."""
+
+    def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+        every = np.ones(len(wo), bool)
+        value = _albedo(node.integral or node.albedo, node, wo, inputs, every)
+        left = np.zeros(wo.shape)
+        if layered and node.layerable:
+            left = throughput(_albedo(node.albedo, node, wo, inputs, every))
+        return Bsdf(radiance * value, left)
+
+    return lobe
+
+
+def weighted(lobe: Bsdf, weight: Values, layerable: bool) -> Bsdf:
+    """Lobe times its weight; what hides its base does so at any weight."""
+    left = np.maximum(1.0 - weight * (1.0 - lobe.throughput), 0.0) if layerable else lobe.throughput
+    return Bsdf(lobe.value * weight, left)
+
+
+def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Values]:
+    """Inputs at some of the points, each (M,) or (M, components)."""
+    count = int(points.sum())
+    return {
+        name: value[points] if len(value) == len(points) else np.repeat(value, count, axis=0)
+        for name, value in inputs.items()
+    }
+
+
+def _albedo(
+    albedo: Albedo, node: PbrNode, wo: Values, inputs: Inputs, points: NDArray[np.bool_]
+) -> Values:
+    """Albedo at `points`, of which `wo` are the directions."""
+    closed = not node.fitted and node.integral is None
+    if closed or len(wo) < FEW or any(len(value) > 1 for value in inputs.values()):
+        return albedo(wo, _at(inputs, points))
+    material = tuple((name, tuple(value.ravel().tolist())) for name, value in inputs.items())
+    turns = _turns(inputs)
+    low = float(np.sqrt(wo[:, 2].min()))
+    series = _series(albedo, material, low, ISOTROPIC if turns else ANISOTROPIC)
+    if series is not None:
+        result: Any = chebyshev.chebval2d(*_arguments(wo, low), series).T
+        return np.asarray(result, np.float64)
+    if not turns:
+        raise NotRun("reference: the albedo of so anisotropic a lobe takes too long over a picture")
+    # The symmetric points of a sphere have cosines that differ by roundings.
+    rounded = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
+    mu, indices = np.unique(rounded, return_inverse=True)
+    every = np.ones(len(mu), bool)
+    return albedo(_directions(mu, np.zeros_like(mu)), _at(inputs, every))[indices]
+
+
+def _turns(inputs: Inputs) -> bool:
+    """Whether a lobe stays itself when it is turned about the normal."""
+    roughness = inputs.get("roughness", np.zeros(1))
+    return roughness.ndim == 1 or bool(np.ptp(roughness[0]) == 0.0)
+
+
+def _directions(mu: Values, phi: Values) -> Values:
+    """Unit vectors with cosine mu at azimuth phi, (N, 3)."""
+    sine = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=1)
+
+
+def _arguments(wo: Values, low: float) -> tuple[Values, Values]:
+    """Arguments of a series in [-1, 1]: of sqrt(mu) from `low` on, and cos(2 phi)."""
+    root = np.sqrt(np.minimum(wo[:, 2], 1.0))
+    x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
+    turn = (x - y) / np.maximum(x + y, 1e-300)
+    return np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0), turn
+
+
+@lru_cache(maxsize=32)
+def _series(
+    albedo: Albedo,
+    material: tuple[tuple[str, tuple[float, ...]], ...],
+    low: float,
+    degrees: tuple[tuple[int, int], ...],
+) -> Values | None:
+    """Chebyshev coefficients of an albedo, (., ., 3), or None where they fall too slowly."""
+    inputs = {
+        name: np.array(values) if len(values) == 1 else np.array([values])
+        for name, values in material
+    }
+    for degree, turns in degrees:
+        x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
+        mu, phi = np.meshgrid(
+            np.square(low + (1.0 - low) * 0.5 * (1.0 + x)), 0.5 * np.arccos(y), indexing="ij"
+        )
+        wo = _directions(mu.ravel(), phi.ravel())
+        values = albedo(wo, _at(inputs, np.ones(len(wo), bool))).reshape(*mu.shape, 3)
+        series = np.einsum("xi,yj,xyc->ijc", _transform(x), _transform(y), values)
+        tails = [series[-degree // 8 :], series[:, -2:] if turns else np.zeros(1)]
+        if max(float(np.abs(tail).max()) for tail in tails) < TAIL:
+            return np.asarray(series, np.float64)
+    return None
+
+
+def _transform(points: Values) -> Values:
+    """Matrix from the values at Chebyshev points to coefficients, (points, coefficients)."""
+    degree = len(points) - 1
+    scale = np.where(np.arange(degree + 1) == 0, 1.0, 2.0) / (degree + 1)
+    return np.asarray(chebyshev.chebvander(points, degree) * scale, np.float64)

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""BSDF nodes of a document as rows of the models, and the nodes that combine them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.conformance.reference.lobes import Lobe, diffuse, weighted
+from mxeon.errors import NotRun, OutsideModel
+from mxeon.models import layering
+from mxeon.models.layering import Bsdf
+from mxeon.models.pbrlib import NODES, PbrNode
+from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
+
+COMPONENTS = {"color3": 3, "vector2": 2}
+DIFFUSE = {False: diffuse("qon", OREN_NAYAR), True: diffuse("eon", EON)}
+LOBES = {
+    category: tuple(row for row in NODES if row.category == category)
+    for category in (*DIFFUSE_NODES, *(row.category for row in NODES))
+}
+
+# Nodes that combine lobes: category -> inputs, and the function of them.
+COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
+    "layer": (("top", "base"), layering.layer),
+    "mix": (("fg", "bg", "mix"), layering.mix),
+    "add": (("in1", "in2"), layering.add),
+    "multiply": (("in1", "in2"), layering.multiply),
+}
+
+
+def node_lobe(node: Any, inputs: Mapping[str, Any], lobe: Lobe, layered: bool) -> Bsdf:
+    """Lobe of a node.
+
+    Parameters
+    ----------
+    node : MaterialX.Node
+        Of a category in LOBES.
+    inputs : mapping of str to value
+        Of all its inputs, each one value or one for each point.
+    lobe : callable
+        See `mxeon.conformance.reference.lobes`.
+    layered : bool
+        Whether the throughput is needed.
+
+    Raises
+    ------
+    NotRun
+        If an input has a value that the models do not cover.
+    """
+    row = _row(node, inputs)
+    _assert_known(node, row, inputs)
+    name = f"reference: node {node.getNamePath()!r}"
+    weight = np.reshape(inputs["weight"], (-1, 1))
+    if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
+        raise OutsideModel(f"{name}: weight must lie in [0, 1]; got {beyond[0]:g}")
+    arguments = {port: _shaped(node, port, inputs[port]) for port in row.inputs}
+    if row.name == "qon":
+        # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
+        rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
+        arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
+    try:
+        values = lobe(row, arguments, layered)
+    except ValueError as error:
+        raise OutsideModel(f"{name}: {error}") from None
+    return weighted(values, weight, row.layerable)
+
+
+def definition(node: Any) -> Any:
+    """Nodedef of a node.
+
+    Raises
+    ------
+    NotRun
+        If no nodedef matches its inputs.
+    """
+    if definition := node.getNodeDef():
+        return definition
+    raise NotRun(f"reference: node {node.getNamePath()!r} has no definition")
+
+
+def _row(node: Any, inputs: Mapping[str, Any]) -> PbrNode:
+    """Row of the model that a node with these inputs has."""
+    category = node.getCategory()
+    if category in DIFFUSE_NODES:
+        return DIFFUSE[category == EON or bool(inputs[FLAG])]
+    for row in LOBES[category]:
+        if all(value_text(inputs[port]) == value for port, value in row.fixed.items()):
+            return row
+    raise NotRun(f"reference: there is no model for this mode of node {category!r}")
+
+
+def _assert_known(node: Any, row: PbrNode, inputs: Mapping[str, Any]) -> None:
+    """Raise NotRun if an input that the model does not have differs from its default."""
+    for port, value in inputs.items():
+        if port in ("weight", FLAG, *row.inputs, *row.fixed):
+            continue
+        if port in ("normal", "tangent"):
+            if value is not None:
+                raise NotRun(
+                    f"reference: there are no models for a {port} other than the surface's"
+                )
+        elif not np.array_equal(value, plain(definition(node).getActiveInput(port).getValue())):
+            raise NotRun(
+                f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
+            )
+
+
+def _shaped(node: Any, port: str, value: Any) -> NDArray[np.float64]:
+    """Value of an input as (1,) or (N,) if it is a number, else with its components."""
+    if definition(node).getActiveInput(port).getType() in ("float", "boolean"):
+        return np.reshape(np.asarray(value, np.float64), -1)
+    array = np.atleast_2d(np.asarray(value, np.float64))
+    return np.broadcast_to(
+        array, (len(array), COMPONENTS[definition(node).getActiveInput(port).getType()])
+    )
+
+
+def combined(name: str, operation: Callable[..., Bsdf], *values: Any) -> Bsdf:
+    """Lobes combined; the values of numbers are the node's own."""
+    try:
+        return operation(*values)
+    except ValueError as error:
+        raise OutsideModel(f"reference: node {name!r}: {error}") from None
+
+
+def plain(value: Any) -> Any:
+    """A MaterialX value as a bool, a string, an array or None."""
+    if value is None or isinstance(value, (bool, str)):
+        return value
+    return np.asarray(value if isinstance(value, (int, float)) else tuple(value), dtype=np.float64)
