@@ -266,7 +266,7 @@ VALUES = {
     "fitted pairs": BSDF_VALUE,
     "exact": EXACT,
 }
-LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER}
+LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER, "exact": EXACT}
 ALBEDOS = {
     "pairs": ENVIRONMENT,
     "pictures": CYCLES_NOISE,
