@@ -31,7 +31,7 @@ from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
-OTHERS = tuple(row.name for row in NODES)
+OTHERS = (*(row.name for row in NODES), "burley_lambert")
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
