@@ -26,6 +26,7 @@ VERBS = {
     "call": ("eon_brdf",),
     "plane": (None, SIDE),
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
+    "pairs": ("diffuse", None, None, None, None),
 }
 ENGINES = [row for row in hosts.HOSTS if row.module]
 
@@ -108,6 +109,8 @@ def test_a_host_has_the_verb_by_which_checks_ask_it(row):
         "planes": "plane",
         "native": "node",
         "exact": "node",
+        "facets": "node",
+        "facet pairs": "pairs",
     }
     host = import_module(row.module).Host
     verbs = {verb[row.probe], *(["picture"] if row.scenes else [])}

@@ -191,6 +191,61 @@ def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike)
     return np.square(rho) * qon_albedo_dir(mu, sigma)[..., np.newaxis]
 
 
+def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Reflection of QON that takes the number of degrees for radians.
+
+    Parameters
+    ----------
+    wo, wi, rho, sigma
+        As those of `mxeon.models.qon_brdf`: sigma is in radian, and 180 sigma / pi enters.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; from a few degrees on it is the limit of large sigma, and correct at 0.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    LuxCoreRender's roughmatte: its manual has degrees, its code radians.
+
+    Examples
+    --------
+    >>> qon_degrees_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+    array([0.062398, 0.249593])
+    """
+    return evaluate(_qon_degrees, wo, wi, rho, sigma=sigma)
+
+
+def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Directional albedo of `qon_degrees_brdf`.
+
+    Parameters
+    ----------
+    mu, rho, sigma
+        As those of `mxeon.models.known_defects.qon_fitted_albedo_dir`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Dimensionless, in [0, 1].
+
+    Examples
+    --------
+    >>> qon_degrees_albedo_dir(1.0, [0.5, 1.0], 0.0).round(6)
+    array([0.5, 1. ])
+    """
+    rough = 0.5 * np.pi
+    lobe = (qon_albedo_dir(mu, rough) - formulas.qon_a(rough)) / formulas.qon_b(rough)
+    sigma = np.degrees(np.asarray(sigma, np.float64))
+    white: Array = np.asarray(formulas.qon_a(sigma) + formulas.qon_b(sigma) * lobe)
+    return white[..., np.newaxis] * np.asarray(rho, np.float64)
+
+
 def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of `eon_rho_cubed_brdf`.
 
@@ -298,6 +353,10 @@ def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
 def _eon_floor(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     floor = np.maximum(rho, FLOOR)
     return rho / floor * formulas.eon_brdf_approx(wo, wi, floor, roughness)
+
+
+def _qon_degrees(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
+    return formulas.qon_brdf(wo, wi, rho, np.degrees(sigma))
 
 
 def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:

@@ -181,6 +181,13 @@ KNOWN_DEFECTS = (
         known_defects.qon_fitted_albedo_dir,
     ),
     Model(
+        "qon_degrees",
+        "QON that takes degrees for radians",
+        known_defects.qon_degrees_brdf,
+        "sigma",
+        known_defects.qon_degrees_albedo_dir,
+    ),
+    Model(
         "qon_tinted_twice",
         "QON tinted twice",
         known_defects.qon_tinted_twice_brdf,

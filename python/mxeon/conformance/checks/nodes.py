@@ -105,6 +105,8 @@ class Subject(OfModel):
     forms : tuple of str
         Forms of the model that its paper publishes, if there are several. The one that is nearest to
         what is measured is judged.
+    others : bool
+        Whether other lobes lie beside the diffuse one, which do not depend on the color.
     """
 
     node: str
@@ -112,6 +114,7 @@ class Subject(OfModel):
     model: str
     names: tuple[str, ...] = tuple(INPUT_TYPES)
     forms: tuple[str, ...] = ()
+    others: bool = False
 
     @property
     def title(self) -> str:
@@ -256,5 +259,10 @@ NATIVE = {
         *_own("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
         *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
         *_own("lambert", "PBRMaterial LAMBERT, WebGL2", "PBRMaterial LAMBERT, WebGPU"),
+    ),
+    "mitsuba": (Subject("diffuse", None, "lambert", ("color",)),),
+    "luxcore": (
+        Subject("matte", None, "lambert", ("color",)),
+        *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),
     ),
 }

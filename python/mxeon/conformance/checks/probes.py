@@ -35,7 +35,7 @@ from mxeon.conformance.checks.special import (
     turned_frames,
 )
 from mxeon.shaders.generation import ApproximationWarning, Shader
-from mxeon.shaders.hosts import front_lit_only, host_row
+from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.plane import LIGHTS, plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
@@ -203,7 +203,7 @@ class PictureProbe:
 
     def _picture(self, batch: Batch) -> Array:
         """Values at the points of a batch."""
-        scene = _scene(batch)
+        scene = scene_of(batch)
         values = self._radiance(self._shader(batch.inputs), scene)
         return values[self._points(scene)[2]].astype(np.float64)
 
@@ -241,7 +241,7 @@ class NativeProbe(PictureProbe):
     subject: Subject
 
     def _picture(self, batch: Batch) -> Array:
-        scene, inputs = _scene(batch), batch.inputs
+        scene, inputs = scene_of(batch), batch.inputs
         image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
         values = image[sphere(scene.size).mask]
         return values[picture_pairs(scene)[2]].astype(np.float64)
@@ -278,20 +278,6 @@ class ExactProbe(NativeProbe):
         )
 
 
-PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
-    "pairs": PairProbe,
-    "pictures": PictureProbe,
-    "planes": PlaneProbe,
-    "native": NativeProbe,
-    "exact": ExactProbe,
-}
-
-
-def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
-    """Class of the probes of the host of a name, or None where only text is checked."""
-    return PROBES.get(host_row(host).probe)
-
-
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
 def _compile(host: Host, text: str, library: str) -> Shader:
     with warnings.catch_warnings():  # approximations are not judged: see _mask
@@ -299,7 +285,7 @@ def _compile(host: Host, text: str, library: str) -> Shader:
         return host.compile(text, library=library)[0]
 
 
-def _scene(batch: Batch) -> Scene:
+def scene_of(batch: Batch) -> Scene:
     """The picture of a batch of a probe that makes pictures."""
     assert batch.scene is not None
     return batch.scene

@@ -22,7 +22,7 @@ from mxeon.conformance.checks.controls import (
     with_inputs,
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
-from mxeon.conformance.checks.nodes import Surface
+from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbrlib import NODES
@@ -36,6 +36,7 @@ LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
+SMOOTH = ("lambert",)
 
 
 def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
@@ -86,6 +87,11 @@ def is_lobe(subject: Any, host: str) -> bool:
     return isinstance(subject, Surface) or subject.model == "lambert"
 
 
+def is_alone(subject: Any, host: str) -> bool:
+    """Whether no other lobe lies beside the diffuse one."""
+    return not (isinstance(subject, Subject) and subject.others)
+
+
 def has_environment(subject: Any, host: str) -> bool:
     """Whether a host has the subject's model for all pairs, as an environment needs."""
     return not front_lit_only(host, subject.model)
@@ -104,7 +110,7 @@ CHECKS = (
     Check(
         "lobe",
         "The diffuse lobe of the surface shader is the model's.",
-        (*ANY, "lambert"),
+        (*ANY, *SMOOTH),
         measures.value,
         "every channel gets the mean color",
         gray,
@@ -114,7 +120,7 @@ CHECKS = (
     Check(
         "environment",
         "The environment branch gives the directional albedo.",
-        (*ANY, *OTHERS),
+        (*ANY, *OTHERS, *SMOOTH),
         measures.environment,
         "every channel gets the mean color",
         gray,
@@ -145,7 +151,7 @@ CHECKS = (
     Check(
         "black",
         "A black surface scatters nothing.",
-        (*ANY, *BLACK),
+        (*ANY, *BLACK, *SMOOTH),
         measures.black,
         "reflectance is 0.001",
         with_inputs(color=(0.001, 0.001, 0.001)),
@@ -155,7 +161,10 @@ CHECKS = (
             "planes": tolerances.ZERO,
             **of_bsdfs(tolerances.ZERO),
             "exact": tolerances.ZERO,
+            "facets": tolerances.ZERO,
+            "facet pairs": tolerances.ZERO,
         },
+        is_alone,
     ),
     Check(
         "frame",
@@ -190,11 +199,15 @@ CHECKS = (
     Check(
         "reciprocity",
         "Exchanging the two directions does not change the BRDF.",
-        (*ANY, *RECIPROCAL),
+        (*ANY, *RECIPROCAL, *SMOOTH),
         measures.reciprocity,
         "the value carries cos(theta_o) once more",
         scale_cosine(1),
-        {"pairs": tolerances.RECIPROCITY, **of_bsdfs(tolerances.BSDF_VALUE)},
+        {
+            "pairs": tolerances.RECIPROCITY,
+            **of_bsdfs(tolerances.BSDF_VALUE),
+            "facet pairs": tolerances.FACET_PAIRS,
+        },
     ),
     Check(
         "lambert",
@@ -208,6 +221,7 @@ CHECKS = (
             "pictures": tolerances.CYCLES_RAY,
             "planes": tolerances.TESTRENDER,
             "exact": tolerances.EXACT,
+            "facets": tolerances.FACETS,
         },
     ),
     Check(
@@ -228,7 +242,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        (*ANY, *OTHERS),
+        (*ANY, *OTHERS, *SMOOTH),
         measures.inputs,
         "every change is dropped",
         drop_changes,
@@ -238,6 +252,8 @@ CHECKS = (
             "planes": tolerances.count_of("inputs"),
             **of_bsdfs(tolerances.count_of("inputs")),
             "exact": tolerances.count_of("inputs"),
+            "facets": tolerances.count_of("inputs"),
+            "facet pairs": tolerances.count_of("inputs"),
         },
         diagnose=wiring.of_inputs,
     ),

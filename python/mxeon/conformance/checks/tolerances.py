@@ -11,12 +11,14 @@ from mxeon.conformance.checks.batch import LOBE_RIM, RIM
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
 from mxeon.conformance.checks.special import TURNED
+from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
 ROUNDING = 2.0**-24  # unit roundoff of float32
 HALF_ROUNDING = 2.0**-11  # of float16
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
 PLANE_PIXELS = 128**2  # of a picture of testrender
+FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H, see fits/
 
 
@@ -257,6 +259,28 @@ EXACT_SURROUNDINGS = Tolerance(
     "rounded up",
 )
 
+FACETS = Tolerance(
+    rounded_up(8 * 2.0 * math.sqrt(3.0) * ROUNDING / NARROWEST),
+    "pi f cos",
+    absolute,
+    "the normal of a facet: three float32 vertices, each off by sqrt(3) 2^-24, over the narrowest edge, "
+    "0.0245, twice for the edge's two ends; times 8, the largest slope of the diffuse models; rounded up",
+)
+FACET_NOISE = Tolerance(
+    rounded_up(4.0 * 0.0716 / math.sqrt(FACET_PIXELS)),
+    "mean albedo",
+    of_mean,
+    "four standard errors of the mean of a picture's 7169 pixels, each of 64 paths: measured over 12 "
+    "seeds, a pixel is off by 0.0716 rms in Mitsuba and 0.0625 in LuxCoreRender; rounded up",
+)
+FACET_PAIRS = Tolerance(
+    rounded_up(16 * 2.5**2 * ROUNDING),
+    "pi f cos",
+    absolute,
+    "16 roundings of float32, 2^-24 each, of numbers up to 25/4, the product of Burley's two factors; "
+    "rounded up",
+)
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,
@@ -265,8 +289,16 @@ VALUES = {
     "closed pairs": BSDF_VALUE,
     "fitted pairs": BSDF_VALUE,
     "exact": EXACT,
+    "facets": FACETS,
+    "facet pairs": FACET_PAIRS,
 }
-LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER, "exact": EXACT}
+LOBES = {
+    "lobes": LOBE,
+    "plane lobes": TESTRENDER,
+    "exact": EXACT,
+    "facets": FACETS,
+    "facet pairs": FACET_PAIRS,
+}
 ALBEDOS = {
     "pairs": ENVIRONMENT,
     "pictures": CYCLES_NOISE,
@@ -274,6 +306,8 @@ ALBEDOS = {
     "closed pairs": BSDF_ALBEDO,
     "fitted pairs": FITTED_ALBEDO,
     "exact": EXACT_SURROUNDINGS,
+    "facets": FACET_NOISE,
+    "facet pairs": FACET_NOISE,
 }
 THROUGHPUTS = {"closed pairs": BSDF_ALBEDO, "fitted pairs": FITTED_ALBEDO}
 FRAMES = {

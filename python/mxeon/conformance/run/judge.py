@@ -11,12 +11,12 @@ from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.checks.documents import generate_document
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
+from mxeon.conformance.checks.facet_probes import PROBES
 from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.probes import (
-    PROBES,
     ExactProbe,
     PairProbe,
     PictureProbe,

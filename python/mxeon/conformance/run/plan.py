@@ -20,11 +20,11 @@ import mxeon
 from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.bsdfs import BSDFS, BsdfSubject
 from mxeon.conformance.checks.evaluate import applies
+from mxeon.conformance.checks.facet_probes import probe_type
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
 from mxeon.conformance.checks.probes import (
     NativeProbe,
     PairProbe,
-    probe_type,
 )
 from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
