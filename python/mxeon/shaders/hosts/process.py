@@ -43,7 +43,7 @@ class Worker:
 
     def __init__(self, name: str, python: Path, script: Path, log: Path, limit: float) -> None:
         self._name = name
-        self._command = [python, "-I", "-W", "ignore", script]
+        self._command: list[str | Path] = [python, "-I", "-W", "ignore", script]
         self.log = log
         self.limit = limit
         self._process: Popen[str] | None = None
