@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong variants of EON and QON that renderers in the field implement, to recognize them by."""
+"""Wrong variants of models that renderers in the field implement, to recognize them by."""
 
 import numpy as np
 
@@ -7,6 +7,7 @@ from mxeon.models import formulas
 from mxeon.models.albedo import eon_albedo_dir, fon_albedo_dir, qon_albedo_dir
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.brdf import qon_brdf
+from mxeon.models.burley import burley_brdf
 from mxeon.models.evaluation import evaluate
 from mxeon.models.formulas import C1, C2, cosines
 
@@ -43,6 +44,38 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
     array([0.033311, 0.156407])
     """
     return evaluate(_eon_clamped, wo, wi, rho, roughness=roughness)
+
+
+def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of Burley's diffuse model at roughness^2, multiplied by mu_i.
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.burley.burley_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; not reciprocal, and a white surface reflects two thirds of the light.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    LuxCoreRender's disney: `DisneyDiffuse` squares the roughness, and both `Evaluate` and
+    `DisneyEvaluate` multiply by the cosine of the light.
+
+    Examples
+    --------
+    >>> burley_cosine_brdf([0.0, 0.0, 1.0], [0.8, 0.0, 0.6], [0.5, 1.0], 0.5).round(6)
+    array([0.095395, 0.19079 ])
+    """
+    value = burley_brdf(wo, wi, rho, np.square(roughness))
+    return value * np.asarray(wi, np.float64)[..., 2:]
 
 
 def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:

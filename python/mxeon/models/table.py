@@ -206,4 +206,10 @@ OTHERS = (
         "roughness",
         lambda mu, rho, roughness: _lambert_albedo_dir(mu, rho),
     ),
+    Model(
+        "burley_cosine",
+        "Burley with squared roughness, times the cosine once more",
+        known_defects.burley_cosine_brdf,
+        "roughness",
+    ),
 )

@@ -260,9 +260,10 @@ NATIVE = {
         *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
         *_own("lambert", "PBRMaterial LAMBERT, WebGL2", "PBRMaterial LAMBERT, WebGPU"),
     ),
-    "mitsuba": (Subject("diffuse", None, "lambert", ("color",)),),
+    "mitsuba": (Subject("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
     "luxcore": (
         Subject("matte", None, "lambert", ("color",)),
         *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),
+        Subject("disney", None, "burley", ("color", "roughness"), others=True),
     ),
 }
