@@ -71,6 +71,14 @@ def test_luxcore_has_qon_with_sigma_in_radian(of_luxcore):
     assert all(each.control.caught for each in of_luxcore.values())
 
 
+def test_luxcores_disney_squares_the_roughness_and_applies_the_cosine_twice(of_luxcore):
+    result = of_luxcore["value", "disney"]
+    name = "Burley with squared roughness, times the cosine once more"
+    assert f"nearest known model: {name}" in result.diagnosis and result.distances[name] < 1e-6
+    assert "see docs/upstream/luxcore_disney_cosine.md" in result.diagnosis
+    assert ("black", "disney") not in of_luxcore  # what is left of another lobe is taken off
+
+
 @pytest.mark.parametrize("scene", [FRONT, SIDE, BACK], ids=lambda each: each.name)
 def test_pictures_are_linear_and_have_float_precision(host, scene):
     """A dark color beside a bright one: 8 bits or a tone curve would be off by far more."""
@@ -157,4 +165,5 @@ def test_checks_of_a_missing_renderer_are_not_run(monkeypatch):
 
 def test_the_models_that_are_claimed_are_known():
     subjects = NATIVE["mitsuba"] + NATIVE["luxcore"]
-    assert {table.model(each.model).name for each in subjects} >= {"lambert", "qon"}
+    claims = {table.model(each.model).name for each in subjects}
+    assert claims == {"lambert", "qon", "burley"}

@@ -16,7 +16,13 @@ BABYLON = tuple(
     for material in ("PBRMaterial E_OREN_NAYAR", "OpenPBRMaterial")
     for engine in ("WebGL2", "WebGPU")
 )
-RENDERERS = {"cycles": "this Blender", "three": "this three.js", "babylon": "this Babylon.js"}
+RENDERERS = {
+    "cycles": "this Blender",
+    "three": "this three.js",
+    "babylon": "this Babylon.js",
+    "luxcore": "this LuxCoreRender",
+    "three-gpu-pathtracer": "this three-gpu-pathtracer",
+}
 BURLEY = tuple(f"PBRMaterial BURLEY, {engine}" for engine in ("WebGL2", "WebGPU"))
 
 
@@ -127,6 +133,19 @@ ISSUES = (
         (("environment", BABYLON[0]), ("environment", BABYLON[3])),
         implied=tuple(("environment", subject) for subject in (*BABYLON[1:3], *BURLEY)),
         library=OWN,
+    ),
+    Issue(
+        "luxcore_sigma_unit",
+        "luxcore",
+        (
+            ("value", "roughmatte, sigma in degrees"),
+            ("environment", "roughmatte, sigma in degrees"),
+        ),
+        library=OWN,
+    ),
+    *(
+        Issue(page, "luxcore", (("value", "disney"), ("environment", "disney")), library=OWN)
+        for page in ("luxcore_disney_cosine", "luxcore_disney_roughness")
     ),
 )
 

@@ -181,13 +181,6 @@ KNOWN_DEFECTS = (
         known_defects.qon_fitted_albedo_dir,
     ),
     Model(
-        "qon_degrees",
-        "QON that takes degrees for radians",
-        known_defects.qon_degrees_brdf,
-        "sigma",
-        known_defects.qon_degrees_albedo_dir,
-    ),
-    Model(
         "qon_tinted_twice",
         "QON tinted twice",
         known_defects.qon_tinted_twice_brdf,
@@ -211,5 +204,12 @@ OTHERS = (
         "Burley with squared roughness, times the cosine once more",
         known_defects.burley_cosine_brdf,
         "roughness",
+    ),
+    Model(
+        "qon_degrees",
+        "QON that takes degrees for radians",
+        known_defects.qon_degrees_brdf,
+        "sigma",
+        known_defects.qon_degrees_albedo_dir,
     ),
 )
