@@ -3,11 +3,11 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import RIM, SEED, Array, Batch, directions, random_inputs
+from mxeon.conformance.checks.batch import RIM, SEED, Array, Batch, directions
 from mxeon.conformance.checks.measures import BLACK
 from mxeon.conformance.checks.probes import (
     PICTURE_INPUTS,
@@ -20,8 +20,7 @@ from mxeon.conformance.checks.probes import (
     PlaneProbe,
     scene_of,
 )
-from mxeon.conformance.checks.special import outside_pairs, special_pairs
-from mxeon.models import table as reference
+from mxeon.conformance.checks.special import outside_directions, special_directions
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.hosts import host_row
 from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions
@@ -75,11 +74,16 @@ class FacetPairProbe(FacetProbe):
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
-        rng, row = np.random.default_rng(SEED), reference.model(self.subject.model)
-        wo, wi = directions(rng, OWN_PAIRS), directions(rng, OWN_PAIRS)
-        random = Batch(wo, wi, random_inputs(rng, OWN_PAIRS, row))
-        special, outside = (_own(pairs(rng, row)) for pairs in (special_pairs, outside_pairs))
-        return random, special.where(special.wo[:, 2] > 0.0), outside
+        rng, subject = np.random.default_rng(SEED), self.subject
+        random = directions(rng, OWN_PAIRS), directions(rng, OWN_PAIRS)
+        special = Batch(*special_directions(rng), {})
+        special = special.where(special.wo[:, 2] > 0.0)
+        outside = Batch(*outside_directions(rng), {})
+        return (
+            Batch(*random, subject.random_inputs(rng, OWN_PAIRS)),
+            special.altered(**subject.special_inputs(rng, len(special.wo))),
+            outside.altered(**subject.random_inputs(rng, len(outside.wo))),
+        )
 
     @property
     def few(self) -> tuple[Batch, ...]:
@@ -127,9 +131,3 @@ def facet_pairs(scene: Scene) -> Pairs:
     wo = local_directions(normal, VIEW)
     wi = wo if scene.light is None else local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
-
-
-def _own(batch: Batch) -> Batch:
-    """A batch with the inputs alone that a renderer's own node has."""
-    inputs: dict[str, Any] = {name: batch.inputs[name] for name in ("color", "roughness")}
-    return replace(batch, inputs=inputs)
