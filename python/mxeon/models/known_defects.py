@@ -78,6 +78,41 @@ def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     return value * np.asarray(wi, np.float64)[..., 2:]
 
 
+def burley_schlick_brdf(
+    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+) -> Array:
+    """Reflection of Burley's diffuse model with wrong retro-reflection.
+
+        f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
+        R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.burley.burley_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The GLSL of three-gpu-pathtracer. Burley's R is 2 roughness (wi . wh)^2.
+
+    Examples
+    --------
+    >>> burley_schlick_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.5, 1.0], 1.0).round(6)
+    array([0.159156, 0.318311])
+    """
+    return evaluate(_burley_schlick, wo, wi, rho, roughness=roughness)
+
+
 def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
 
@@ -386,6 +421,14 @@ def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
 def _eon_floor(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     floor = np.maximum(rho, FLOOR)
     return rho / floor * formulas.eon_brdf_approx(wo, wi, floor, roughness)
+
+
+def _burley_schlick(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    mu_o, mu_i, _ = cosines(wo, wi)
+    F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
+    smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
+    R = 0.5 + 2.0 * roughness * F_i**2
+    return rho / np.pi * (smooth + R * (F_o + F_i + F_o * F_i * (R - 1.0)))
 
 
 def _qon_degrees(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:

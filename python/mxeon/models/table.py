@@ -206,6 +206,12 @@ OTHERS = (
         "roughness",
     ),
     Model(
+        "burley_schlick",
+        "Burley with Schlick's weight for the cosine of retro-reflection",
+        known_defects.burley_schlick_brdf,
+        "roughness",
+    ),
+    Model(
         "qon_degrees",
         "QON that takes degrees for radians",
         known_defects.qon_degrees_brdf,

@@ -98,6 +98,16 @@ class FacetPairProbe(FacetProbe):
         values = self.host.pairs(self.subject.node, batch.wo, batch.wi, color, roughness)
         return np.pi * values.astype(np.float64)
 
+    def density(self, batch: Batch) -> Array:
+        """Density in solid angle of the directions that the renderer draws, (N,)."""
+        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
+        return self.host.density(batch.wo, batch.wi, roughness).astype(np.float64)
+
+    def sample(self, batch: Batch, u: Array) -> Array:
+        """Directions that the renderer draws, (N, 3)."""
+        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
+        return self.host.sample(batch.wo, u, roughness).astype(np.float64)
+
 
 PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "pairs": PairProbe,

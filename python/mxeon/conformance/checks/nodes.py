@@ -2,7 +2,7 @@
 """Subjects of the checks: the rough diffuse nodes, each with the model it has to be."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar, TypeAlias
 
@@ -61,9 +61,10 @@ class OfModel:
 
     @property
     def _others(self) -> tuple[Model, ...]:
-        """Burley's model, with the albedo that the subject's own has."""
+        """The other models; Burley's with the albedo that the subject's own has."""
         name = self.model if self.model.startswith("burley") else "burley"
-        return tuple(row for row in OTHERS if row.name == name)
+        left_out = {"burley", "burley_lambert"} - {name}
+        return tuple(row for row in OTHERS if row.name not in left_out)
 
     def _candidates(
         self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
@@ -107,6 +108,8 @@ class Subject(OfModel):
         what is measured is judged.
     others : bool
         Whether other lobes lie beside the diffuse one, which do not depend on the color.
+    sampled : bool
+        Whether its renderer draws directions for it by a function that can be called.
     """
 
     node: str
@@ -115,6 +118,7 @@ class Subject(OfModel):
     names: tuple[str, ...] = tuple(INPUT_TYPES)
     forms: tuple[str, ...] = ()
     others: bool = False
+    sampled: bool = False
 
     @property
     def title(self) -> str:
@@ -259,6 +263,14 @@ NATIVE = {
         *_own("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
         *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
         *_own("lambert", "PBRMaterial LAMBERT, WebGL2", "PBRMaterial LAMBERT, WebGPU"),
+    ),
+    "three-gpu-pathtracer": (
+        *(
+            replace(each, sampled=True)
+            for each in _own("eon", "WebGPUPathTracer, eonBrdf", forms=PUBLISHED)
+        ),
+        *_own("fon", "WebGPUPathTracer, fonBrdf"),
+        *_own("burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"),
     ),
     "mitsuba": (Subject("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
     "luxcore": (

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance import diagnosis, wiring
-from mxeon.conformance.checks import bsdf_measures, measures, tolerances
+from mxeon.conformance.checks import bsdf_measures, measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -37,6 +37,7 @@ OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
+ROUGH = (*ANY, "fon")
 
 
 def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
@@ -92,6 +93,11 @@ def is_alone(subject: Any, host: str) -> bool:
     return not (isinstance(subject, Subject) and subject.others)
 
 
+def is_sampled(subject: Any, host: str) -> bool:
+    """Whether a renderer's own sampling of the subject can be called."""
+    return isinstance(subject, Subject) and subject.sampled
+
+
 def has_environment(subject: Any, host: str) -> bool:
     """Whether a host has the subject's model for all pairs, as an environment needs."""
     return not front_lit_only(host, subject.model)
@@ -101,7 +107,7 @@ CHECKS = (
     Check(
         "value",
         "The value is the model's for every pair of directions, back-lit and grazing ones included.",
-        (*ANY, *OTHERS),
+        (*ROUGH, *OTHERS),
         measures.value,
         "every channel gets the mean color",
         gray,
@@ -120,7 +126,7 @@ CHECKS = (
     Check(
         "environment",
         "The environment branch gives the directional albedo.",
-        (*ANY, *OTHERS, *SMOOTH),
+        (*ROUGH, *OTHERS, *SMOOTH),
         measures.environment,
         "every channel gets the mean color",
         gray,
@@ -151,7 +157,7 @@ CHECKS = (
     Check(
         "black",
         "A black surface scatters nothing.",
-        (*ANY, *BLACK, *SMOOTH),
+        (*ROUGH, *BLACK, *SMOOTH),
         measures.black,
         "reflectance is 0.001",
         with_inputs(color=(0.001, 0.001, 0.001)),
@@ -165,6 +171,28 @@ CHECKS = (
             "facet pairs": tolerances.ZERO,
         },
         is_alone,
+    ),
+    Check(
+        "density",
+        "The density of drawn directions is that of the paper's sampling.",
+        EON,
+        sampling_measures.density,
+        "roughness is dropped",
+        with_inputs(roughness=0.0),
+        {"facet pairs": tolerances.OWN_DENSITY},
+        is_sampled,
+        lambda probe: Diagnosis("the density is not that of the paper's listings"),
+    ),
+    Check(
+        "samples",
+        "Directions are drawn with the density that is returned for them.",
+        EON,
+        sampling_measures.samples,
+        "the density is that of roughness 0",
+        with_inputs(roughness=0.0),
+        {"facet pairs": tolerances.CHI_SQUARE},
+        is_sampled,
+        lambda probe: Diagnosis("the drawn directions do not have the density"),
     ),
     Check(
         "frame",
@@ -199,7 +227,7 @@ CHECKS = (
     Check(
         "reciprocity",
         "Exchanging the two directions does not change the BRDF.",
-        (*ANY, *RECIPROCAL, *SMOOTH),
+        (*ROUGH, *RECIPROCAL, *SMOOTH),
         measures.reciprocity,
         "the value carries cos(theta_o) once more",
         scale_cosine(1),
@@ -242,7 +270,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        (*ANY, *OTHERS, *SMOOTH),
+        (*ROUGH, *OTHERS, *SMOOTH),
         measures.inputs,
         "every change is dropped",
         drop_changes,

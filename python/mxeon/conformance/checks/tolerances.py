@@ -281,6 +281,19 @@ FACET_PAIRS = Tolerance(
     "rounded up",
 )
 
+CHI_SQUARE = Tolerance(
+    5.0,
+    "standard deviations",
+    absolute,
+    "a right sampler exceeds 5 standard deviations once in 3.5 million times",
+)
+OWN_DENSITY = Tolerance(
+    rounded_up(64 * 2.0**3 * ROUNDING),
+    "1/sr, relative above 1",
+    scaled,
+    "to be derived",
+)
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,

@@ -74,6 +74,7 @@ HOSTS = (
     Row("cycles-native", "osl", "mxeon.shaders.hosts.cycles.native", "native"),
     Row("three", "essl", "mxeon.shaders.hosts.browser.three", "exact"),
     Row("babylon", "essl", "mxeon.shaders.hosts.browser.babylon", "exact"),
+    Row("three-gpu-pathtracer", "essl", "mxeon.shaders.hosts.browser.pathtracer", "facet pairs"),
     Row("mitsuba", "glsl", "mxeon.shaders.hosts.facet.mitsuba", "facet pairs"),
     Row("luxcore", "glsl", "mxeon.shaders.hosts.facet.luxcore", "facets"),
     Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes", surfaces=True),

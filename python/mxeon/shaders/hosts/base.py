@@ -232,6 +232,32 @@ class Host(ABC):
         """
         raise self._unsupported("values of its own nodes", "mitsuba")
 
+    def sample(self, wo: NDArray[Any], u: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+        """Directions to the light that the renderer draws for EON.
+
+        Parameters
+        ----------
+        wo : ndarray, shape (N, 3)
+            Unit vectors, normal +z.
+        u : ndarray, shape (N, 2)
+            Random numbers in [0, 1).
+        roughness : ndarray, shape (N,)
+
+        Returns
+        -------
+        ndarray, shape (N, 3)
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        """
+        raise self._unsupported("sampling of its own", "three-gpu-pathtracer")
+
+    def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+        """Density in solid angle of the directions that `sample` draws, (N,); see there."""
+        raise self._unsupported("density of its own", "three-gpu-pathtracer")
+
     def close(self) -> None:  # noqa: B027, a host may hold nothing
         """Release what the host holds."""
 
