@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from mxeon.errors import NotRun
 from mxeon.shaders.hosts import base, browser, webgl
 from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.hosts.browser import three
+from mxeon.shaders.scene import Scene
 
 PACKAGE = "three-gpu-pathtracer"
 IMPORTS = {**three.IMPORTS, f"{PACKAGE}/": f"{PACKAGE}/"}
@@ -86,6 +88,15 @@ class Host(base.Host):
         scale = np.full(len(wo), SHORTER if title.endswith("shorter wh") else 1.0)
         arguments = (wo, wi, color, roughness, scale)
         return self._glsl().execute(self._source(), "diffuse_value", *arguments)
+
+    def node(
+        self, title: str, color: Sequence[float], roughness: float, scene: Scene
+    ) -> NDArray[Any]:
+        """Raise NotRun: no path tracer of the package draws here."""
+        raise NotRun(
+            f"{self.name}: its path tracers do not draw here: with three 0.187.0 the wavefront "
+            "kernels do not compile, and the megakernel ends the software device"
+        )
 
     def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
         """Density of the directions that `sample` draws; see `mxeon.shaders.hosts.base.Host`."""
