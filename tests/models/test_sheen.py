@@ -124,12 +124,15 @@ def test_conty_kulla_albedo_has_its_closed_forms_at_grazing_and_along_the_normal
 
 
 def test_conty_kulla_albedo_is_the_integral_of_the_value():
-    mu, roughness = np.array([0.02, 0.1, 0.3, 0.7]), np.array([0.05, 0.1, 0.3])
+    # On both sides of the cosine from which the inner integral is by quadrature as well.
+    mu, roughness = np.array([0.02, 0.1, 0.24, 0.26, 0.7]), np.array([0.05, 0.1, 0.3, 0.5])
+    wo, wi, weights = zip(*(hemisphere_nodes(m, 128) for m in mu), strict=True)
     truth = [
-        [np.dot(w, conty_kulla_brdf(wo, wi, 1.0, r)[:, 0]) for r in roughness]
-        for wo, wi, w in (hemisphere_nodes(m, 300) for m in mu)
+        [np.dot(w, conty_kulla_brdf(o, i, 1.0, r)[:, 0]) for r in roughness]
+        for o, i, w in zip(wo, wi, weights, strict=True)
     ]
-    assert np.abs(conty_kulla_albedo_dir(mu[:, None], roughness) - truth).max() < 1e-8
+    error = np.abs(conty_kulla_albedo_dir(mu[:, None], roughness) - truth).max()
+    assert error < 2.0 * tolerances.QUADRATURE  # albedos up to 1.5
 
 
 def test_zeltner_albedo_is_the_integral_of_the_value():
