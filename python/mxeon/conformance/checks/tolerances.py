@@ -252,6 +252,7 @@ BSDF_INTEGRAL = Tolerance(
     absolute,
     "the quadrature's own error on the equations, measured",
 )
+SUM_OF_DIRECTIONS = 5e-3  # error of a sum over 256 directions of an environment, to be measured
 LEAST_ALBEDO = 0.4  # of GGX at unit Fresnel: 0.44 at alpha 1 and grazing
 MICROFACET_FIT = 4e-3  # largest error of a microfacet lobe's albedo, made of several fits
 MICROFACET_VALUE = Tolerance(
