@@ -159,6 +159,13 @@ KNOWN_DEFECTS = (
         known_defects.fon_white_lobe_albedo_dir,
     ),
     Model(
+        "eon_fitted",
+        "EON with the paper's quartic of its albedo",
+        models.eon_brdf_approx,
+        "roughness",
+        albedo.eon_albedo_dir_approx,
+    ),
+    Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
         models.qon_brdf,

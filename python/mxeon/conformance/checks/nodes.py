@@ -95,12 +95,16 @@ class Subject(OfModel):
         Name of a row of `mxeon.models.table.MODELS`.
     names : tuple of str
         Inputs that it may have; the flag counts only where it is not None.
+    forms : tuple of str
+        Forms of the model that its paper publishes, if there are several. The one that is nearest to
+        what is measured is judged.
     """
 
     node: str
     flag: bool | None
     model: str
     names: tuple[str, ...] = tuple(INPUT_TYPES)
+    forms: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -210,8 +214,27 @@ SURFACES = (
     Surface("gltf_pbr", "gltf_pbr", "lambert", "base_color", "", (("metallic", "float", "0.0"),)),
 )
 
-# Nodes that a renderer has of its own; Blender's are meant to be EON.
-NATIVE = tuple(
-    Subject(node, None, "eon", ("color", "roughness"))
-    for node in ("Diffuse BSDF", "Principled BSDF")
-)
+
+def _own(model: str, *nodes: str, forms: tuple[str, ...] = ()) -> tuple[Subject, ...]:
+    """Nodes of a renderer's own with a color and a roughness, which claim a model."""
+    return tuple(Subject(node, None, model, ("color", "roughness"), forms) for node in nodes)
+
+
+# The paper prints EON with the exact albedo and with a quartic for it.
+PUBLISHED = ("eon", "eon_fitted")
+
+# Nodes that a renderer has of its own, by the name of the host, with the models that their
+# documentation claims. OpenPBR asks for EON, Standard Surface for Oren-Nayar.
+NATIVE = {
+    "cycles-native": _own("eon", "Diffuse BSDF", "Principled BSDF"),
+    "three": (
+        *_own(
+            "eon",
+            "MeshPhysicalMaterial, WebGLRenderer",
+            "MeshPhysicalMaterial, WebGPURenderer",
+            "open_pbr_surface, MaterialXLoader",
+            forms=PUBLISHED,
+        ),
+        *_own("qon", "standard_surface, MaterialXLoader"),
+    ),
+}

@@ -45,6 +45,13 @@ PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
+EXACT_INPUTS: tuple[dict[str, Any], ...] = (
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
+    {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
+    {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
+)
 PICTURE_SIZE = 128
 TURNED = 1 << 12  # pairs in frames of their own
 
@@ -250,11 +257,38 @@ class NativeProbe(PictureProbe):
         return values[picture_pairs(scene)[2]].astype(np.float64)
 
 
+@dataclass(frozen=True, eq=False)
+class ExactProbe(NativeProbe):
+    """A node of a renderer's own, on a sphere whose points and light have no error but rounding."""
+
+    kind: ClassVar[str] = "exact"
+    size: ClassVar[int] = PICTURE_SIZE // 2
+
+    @property
+    def _inputs(self) -> list[dict[str, Any]]:
+        """EXACT_INPUTS, from dark to white and from rough to smooth."""
+        return [dict(inputs) for inputs in EXACT_INPUTS]
+
+    def nearest_form(self) -> "ExactProbe":
+        """The probe of the published form of the model that is nearest to what is measured."""
+        if not self.subject.forms:
+            return self
+        batch = self.batches[0]
+        values = self.direct(batch)
+        errors = {
+            form: float(np.abs(values - batch.expected(form)).max()) for form in self.subject.forms
+        }
+        return replace(
+            self, subject=replace(self.subject, model=min(errors, key=errors.__getitem__))
+        )
+
+
 PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "pairs": PairProbe,
     "pictures": PictureProbe,
     "planes": PlaneProbe,
     "native": NativeProbe,
+    "exact": ExactProbe,
 }
 
 

@@ -30,7 +30,8 @@ from mxeon.models.pbrlib import NODES
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
-ANY = ("eon", "qon")
+EON = ("eon", "eon_fitted")
+ANY = (*EON, "qon")
 OTHERS = tuple(row.name for row in NODES)
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
 LAYERS = tuple(row.name for row in NODES if row.layerable)
@@ -134,7 +135,7 @@ CHECKS = (
     Check(
         "furnace",
         "A white surface in a white environment cannot be seen.",
-        ("eon",),
+        EON,
         measures.furnace,
         "reflectance is 0.99",
         with_inputs(color=(0.99, 0.99, 0.99)),
@@ -154,6 +155,7 @@ CHECKS = (
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
             **of_bsdfs(tolerances.ZERO),
+            "exact": tolerances.ZERO,
         },
     ),
     Check(
@@ -206,6 +208,7 @@ CHECKS = (
             "pairs": tolerances.LAMBERT,
             "pictures": tolerances.CYCLES_RAY,
             "planes": tolerances.TESTRENDER,
+            "exact": tolerances.EXACT,
         },
     ),
     Check(
@@ -235,6 +238,7 @@ CHECKS = (
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
             **of_bsdfs(tolerances.count_of("inputs")),
+            "exact": tolerances.count_of("inputs"),
         },
         diagnose=wiring.of_inputs,
     ),

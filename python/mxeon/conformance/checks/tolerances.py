@@ -281,6 +281,23 @@ LAYER = Tolerance(
     "the fit's 2e-3, and the quadrature's error",
 )
 
+EXACT = Tolerance(
+    rounded_up(14 * 2.0 * ROUNDING + 2 * 5 * (1.0 / RIM + 2.0) * ROUNDING),
+    "pi f cos",
+    absolute,
+    "14 roundings of float32, 2^-24 each, of numbers up to 2; and in each of two cosines five more, "
+    "two in the unit normal and three in a product, which enter times 20 by s / t, where both cosines "
+    "are at least 0.05, and times 2 by s and the cosine itself; rounded up",
+)
+EXACT_SURROUNDINGS = Tolerance(
+    rounded_up((12 + 2 + 2 + 5) * 1.02 * ROUNDING),
+    "albedo",
+    absolute,
+    "21 roundings of float32, 2^-24 each, of numbers up to 1.02: 12 in the longest chain, two in the "
+    "surroundings, which are 1 in any format, two in a polynomial, and five in the cosine, times 1; "
+    "rounded up",
+)
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,
@@ -289,6 +306,7 @@ VALUES = {
     "closed pairs": BSDF_VALUE,
     "fitted pairs": BSDF_VALUE,
     "microfacet pairs": MICROFACET_VALUE,
+    "exact": EXACT,
 }
 LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER}
 ALBEDOS = {
@@ -298,6 +316,7 @@ ALBEDOS = {
     "closed pairs": BSDF_ALBEDO,
     "fitted pairs": FITTED_ALBEDO,
     "microfacet pairs": MICROFACET_ALBEDO,
+    "exact": EXACT_SURROUNDINGS,
 }
 THROUGHPUTS = {
     "closed pairs": BSDF_ALBEDO,

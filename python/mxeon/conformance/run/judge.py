@@ -17,6 +17,7 @@ from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.probes import (
     PROBES,
+    ExactProbe,
     PairProbe,
     PictureProbe,
 )
@@ -199,4 +200,6 @@ def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
         return BSDF_PROBES[bsdfs[title].kind](host, bsdfs[title], library)
     if title in surfaces:
         return SURFACE_PROBES[probe](host, surfaces[title], library)
-    return probe(host, next(row for row in SUBJECTS + NATIVE if row.title == title), library)
+    rows = NATIVE.get(host.name, SUBJECTS)
+    made = probe(host, next(row for row in rows if row.title == title), library)
+    return made.nearest_form() if isinstance(made, ExactProbe) else made

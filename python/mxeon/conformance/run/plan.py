@@ -219,7 +219,7 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
     probe, row = probe_type(host), host_row(host)
     if probe is None:
         yield Task(HOST, EVERY_NODE, host, library)
-    if probe is None or probe is NativeProbe:
+    if probe is None or issubclass(probe, NativeProbe):
         return
     language = "osl" if row.target == "osl" else "glsl"
     if probe.kind in functions.KINDS and has_functions(library, language):
@@ -243,9 +243,10 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
 
 def _native(host: str) -> Iterator[Task]:
     """Tasks of a renderer's own nodes, which use no library of ours."""
-    if probe_type(host) is NativeProbe:
-        for subject in NATIVE:
-            yield from _checks_of(subject, NativeProbe.kind, host, "its own nodes")
+    probe = probe_type(host)
+    if probe is not None and issubclass(probe, NativeProbe):
+        for subject in NATIVE[host]:
+            yield from _checks_of(subject, probe.kind, host, "its own nodes")
 
 
 def _checks_of(

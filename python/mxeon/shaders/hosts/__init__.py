@@ -26,7 +26,8 @@ class Row:
         Module with its class `Host`; "" where only the text of the target is checked.
     probe : str
         How checks ask it: for "pairs" of directions, for "pictures" of a sphere, for pictures of
-        "planes", for pictures of "native" nodes of its own, or "" for nothing.
+        "planes", for pictures of "native" nodes of its own, for "exact" ones, without noise and with
+        the points of float32, or "" for nothing.
     needs : str
         What running it would take, where only its text is checked.
     scenes : tuple of Scene
@@ -70,6 +71,7 @@ HOSTS = (
         front_lit=("qon",),
     ),
     Row("cycles-native", "osl", "mxeon.shaders.hosts.cycles.native", "native"),
+    Row("three", "essl", "mxeon.shaders.hosts.browser.three", "exact"),
     Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
