@@ -10,6 +10,8 @@ from mxeon.models.brdf import qon_brdf
 from mxeon.models.evaluation import evaluate
 from mxeon.models.formulas import C1, C2, cosines
 
+FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
+
 
 def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON with dot(wo, wi) kept above 1e-8 before s is formed.
@@ -103,6 +105,39 @@ def fon_white_lobe_brdf(
     array([0.048519, 0.119705])
     """
     return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
+
+
+def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of EON whose shape is that of a reflectance of at least 0.1.
+
+        f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Babylon.js 9.34.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
+    paper's quartic.
+
+    Examples
+    --------
+    >>> eon_floor_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.01, 0.8], 1.0).round(6)
+    array([0.000931, 0.101069])
+    """
+    return evaluate(_eon_floor, wo, wi, rho, roughness=roughness)
 
 
 def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
@@ -258,6 +293,11 @@ def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     weight = rho * formulas.eon_multiple_weight(rho, roughness)
     multi_scatter = weight * (formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i))
     return formulas.fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+
+
+def _eon_floor(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    floor = np.maximum(rho, FLOOR)
+    return rho / floor * formulas.eon_brdf_approx(wo, wi, floor, roughness)
 
 
 def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:

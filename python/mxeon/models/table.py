@@ -159,6 +159,12 @@ KNOWN_DEFECTS = (
         known_defects.fon_white_lobe_albedo_dir,
     ),
     Model(
+        "eon_floor",
+        "EON with a reflectance of at least 0.1",
+        known_defects.eon_floor_brdf,
+        "roughness",
+    ),
+    Model(
         "eon_fitted",
         "EON with the paper's quartic of its albedo",
         models.eon_brdf_approx,

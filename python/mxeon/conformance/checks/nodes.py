@@ -237,4 +237,15 @@ NATIVE = {
         ),
         *_own("qon", "standard_surface, MaterialXLoader"),
     ),
+    "babylon": (
+        *_own(
+            "eon",
+            "PBRMaterial E_OREN_NAYAR, WebGL2",
+            "PBRMaterial E_OREN_NAYAR, WebGPU",
+            "OpenPBRMaterial, WebGL2",
+            "OpenPBRMaterial, WebGPU",
+            forms=PUBLISHED,
+        ),
+        *_own("lambert", "PBRMaterial LAMBERT, WebGL2", "PBRMaterial LAMBERT, WebGPU"),
+    ),
 }

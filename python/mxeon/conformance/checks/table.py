@@ -23,6 +23,7 @@ from mxeon.conformance.checks.controls import (
     with_inputs,
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
+from mxeon.conformance.checks.nodes import Surface
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
@@ -86,6 +87,11 @@ def has_flag(subject: Any, host: str) -> bool:
     return FLAG in subject.inputs
 
 
+def is_lobe(subject: Any, host: str) -> bool:
+    """Whether a subject is the lobe of a surface shader, or a renderer's own Lambert."""
+    return isinstance(subject, Surface) or subject.model == "lambert"
+
+
 def has_environment(subject: Any, host: str) -> bool:
     """Whether a host has the subject's model for all pairs, as an environment needs."""
     return not front_lit_only(host, subject.model)
@@ -110,6 +116,7 @@ CHECKS = (
         "every channel gets the mean color",
         gray,
         tolerances.LOBES,
+        is_lobe,
     ),
     Check(
         "environment",

@@ -308,7 +308,7 @@ VALUES = {
     "microfacet pairs": MICROFACET_VALUE,
     "exact": EXACT,
 }
-LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER}
+LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER, "exact": EXACT}
 ALBEDOS = {
     "pairs": ENVIRONMENT,
     "pictures": CYCLES_NOISE,

@@ -72,6 +72,7 @@ HOSTS = (
     ),
     Row("cycles-native", "osl", "mxeon.shaders.hosts.cycles.native", "native"),
     Row("three", "essl", "mxeon.shaders.hosts.browser.three", "exact"),
+    Row("babylon", "essl", "mxeon.shaders.hosts.browser.babylon", "exact"),
     Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),

@@ -42,6 +42,8 @@ window.answer = async (job) => {{
     }}
 }};
 </script>"""
+SHARED = {"Access-Control-Allow-Origin": "*"}
+LIMIT = 60.0  # seconds that a picture may take, the renderer's start included
 TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json"}
 
 
@@ -87,6 +89,8 @@ class Browser:
         Paths of modules in node_modules, by their names in the page.
     modules : Path
         The folder node_modules.
+    assets : mapping of str to bytes
+        PNG files that the renderer would load from the network, by address.
     limit : float
         Seconds that a request may take; after them the browser is ended.
 
@@ -97,7 +101,14 @@ class Browser:
     """
 
     def __init__(
-        self, host: str, page: Path, imports: Mapping[str, str], modules: Path, limit: float = 120.0
+        self,
+        host: str,
+        page: Path,
+        imports: Mapping[str, str],
+        modules: Path,
+        *,
+        assets: Mapping[str, bytes] | None = None,
+        limit: float = LIMIT,
     ) -> None:
         if sync_api is None:
             raise NotRun(f"{host}: Playwright is not installed; pip install 'mxeon[webgl]'")
@@ -105,6 +116,7 @@ class Browser:
         self._script = page
         self._imports = {name: f"/{path}" for name, path in imports.items()}
         self._modules = modules
+        self._assets = assets or {}
         self._program = webgl.program(host)
         self._limit = 1000.0 * limit
         self._page: Any = None
@@ -158,6 +170,10 @@ class Browser:
 
     def _serve(self, route: Any) -> None:
         """Answer a request of the page from this machine."""
+        if route.request.url in self._assets:
+            body = self._assets[route.request.url]
+            route.fulfill(body=body, content_type="image/png", headers=SHARED)
+            return
         path = route.request.url.removeprefix(ORIGIN)
         if not path:
             imports = json.dumps({"imports": self._imports})

@@ -49,11 +49,11 @@ class Host(base.Host):
     name = "three"
     target = "essl"  # nothing is generated for this host
 
-    def __init__(self, limit: float = 120.0) -> None:
+    def __init__(self, limit: float = browser.LIMIT) -> None:
         modules = browser.modules_folder(PACKAGE, self.name)
         self._version = browser.package_version(modules, PACKAGE)
         page = Path(__file__).with_suffix(".js")
-        self._browser = browser.Browser(self.name, page, IMPORTS, modules, limit)
+        self._browser = browser.Browser(self.name, page, IMPORTS, modules, limit=limit)
 
     def identity(self) -> Identity:
         """Version of the package and the browser; the devices of both renderers."""
@@ -86,10 +86,7 @@ class Host(base.Host):
 def document(category: str, color: Sequence[float], roughness: float) -> str:
     """MaterialX text of a material of a category with its diffuse lobe alone."""
     color_input, roughness_input, others = INPUTS[category]
-    ports = [
-        (color_input, "color3", tuple(map(float, color))),
-        (roughness_input, "float", float(roughness)),
-        (others, "float", 0.0),
-    ]
-    text = "".join(input_text(*port) for port in ports)
+    text = input_text(color_input, "color3", [float(channel) for channel in color])
+    text += input_text(roughness_input, "float", float(roughness))
+    text += input_text(others, "float", 0.0)
     return document_text(node_text(category, "surfaceshader", "shading", text))
