@@ -11,7 +11,7 @@ import numpy as np
 from mxeon.conformance.checks.batch import Array, Batch, Candidate, random_inputs
 from mxeon.conformance.checks.special import special_inputs
 from mxeon.models import table as reference
-from mxeon.models.table import Model
+from mxeon.models.table import OTHERS, Model
 from mxeon.shaders.nodes import (
     EON,
     FLAG,
@@ -32,13 +32,14 @@ class OfModel:
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
         """Its model, known defects, and the other models, by their values."""
-        rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
+        rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS + self._others}
         return self._candidates(rows.values(), Batch.expected)
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         """Its model, the other models, and known defects, by their albedos."""
-        rows = [row for row in reference.MODELS + reference.KNOWN_DEFECTS if row.albedo_dir]
+        rows = reference.MODELS + reference.KNOWN_DEFECTS + self._others
+        rows = tuple(row for row in rows if row.albedo_dir)
         return self._candidates(rows, Batch.albedo)
 
     @property
@@ -57,6 +58,12 @@ class OfModel:
     def passed(self, batch: Batch) -> Array:
         """Throughput, (N, 3): an opaque node lets nothing through."""
         return np.zeros((len(batch.wo), 3))
+
+    @property
+    def _others(self) -> tuple[Model, ...]:
+        """Burley's model, with the albedo that the subject's own has."""
+        name = self.model if self.model.startswith("burley") else "burley"
+        return tuple(row for row in OTHERS if row.name == name)
 
     def _candidates(
         self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
@@ -246,6 +253,8 @@ NATIVE = {
             "OpenPBRMaterial, WebGPU",
             forms=PUBLISHED,
         ),
+        *_own("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
+        *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
         *_own("lambert", "PBRMaterial LAMBERT, WebGL2", "PBRMaterial LAMBERT, WebGPU"),
     ),
 }

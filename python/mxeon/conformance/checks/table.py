@@ -33,7 +33,7 @@ from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
-OTHERS = tuple(row.name for row in NODES)
+OTHERS = (*(row.name for row in NODES), "burley_lambert")
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)

@@ -91,7 +91,7 @@ function pbrMaterial(scene, { color, roughness, model }) {
     const material = new PBRMaterial("material", scene);
     material.albedoColor = new Color3(...color);
     material.metallic = 0;
-    material.roughness = 1;
+    material.roughness = model === "LEGACY" ? roughness : 1; // its one roughness, also of the lobe
     material.metallicF0Factor = 0; // no specular lobe
     material.baseDiffuseRoughness = roughness;
     material.brdf.baseDiffuseModel = Constants[`MATERIAL_DIFFUSE_MODEL_${model}`];
