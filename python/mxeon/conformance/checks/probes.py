@@ -269,6 +269,11 @@ class ExactProbe(NativeProbe):
         """EXACT_INPUTS, from dark to white and from rough to smooth."""
         return [dict(inputs) for inputs in EXACT_INPUTS]
 
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """The first for each light."""
+        return self.batches[:: len(EXACT_INPUTS)]
+
     def nearest_form(self) -> "ExactProbe":
         """The probe of the published form of the model that is nearest to what is measured."""
         if not self.subject.forms:

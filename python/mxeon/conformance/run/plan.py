@@ -28,6 +28,7 @@ from mxeon.conformance.checks.probes import (
 )
 from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.known_issues import OWN
 from mxeon.conformance.results import Curve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import InputError
@@ -246,7 +247,7 @@ def _native(host: str) -> Iterator[Task]:
     probe = probe_type(host)
     if probe is not None and issubclass(probe, NativeProbe):
         for subject in NATIVE[host]:
-            yield from _checks_of(subject, probe.kind, host, "its own nodes")
+            yield from _checks_of(subject, probe.kind, host, OWN)
 
 
 def _checks_of(
