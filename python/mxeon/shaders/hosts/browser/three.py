@@ -58,7 +58,7 @@ class Host(base.Host):
     def identity(self) -> Identity:
         """Version of the package and the browser; the devices of both renderers."""
         answers = [self._browser.ask({"backend": backend}) for backend in ("webgl", "webgpu")]
-        version = f"{self._version}, Chromium {answers[0]['browser']}"
+        version = f"three {self._version}, Chromium {answers[0]['browser']}"
         return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
 
     def node(
