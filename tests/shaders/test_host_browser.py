@@ -18,6 +18,7 @@ from mxeon.conformance.known_issues import ISSUES, OWN
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun
 from mxeon.shaders.hosts import browser, open_host
+from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
 from tests.support.tolerances import PRINTED
@@ -88,6 +89,12 @@ def test_bright_light_is_not_compressed(hosts):
         values = browser.pixels(answer, 16)[sphere(16).mask][:, 1]
         expected = 1e4 * sphere(16).normal[sphere(16).mask][:, 2]
         assert np.abs(values / expected - 1.0).max() <= tolerances.EXACT.value
+
+
+def test_three_refuses_a_material_of_a_bsdf_node(hosts):
+    job = {"backend": "webgpu", "size": 16, "document": material_text("oren_nayar_diffuse_bsdf")}
+    with pytest.raises(NotRun, match='Unsupported MaterialX node category "surface"'):
+        hosts("three")._browser.ask(job)
 
 
 @pytest.fixture(scope="module")
