@@ -26,7 +26,7 @@ from mxeon.shaders.library import data_folder
 try:
     from playwright import sync_api
 except ImportError:
-    sync_api = None  # type: ignore[assignment]
+    sync_api = None
 
 MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
 ORIGIN = "https://renderers.invalid/"  # a secure origin, without which there is no WebGPU
