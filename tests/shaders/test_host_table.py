@@ -27,6 +27,8 @@ VERBS = {
     "plane": (None, SIDE),
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
     "pairs": ("diffuse", None, None, None, None),
+    "sample": (None, None, None),
+    "density": (None, None, None),
 }
 ENGINES = [row for row in hosts.HOSTS if row.module]
 

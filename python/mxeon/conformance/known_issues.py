@@ -16,6 +16,7 @@ BABYLON = tuple(
     for material in ("PBRMaterial E_OREN_NAYAR", "OpenPBRMaterial")
     for engine in ("WebGL2", "WebGPU")
 )
+WEBGL_LOBE = "WebGLPathTracer, diffuseEval"
 RENDERERS = {
     "cycles": "this Blender",
     "three": "this three.js",
@@ -132,6 +133,18 @@ ISSUES = (
         "babylon",
         (("environment", BABYLON[0]), ("environment", BABYLON[3])),
         implied=tuple(("environment", subject) for subject in (*BABYLON[1:3], *BURLEY)),
+        library=OWN,
+    ),
+    Issue(
+        "pathtracer_webgl_retro",
+        "three-gpu-pathtracer",
+        tuple((check, f"{WEBGL_LOBE}, shorter wh") for check in ("value", "reciprocity")),
+        library=OWN,
+    ),
+    Issue(
+        "pathtracer_webgl_nan",
+        "three-gpu-pathtracer",
+        tuple((check, WEBGL_LOBE) for check in ("black", "value", "reciprocity")),
         library=OWN,
     ),
     Issue(

@@ -330,10 +330,11 @@ CHI_SQUARE = Tolerance(
     "a right sampler exceeds 5 standard deviations once in 3.5 million times",
 )
 OWN_DENSITY = Tolerance(
-    rounded_up(64 * 2.0**3 * ROUNDING),
+    rounded_up(48 * 2.0**3 * ROUNDING),
     "1/sr, relative above 1",
     scaled,
-    "to be derived",
+    "48 roundings of float32, 2^-24 each, as of any density; the differences in the transformed "
+    "direction, whose fourth power it has, lose up to three bits; rounded up",
 )
 
 # By kind of probe: those of a value, and of an albedo.
