@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.arrays import Array
 from mxeon.models.microfacet_defects import fitted_albedo
 
 
@@ -31,11 +31,21 @@ def conty_kulla_albedo(wo: Array, inputs: Mapping[str, Array]) -> Array:
 
 
 def layer_albedo(
-    wo: Array, inputs: Mapping[str, Array], F0: ArrayLike, F90: ArrayLike, F: ArrayLike
+    wo: Array, inputs: Mapping[str, Array], F0: Array, F90: Array | float, F: Array
 ) -> Array:
-    """Albedo of a microfacet lobe as its throughput takes it, with F in the compensation."""
-    alpha = np.sqrt(inputs["roughness"].prod(axis=-1))
-    mu = np.minimum(wo[:, 2], 1.0)
+    """Albedo of a microfacet lobe as its throughput takes it, with F in the compensation, (N, 3)."""
+    mu, alpha = _arguments(wo, inputs)
     A, B = (fitted_albedo(mu, alpha, *ends)[:, np.newaxis] for ends in ((1.0, 0.0), (0.0, 1.0)))
-    albedo = np.asarray(F0) * A + np.asarray(F90) * B
-    return np.broadcast_to(albedo * (1.0 + np.asarray(F) * (1.0 / (A + B) - 1.0)), wo.shape)
+    return np.broadcast_to((F0 * A + F90 * B) * compensation(wo, inputs, F), wo.shape)
+
+
+def compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Array:
+    """Energy compensation with F, by the fit of E_ss, (N, 1 or 3)."""
+    E_ss = fitted_albedo(*_arguments(wo, inputs), 1.0, 1.0)[:, np.newaxis]
+    return 1.0 + F * (1.0 - E_ss) / E_ss
+
+
+def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Cosine and alpha, at least 1e-6 as in the shaders."""
+    alpha = np.sqrt(np.maximum(inputs["roughness"], 1e-6).prod(axis=-1))
+    return np.clip(wo[:, 2], 1e-6, 1.0), alpha

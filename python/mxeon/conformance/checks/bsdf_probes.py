@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of the other BSDF nodes of pbrlib, with the pairs and the quadratures that they need."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -82,6 +83,7 @@ class BsdfProbe(PairProbe):
         radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(MATERIALS)
         wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
         inputs = self.subject.random_inputs(rng, MATERIALS)
+        inputs = self._integrable(inputs)
         wi, weights = self._nodes(wo, inputs)
         each = np.repeat(np.arange(MATERIALS), wi.shape[1])
         spread = {name: values[each] for name, values in inputs.items()}
@@ -101,6 +103,10 @@ class BsdfProbe(PairProbe):
     @property
     def _side(self) -> float:
         return -1.0 if self.subject.row.transmits else 1.0
+
+    def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        """Inputs whose values are integrated."""
+        return inputs
 
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
         """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
@@ -147,8 +153,8 @@ class MicrofacetProbe(BsdfProbe):
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
-        """Directions of view for albedos, with the same roughness in both directions."""
-        return tuple(map(isotropic, super().cosines))
+        """Directions of view for albedos, with simple inputs."""
+        return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in super().cosines)
 
     @cached_property
     def turned(self) -> Batch:
@@ -170,12 +176,11 @@ class MicrofacetProbe(BsdfProbe):
         pair = Batch(wo, first, inputs).where(above), Batch(wo, second, inputs).where(above)
         return pair
 
-    def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
-        """Directions and weights of a quadrature over the normals that each view sees.
+    def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        return simple(inputs)
 
-        The roughness is made the same in both directions, since only then E_ss is that of the lobe.
-        """
-        inputs["roughness"][:, 1] = inputs["roughness"][:, 0]
+    def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
+        """Directions and weights of a quadrature over the normals that each view sees."""
         x, w = np.polynomial.legendre.leggauss(NODES)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(NODES) + 0.5) / NODES)
         count = height.size
@@ -189,9 +194,17 @@ class MicrofacetProbe(BsdfProbe):
         return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
 
 
-def isotropic(batch: Batch) -> Batch:
-    """A batch whose roughness is the same in both directions."""
-    return batch.altered(roughness=np.repeat(batch.inputs["roughness"][:, :1], 2, axis=1))
+def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Inputs whose albedo is that of the lobe and can be integrated.
+
+    The roughness is the same in both directions. The index of a dielectric is at least 1: below it, F
+    has a kink.
+    """
+    changed = dict(inputs)
+    changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
+    if np.ndim(inputs.get("ior", ())) == 1 and np.size(inputs.get("ior", ())):
+        changed["ior"] = np.maximum(inputs["ior"], 1.0)
+    return changed
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from mxeon.conformance.checks.batch import Array, Batch, Candidate
 from mxeon.conformance.checks.nodes import Changes
 from mxeon.models import pbrlib
-from mxeon.models.pbrlib import Inputs, PbrNode
+from mxeon.models.pbr_node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
 SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, fixed in a document

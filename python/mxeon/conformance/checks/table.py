@@ -25,13 +25,14 @@ from mxeon.conformance.checks.controls import (
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.models.pbrlib import MICROFACET, NODES
+from mxeon.models.pbr_microfacets import MICROFACET_NODES
+from mxeon.models.pbrlib import NODES
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 ANY = ("eon", "qon")
 OTHERS = tuple(row.name for row in NODES)
-MICROFACETS = tuple(row.name for row in MICROFACET)
+MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
