@@ -26,6 +26,7 @@ VERBS = {
     "call": ("eon_brdf",),
     "plane": (None, SIDE),
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
+    "pairs": ("diffuse", None, None, None, None),
 }
 ENGINES = [row for row in hosts.HOSTS if row.module]
 
@@ -103,7 +104,15 @@ def test_a_row_is_that_of_its_module(row):
 
 @pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
 def test_a_host_has_the_verb_by_which_checks_ask_it(row):
-    verb = {"pairs": "evaluate", "pictures": "picture", "planes": "plane", "native": "node"}
+    verb = {
+        "pairs": "evaluate",
+        "pictures": "picture",
+        "planes": "plane",
+        "native": "node",
+        "exact": "node",
+        "facets": "node",
+        "facet pairs": "pairs",
+    }
     host = import_module(row.module).Host
     verbs = {verb[row.probe], *(["picture"] if row.scenes else [])}
     assert all(getattr(host, name) is not getattr(base.Host, name) for name in verbs)
