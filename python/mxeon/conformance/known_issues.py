@@ -60,7 +60,7 @@ ISSUES = (
         "genglsl_clamped_dot",
         "gl",
         (("value", f"{NODE} true"), ("albedo", f"{NODE} true"), ("lobe", "open_pbr_surface")),
-        ("webgl", "vulkan", "slang", "source"),
+        ("webgl", "vulkan", "wgsl", "slang", "source"),
         (
             ("flag", f"{NODE} true"),
             ("flag", f"{NODE} false"),
@@ -71,13 +71,13 @@ ISSUES = (
         "genglsl_qon_albedo_fit",
         "gl",
         (("environment", f"{NODE} false"),),
-        ("webgl", "vulkan", "slang"),
+        ("webgl", "vulkan", "wgsl", "slang"),
     ),
     Issue(
         "genglsl_albedo_acos",
         "gl",
         (("environment", f"{NODE} true"),),
-        ("webgl", "vulkan", "slang"),
+        ("webgl", "vulkan", "wgsl", "slang"),
     ),
     Issue(
         "genosl_dropped_flag",

@@ -11,10 +11,9 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
-from mxeon.conformance.checks.bsdf_probes import LEAST_TURNED
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
-from mxeon.conformance.checks.special import TURNED
+from mxeon.conformance.checks.special import LEAST_TURNED, TURNED
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
