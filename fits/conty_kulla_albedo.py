@@ -17,7 +17,7 @@ import numpy as np
 
 from fits.ggx_albedo import graded, legendre
 from fits.minimax import mp
-from fits.rational import Form, horner, refined
+from fits.rational import Form, defines, refined
 
 FORM = Form(
     above=((0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 2), (3, 0), (3, 2)),
@@ -115,7 +115,7 @@ def largest_error(coefficients, count=75):
 def main():
     """Print the lines for the shaders and the error of the fit."""
     coefficients = fit()
-    print(*horner(FORM, coefficients, "CONTY_KULLA_ALBEDO"), sep="\n")
+    print(*defines(FORM, coefficients, "CONTY_KULLA_ALBEDO"), sep="\n")
     print(f"largest absolute error {largest_error(coefficients):.3g}")
 
 

@@ -14,7 +14,7 @@ and square roots of float64 alone, which are the same on every processor.
 import numpy as np
 
 from fits.minimax import mp
-from fits.rational import Form, horner, refined
+from fits.rational import Form, defines, refined
 
 FORM = Form(
     above=(
@@ -132,7 +132,7 @@ def largest_error(coefficients, across=145, along=97):
 def main():
     """Print the lines for the shaders and the error of the fit."""
     coefficients = fit()
-    print(*horner(FORM, coefficients, "GGX_ALBEDO"), sep="\n")
+    print(*defines(FORM, coefficients, "GGX_ALBEDO"), sep="\n")
     print(f"largest absolute error {largest_error(coefficients):.3g}")
 
 

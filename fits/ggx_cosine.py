@@ -26,12 +26,12 @@ import numpy as np
 
 from fits.ggx_albedo import graded, incident, legendre
 from fits.minimax import mp
-from fits.rational import Form, horner, refined
+from fits.rational import Form, defines, numerator
 
 LEAST = 1e-4  # least alpha and least cosine of the fits
 BLOCK = 20  # points that are integrated together
 BISECTIONS = 50
-FLAT = 0.02  # least slope that counts
+FLAT = 0.01  # least slope that counts
 DEGREE, OUTER = 8, 12  # nodes of the azimuth: of a panel, and beyond the panels
 
 
@@ -70,7 +70,8 @@ class Curves:
     roots : int
         y is the square root of alpha, taken so often.
     form : Form
-    start : tuple of float
+    below : tuple of float
+        Coefficients of its denominator, from a search.
     """
 
     prefix: str
@@ -80,7 +81,7 @@ class Curves:
     counts: tuple
     roots: int
     form: Form
-    start: tuple
+    below: tuple
 
 
 def below(total, count):
@@ -100,7 +101,10 @@ DIELECTRIC = Curves(
     counts=tuple(1.0 if 1.05 <= n <= 2.5 else 0.5 for n in IORS),
     roots=2,
     form=FORM,
-    start=(DIELECTRIC_START),
+    below=(
+        *(57.90553, -67.41115, 181.8611, -7.478896, -50.38694, 3.325208),
+        *(0.0942464, -261.2011, -4.144666, -6.590822, 107.1744),
+    ),
 )
 SCHLICK = Curves(
     prefix="GGX_SCHLICK",
@@ -110,13 +114,19 @@ SCHLICK = Curves(
     counts=tuple(1.0 if q == 5 else 0.5 for q in EXPONENTS),
     roots=1,
     form=FORM,
-    start=(SCHLICK_START),
+    below=(
+        *(10.1126, -1.970135, 72.88341, 0.6907697, -2.319482, -2.104292),
+        *(-7.543936, -112.0349, 0.7941591, -16.24471, 43.33361),
+    ),
 )
-DIP_FORM = Form(above=below(4, 2), below=below(3, 2)[1:])
-DIP_START = (DIP_START_HERE)
+DIP_FORM = Form(above=below(3, 2), below=below(3, 2)[1:])
+DIP_BELOW = (
+    *(45.65231, 212.3247, 1196.218, 36.30322, 47.03659),
+    *(7209.172, 20.68808, -413.8458, 430.6794),
+)
 
 
-def points(across=25, along=17):
+def points(across=27, along=17):
     """Cosines and roughnesses as those of `ggx_albedo.points`, alpha denser near 0."""
     ends = [
         np.array([float((1 - mp.cos(mp.pi * k / (n - 1))) / 2) for k in range(n)])
@@ -231,7 +241,7 @@ def sample(curves, mu, alpha):
 
 def fit(curves):
     """Coefficients, numerator first, rounded as printed."""
-    return refined(curves.form, *sample(curves, *points()), curves.start)
+    return numerator(curves.form, *sample(curves, *points()), curves.below)
 
 
 def errors(curves, coefficients, mu, alpha):
@@ -261,14 +271,14 @@ def main():
     found = {}
     for curves in (DIELECTRIC, SCHLICK):
         found[curves.prefix] = coefficients = fit(curves)
-        print(*horner(curves.form, coefficients, curves.prefix), sep="\n")
+        print(*defines(curves.form, coefficients, curves.prefix), sep="\n")
         for n, error in zip(
             curves.parameters, errors(curves, coefficients, *points(49, 33)), strict=True
         ):
             print(f"largest absolute error at {n}: {error:.3g}")
     sampled = dip_sample(*points(41, 29), found[SCHLICK.prefix])
-    coefficients = refined(DIP_FORM, *sampled, DIP_START)
-    print(*horner(DIP_FORM, coefficients, "GGX_DIP"), sep="\n")
+    coefficients = numerator(DIP_FORM, *sampled, DIP_BELOW)
+    print(*defines(DIP_FORM, coefficients, "GGX_DIP"), sep="\n")
     arguments, value, weight = dip_sample(*points(49, 33), found[SCHLICK.prefix])
     error = np.max(weight * np.abs(DIP_FORM.value(arguments, coefficients) - value))
     print(f"largest absolute error, for a dip to 0: {error / dip(1.0 / 7.0):.3g}")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rational fits in several variables whose largest weighted error is least.
 
-A fit is N / D with D = 1 + ..., both polynomials in some monomials. From a start found by a search
-in float64, which need not be repeatable, Newton steps in 40 digits lead to coefficients that are:
-each step is a linear fit of least largest error, see `minimax.py`.
+A fit is N / D with D = 1 + ..., both polynomials in some monomials. A search in float64, which need
+not be repeatable, finds a start, or a denominator that stays away from 0. From there on linear fits
+of least largest error in 40 digits, see `minimax.py`, give coefficients that are repeatable.
 """
 
 import math
@@ -14,6 +14,7 @@ import numpy as np
 from fits.minimax import least_largest, mp
 
 DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 tells apart
+SCATTER = 2654435769  # 2^32 over the golden ratio
 STEPS = 2  # from a start of six digits; another changes no printed error
 
 
@@ -70,7 +71,28 @@ def refined(form, variables, values, weights, start, steps=STEPS):
     return tuple(float(mp.nstr(x, DIGITS)) for x in found)
 
 
-def horner(form, coefficients, prefix):
+def numerator(form, variables, values, weights, below):
+    """Numerator's coefficients with the least largest weighted error for a denominator's.
+
+    Returns
+    -------
+    tuple of float
+        Those, rounded to `DIGITS` digits, and the denominator's.
+    """
+    points = [[mp.mpf(float(x)) for x in row] for row in zip(*variables, strict=True)]
+    rows, right = [], []
+    for point, value, weight in zip(points, values, weights, strict=True):
+        D = 1 + mp.fdot([_monomial(point, m) for m in form.below], below)
+        factor = mp.mpf(float(weight)) / D
+        rows.append([factor * _monomial(point, m) for m in form.above])
+        right.append(mp.mpf(float(weight)) * mp.mpf(float(value)))
+    # Scattered, lest the rows that the exchange starts from lie on few lines of a grid.
+    order = sorted(range(len(rows)), key=lambda i: i * SCATTER % 2**32)
+    found, _ = least_largest([rows[i] for i in order], [right[i] for i in order])
+    return (*(float(mp.nstr(x, DIGITS)) for x in found), *below)
+
+
+def defines(form, coefficients, prefix):
     """Lines of GLSL that define the coefficients, in the order of the form."""
     count = len(form.above)
     parts = (("N", form.above, coefficients[:count]), ("D", form.below, coefficients[count:]))
