@@ -50,7 +50,7 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        bsdf.response = mx_environment_radiance(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd)
+        bsdf.response = microfacet_environment(lobe, X, distribution, fd)
                         * scale;
     }
 }

@@ -13,7 +13,7 @@ from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
-from mxeon.conformance.checks.special import LEAST_TURNED, TURNED
+from mxeon.conformance.checks.special import LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
@@ -220,10 +220,18 @@ CYCLES_NOISE = Tolerance(
 
 SCALED = "pi f cos, relative above 1"
 BSDF_VALUE = Tolerance(
-    rounded_up(32 * ROUNDING),
+    rounded_up(48 * ROUNDING),
     SCALED,
     scaled,
-    "32 roundings of float32, 2^-24 each, of the value or of 1; rounded up",
+    "48 roundings of float32, 2^-24 each, of the value or of 1: an inverse fourth power takes the 8 of "
+    "a length four times, and 16 beside them; rounded up",
+)
+CONTY_KULLA_VALUE = Tolerance(
+    rounded_up((32 + 4 * 0.5 / LEAST_SHEEN) * ROUNDING),
+    SCALED,
+    scaled,
+    "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
+    "the inverse of the roughness, at least 0.01; rounded up",
 )
 BSDF_ALBEDO = Tolerance(
     rounded_up(32 * ROUNDING),
@@ -263,11 +271,17 @@ MICROFACET_VALUE = Tolerance(
 MICROFACET_ALBEDO = Tolerance(
     MICROFACET_FIT, "albedo", absolute, "three fits, whose errors come to 4e-3 at most"
 )
+ANISOTROPIC_ALBEDO = Tolerance(
+    MICROFACET_FIT + SUM_OF_DIRECTIONS,
+    "albedo",
+    scaled,
+    "the fits' 4e-3, and the error of a sum over the directions of an environment",
+)
 SHAPE = Tolerance(
-    rounded_up(64 * ROUNDING),
+    rounded_up(2 * 64 * ROUNDING),
     "relative",
     absolute,
-    "two values of 32 roundings of float32 each, 2^-24; rounded up",
+    "two values of 64 roundings of float32 each, 2^-24; rounded up",
 )
 ANISOTROPY = Tolerance(
     rounded_up(4 * 2 * ROUNDING / (LEAST_COSINE * LEAST_ALPHA)),
@@ -275,6 +289,12 @@ ANISOTROPY = Tolerance(
     scaled,
     "two roundings of a turned direction, 2^-24 each, over the least cosine, 0.1, and the least "
     "alpha, 0.05, times the fourth power of the distribution; rounded up",
+)
+MICROFACET_LAYER = Tolerance(
+    MICROFACET_FIT + BSDF_INTEGRAL.value,
+    "light",
+    absolute,
+    "the fits' 4e-3, and the quadrature's error",
 )
 LAYER = Tolerance(
     ALBEDO_FIT + BSDF_INTEGRAL.value,
@@ -342,7 +362,7 @@ VALUES = {
     "pictures": CYCLES_RAY,
     "planes": TESTRENDER,
     "closed pairs": BSDF_VALUE,
-    "fitted pairs": BSDF_VALUE,
+    "fitted pairs": CONTY_KULLA_VALUE,
     "microfacet pairs": MICROFACET_VALUE,
     "exact": EXACT,
     "facets": FACETS,
@@ -377,4 +397,5 @@ FRAMES = {
     "fitted pairs": BSDF_FRAME,
     "microfacet pairs": BSDF_FRAME,
 }
+LAYER_KINDS = {"closed pairs": LAYER, "fitted pairs": LAYER, "microfacet pairs": MICROFACET_LAYER}
 BSDF_KINDS = ("closed pairs", "fitted pairs", "microfacet pairs")
