@@ -20,11 +20,11 @@ The arithmetic is that of `ggx_albedo.py`.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
-from fits.ggx_albedo import graded, incident, legendre
+from fits.ggx_albedo import incident, legendre
 from fits.minimax import mp
 from fits.rational import Form, defines, numerator
 
@@ -165,7 +165,7 @@ def azimuths(scale):
     for _ in range(8):
         ends.append(ends[-1] * root)
     nodes, weights = [ends[8] * x], [ends[8] * w]
-    for b, a in zip(ends, ends[1:], strict=False):
+    for b, a in pairwise(ends):
         divisor = b - (b - a) * x
         nodes.append(a * b / divisor)
         weights.append(a * b * (b - a) / (divisor * divisor) * w)

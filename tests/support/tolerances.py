@@ -222,7 +222,10 @@ FURNACE_OVER_WHITE = 0.5 * 1.9e-3 + 0.5 * 0.75 * 5.9e-3 + 5e-4
 
 # The fits of E_ss and of the Conty-Kulla albedo: the errors that stand beside them, and quadrature.
 FIT_GGX = 4.92e-4 + 1e-6
-FIT_CONTY_KULLA = 1.5e-3 + 1e-5
+FIT_CONTY_KULLA = 1.51e-3 + 1e-5
+
+# The quadrature of the fits, whose panels end at 4^-9 of the width of the integrand.
+FIT_QUADRATURE = 1e-7
 
 # --- pages of upstream -----------------------------------------------------------------------
 
