@@ -179,7 +179,10 @@ def _averages(mu, alpha, functions):
     # Squared sine of half the azimuth from the mirror's, whose tangent is 1 / far beyond 1.
     shape = (len(low), OUTER, low.shape[-1])
     sine2 = np.concatenate(
-        [tangents * tangents / (1.0 + tangents * tangents), np.broadcast_to(1.0 / (1.0 + far * far), shape)],
+        [
+            tangents * tangents / (1.0 + tangents * tangents),
+            np.broadcast_to(1.0 / (1.0 + far * far), shape),
+        ],
         axis=1,
     )
     step = np.concatenate(
@@ -250,9 +253,7 @@ def errors(curves, coefficients, mu, alpha):
     albedo, means = averages(mu, alpha, functions)
     return [
         float(
-            np.max(
-                albedo * np.abs(function(cosine(curves, mu, alpha, shape, coefficients)) - mean)
-            )
+            np.max(albedo * np.abs(function(cosine(curves, mu, alpha, shape, coefficients)) - mean))
         )
         for function, mean, shape in zip(functions, means, curves.shapes, strict=True)
     ]

@@ -280,6 +280,10 @@ NATIVE = {
         *_own("burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"),
     ),
     "mitsuba": (Subject("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
+    # Its manual has the roughness of both nodes for Cycles only.
+    "eevee": tuple(
+        Subject(node, None, "lambert", ("color",)) for node in ("Diffuse BSDF", "Principled BSDF")
+    ),
     "luxcore": (
         Subject("matte", None, "lambert", ("color",)),
         *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),
