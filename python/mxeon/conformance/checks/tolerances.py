@@ -327,6 +327,13 @@ FACETS = Tolerance(
     "the normal of a facet: three float32 vertices, each off by sqrt(3) 2^-24, over the narrowest edge, "
     "0.0245, twice for the edge's two ends; times 8, the largest slope of the diffuse models; rounded up",
 )
+COARSE_FACETS = Tolerance(
+    rounded_up(2.0**-6 + 2.4e-3),
+    "pi f cos or albedo",
+    absolute,
+    "EEVEE keeps light in 32 bits for three channels, of which blue has the fewest: five below the "
+    "leading one, cut off, of numbers up to 1; and 2.4e-3 for its packed normals, measured; rounded up",
+)
 FACET_NOISE = Tolerance(
     rounded_up(4.0 * 0.0716 / math.sqrt(FACET_PIXELS)),
     "mean albedo",
@@ -366,6 +373,7 @@ VALUES = {
     "microfacet pairs": MICROFACET_VALUE,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
 }
 LOBES = {
@@ -373,6 +381,7 @@ LOBES = {
     "plane lobes": TESTRENDER,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
 }
 ALBEDOS = {
@@ -384,6 +393,7 @@ ALBEDOS = {
     "microfacet pairs": MICROFACET_ALBEDO,
     "exact": EXACT_SURROUNDINGS,
     "facets": FACET_NOISE,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_NOISE,
 }
 THROUGHPUTS = {
