@@ -43,9 +43,10 @@ SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
 
 
-def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of the other BSDF nodes."""
-    return dict.fromkeys(tolerances.BSDF_KINDS, tolerance)
+def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
+    kinds = tolerances.BSDF_KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    return dict.fromkeys(kinds, tolerance)
 
 
 @dataclass(frozen=True)
@@ -173,7 +174,7 @@ CHECKS = (
             "pairs": tolerances.ZERO,
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
-            **of_bsdfs(tolerances.ZERO),
+            **of_bsdfs(tolerances.ZERO, pictures=True),
             "exact": tolerances.ZERO,
             "facets": tolerances.ZERO,
             "facet pairs": tolerances.ZERO,
@@ -286,7 +287,7 @@ CHECKS = (
             "pairs": tolerances.count_of("inputs"),
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
-            **of_bsdfs(tolerances.count_of("inputs")),
+            **of_bsdfs(tolerances.count_of("inputs"), pictures=True),
             "exact": tolerances.count_of("inputs"),
             "facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),

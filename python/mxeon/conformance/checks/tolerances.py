@@ -335,6 +335,24 @@ OWN_DENSITY = Tolerance(
     "to be derived",
 )
 
+# Pictures of the other BSDF nodes of pbrlib. A ray's point is off by an angle, by which the logarithm
+# of a lobe changes at most LOBE_SLOPE times as fast: twice 1 / alpha of a distribution, whose alpha is
+# at least 0.4, and 3 for Fresnel's curve, shadowing and the cosine.
+LOBE_SLOPE = 2.0 / 0.4 + 3.0
+BSDF_RAY = Tolerance(
+    rounded_up(LOBE_SLOPE * CYCLES_RAY.value),
+    SCALED,
+    scaled,
+    "8 times the error of a ray in a picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PLANE = Tolerance(
+    rounded_up(LOBE_SLOPE * TESTRENDER.value),
+    SCALED,
+    scaled,
+    "8 times the error of a plane's picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PICTURE_KINDS = ("bsdf pictures", "microfacet pictures", "bsdf planes", "microfacet planes")
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,
@@ -343,6 +361,10 @@ VALUES = {
     "closed pairs": BSDF_VALUE,
     "fitted pairs": BSDF_VALUE,
     "microfacet pairs": MICROFACET_VALUE,
+    "bsdf pictures": BSDF_RAY,
+    "microfacet pictures": BSDF_RAY,
+    "bsdf planes": BSDF_PLANE,
+    "microfacet planes": BSDF_PLANE,
     "exact": EXACT,
     "facets": FACETS,
     "facet pairs": FACET_PAIRS,
@@ -361,6 +383,10 @@ ALBEDOS = {
     "closed pairs": BSDF_ALBEDO,
     "fitted pairs": FITTED_ALBEDO,
     "microfacet pairs": MICROFACET_ALBEDO,
+    "bsdf pictures": CYCLES_NOISE,
+    "microfacet pictures": CYCLES_NOISE,
+    "bsdf planes": TESTRENDER_NOISE,
+    "microfacet planes": TESTRENDER_NOISE,
     "exact": EXACT_SURROUNDINGS,
     "facets": FACET_NOISE,
     "facet pairs": FACET_NOISE,
