@@ -2,9 +2,11 @@
 """Probes of the other BSDF nodes of pbrlib on hosts that make pictures."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
+from mxeon.conformance.checks.batch import Batch
 from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
 from mxeon.conformance.checks.bsdfs import BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe, PictureProbe, PlaneProbe
@@ -63,6 +65,18 @@ class BsdfPlaneProbe(PlaneProbe):
     kind: ClassVar[str] = "bsdf planes"
 
     subject: BsdfSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """The points of the plane; of a node that transmits, with the light below it."""
+        if not self.subject.row.transmits:
+            return super().batches
+        lights = [(scene, scene.light) for scene in self.scenes if scene.light]
+        return tuple(
+            self._batch(replace(scene, size=self.size, light=(x, y, -z)), inputs)
+            for scene, (x, y, z) in lights
+            for inputs in self._inputs
+        )
 
     @property
     def _inputs(self) -> list[dict[str, Any]]:

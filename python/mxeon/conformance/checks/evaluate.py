@@ -157,7 +157,7 @@ def judge_check(check: Check, probe: Any) -> Result:
         "library": probe.library,
         **claims(probe),
     }
-    tolerance = check.tolerances[probe.kind]
+    tolerance = check.adapt(check.tolerances[probe.kind], probe)
     diagnosis = Diagnosis()
     try:
         with renderer_warnings() as notes:

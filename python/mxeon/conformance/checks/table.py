@@ -22,6 +22,7 @@ from mxeon.conformance.checks.controls import (
     take_response,
     with_inputs,
 )
+from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.conformance.checks.tolerances import Tolerance
@@ -71,6 +72,8 @@ class Check:
         Explanation of a failure.
     open : bool
         Whether an error differs, and does not fail, where a permitted function explains all values.
+    adapt : callable (tolerance, probe) -> Tolerance
+        The tolerance on the probe's host, by the errors of its engine's own functions.
     """
 
     key: str
@@ -83,6 +86,7 @@ class Check:
     applies: Callable[[Any, str], bool] = lambda subject, host: True
     diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
     open: bool = False
+    adapt: Callable[[Tolerance, Any], Tolerance] = lambda tolerance, probe: tolerance
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -120,6 +124,7 @@ CHECKS = (
         gray,
         tolerances.VALUES,
         open=True,
+        adapt=on_engine,
     ),
     Check(
         "lobe",

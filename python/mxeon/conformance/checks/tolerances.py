@@ -106,6 +106,18 @@ def direction_of(sine_error: float) -> Tolerance:
     )
 
 
+def power_of(power_error: float, exponent: float) -> Tolerance:
+    """Tolerance of values that are powers, on an engine whose own power is off by so much."""
+    return Tolerance(
+        rounded_up((32 + exponent) * ROUNDING + power_error),
+        SCALED,
+        scaled,
+        f"32 roundings of float32, 2^-24 each, and one to the power of {exponent:.0f}, of the value or "
+        f"of 1; and the error of the engine's own power in it, {power_error:.1e}; rounded up",
+    )
+
+
+SCALED = "pi f cos, relative above 1"
 VALUE = Tolerance(
     rounded_up(14 * 2.0 * ROUNDING + 2 * 0.5 * LOSS_FIT),
     "pi f cos",
@@ -219,7 +231,6 @@ CYCLES_NOISE = Tolerance(
     "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
 )
 
-SCALED = "pi f cos, relative above 1"
 BSDF_VALUE = Tolerance(
     rounded_up(32 * ROUNDING),
     SCALED,
