@@ -24,6 +24,7 @@ from mxeon.conformance.checks.controls import (
     take_response,
     with_inputs,
 )
+from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.conformance.checks.tolerances import Tolerance
@@ -45,9 +46,10 @@ SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
 
 
-def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of the other BSDF nodes."""
-    return dict.fromkeys(tolerances.BSDF_KINDS, tolerance)
+def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
+    kinds = tolerances.BSDF_KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    return dict.fromkeys(kinds, tolerance)
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,8 @@ class Check:
         Explanation of a failure.
     open : bool
         Whether an error differs, and does not fail, where a permitted function explains all values.
+    adapt : callable (tolerance, probe) -> Tolerance
+        The tolerance on the probe's host, by the errors of its engine's own functions.
     """
 
     key: str
@@ -84,6 +88,7 @@ class Check:
     applies: Callable[[Any, str], bool] = lambda subject, host: True
     diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
     open: bool = False
+    adapt: Callable[[Tolerance, Any], Tolerance] = lambda tolerance, probe: tolerance
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -121,6 +126,7 @@ CHECKS = (
         gray,
         tolerances.VALUES,
         open=True,
+        adapt=on_engine,
     ),
     Check(
         "lobe",
@@ -175,7 +181,7 @@ CHECKS = (
             "pairs": tolerances.ZERO,
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
-            **of_bsdfs(tolerances.ZERO),
+            **of_bsdfs(tolerances.ZERO, pictures=True),
             "exact": tolerances.ZERO,
             "facets": tolerances.ZERO,
             "coarse facets": tolerances.ZERO,
@@ -289,7 +295,7 @@ CHECKS = (
             "pairs": tolerances.count_of("inputs"),
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
-            **of_bsdfs(tolerances.count_of("inputs")),
+            **of_bsdfs(tolerances.count_of("inputs"), pictures=True),
             "exact": tolerances.count_of("inputs"),
             "facets": tolerances.count_of("inputs"),
             "coarse facets": tolerances.count_of("inputs"),

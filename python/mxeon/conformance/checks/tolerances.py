@@ -105,6 +105,18 @@ def direction_of(sine_error: float) -> Tolerance:
     )
 
 
+def power_of(power_error: float, exponent: float) -> Tolerance:
+    """Tolerance of values that are powers, on an engine whose own power is off by so much."""
+    return Tolerance(
+        rounded_up((32 + exponent) * ROUNDING + power_error),
+        SCALED,
+        scaled,
+        f"32 roundings of float32, 2^-24 each, and one to the power of {exponent:.0f}, of the value or "
+        f"of 1; and the error of the engine's own power in it, {power_error:.1e}; rounded up",
+    )
+
+
+SCALED = "pi f cos, relative above 1"
 VALUE = Tolerance(
     rounded_up(14 * 2.0 * ROUNDING + 2 * 0.5 * LOSS_FIT),
     "pi f cos",
@@ -218,7 +230,6 @@ CYCLES_NOISE = Tolerance(
     "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
 )
 
-SCALED = "pi f cos, relative above 1"
 BSDF_VALUE = Tolerance(
     rounded_up(48 * ROUNDING),
     SCALED,
@@ -363,6 +374,24 @@ OWN_DENSITY = Tolerance(
     "direction, whose fourth power it has, lose up to three bits; rounded up",
 )
 
+# Pictures of the other BSDF nodes of pbrlib. A ray's point is off by an angle, by which the logarithm
+# of a lobe changes at most LOBE_SLOPE times as fast: twice 1 / alpha of a distribution, whose alpha is
+# at least 0.4, and 3 for Fresnel's curve, shadowing and the cosine.
+LOBE_SLOPE = 2.0 / 0.4 + 3.0
+BSDF_RAY = Tolerance(
+    rounded_up(LOBE_SLOPE * CYCLES_RAY.value),
+    SCALED,
+    scaled,
+    "8 times the error of a ray in a picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PLANE = Tolerance(
+    rounded_up(LOBE_SLOPE * TESTRENDER.value),
+    SCALED,
+    scaled,
+    "8 times the error of a plane's picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PICTURE_KINDS = ("bsdf pictures", "microfacet pictures", "bsdf planes", "microfacet planes")
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,
@@ -371,6 +400,10 @@ VALUES = {
     "closed pairs": BSDF_VALUE,
     "fitted pairs": CONTY_KULLA_VALUE,
     "microfacet pairs": MICROFACET_VALUE,
+    "bsdf pictures": BSDF_RAY,
+    "microfacet pictures": BSDF_RAY,
+    "bsdf planes": BSDF_PLANE,
+    "microfacet planes": BSDF_PLANE,
     "exact": EXACT,
     "facets": FACETS,
     "coarse facets": COARSE_FACETS,
@@ -391,6 +424,10 @@ ALBEDOS = {
     "closed pairs": BSDF_ALBEDO,
     "fitted pairs": FITTED_ALBEDO,
     "microfacet pairs": MICROFACET_ALBEDO,
+    "bsdf pictures": CYCLES_NOISE,
+    "microfacet pictures": CYCLES_NOISE,
+    "bsdf planes": TESTRENDER_NOISE,
+    "microfacet planes": TESTRENDER_NOISE,
     "exact": EXACT_SURROUNDINGS,
     "facets": FACET_NOISE,
     "coarse facets": COARSE_FACETS,
