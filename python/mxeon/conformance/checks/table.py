@@ -324,6 +324,7 @@ CHECKS = (
         "the flag is dropped",
         with_inputs(retroreflective=False),
         {"microfacet pairs": tolerances.BSDF_VALUE},
+        diagnose=wiring.of_retroreflection,
     ),
     Check(
         "anisotropy",
@@ -333,5 +334,6 @@ CHECKS = (
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
         {"microfacet pairs": tolerances.ANISOTROPY},
+        diagnose=wiring.of_tangent,
     ),
 )
