@@ -12,7 +12,7 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.known_issues import ISSUES, STOCK
+from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import SOURCE, make_plan
 from mxeon.io.files import write_text
@@ -71,7 +71,7 @@ def stock_path(cause):
 
 
 def judged(host):
-    """Results of the checks that show defects, of stock MaterialX on a host or on "source".
+    """Results of the checks that show defects on a host or on "source".
 
     Returns
     -------
@@ -94,7 +94,8 @@ def judged(host):
     with closing(Judge(DEFAULT)) as judge:
         findings = [judge.work(task) for task in chosen]
     devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
-    place = ", ".join([*devices, f"MaterialX {mx.__version__}"])
+    own = host in RENDERERS and host != "cycles"  # its nodes need no MaterialX
+    place = ", ".join([*devices, *([] if own else [f"MaterialX {mx.__version__}"])])
     return [result for each in findings for result in each.results], place
 
 

@@ -3,13 +3,14 @@
 
 import pytest
 
-from mxeon.conformance.checks.nodes import NATIVE
+from mxeon.conformance.checks import nodes
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run import check
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 
+NATIVE = nodes.NATIVE["cycles-native"]
 EXAMPLE = examples_folder() / "plaster.mtlx"
 
 

@@ -26,6 +26,9 @@ VERBS = {
     "call": ("eon_brdf",),
     "plane": (None, SIDE),
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
+    "pairs": ("diffuse", None, None, None, None),
+    "sample": (None, None, None),
+    "density": (None, None, None),
 }
 ENGINES = [row for row in hosts.HOSTS if row.module]
 
@@ -58,6 +61,7 @@ def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
     items = import_module("mxeon.conformance.run.plan")
     monkeypatch.setattr(items, "CHECKS", checks)
     monkeypatch.setattr(items, "subjects", lambda library: SUBJECTS[2:])
+    monkeypatch.setattr(items, "BSDFS", ())
     run = check([examples_folder() / "clay.mtlx"], ["toy"], workers=0)
     assert [each.device for each in run.hosts] == ["paper"]
     results = {each.check: each for each in run.results if each.host == "toy"}
@@ -102,7 +106,15 @@ def test_a_row_is_that_of_its_module(row):
 
 @pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
 def test_a_host_has_the_verb_by_which_checks_ask_it(row):
-    verb = {"pairs": "evaluate", "pictures": "picture", "planes": "plane", "native": "node"}
+    verb = {
+        "pairs": "evaluate",
+        "pictures": "picture",
+        "planes": "plane",
+        "native": "node",
+        "exact": "node",
+        "facets": "node",
+        "facet pairs": "pairs",
+    }
     host = import_module(row.module).Host
     verbs = {verb[row.probe], *(["picture"] if row.scenes else [])}
     assert all(getattr(host, name) is not getattr(base.Host, name) for name in verbs)

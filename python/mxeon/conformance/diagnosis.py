@@ -111,7 +111,7 @@ def _rest(candidate: Candidate, batch: Batch) -> Array:
 
 def _tolerance(probe: Any, tolerances: Mapping[str, Tolerance]) -> Tolerance:
     """The tolerance of a probe's kind; that of a lobe where it is one below others."""
-    return {**tolerances, **LOBES}[probe.kind]
+    return {**LOBES, **tolerances}[probe.kind]
 
 
 def _explained(

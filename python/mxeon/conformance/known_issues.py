@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known issues of stock MaterialX and Cycles: the page of `docs/upstream/` on each failing check."""
+"""Known issues of stock MaterialX and of renderers: the page of `docs/upstream/` on each failing check."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,23 @@ from mxeon.conformance.checks.text.sources import WITH_BSDF
 from mxeon.conformance.results import FAILED, PASSED, Result
 
 STOCK = "stock"
+OWN = "its own nodes"  # in the place of a library
 NODE = "oren_nayar_diffuse_bsdf, energy_compensation"
+LOADED = tuple(f"{node}, MaterialXLoader" for node in ("open_pbr_surface", "standard_surface"))
+BABYLON = tuple(
+    f"{material}, {engine}"
+    for material in ("PBRMaterial E_OREN_NAYAR", "OpenPBRMaterial")
+    for engine in ("WebGL2", "WebGPU")
+)
+WEBGL_LOBE = "WebGLPathTracer, diffuseEval"
+RENDERERS = {
+    "cycles": "this Blender",
+    "three": "this three.js",
+    "babylon": "this Babylon.js",
+    "luxcore": "this LuxCoreRender",
+    "three-gpu-pathtracer": "this three-gpu-pathtracer",
+}
+BURLEY = tuple(f"PBRMaterial BURLEY, {engine}" for engine in ("WebGL2", "WebGPU"))
 
 
 @dataclass(frozen=True)
@@ -27,6 +43,8 @@ class Issue:
         Other hosts that show it.
     implied : tuple of (str, str)
         Key and subject of other results that fail for it, on those hosts or in the text.
+    library : str
+        The library that has it; OWN for a renderer's own nodes.
     """
 
     page: str
@@ -34,6 +52,7 @@ class Issue:
     rows: tuple[tuple[str, str], ...]
     also: tuple[str, ...] = ()
     implied: tuple[tuple[str, str], ...] = ()
+    library: str = STOCK
 
 
 ISSUES = (
@@ -41,7 +60,7 @@ ISSUES = (
         "genglsl_clamped_dot",
         "gl",
         (("value", f"{NODE} true"), ("albedo", f"{NODE} true"), ("lobe", "open_pbr_surface")),
-        ("webgl", "vulkan", "slang", "source"),
+        ("webgl", "vulkan", "wgsl", "slang", "source"),
         (
             ("flag", f"{NODE} true"),
             ("flag", f"{NODE} false"),
@@ -52,13 +71,13 @@ ISSUES = (
         "genglsl_qon_albedo_fit",
         "gl",
         (("environment", f"{NODE} false"),),
-        ("webgl", "vulkan", "slang"),
+        ("webgl", "vulkan", "wgsl", "slang"),
     ),
     Issue(
         "genglsl_albedo_acos",
         "gl",
         (("environment", f"{NODE} true"),),
-        ("webgl", "vulkan", "slang"),
+        ("webgl", "vulkan", "wgsl", "slang"),
     ),
     Issue(
         "genosl_dropped_flag",
@@ -92,6 +111,55 @@ ISSUES = (
             ("inputs", f"{NODE} false"),
         ),
     ),
+    Issue(
+        "three_materialx_roughness",
+        "three",
+        tuple((check, LOADED[0]) for check in ("value", "inputs")),
+        implied=(
+            *((check, LOADED[0]) for check in ("environment", "lambert")),
+            *((check, LOADED[1]) for check in ("value", "environment", "lambert", "inputs")),
+        ),
+        library=OWN,
+    ),
+    Issue(
+        "babylon_reflectance_floor",
+        "babylon",
+        (("value", BABYLON[0]), ("value", BABYLON[3])),
+        implied=(("value", BABYLON[1]), ("value", BABYLON[2])),
+        library=OWN,
+    ),
+    Issue(
+        "babylon_flat_surroundings",
+        "babylon",
+        (("environment", BABYLON[0]), ("environment", BABYLON[3])),
+        implied=tuple(("environment", subject) for subject in (*BABYLON[1:3], *BURLEY)),
+        library=OWN,
+    ),
+    Issue(
+        "pathtracer_webgl_retro",
+        "three-gpu-pathtracer",
+        tuple((check, f"{WEBGL_LOBE}, shorter wh") for check in ("value", "reciprocity")),
+        library=OWN,
+    ),
+    Issue(
+        "pathtracer_webgl_nan",
+        "three-gpu-pathtracer",
+        tuple((check, WEBGL_LOBE) for check in ("black", "value", "reciprocity")),
+        library=OWN,
+    ),
+    Issue(
+        "luxcore_sigma_unit",
+        "luxcore",
+        (
+            ("value", "roughmatte, sigma in degrees"),
+            ("environment", "roughmatte, sigma in degrees"),
+        ),
+        library=OWN,
+    ),
+    *(
+        Issue(page, "luxcore", (("value", "disney"), ("environment", "disney")), library=OWN)
+        for page in ("luxcore_disney_cosine", "luxcore_disney_roughness")
+    ),
 )
 
 
@@ -115,9 +183,8 @@ def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tu
     tuple of (str, str)
     """
     verdicts = {
-        (result.host, result.check, result.subject): result.verdict
+        (result.library, result.host, result.check, result.subject): result.verdict
         for result in results
-        if result.library == STOCK
     }
     return tuple(
         (
@@ -125,22 +192,23 @@ def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tu
             f"docs/upstream/{issue.page}.md",
         )
         for issue in ISSUES
-        if all(verdicts.get((issue.host, *row)) == PASSED for row in issue.rows)
+        if all(verdicts.get((issue.library, issue.host, *row)) == PASSED for row in issue.rows)
     )
 
 
 def _software_of(issue: Issue, software: Mapping[str, str]) -> str:
     """The software that has an issue, in words."""
-    return f"MaterialX {software['MaterialX']}" if issue.host != "cycles" else "this Blender"
+    return RENDERERS.get(issue.host, f"MaterialX {software['MaterialX']}")
 
 
 def _issues(result: Result) -> list[Issue]:
-    """Issues that a failed result of the stock library shows."""
-    if result.verdict != FAILED or result.library != STOCK:
+    """Issues that a failed result shows, if it is of the library that has them."""
+    if result.verdict != FAILED:
         return []
     return [
         issue
         for issue in ISSUES
-        if result.host in (issue.host, *issue.also)
+        if result.library == issue.library
+        and result.host in (issue.host, *issue.also)
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
     ]

@@ -67,6 +67,9 @@ class Result:
         None only where the check did not run.
     reason : str
         Why it did not run.
+    claimed, model : str
+        Titles of the model that a renderer's own node claims, and of the form of it that was judged,
+        which is the one that it has where the check passes; "" for other subjects.
 
     Raises
     ------
@@ -89,6 +92,8 @@ class Result:
     distances: dict[str, float] = field(default_factory=dict)
     control: Control | None = None
     reason: str = ""
+    claimed: str = ""
+    model: str = ""
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:

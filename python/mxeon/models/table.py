@@ -10,6 +10,7 @@ from mxeon.models import albedo, known_defects
 from mxeon.models import brdf as models
 from mxeon.models.arguments import RANGES
 from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.burley import burley_albedo_dir, burley_brdf
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Model:
 
 
 def model(name: str) -> Model:
-    """The row of `MODELS` or `KNOWN_DEFECTS` with this name.
+    """The row of `MODELS`, `KNOWN_DEFECTS` or `OTHERS` with this name.
 
     Raises
     ------
@@ -77,10 +78,11 @@ def model(name: str) -> Model:
     >>> model("eon").parameter
     'roughness'
     """
-    for row in MODELS + KNOWN_DEFECTS:
+    rows = MODELS + KNOWN_DEFECTS + OTHERS
+    for row in rows:
         if row.name == name:
             return row
-    names = ", ".join(row.name for row in MODELS + KNOWN_DEFECTS)
+    names = ", ".join(row.name for row in rows)
     raise ValueError(f"model must be one of {names}; got {name!r}")
 
 
@@ -159,6 +161,19 @@ KNOWN_DEFECTS = (
         known_defects.fon_white_lobe_albedo_dir,
     ),
     Model(
+        "eon_floor",
+        "EON with a reflectance of at least 0.1",
+        known_defects.eon_floor_brdf,
+        "roughness",
+    ),
+    Model(
+        "eon_fitted",
+        "EON with the paper's quartic of its albedo",
+        models.eon_brdf_approx,
+        "roughness",
+        albedo.eon_albedo_dir_approx,
+    ),
+    Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
         models.qon_brdf,
@@ -171,5 +186,36 @@ KNOWN_DEFECTS = (
         known_defects.qon_tinted_twice_brdf,
         "sigma",
         known_defects.qon_tinted_twice_albedo_dir,
+    ),
+)
+
+# What renderers have beside the Oren-Nayar family.
+OTHERS = (
+    Model("burley", "Burley's diffuse model", burley_brdf, "roughness", burley_albedo_dir),
+    Model(
+        "burley_lambert",
+        "Burley's diffuse model with Lambert in surroundings",
+        burley_brdf,
+        "roughness",
+        lambda mu, rho, roughness: _lambert_albedo_dir(mu, rho),
+    ),
+    Model(
+        "burley_cosine",
+        "Burley with squared roughness, times the cosine once more",
+        known_defects.burley_cosine_brdf,
+        "roughness",
+    ),
+    Model(
+        "burley_schlick",
+        "Burley with Schlick's weight for the cosine of retro-reflection",
+        known_defects.burley_schlick_brdf,
+        "roughness",
+    ),
+    Model(
+        "qon_degrees",
+        "QON that takes degrees for radians",
+        known_defects.qon_degrees_brdf,
+        "sigma",
+        known_defects.qon_degrees_albedo_dir,
     ),
 )

@@ -59,6 +59,11 @@ class Altered:
         """Throughputs of the changed batch, changed."""
         return self.throughputs(batch, self.probe.throughput(self.batch(batch), branch))
 
+    def density(self, batch: Batch) -> Array:
+        """Densities for the changed batch."""
+        values: Array = self.probe.density(self.batch(batch))
+        return values
+
 
 def with_inputs(**inputs: Any) -> Control:
     """A control that passes these inputs to the host in place of the batch's."""

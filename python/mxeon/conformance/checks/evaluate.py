@@ -144,6 +144,7 @@ def judge_check(check: Check, probe: Any) -> Result:
         "subject": probe.subject.title,
         "host": probe.host.name,
         "library": probe.library,
+        **getattr(probe, "claims", {}),  # of a renderer's own node
     }
     tolerance = check.tolerances[probe.kind]
     diagnosis = Diagnosis()

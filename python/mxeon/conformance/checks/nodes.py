@@ -2,7 +2,7 @@
 """Subjects of the checks: the rough diffuse nodes, each with the model it has to be."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar, TypeAlias
 
@@ -11,7 +11,7 @@ import numpy as np
 from mxeon.conformance.checks.batch import Array, Batch, Candidate, random_inputs
 from mxeon.conformance.checks.special import special_inputs
 from mxeon.models import table as reference
-from mxeon.models.table import Model
+from mxeon.models.table import OTHERS, Model
 from mxeon.shaders.nodes import (
     EON,
     FLAG,
@@ -32,13 +32,14 @@ class OfModel:
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
         """Its model, known defects, and the other models, by their values."""
-        rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS}
+        rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS + self._others}
         return self._candidates(rows.values(), Batch.expected)
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         """Its model, the other models, and known defects, by their albedos."""
-        rows = [row for row in reference.MODELS + reference.KNOWN_DEFECTS if row.albedo_dir]
+        rows = reference.MODELS + reference.KNOWN_DEFECTS + self._others
+        rows = tuple(row for row in rows if row.albedo_dir)
         return self._candidates(rows, Batch.albedo)
 
     @property
@@ -57,6 +58,13 @@ class OfModel:
     def passed(self, batch: Batch) -> Array:
         """Throughput, (N, 3): an opaque node lets nothing through."""
         return np.zeros((len(batch.wo), 3))
+
+    @property
+    def _others(self) -> tuple[Model, ...]:
+        """The other models; Burley's with the albedo that the subject's own has."""
+        name = self.model if self.model.startswith("burley") else "burley"
+        left_out = {"burley", "burley_lambert"} - {name}
+        return tuple(row for row in OTHERS if row.name not in left_out)
 
     def _candidates(
         self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
@@ -95,12 +103,22 @@ class Subject(OfModel):
         Name of a row of `mxeon.models.table.MODELS`.
     names : tuple of str
         Inputs that it may have; the flag counts only where it is not None.
+    forms : tuple of str
+        Forms of the model that its paper publishes, if there are several. The one that is nearest to
+        what is measured is judged.
+    others : bool
+        Whether other lobes lie beside the diffuse one, which do not depend on the color.
+    sampled : bool
+        Whether its renderer draws directions for it by a function that can be called.
     """
 
     node: str
     flag: bool | None
     model: str
     names: tuple[str, ...] = tuple(INPUT_TYPES)
+    forms: tuple[str, ...] = ()
+    others: bool = False
+    sampled: bool = False
 
     @property
     def title(self) -> str:
@@ -210,8 +228,54 @@ SURFACES = (
     Surface("gltf_pbr", "gltf_pbr", "lambert", "base_color", "", (("metallic", "float", "0.0"),)),
 )
 
-# Nodes that a renderer has of its own; Blender's are meant to be EON.
-NATIVE = tuple(
-    Subject(node, None, "eon", ("color", "roughness"))
-    for node in ("Diffuse BSDF", "Principled BSDF")
-)
+
+def _own(model: str, *nodes: str, forms: tuple[str, ...] = ()) -> tuple[Subject, ...]:
+    """Nodes of a renderer's own with a color and a roughness, which claim a model."""
+    return tuple(Subject(node, None, model, ("color", "roughness"), forms) for node in nodes)
+
+
+# The paper prints EON with the exact albedo and with a quartic for it.
+PUBLISHED = ("eon", "eon_fitted")
+
+# Nodes that a renderer has of its own, by the name of the host, with the models that their
+# documentation claims. OpenPBR asks for EON, Standard Surface for Oren-Nayar.
+NATIVE = {
+    "cycles-native": _own("eon", "Diffuse BSDF", "Principled BSDF"),
+    "three": (
+        *_own(
+            "eon",
+            "MeshPhysicalMaterial, WebGLRenderer",
+            "MeshPhysicalMaterial, WebGPURenderer",
+            "open_pbr_surface, MaterialXLoader",
+            forms=PUBLISHED,
+        ),
+        *_own("qon", "standard_surface, MaterialXLoader"),
+    ),
+    "babylon": (
+        *_own(
+            "eon",
+            "PBRMaterial E_OREN_NAYAR, WebGL2",
+            "PBRMaterial E_OREN_NAYAR, WebGPU",
+            "OpenPBRMaterial, WebGL2",
+            "OpenPBRMaterial, WebGPU",
+            forms=PUBLISHED,
+        ),
+        *_own("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
+        *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
+        *_own("lambert", "PBRMaterial LAMBERT, WebGL2", "PBRMaterial LAMBERT, WebGPU"),
+    ),
+    "three-gpu-pathtracer": (
+        *(
+            replace(each, sampled=True)
+            for each in _own("eon", "WebGPUPathTracer, eonBrdf", forms=PUBLISHED)
+        ),
+        *_own("fon", "WebGPUPathTracer, fonBrdf"),
+        *_own("burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"),
+    ),
+    "mitsuba": (Subject("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
+    "luxcore": (
+        Subject("matte", None, "lambert", ("color",)),
+        *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),
+        Subject("disney", None, "burley", ("color", "roughness"), others=True),
+    ),
+}

@@ -34,8 +34,9 @@ from mxeon.conformance.checks.special import (
     turned_directions,
     turned_frames,
 )
+from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning, Shader
-from mxeon.shaders.hosts import front_lit_only, host_row
+from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.plane import LIGHTS, plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
@@ -44,6 +45,13 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_d
 PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
+)
+EXACT_INPUTS: tuple[dict[str, Any], ...] = (
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
+    {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
+    {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
 )
 PICTURE_SIZE = 128
 TURNED = 1 << 12  # pairs in frames of their own
@@ -206,7 +214,7 @@ class PictureProbe:
 
     def _picture(self, batch: Batch) -> Array:
         """Values at the points of a batch."""
-        scene = _scene(batch)
+        scene = scene_of(batch)
         values = self._radiance(self._shader(batch.inputs), scene)
         return values[self._points(scene)[2]].astype(np.float64)
 
@@ -243,24 +251,49 @@ class NativeProbe(PictureProbe):
 
     subject: Subject
 
+    @property
+    def claims(self) -> dict[str, str]:
+        """Titles of the model that the node claims, and of the form of it that is judged."""
+        claimed, *_ = self.subject.forms or (self.subject.model,)
+        names = {"claimed": claimed, "model": self.subject.model}
+        return {key: reference.model(name).title for key, name in names.items()}
+
     def _picture(self, batch: Batch) -> Array:
-        scene, inputs = _scene(batch), batch.inputs
+        scene, inputs = scene_of(batch), batch.inputs
         image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
         values = image[sphere(scene.size).mask]
         return values[picture_pairs(scene)[2]].astype(np.float64)
 
 
-PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
-    "pairs": PairProbe,
-    "pictures": PictureProbe,
-    "planes": PlaneProbe,
-    "native": NativeProbe,
-}
+@dataclass(frozen=True, eq=False)
+class ExactProbe(NativeProbe):
+    """A node of a renderer's own, on a sphere whose points and light have no error but rounding."""
 
+    kind: ClassVar[str] = "exact"
+    size: ClassVar[int] = PICTURE_SIZE // 2
 
-def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
-    """Class of the probes of the host of a name, or None where only text is checked."""
-    return PROBES.get(host_row(host).probe)
+    @property
+    def _inputs(self) -> list[dict[str, Any]]:
+        """EXACT_INPUTS, from dark to white and from rough to smooth."""
+        return [dict(inputs) for inputs in EXACT_INPUTS]
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """The first for each light."""
+        return self.batches[:: len(EXACT_INPUTS)]
+
+    def nearest_form(self) -> "ExactProbe":
+        """The probe of the published form of the model that is nearest to what is measured."""
+        if not self.subject.forms:
+            return self
+        batch = self.batches[0]
+        values = self.direct(batch)
+        errors = {
+            form: float(np.abs(values - batch.expected(form)).max()) for form in self.subject.forms
+        }
+        return replace(
+            self, subject=replace(self.subject, model=min(errors, key=errors.__getitem__))
+        )
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
@@ -270,7 +303,7 @@ def _compile(host: Host, text: str, library: str) -> Shader:
         return host.compile(text, library=library)[0]
 
 
-def _scene(batch: Batch) -> Scene:
+def scene_of(batch: Batch) -> Scene:
     """The picture of a batch of a probe that makes pictures."""
     assert batch.scene is not None
     return batch.scene

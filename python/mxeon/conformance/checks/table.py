@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance import diagnosis, wiring
-from mxeon.conformance.checks import bsdf_measures, measures, tolerances
+from mxeon.conformance.checks import bsdf_measures, measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -23,6 +23,7 @@ from mxeon.conformance.checks.controls import (
     with_inputs,
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
+from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
@@ -30,13 +31,16 @@ from mxeon.models.pbrlib import NODES
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
-ANY = ("eon", "qon")
-OTHERS = tuple(row.name for row in NODES)
+EON = ("eon", "eon_fitted")
+ANY = (*EON, "qon")
+OTHERS = (*(row.name for row in NODES), "burley_lambert")
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
+SMOOTH = ("lambert",)
+ROUGH = (*ANY, "fon")
 
 
 def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
@@ -85,6 +89,21 @@ def has_flag(subject: Any, host: str) -> bool:
     return FLAG in subject.inputs
 
 
+def is_lobe(subject: Any, host: str) -> bool:
+    """Whether a subject is the lobe of a surface shader, or a renderer's own Lambert."""
+    return isinstance(subject, Surface) or subject.model == "lambert"
+
+
+def is_alone(subject: Any, host: str) -> bool:
+    """Whether no other lobe lies beside the diffuse one."""
+    return not (isinstance(subject, Subject) and subject.others)
+
+
+def is_sampled(subject: Any, host: str) -> bool:
+    """Whether a renderer's own sampling of the subject can be called."""
+    return isinstance(subject, Subject) and subject.sampled
+
+
 def has_environment(subject: Any, host: str) -> bool:
     """Whether a host has the subject's model for all pairs, as an environment needs."""
     return not front_lit_only(host, subject.model)
@@ -94,7 +113,7 @@ CHECKS = (
     Check(
         "value",
         "The value is the model's for every pair of directions, back-lit and grazing ones included.",
-        (*ANY, *OTHERS),
+        (*ROUGH, *OTHERS),
         measures.value,
         "every channel gets the mean color",
         gray,
@@ -104,16 +123,17 @@ CHECKS = (
     Check(
         "lobe",
         "The diffuse lobe of the surface shader is the model's.",
-        (*ANY, "lambert"),
+        (*ANY, *SMOOTH),
         measures.value,
         "every channel gets the mean color",
         gray,
         tolerances.LOBES,
+        is_lobe,
     ),
     Check(
         "environment",
         "The environment branch gives the directional albedo.",
-        (*ANY, *OTHERS),
+        (*ROUGH, *OTHERS, *SMOOTH),
         measures.environment,
         "every channel gets the mean color",
         gray,
@@ -134,7 +154,7 @@ CHECKS = (
     Check(
         "furnace",
         "A white surface in a white environment cannot be seen.",
-        ("eon",),
+        EON,
         measures.furnace,
         "reflectance is 0.99",
         with_inputs(color=(0.99, 0.99, 0.99)),
@@ -145,7 +165,7 @@ CHECKS = (
     Check(
         "black",
         "A black surface scatters nothing.",
-        (*ANY, *BLACK),
+        (*ROUGH, *BLACK, *SMOOTH),
         measures.black,
         "a thousandth is added to every value",
         offset,
@@ -154,7 +174,33 @@ CHECKS = (
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
             **of_bsdfs(tolerances.ZERO),
+            "exact": tolerances.ZERO,
+            "facets": tolerances.ZERO,
+            "facet pairs": tolerances.ZERO,
         },
+        is_alone,
+    ),
+    Check(
+        "density",
+        "The density of drawn directions is that of the paper's sampling.",
+        EON,
+        sampling_measures.density,
+        "roughness is dropped",
+        with_inputs(roughness=0.0),
+        {"facet pairs": tolerances.OWN_DENSITY},
+        is_sampled,
+        lambda probe: Diagnosis("the density is not that of the paper's listings"),
+    ),
+    Check(
+        "samples",
+        "Directions are drawn with the density that is returned for them.",
+        EON,
+        sampling_measures.samples,
+        "the density is that of roughness 0",
+        with_inputs(roughness=0.0),
+        {"facet pairs": tolerances.CHI_SQUARE},
+        is_sampled,
+        lambda probe: Diagnosis("the drawn directions do not have the density"),
     ),
     Check(
         "frame",
@@ -189,11 +235,15 @@ CHECKS = (
     Check(
         "reciprocity",
         "Exchanging the two directions does not change the BRDF.",
-        (*ANY, *RECIPROCAL),
+        (*ROUGH, *RECIPROCAL, *SMOOTH),
         measures.reciprocity,
         "the value carries cos(theta_o) once more",
         scale_cosine(1),
-        {"pairs": tolerances.RECIPROCITY, **of_bsdfs(tolerances.BSDF_VALUE)},
+        {
+            "pairs": tolerances.RECIPROCITY,
+            **of_bsdfs(tolerances.BSDF_VALUE),
+            "facet pairs": tolerances.FACET_PAIRS,
+        },
     ),
     Check(
         "lambert",
@@ -206,6 +256,8 @@ CHECKS = (
             "pairs": tolerances.LAMBERT,
             "pictures": tolerances.CYCLES_RAY,
             "planes": tolerances.TESTRENDER,
+            "exact": tolerances.EXACT,
+            "facets": tolerances.FACETS,
         },
     ),
     Check(
@@ -226,7 +278,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        (*ANY, *OTHERS),
+        (*ROUGH, *OTHERS, *SMOOTH),
         measures.inputs,
         "every change is dropped",
         drop_changes,
@@ -235,6 +287,9 @@ CHECKS = (
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
             **of_bsdfs(tolerances.count_of("inputs")),
+            "exact": tolerances.count_of("inputs"),
+            "facets": tolerances.count_of("inputs"),
+            "facet pairs": tolerances.count_of("inputs"),
         },
         diagnose=wiring.of_inputs,
     ),

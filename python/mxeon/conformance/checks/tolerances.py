@@ -11,16 +11,17 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
-from mxeon.conformance.checks.bsdf_probes import LEAST_TURNED
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
-from mxeon.conformance.checks.special import TURNED
+from mxeon.conformance.checks.special import LEAST_TURNED, TURNED
+from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
 ROUNDING = 2.0**-24  # unit roundoff of float32
 HALF_ROUNDING = 2.0**-11  # of float16
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
 PLANE_PIXELS = 128**2  # of a picture of testrender
+FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H, see fits/
 
 
@@ -250,6 +251,7 @@ BSDF_INTEGRAL = Tolerance(
     absolute,
     "the quadrature's own error on the equations, measured",
 )
+SUM_OF_DIRECTIONS = 5e-3  # error of a sum over 256 directions of an environment, to be measured
 LEAST_ALBEDO = 0.4  # of GGX at unit Fresnel: 0.44 at alpha 1 and grazing
 MICROFACET_FIT = 4e-3  # largest error of a microfacet lobe's albedo, made of several fits
 MICROFACET_VALUE = Tolerance(
@@ -281,6 +283,59 @@ LAYER = Tolerance(
     "the fit's 2e-3, and the quadrature's error",
 )
 
+EXACT = Tolerance(
+    rounded_up(14 * 2.0 * ROUNDING + 2 * 5 * (1.0 / RIM + 2.0) * ROUNDING),
+    "pi f cos",
+    absolute,
+    "14 roundings of float32, 2^-24 each, of numbers up to 2; and in each of two cosines five more, "
+    "two in the unit normal and three in a product, which enter times 20 by s / t, where both cosines "
+    "are at least 0.05, and times 2 by s and the cosine itself; rounded up",
+)
+EXACT_SURROUNDINGS = Tolerance(
+    rounded_up((12 + 2 + 2 + 5) * 1.02 * ROUNDING),
+    "albedo",
+    absolute,
+    "21 roundings of float32, 2^-24 each, of numbers up to 1.02: 12 in the longest chain, two in the "
+    "surroundings, which are 1 in any format, two in a polynomial, and five in the cosine, times 1; "
+    "rounded up",
+)
+
+FACETS = Tolerance(
+    rounded_up(8 * 2.0 * math.sqrt(3.0) * ROUNDING / NARROWEST),
+    "pi f cos",
+    absolute,
+    "the normal of a facet: three float32 vertices, each off by sqrt(3) 2^-24, over the narrowest edge, "
+    "0.0245, twice for the edge's two ends; times 8, the largest slope of the diffuse models; rounded up",
+)
+FACET_NOISE = Tolerance(
+    rounded_up(4.0 * 0.0716 / math.sqrt(FACET_PIXELS)),
+    "mean albedo",
+    of_mean,
+    "four standard errors of the mean of a picture's 7169 pixels, each of 64 paths: measured over 12 "
+    "seeds, a pixel is off by 0.0716 rms in Mitsuba and 0.0625 in LuxCoreRender; rounded up",
+)
+FACET_PAIRS = Tolerance(
+    rounded_up(16 * 2.5**2 * ROUNDING),
+    "pi f cos",
+    absolute,
+    "16 roundings of float32, 2^-24 each, of numbers up to 25/4, the product of Burley's two factors; "
+    "rounded up",
+)
+
+CHI_SQUARE = Tolerance(
+    5.0,
+    "standard deviations",
+    absolute,
+    "a right sampler exceeds 5 standard deviations once in 3.5 million times",
+)
+OWN_DENSITY = Tolerance(
+    rounded_up(48 * 2.0**3 * ROUNDING),
+    "1/sr, relative above 1",
+    scaled,
+    "48 roundings of float32, 2^-24 each, as of any density; the differences in the transformed "
+    "direction, whose fourth power it has, lose up to three bits; rounded up",
+)
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,
@@ -289,8 +344,17 @@ VALUES = {
     "closed pairs": BSDF_VALUE,
     "fitted pairs": BSDF_VALUE,
     "microfacet pairs": MICROFACET_VALUE,
+    "exact": EXACT,
+    "facets": FACETS,
+    "facet pairs": FACET_PAIRS,
 }
-LOBES = {"lobes": LOBE, "plane lobes": TESTRENDER}
+LOBES = {
+    "lobes": LOBE,
+    "plane lobes": TESTRENDER,
+    "exact": EXACT,
+    "facets": FACETS,
+    "facet pairs": FACET_PAIRS,
+}
 ALBEDOS = {
     "pairs": ENVIRONMENT,
     "pictures": CYCLES_NOISE,
@@ -298,6 +362,9 @@ ALBEDOS = {
     "closed pairs": BSDF_ALBEDO,
     "fitted pairs": FITTED_ALBEDO,
     "microfacet pairs": MICROFACET_ALBEDO,
+    "exact": EXACT_SURROUNDINGS,
+    "facets": FACET_NOISE,
+    "facet pairs": FACET_NOISE,
 }
 THROUGHPUTS = {
     "closed pairs": BSDF_ALBEDO,

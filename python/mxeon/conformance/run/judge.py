@@ -11,12 +11,13 @@ from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.checks.documents import generate_document
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
+from mxeon.conformance.checks.facet_probes import PROBES
 from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.probes import (
-    PROBES,
+    ExactProbe,
     PairProbe,
     PictureProbe,
 )
@@ -199,4 +200,6 @@ def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
         return BSDF_PROBES[bsdfs[title].kind](host, bsdfs[title], library)
     if title in surfaces:
         return SURFACE_PROBES[probe](host, surfaces[title], library)
-    return probe(host, next(row for row in SUBJECTS + NATIVE if row.title == title), library)
+    rows = NATIVE.get(host.name, SUBJECTS)
+    made = probe(host, next(row for row in rows if row.title == title), library)
+    return made.nearest_form() if isinstance(made, ExactProbe) else made

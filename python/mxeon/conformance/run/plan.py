@@ -20,14 +20,15 @@ import mxeon
 from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.bsdfs import BSDFS, BsdfSubject
 from mxeon.conformance.checks.evaluate import applies
+from mxeon.conformance.checks.facet_probes import probe_type
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
 from mxeon.conformance.checks.probes import (
     NativeProbe,
     PairProbe,
-    probe_type,
 )
 from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.known_issues import OWN
 from mxeon.conformance.results import Curve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import InputError
@@ -219,7 +220,7 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
     probe, row = probe_type(host), host_row(host)
     if probe is None:
         yield Task(HOST, EVERY_NODE, host, library)
-    if probe is None or probe is NativeProbe:
+    if probe is None or issubclass(probe, NativeProbe):
         return
     language = "osl" if row.target == "osl" else "glsl"
     if probe.kind in functions.KINDS and has_functions(library, language):
@@ -243,9 +244,10 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
 
 def _native(host: str) -> Iterator[Task]:
     """Tasks of a renderer's own nodes, which use no library of ours."""
-    if probe_type(host) is NativeProbe:
-        for subject in NATIVE:
-            yield from _checks_of(subject, NativeProbe.kind, host, "its own nodes")
+    probe = probe_type(host)
+    if probe is not None and issubclass(probe, NativeProbe):
+        for subject in NATIVE[host]:
+            yield from _checks_of(subject, probe.kind, host, OWN)
 
 
 def _checks_of(

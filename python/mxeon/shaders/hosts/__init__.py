@@ -26,7 +26,9 @@ class Row:
         Module with its class `Host`; "" where only the text of the target is checked.
     probe : str
         How checks ask it: for "pairs" of directions, for "pictures" of a sphere, for pictures of
-        "planes", for pictures of "native" nodes of its own, or "" for nothing.
+        "planes", for pictures of "native" nodes of its own, for "exact" ones, without noise and with
+        the points of float32, for those of "facets" of a polyhedron, for these and for "facet
+        pairs" of directions, or "" for nothing.
     needs : str
         What running it would take, where only its text is checked.
     scenes : tuple of Scene
@@ -59,6 +61,7 @@ HOSTS = (
     ),
     Row("webgl", "essl", "mxeon.shaders.hosts.webgl", "pairs", scenes=(SIDE, BACK, FURNACE)),
     Row("vulkan", "vulkan", "mxeon.shaders.hosts.vulkan", "pairs"),
+    Row("wgsl", "wgsl", "mxeon.shaders.hosts.wgsl", "pairs"),
     Row("slang", "slang", "mxeon.shaders.hosts.slang", "pairs"),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row(
@@ -70,14 +73,14 @@ HOSTS = (
         front_lit=("qon",),
     ),
     Row("cycles-native", "osl", "mxeon.shaders.hosts.cycles.native", "native"),
+    Row("three", "essl", "mxeon.shaders.hosts.browser.three", "exact"),
+    Row("babylon", "essl", "mxeon.shaders.hosts.browser.babylon", "exact"),
+    Row("three-gpu-pathtracer", "essl", "mxeon.shaders.hosts.browser.pathtracer", "facet pairs"),
+    Row("mitsuba", "glsl", "mxeon.shaders.hosts.facet.mitsuba", "facet pairs"),
+    Row("luxcore", "glsl", "mxeon.shaders.hosts.facet.luxcore", "facets"),
     Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
-    Row(
-        "wgsl",
-        "wgsl",
-        needs="MaterialX's WGSL in place of the GLSL that it writes, which WebGPU does not take",
-    ),
 )
 
 

@@ -50,12 +50,15 @@ class Host(ABC):
         Target of the shaders that it executes.
     profile : str or None
         Profile of the data library; see `mxeon.shaders.library.load_library`.
+    faceted : bool
+        Whether `node` shows the polyhedron of `mxeon.shaders.facets` in place of the sphere.
     """
 
     name: ClassVar[str]
     target: ClassVar[str]
     profile: ClassVar[str | None] = None
     language: ClassVar[str] = "glsl"  # of the shader functions that it executes
+    faceted: ClassVar[bool] = False
 
     @abstractmethod
     def identity(self) -> Identity:
@@ -199,6 +202,61 @@ class Host(ABC):
     ) -> NDArray[Any]:
         """Picture of the unit sphere with a node of the renderer's own on it; see `picture`."""
         raise self._unsupported("nodes of its own", "cycles-native")
+
+    def pairs(
+        self,
+        title: str,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        color: NDArray[Any],
+        roughness: NDArray[Any],
+    ) -> NDArray[Any]:
+        """Values of a node of the renderer's own for pairs of directions.
+
+        Parameters
+        ----------
+        title : str
+        wo, wi, color : ndarray, shape (N, 3)
+            The directions are unit vectors, normal +z.
+        roughness : ndarray, shape (N,)
+
+        Returns
+        -------
+        ndarray, shape (N, 3)
+            f cos(theta_i), in 1/sr.
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        """
+        raise self._unsupported("values of its own nodes", "mitsuba")
+
+    def sample(self, wo: NDArray[Any], u: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+        """Directions to the light that the renderer draws for EON.
+
+        Parameters
+        ----------
+        wo : ndarray, shape (N, 3)
+            Unit vectors, normal +z.
+        u : ndarray, shape (N, 2)
+            Random numbers in [0, 1).
+        roughness : ndarray, shape (N,)
+
+        Returns
+        -------
+        ndarray, shape (N, 3)
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        """
+        raise self._unsupported("sampling of its own", "three-gpu-pathtracer")
+
+    def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+        """Density in solid angle of the directions that `sample` draws, (N,); see there."""
+        raise self._unsupported("density of its own", "three-gpu-pathtracer")
 
     def close(self) -> None:  # noqa: B027, a host may hold nothing
         """Release what the host holds."""

@@ -234,13 +234,13 @@ class Host(base.Host):
         self._stack.close()
 
 
-def program() -> str:
-    """Path of the browser."""
+def program(host: str = "webgl") -> str:
+    """Path of the browser, for a host."""
     name = os.environ.get(PROGRAM) or "chromium"
     path = shutil.which(name)
     if path is None:
         raise NotRun(
-            f"webgl: no program {name!r}; on Debian: apt-get install chromium, "
+            f"{host}: no program {name!r}; on Debian: apt-get install chromium, "
             f"or name another Chromium in {PROGRAM}"
         )
     return path

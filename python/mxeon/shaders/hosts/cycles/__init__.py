@@ -23,7 +23,8 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.hosts.cycles.process import Worker, interpreter
+from mxeon.shaders.hosts.cycles.process import interpreter
+from mxeon.shaders.hosts.process import Worker
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene, sphere
 
@@ -81,7 +82,9 @@ class Host(base.Host):
         python = interpreter()
         self._sources = Path(sources or data_folder() / "genosl").resolve()
         self._temporary = TemporaryDirectory(prefix="mxeon-cycles-")
-        self.worker = Worker(python, Path(self._temporary.name, "log.txt"), limit)
+        log = Path(self._temporary.name, "log.txt")
+        script = Path(__file__).with_name("worker.py")
+        self.worker = Worker(self.name, python, script, log, limit)
         self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
 
     def close(self) -> None:

@@ -1,20 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The process in which Blender runs, which answers one request after the other.
-
-The other end of the pipe is `worker.py`.
-"""
+"""The Python in which Blender runs."""
 
 from __future__ import annotations
 
-import json
 import os
-import time
-from contextlib import suppress
 from pathlib import Path
-from signal import Signals
-from subprocess import PIPE, Popen
-from threading import Timer
-from typing import Any
 
 from mxeon.errors import NotRun
 from mxeon.shaders.library import data_folder
@@ -41,100 +31,3 @@ def interpreter() -> Path:
         f"cycles: {missing}; pip install bpy==5.0.1 in an environment of Python 3.11 "
         "and name its interpreter in MXEON_CYCLES_PYTHON"
     )
-
-
-class Worker:
-    """The process of `worker.py`, started by the first request and again after a crash.
-
-    Parameters
-    ----------
-    python : Path
-        Interpreter that has `bpy`.
-    log : Path
-        File for the output of Blender.
-    limit : float
-        Seconds that a request may take; after them the process is killed.
-
-    Attributes
-    ----------
-    version : str or None
-        Blender's, once it has been started.
-    """
-
-    def __init__(self, python: Path, log: Path, limit: float) -> None:
-        self._python = python
-        self.log = log
-        self.limit = limit
-        self._process: Popen[str] | None = None
-        self.version: str | None = None
-
-    @property
-    def pid(self) -> int | None:
-        """Number of the running process, or None."""
-        return self._process.pid if self._process and self._process.poll() is None else None
-
-    def start(self) -> None:
-        """Start the process unless it runs; wait for its version."""
-        if self.pid is not None:
-            return
-        self.close()
-        self._read = 0
-        script = Path(__file__).with_name("worker.py")
-        with self.log.open("w") as log:
-            self._process = Popen(
-                [self._python, "-I", "-W", "ignore", script],
-                stdin=PIPE,
-                stdout=PIPE,
-                stderr=log,
-                text=True,
-                env=os.environ | {"TMPDIR": str(self.log.parent)},  # Blender leaves a folder there
-            )
-        self.version = self._reply()["version"]
-
-    def ask(self, **request: Any) -> dict[str, Any]:
-        """The reply to a request.
-
-        Raises
-        ------
-        NotRun
-            If the process ends or is silent for too long; with the last lines it printed.
-        """
-        self.start()
-        self._read = self.log.stat().st_size
-        assert self._process
-        with suppress(BrokenPipeError):
-            print(json.dumps(request), file=self._process.stdin, flush=True)
-        return self._reply()
-
-    def _reply(self) -> dict[str, Any]:
-        assert self._process and self._process.stdout
-        begin = time.monotonic()
-        killer = Timer(self.limit, self._process.kill)
-        killer.start()
-        line = self._process.stdout.readline()
-        killer.cancel()
-        if line.endswith("}\n"):
-            reply: dict[str, Any] = json.loads(line)
-            return reply
-        if line:  # an answer cut short: the process is on its way out
-            self._process.kill()
-        status = self._process.wait()
-        if time.monotonic() - begin >= self.limit:
-            end = f"no answer within {self.limit:g} s"
-        else:
-            end = f"ended by {Signals(-status).name}" if status < 0 else f"exit status {status}"
-        last = " | ".join(self.printed()[-4:]) or "none"
-        self.close()
-        raise NotRun(f"cycles: {end}; last output: {last}")
-
-    def printed(self) -> list[str]:
-        """The lines printed since the last request."""
-        text = self.log.read_bytes()[self._read :].decode(errors="replace")
-        return [line.strip() for line in text.splitlines() if line.strip()]
-
-    def close(self) -> None:
-        """End the process if it runs."""
-        if self._process:
-            self._process.kill()
-            self._process.communicate()
-            self._process = None

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The smallest repairs of renderers from npm, and copies of their packages that have them."""
+
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from mxeon.shaders.hosts.browser import packages_folder
+
+
+@dataclass(frozen=True)
+class Repair:
+    """A change of one file of a package.
+
+    Attributes
+    ----------
+    page : str
+        The page on the defect.
+    package, file : str
+        Name of the package, and path inside it.
+    line : int
+        Line of the installed file at which the change begins, from 1.
+    old, new : str
+        Text of the file, and what takes its place wherever it occurs.
+    """
+
+    page: str
+    package: str
+    file: str
+    line: int
+    old: str
+    new: str
+
+
+THREE, BABYLON = "three", "@babylonjs/core"
+MAPPINGS = "examples/jsm/loaders/materialx/MaterialXSurfaceMappings.js"
+COLOR = "\tmaterial.colorNode = mul( inputs.base_weight, inputs.base_color );\n"
+LOADED = (
+    "\tif ( isMeaningfulNode( inputs.base_diffuse_roughness ) ) "
+    "material.diffuseRoughnessNode = inputs.base_diffuse_roughness;\n"
+)
+
+# Share of the light of uniform surroundings that EON reflects, over that of Lambert.
+SHARE = """
+#if BASE_DIFFUSE_MODEL==BRDF_DIFFUSE_MODEL_EON && !defined(USE_IRRADIANCE_DOMINANT_DIRECTION) && !defined(REALTIME_FILTERING)
+{{{float} single=E_FON_approx(clamp(dot({normal},viewDirectionW),0.0,1.0),diffuseRoughness);\
+{float} average=(1.0+constant2_FON*diffuseRoughness)/(1.0+constant1_FON*diffuseRoughness);\
+environmentIrradiance*=single+surfaceAlbedo*average*(1.0-single)/(vec3{f}(1.0)-surfaceAlbedo*(1.0-average));}}
+#endif
+"""
+GLSL, WGSL = {"float": "float", "f": ""}, {"float": "let", "f": "f"}
+
+
+def _surroundings(file: str, line: int, text: str, rest: str, words: dict[str, str]) -> Repair:
+    """EON in surroundings, after the line that scales the irradiance."""
+    added = SHARE.format(**words).replace("\\\n", "")
+    return Repair(
+        "babylon_flat_surroundings", BABYLON, file, line, text + rest, text + added + rest
+    )
+
+
+PBR, OPEN_PBR = "ShadersInclude/pbrBlockReflection.js", "ShadersInclude/openpbrIblFunctions.js"
+DIRECT = "ShadersInclude/pbrDirectLightingFunctions.js"
+SCALED, END = "environmentIrradiance*=vReflectionInfos.x;", "return environmentIrradiance;}"
+COLORED = "environmentIrradiance*=vReflectionColor.rgb*vReflectionInfos.x;"
+FACED, FLAT = {"normal": "surfaceNormal"}, {"normal": "normalW"}
+REPAIRS = (
+    Repair("three_materialx_roughness", THREE, MAPPINGS, 376, COLOR, COLOR + LOADED),
+    Repair(
+        "babylon_reflectance_floor",
+        BABYLON,
+        f"Shaders/{DIRECT}",
+        36,
+        "clamp(info.surfaceAlbedo,vec3(0.1),",
+        "clamp(info.surfaceAlbedo,vec3(0.0001),",
+    ),
+    Repair(
+        "babylon_reflectance_floor",
+        BABYLON,
+        f"ShadersWGSL/{DIRECT}",
+        38,
+        "clamp(info.surfaceAlbedo,vec3f(0.1),",
+        "clamp(info.surfaceAlbedo,vec3f(0.0001),",
+    ),
+    _surroundings(f"Shaders/{PBR}", 281, COLORED, "", GLSL | FLAT),
+    _surroundings(f"ShadersWGSL/{PBR}", 306, COLORED, "", WGSL | FLAT),
+    _surroundings(f"Shaders/{OPEN_PBR}", 85, SCALED, END, GLSL | FACED),
+    _surroundings(
+        f"ShadersWGSL/{OPEN_PBR}",
+        89,
+        "environmentIrradiance*=reflectionInfos.x;",
+        END,
+        WGSL | FACED,
+    ),
+)
+
+PATHTRACER, SHADER = "three-gpu-pathtracer", "src/shader"
+PATHTRACER_REPAIRS = (
+    Repair(
+        "pathtracer_webgl_retro",
+        PATHTRACER,
+        f"{SHADER}/bsdf/bsdf_functions.glsl.js",
+        23,
+        "float rr = 0.5 + 2.0 * surf.roughness * fl * fl;",
+        "float rr = 2.0 * surf.roughness * dot( wi, wh ) * dot( wi, wh );",
+    ),
+    Repair(
+        "pathtracer_webgl_nan",
+        PATHTRACER,
+        f"{SHADER}/common/fresnel_functions.glsl.js",
+        36,
+        "float sinThetaISq = 1.0f - cosThetaI * cosThetaI;",
+        "float sinThetaISq = max( 0.0, 1.0f - cosThetaI * cosThetaI );",
+    ),
+)
+
+
+def copied(package: str, folder: Path) -> Path:
+    """A node_modules in a folder whose package is a tree of links to the installed one."""
+    installed = packages_folder() / "node_modules" / package
+    ignored = shutil.ignore_patterns("*.d.ts", "*.map")
+    target = folder / "node_modules" / package
+    shutil.copytree(installed, target, copy_function=os.symlink, ignore=ignored)
+    return folder / "node_modules"
+
+
+def repair(modules: Path, change: Repair) -> None:
+    """Apply a change to a copy.
+
+    Raises
+    ------
+    ValueError
+        If the file does not hold the old text.
+    """
+    path = modules / change.package / change.file
+    text = path.read_text(encoding="utf-8")
+    if change.old not in text:
+        raise ValueError(f"{change.file} must hold {change.old!r}")
+    path.unlink()  # a link to the installed file
+    path.write_text(text.replace(change.old, change.new), encoding="utf-8")

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node translucent_bsdf: light comes from the side that the viewer does not see.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+
+void translucent_bsdf(ClosureData closureData, float weight, vec3 color, vec3 N, inout BSDF bsdf)
+{
+    bsdf.throughput = vec3(0.0);
+
+    // A lobe that is switched off costs nothing; a negative weight, never valid, counts as 0.
+    if (weight <= 0.0)
+    {
+        return;
+    }
+
+    N = -mx_forward_facing_normal(N, closureData.V);
+
+    // What shadows the visible side does not shadow the other one.
+    if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
+    {
+        bsdf.response = color * weight * clamp(dot(N, closureData.L), 0.0, 1.0) * M_PI_INV;
+    }
+    else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
+    {
+        bsdf.response = mx_environment_irradiance(N) * color * weight;
+    }
+}

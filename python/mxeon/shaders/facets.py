@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A convex polyhedron with known normals, for renderers that spread their samples over a pixel.
+
+Every pixel inside a facet has one normal wherever its samples fall. No facet hides a light from
+another one that faces it, and none sees another one. Frame and camera are those of
+`mxeon.shaders.scene`.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+RINGS, SECTORS = 20, 40  # facets from pole to pole, and around
+AXIS = (0.48, 0.6, 0.64)  # from pole to pole: tilted, so that facets differ in both cosines
+NARROWEST = 2.0 * np.sin(np.pi / RINGS) * np.sin(np.pi / SECTORS)  # edge, at the poles
+MARGIN = 1.05  # half width of the square that must lie in one facet, in half widths of a pixel
+
+
+class Polyhedron(NamedTuple):
+    """A closed mesh of flat facets.
+
+    Attributes
+    ----------
+    vertices : ndarray, shape (V, 3)
+        On the unit sphere.
+    triangles : ndarray of int, shape (T, 3)
+        Indices, counterclockwise from outside.
+    normals : ndarray, shape (F, 3)
+        Outward unit normals of the facets, in float64.
+    offsets : ndarray, shape (F,)
+        Distances of their planes from the origin.
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    normals: NDArray[np.float64]
+    offsets: NDArray[np.float64]
+
+
+class Points(NamedTuple):
+    """Normals at the pixels of a picture of the polyhedron.
+
+    Attributes
+    ----------
+    normal : ndarray, shape (size, size, 3)
+    mask : ndarray of bool, shape (size, size)
+        Where a pixel lies within one facet.
+    """
+
+    normal: NDArray[np.float64]
+    mask: NDArray[np.bool_]
+
+
+@lru_cache(maxsize=1)
+def polyhedron() -> Polyhedron:
+    """The polyhedron whose vertices are a grid of angles around AXIS.
+
+    Its facets are trapezoids, which are flat, and triangles at the poles. The vertices are float32
+    numbers, as renderers read them.
+    """
+    polar, azimuth = np.linspace(0.0, np.pi, RINGS + 1), np.arange(SECTORS) * 2.0 * np.pi / SECTORS
+    theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
+    ring = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
+    local = np.concatenate([[[0.0, 0.0, 1.0]], ring.reshape(-1, 3), [[0.0, 0.0, -1.0]]])
+    vertices = (local @ _frame()).astype(np.float32).astype(np.float64)
+    quads = np.array([_quad(row, column) for row in range(RINGS) for column in range(SECTORS)])
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    corners = vertices[triangles]
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    triangles = triangles[np.linalg.norm(areas, axis=1) > 0.0]
+    one, two, three, four = (vertices[quads[:, index]] for index in range(4))
+    normals = np.cross(three - one, four - two)  # of the diagonals: that of a triangle as well
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    offsets = (normals * (one + two + three + four)).sum(axis=1) / 4.0
+    return Polyhedron(vertices, triangles, normals, offsets)
+
+
+@lru_cache(maxsize=4)
+def facet_points(size: int) -> Points:
+    """Normals at the pixels of a `size` x `size` picture."""
+    axis = (2.0 * np.arange(size) + 1.0) / size - 1.0
+    x, y = np.meshgrid(axis, -axis)
+    reach = MARGIN / size
+    facets = [_facets(x + dx * reach, y + dy * reach) for dx in (-1.0, 1.0) for dy in (-1.0, 1.0)]
+    mask = facets[0] >= 0
+    for other in facets[1:]:
+        mask &= other == facets[0]
+    normal = polyhedron().normals[facets[0]]
+    for array in (normal, mask):
+        array.flags.writeable = False  # shared by all callers
+    return Points(normal, mask)
+
+
+def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Index of the facet that each line along z meets first; -1 for none."""
+    _, _, normals, offsets = polyhedron()
+    above, below = normals[:, 2] > 0.0, normals[:, 2] < 0.0
+    first, top = np.full(x.shape, -1), np.full(x.shape, np.inf)
+    bottom = np.full(x.shape, -np.inf)
+    for index in range(len(normals)):
+        if above[index] or below[index]:
+            nx, ny, nz = normals[index]
+            height = (offsets[index] - nx * x - ny * y) / nz
+            if above[index]:
+                first = np.where(height < top, index, first)
+                top = np.minimum(top, height)
+            else:
+                bottom = np.maximum(bottom, height)
+    return np.where(top > bottom, first, -1)
+
+
+def _quad(row: int, column: int) -> tuple[int, int, int, int]:
+    """Indices of a facet's vertices; two are the same at a pole."""
+    after = (column + 1) % SECTORS
+
+    def vertex(ring: int, sector: int) -> int:
+        if ring == 0:
+            return 0
+        return 1 + (ring - 1) * SECTORS + sector if ring < RINGS else 1 + (RINGS - 1) * SECTORS
+
+    return vertex(row, column), vertex(row + 1, column), vertex(row + 1, after), vertex(row, after)
+
+
+def _frame() -> NDArray[np.float64]:
+    """Rows: two axes across AXIS, and AXIS."""
+    axis = np.asarray(AXIS) / np.linalg.norm(AXIS)
+    across = np.cross([0.0, 0.0, 1.0], axis)
+    across /= np.linalg.norm(across)
+    return np.stack([across, np.cross(axis, across), axis])

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The visible points of the unit sphere as quads, one for each pixel, and pixels as text.
+//
+// A quad lies in the plane of the picture and its four corners have the one normal of the sphere
+// under the pixel's center. So every pixel has an exact normal, whatever the rasterizer interpolates.
+
+export function sphere(size) {
+    const positions = [], normals = [], indices = [];
+    for (let row = 0; row < size; ++row) {
+        for (let column = 0; column < size; ++column) {
+            const x = (2 * column + 1) / size - 1, y = 1 - (2 * row + 1) / size;
+            if (x * x + y * y >= 1) continue;
+            const normal = [x, y, Math.sqrt(1 - x * x - y * y)], half = 1 / size;
+            const first = positions.length / 3;
+            for (const [dx, dy] of [[-half, -half], [half, -half], [half, half], [-half, half]]) {
+                positions.push(x + dx, y + dy, 0);
+                normals.push(...normal);
+            }
+            indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
+        }
+    }
+    return {
+        positions: new Float32Array(positions),
+        normals: new Float32Array(normals),
+        indices: new Uint32Array(indices),
+    };
+}
+
+// RGBA pixels whose first row is the lowest, as base64 of float32 with the first row on top.
+export function encode(pixels, size, bottomUp) {
+    const width = 4 * size;
+    const rows = new Float32Array(width * size);
+    for (let row = 0; row < size; ++row) {
+        const from = bottomUp ? size - 1 - row : row;
+        rows.set(pixels.subarray(from * width, (from + 1) * width), row * width);
+    }
+    const bytes = new Uint8Array(rows.buffer);
+    let text = "";
+    for (let start = 0; start < bytes.length; start += 32768) {
+        text += String.fromCharCode(...bytes.subarray(start, start + 32768));
+    }
+    return btoa(text);
+}

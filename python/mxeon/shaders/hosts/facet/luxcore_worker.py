@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The half of the `luxcore` host that runs in the process of LuxCoreRender, started by its path.
+
+It reads one JSON object per line on standard input and answers each with one on standard output:
+first `{"version": ...}`, then `{}` per request. The process ends when standard input does.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+import time
+from typing import Any
+
+REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
+os.dup2(2, 1)
+
+import numpy as np  # noqa: E402
+import pyluxcore  # noqa: E402
+
+# A thread of its own and a fixed seed: pictures are always the same.
+RENDERER = {
+    "renderengine.type": "PATHCPU",
+    "renderengine.seed": 1,
+    "native.threads.count": 1,
+    "sampler.type": "SOBOL",
+    "path.pathdepth.total": 1,
+    "path.pathdepth.diffuse": 1,
+    "path.pathdepth.glossy": 1,
+    "path.pathdepth.specular": 1,
+    "path.clamping.variance.maxvalue": 0.0,
+    "film.filter.type": "NONE",
+    "film.imagepipelines.0.0.type": "NOP",
+    "film.outputs.0.type": "RGB",
+    "film.outputs.0.filename": "none.exr",
+}
+
+
+def properties(values: dict[str, Any]) -> Any:
+    """Properties as LuxCore takes them."""
+    result = pyluxcore.Properties()
+    for name, value in values.items():
+        result.Set(pyluxcore.Property(name, value))
+    return result
+
+
+def camera(size: int) -> dict[str, Any]:
+    """The square [-1, 1]^2 seen orthographically along -z.
+
+    LuxCore counts rows from below and begins one row too high: its window is a pixel lower.
+    """
+    row = 2.0 / size
+    return {
+        "type": "orthographic",
+        "lookat.orig": [0.0, 0.0, 2.0],
+        "lookat.target": [0.0, 0.0, 0.0],
+        "up": [0.0, 1.0, 0.0],
+        "screenwindow": [-1.0, 1.0, -1.0 - row, 1.0 - row],
+        "autovolume.enable": 0,
+    }
+
+
+def define(kind: str, values: dict[str, Any]) -> Any:
+    """Properties of one part of a scene."""
+    return properties({f"scene.{kind}.{name}": value for name, value in values.items()})
+
+
+def build(
+    material: dict[str, Any],
+    mesh: str,
+    size: int,
+    light: list[float] | None,
+    environment: float | None,
+) -> Any:
+    """The scene: the mesh with a material on it, and a light."""
+    data, scene = np.load(mesh), pyluxcore.Scene()
+    vertices = [tuple(each) for each in data["vertices"].tolist()]
+    triangles = [tuple(each) for each in data["triangles"].tolist()]
+    scene.DefineMesh("polyhedron", vertices, triangles, None, None, None, None)
+    scene.Parse(define("camera", camera(size)))
+    scene.Parse(define("materials.material", material))
+    scene.Parse(define("objects.object", {"shape": "polyhedron", "material": "material"}))
+    if light is not None:
+        sun = {"type": "sharpdistant", "direction": [-each for each in light]}
+        scene.Parse(define("lights.light", {**sun, "gain": [math.pi] * 3, "color": [1.0] * 3}))
+    if environment is not None:
+        sky = {"type": "constantinfinite", "gain": [environment] * 3, "color": [1.0] * 3}
+        scene.Parse(define("lights.environment", sky))
+    return scene
+
+
+def render(samples: int, size: int, **parts: Any) -> Any:
+    """Picture, linear float32, row 0 at the top."""
+    film = {"film.width": size, "film.height": size, "batch.haltspp": samples}
+    session = pyluxcore.RenderSession(
+        pyluxcore.RenderConfig(properties(RENDERER | film), build(size=size, **parts))
+    )
+    session.Start()
+    while not session.HasDone():
+        time.sleep(0.002)
+        session.UpdateStats()
+    session.Stop()
+    pixels = np.zeros(size * size * 3, np.float32)
+    session.GetFilm().GetOutputFloat(pyluxcore.FilmOutputType.RGB, pixels, 0)
+    return pixels.reshape(size, size, 3)[::-1]
+
+
+def main() -> None:
+    """Serve requests until standard input ends."""
+    pyluxcore.Init(lambda message: None)
+    print(json.dumps({"version": pyluxcore.Version()}), file=REPLIES)
+    for line in sys.stdin:
+        request = json.loads(line)
+        np.save(request.pop("output"), render(**request))
+        print("{}", file=REPLIES)
+    os._exit(0)  # its threads do not survive the end of Python
+
+
+if __name__ == "__main__":
+    main()

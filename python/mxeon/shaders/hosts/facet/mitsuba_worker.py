@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The half of the `mitsuba` host that runs in the process of Mitsuba, started by its path.
+
+It reads one JSON object per line on standard input and answers each with one on standard output:
+first `{"version": ...}`, then `{}` per request. The process ends when standard input does.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from importlib import import_module
+from typing import Any
+
+REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
+os.dup2(2, 1)
+
+import numpy as np  # noqa: E402
+
+mi: Any = import_module("mitsuba")  # its types are those of another variant
+mi.set_variant("scalar_rgb")
+mi.set_log_level(mi.LogLevel.Warn)
+
+
+def bsdf(material: dict[str, Any], **inputs: Any) -> dict[str, Any]:
+    """A material's properties in Mitsuba's form; text in braces stands for one of the inputs."""
+    values = {name: inputs.get(str(value).strip("{}"), value) for name, value in material.items()}
+    return {
+        name: {"type": "rgb", "value": list(value)} if isinstance(value, (list, tuple)) else value
+        for name, value in values.items()
+    }
+
+
+def evaluate(material: dict[str, Any], pairs: str) -> Any:
+    """f cos(theta_i) of a BSDF for the pairs in a file, (N, 3)."""
+    columns = np.load(pairs)
+    context, point = mi.BSDFContext(), mi.SurfaceInteraction3f()
+    point.t, point.n, point.sh_frame = 1.0, [0.0, 0.0, 1.0], mi.Frame3f([0.0, 0.0, 1.0])
+    rows = []
+    names = ("wo", "wi", "color", "roughness")
+    for wo, wi, color, roughness in zip(*(columns[name].tolist() for name in names), strict=True):
+        made = mi.load_dict(bsdf(material, color=color, roughness=roughness))
+        point.wi = wo  # towards the viewer, in Mitsuba's words
+        rows.append(np.array(made.eval(context, point, wi)))
+    return np.array(rows)
+
+
+def render(
+    material: dict[str, Any],
+    mesh: str,
+    size: int,
+    light: list[float] | None,
+    environment: float | None,
+    samples: int,
+) -> Any:
+    """Picture of the mesh with a BSDF on it, float32, row 0 at the top."""
+    scene = {
+        "type": "scene",
+        "integrator": integrator(light is not None),
+        "sensor": sensor(size, samples),
+        "mesh": polyhedron(mesh, material),
+    }
+    if light is not None:
+        scene["light"] = {
+            "type": "directional",
+            "direction": [-each for each in light],
+            "irradiance": {"type": "rgb", "value": math.pi},
+        }
+    if environment is not None:
+        scene["environment"] = {
+            "type": "constant",
+            "radiance": {"type": "rgb", "value": environment},
+        }
+    return np.array(mi.render(mi.load_dict(scene), seed=1))[:, :, :3]
+
+
+def integrator(distant: bool) -> dict[str, Any]:
+    """One bounce: the light is sampled where it is distant, else the BSDF."""
+    samples = {"emitter_samples": 1, "bsdf_samples": 0}
+    if not distant:
+        samples = {"emitter_samples": 0, "bsdf_samples": 1}
+    return {"type": "direct", "hide_emitters": True, **samples}
+
+
+def sensor(size: int, samples: int) -> dict[str, Any]:
+    """The square [-1, 1]^2 seen orthographically along -z; the film is linear float32."""
+    look = mi.ScalarTransform4f().look_at(
+        origin=[0.0, 0.0, 2.0], target=[0.0, 0.0, 0.0], up=[0.0, 1.0, 0.0]
+    )
+    return {
+        "type": "orthographic",
+        "to_world": look,
+        "film": {
+            "type": "hdrfilm",
+            "width": size,
+            "height": size,
+            "pixel_format": "rgb",
+            "component_format": "float32",
+            "rfilter": {"type": "box"},
+        },
+        "sampler": {"type": "independent", "sample_count": samples},
+    }
+
+
+def polyhedron(path: str, material: dict[str, Any]) -> Any:
+    """The mesh in a file with a BSDF on it, without vertex normals."""
+    data = np.load(path)
+    properties = mi.Properties()
+    properties["bsdf"] = mi.load_dict(bsdf(material))
+    vertices, triangles = data["vertices"], data["triangles"]
+    mesh = mi.Mesh("polyhedron", len(vertices), len(triangles), properties)
+    parameters = mi.traverse(mesh)
+    parameters["vertex_positions"] = vertices.astype(np.float32).ravel()
+    parameters["faces"] = triangles.astype(np.uint32).ravel()
+    parameters.update()
+    return mesh
+
+
+def main() -> None:
+    """Serve requests until standard input ends."""
+    print(json.dumps({"version": mi.__version__}), file=REPLIES)
+    for line in sys.stdin:
+        request = json.loads(line)
+        output = request.pop("output")
+        work = evaluate if "pairs" in request else render
+        np.save(output, work(**request))
+        print("{}", file=REPLIES)
+
+
+if __name__ == "__main__":
+    main()
