@@ -101,7 +101,8 @@ def of_frame(probe: Any) -> Diagnosis:
         if tolerance.metric(case.measured, dropped).max() <= tolerance.value:
             text = "the node's normal is ignored: the surface's takes its place"
         else:
-            text = not_finite([case]) or region([case.batch], [wrong]) or UNKNOWN
+            text = not_finite([case]) or region([case.batch], [wrong])
+            text = text or without_effect(probe, "tangent") or UNKNOWN
         return Diagnosis(f"branch {branch}: {text}")
     return Diagnosis(UNKNOWN)
 
@@ -120,6 +121,22 @@ def of_stretched(probe: Any) -> Diagnosis:
     if next(errors) < NEAR * next(errors):
         return Diagnosis("anisotropic visible normals are weighted by G_1 at the mean alpha")
     return Diagnosis(UNKNOWN)
+
+
+def of_tangent(probe: Any) -> Diagnosis:
+    """Whether the tangent is dropped."""
+    return Diagnosis(without_effect(probe, "tangent") or of_value(probe).text)
+
+
+def of_retroreflection(probe: Any) -> Diagnosis:
+    """Whether the flag is dropped."""
+    return Diagnosis(without_effect(probe, "retroreflective") or of_value(probe).text)
+
+
+def without_effect(probe: Any, name: str) -> str:
+    """Words on an input that changes nothing; "" if it does, or there is none."""
+    dead = name in probe.subject.changes and name in dead_inputs(probe)
+    return f"{name} is ignored" if dead else ""
 
 
 def of_surroundings(probe: Any) -> Diagnosis:

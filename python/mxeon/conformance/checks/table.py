@@ -389,6 +389,7 @@ CHECKS = (
         "the flag is dropped",
         with_inputs(retroreflective=False),
         {"microfacet pairs": tolerances.BSDF_VALUE},
+        diagnose=wiring.of_retroreflection,
     ),
     Check(
         "anisotropy",
@@ -398,6 +399,7 @@ CHECKS = (
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
         {"microfacet pairs": tolerances.ANISOTROPY},
+        diagnose=wiring.of_tangent,
     ),
     Check(
         "anisotropic_albedo",
