@@ -16,7 +16,7 @@ from benchmarks.rounds import Check, Group, figure, ratio
 from mxeon.errors import NotRun
 from mxeon.shaders.hosts import open_host
 
-OTHERS = ("webgl", "vulkan", "slang", "cycles")
+OTHERS = ("webgl", "vulkan", "wgsl", "slang", "cycles")
 FIELD = ("--host", "all", "--library", "eonlib", "--library", "stock")
 CACHE = "MESA_SHADER_CACHE_DISABLE"
 NONE, TWO = "gl, no workers", "gl, 2 workers"

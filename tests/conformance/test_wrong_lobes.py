@@ -192,7 +192,7 @@ def test_a_copy_without_a_wrong_line_passes_every_check(gl, tmp_path):
         assert {result.verdict for result in results} == {PASSED}
 
 
-@pytest.mark.parametrize("host", ["webgl", "vulkan", "slang"])
+@pytest.mark.parametrize("host", ["webgl", "vulkan", "wgsl", "slang"])
 @pytest.mark.parametrize(
     "name", ["occlusion", "throughput", "opposite look-up", "normal not turned"]
 )

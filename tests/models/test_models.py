@@ -317,7 +317,10 @@ def test_a_model_gives_the_closed_form_of_its_albedo_or_refuses():
 # --- known wrong variants --------------------------------------------------------------------
 
 
-@named([row for row in KNOWN_DEFECTS if row.parameter == "roughness"])
+QUARTICS = ("eon_fitted", "eon_floor")  # defects of EON with the paper's quartic
+
+
+@named([row for row in KNOWN_DEFECTS if row.parameter == "roughness" and row.name not in QUARTICS])
 def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     wo, wi, rho, r = pairs(2000, seed=13)
     front = np.sum(wo * wi, axis=-1) > 1e-6
@@ -325,6 +328,15 @@ def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     scale = largest_quotient(wo, wi)[front, np.newaxis]
     assert (white / scale).max() <= 2.0 * tolerances.BRDF
     assert np.pi * np.abs(row.brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r)).max() > 1e-2
+
+
+def test_eon_floor_is_the_quartic_but_for_dark_reflectances():
+    row, right = model("eon_floor"), model("eon_approx").brdf
+    wo, wi, _, r = pairs(2000, seed=15)
+    assert np.array_equal(row.brdf(wo, wi, [0.1, 0.5, 1.0], r), right(wo, wi, [0.1, 0.5, 1.0], r))
+    assert not row.brdf(wo, wi, 0.0, r).any()
+    assert (row.brdf(wo, wi, 0.05, r) >= right(wo, wi, 0.05, r)).all()
+    assert (row.brdf(wo, wi, 0.05, r) / right(wo, wi, 0.05, r)).max() > 1.02
 
 
 def test_qon_tinted_twice_is_right_where_it_is_white():

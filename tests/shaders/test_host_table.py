@@ -27,6 +27,8 @@ VERBS = {
     "plane": (None, SIDE),
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
     "pairs": ("diffuse", None, None, None, None),
+    "sample": (None, None, None),
+    "density": (None, None, None),
 }
 ENGINES = [row for row in hosts.HOSTS if row.module]
 
@@ -59,6 +61,7 @@ def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
     items = import_module("mxeon.conformance.run.plan")
     monkeypatch.setattr(items, "CHECKS", checks)
     monkeypatch.setattr(items, "subjects", lambda library: SUBJECTS[2:])
+    monkeypatch.setattr(items, "BSDFS", ())
     run = check([examples_folder() / "clay.mtlx"], ["toy"], workers=0)
     assert [each.device for each in run.hosts] == ["paper"]
     results = {each.check: each for each in run.results if each.host == "toy"}

@@ -16,7 +16,7 @@ from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import fragment
 from tests.support.tolerances import SUMMED_DIRECTIONS, TWIN_ALBEDO, TWIN_VALUE
 
-HOSTS = ("gl", "webgl", "vulkan", "slang")
+HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang")
 COUNT = 20_000
 PAIR = np.array([[0.6, 0.0, 0.8]])
 

@@ -16,6 +16,7 @@ BABYLON = tuple(
     for material in ("PBRMaterial E_OREN_NAYAR", "OpenPBRMaterial")
     for engine in ("WebGL2", "WebGPU")
 )
+WEBGL_LOBE = "WebGLPathTracer, diffuseEval"
 RENDERERS = {
     "cycles": "this Blender",
     "three": "this three.js",
@@ -24,7 +25,7 @@ RENDERERS = {
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
 BURLEY = tuple(f"PBRMaterial BURLEY, {engine}" for engine in ("WebGL2", "WebGPU"))
-HARDWARE = ("webgl", "vulkan", "slang")  # hosts whose text comes from that of GLSL
+HARDWARE = ("webgl", "vulkan", "wgsl", "slang")  # hosts whose text comes from that of GLSL
 CONTY_KULLA, ZELTNER = (f"sheen_bsdf, mode {mode}" for mode in ("conty_kulla", "zeltner"))
 DIELECTRIC, SCHLICK = (
     f"{node}_bsdf, scatter_mode R" for node in ("dielectric", "generalized_schlick")
@@ -118,7 +119,7 @@ ISSUES = (
         "genglsl_clamped_dot",
         "gl",
         (("value", f"{NODE} true"), ("albedo", f"{NODE} true"), ("lobe", "open_pbr_surface")),
-        ("webgl", "vulkan", "slang", "source"),
+        ("webgl", "vulkan", "wgsl", "slang", "source"),
         (
             ("flag", f"{NODE} true"),
             ("flag", f"{NODE} false"),
@@ -129,13 +130,13 @@ ISSUES = (
         "genglsl_qon_albedo_fit",
         "gl",
         (("environment", f"{NODE} false"),),
-        ("webgl", "vulkan", "slang"),
+        ("webgl", "vulkan", "wgsl", "slang"),
     ),
     Issue(
         "genglsl_albedo_acos",
         "gl",
         (("environment", f"{NODE} true"),),
-        ("webgl", "vulkan", "slang"),
+        ("webgl", "vulkan", "wgsl", "slang"),
     ),
     Issue(
         "genosl_dropped_flag",
@@ -191,6 +192,18 @@ ISSUES = (
         "babylon",
         (("environment", BABYLON[0]), ("environment", BABYLON[3])),
         implied=tuple(("environment", subject) for subject in (*BABYLON[1:3], *BURLEY)),
+        library=OWN,
+    ),
+    Issue(
+        "pathtracer_webgl_retro",
+        "three-gpu-pathtracer",
+        tuple((check, f"{WEBGL_LOBE}, shorter wh") for check in ("value", "reciprocity")),
+        library=OWN,
+    ),
+    Issue(
+        "pathtracer_webgl_nan",
+        "three-gpu-pathtracer",
+        tuple((check, WEBGL_LOBE) for check in ("black", "value", "reciprocity")),
         library=OWN,
     ),
     Issue(

@@ -11,14 +11,13 @@ import numpy as np
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.checks.bsdfs import BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe
-from mxeon.conformance.checks.special import outside_directions, special_directions
+from mxeon.conformance.checks.special import LEAST_TURNED, outside_directions, special_directions
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
 PAIRS = 1 << 13
 FEW = 1 << 11
 ALBEDOS = 1 << 8  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
-LEAST_TURNED = 0.1  # roughness in turned frames
 LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth
 

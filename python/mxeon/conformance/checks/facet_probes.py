@@ -25,6 +25,7 @@ from mxeon.shaders.facets import facet_points
 from mxeon.shaders.hosts import host_row
 from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions
 
+SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
 OWN_PAIRS = 1 << 13  # random ones: a renderer's own function is called for each
 
 
@@ -77,7 +78,8 @@ class FacetPairProbe(FacetProbe):
         rng, subject = np.random.default_rng(SEED), self.subject
         random = directions(rng, OWN_PAIRS), directions(rng, OWN_PAIRS)
         special = Batch(*special_directions(rng), {})
-        special = special.where(special.wo[:, 2] > 0.0)
+        half = np.linalg.norm(special.wo + special.wi, axis=1)
+        special = special.where((special.wo[:, 2] > 0.0) & (half >= SHORTEST))
         outside = Batch(*outside_directions(rng), {})
         return (
             Batch(*random, subject.random_inputs(rng, OWN_PAIRS)),

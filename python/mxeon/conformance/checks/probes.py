@@ -34,6 +34,7 @@ from mxeon.conformance.checks.special import (
     turned_directions,
     turned_frames,
 )
+from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.hosts.base import Host
@@ -249,6 +250,13 @@ class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
     subject: Subject
+
+    @property
+    def claims(self) -> dict[str, str]:
+        """Titles of the model that the node claims, and of the form of it that is judged."""
+        claimed, *_ = self.subject.forms or (self.subject.model,)
+        names = {"claimed": claimed, "model": self.subject.model}
+        return {key: reference.model(name).title for key, name in names.items()}
 
     def _picture(self, batch: Batch) -> Array:
         scene, inputs = scene_of(batch), batch.inputs

@@ -11,10 +11,9 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
-from mxeon.conformance.checks.bsdf_probes import LEAST_TURNED
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
-from mxeon.conformance.checks.special import TURNED
+from mxeon.conformance.checks.special import LEAST_TURNED, TURNED
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
@@ -252,6 +251,7 @@ BSDF_INTEGRAL = Tolerance(
     absolute,
     "the quadrature's own error on the equations, measured",
 )
+SUM_OF_DIRECTIONS = 5e-3  # error of a sum over 256 directions of an environment, to be measured
 LEAST_ALBEDO = 0.4  # of GGX at unit Fresnel: 0.44 at alpha 1 and grazing
 MICROFACET_FIT = 4e-3  # largest error of a microfacet lobe's albedo, made of several fits
 MICROFACET_VALUE = Tolerance(
@@ -329,10 +329,11 @@ CHI_SQUARE = Tolerance(
     "a right sampler exceeds 5 standard deviations once in 3.5 million times",
 )
 OWN_DENSITY = Tolerance(
-    rounded_up(64 * 2.0**3 * ROUNDING),
+    rounded_up(48 * 2.0**3 * ROUNDING),
     "1/sr, relative above 1",
     scaled,
-    "to be derived",
+    "48 roundings of float32, 2^-24 each, as of any density; the differences in the transformed "
+    "direction, whose fourth power it has, lose up to three bits; rounded up",
 )
 
 # By kind of probe: those of a value, and of an albedo.

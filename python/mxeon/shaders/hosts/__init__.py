@@ -61,6 +61,7 @@ HOSTS = (
     ),
     Row("webgl", "essl", "mxeon.shaders.hosts.webgl", "pairs", scenes=(SIDE, BACK, FURNACE)),
     Row("vulkan", "vulkan", "mxeon.shaders.hosts.vulkan", "pairs"),
+    Row("wgsl", "wgsl", "mxeon.shaders.hosts.wgsl", "pairs"),
     Row("slang", "slang", "mxeon.shaders.hosts.slang", "pairs"),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row(
@@ -80,11 +81,6 @@ HOSTS = (
     Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
-    Row(
-        "wgsl",
-        "wgsl",
-        needs="MaterialX's WGSL in place of the GLSL that it writes, which WebGPU does not take",
-    ),
 )
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -111,6 +111,10 @@ DIALECTS = {
         vertex="#version 450\nlayout (location = 0) " + VERTEX,
     ),
 }
+DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # its textures are separate already
+
+# How MaterialX's text for WGSL, which has no booleans in memory, makes one of an integer.
+BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -168,6 +172,9 @@ def bsdf_call(
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     arguments[ASKED] = ("boolean", output == "throughput")
     ports = {port.name: port for port in shader.inputs}
+    for name in BOOLEAN.findall(shader.stages["pixel"]):
+        if name in ports:
+            ports[name] = replace(ports[name], type="boolean")
     for name in names:
         arguments[name] = _argument(name, ports, inputs)
     value = f"{ASKED} ? {result}.throughput : {result}.response"
@@ -208,7 +215,8 @@ def bsdf_evaluation(
     body = ["vec3 P = vec3(0.0);", call.statements, f"{pixel} = vec4({call.value}, 1.0);"]
     head = f"{version}\n{dialect.prelude}{RENAME}"
     main, texels = _main(dialect, call.arguments, body)
-    return f"{head}{text}#undef main\n{main}", texels
+    macros = "".join(f"#undef {name}\n" for name in ["main", *BOOLEAN.findall(text)])
+    return f"{head}{text}{macros}{main}", texels
 
 
 def function_evaluation(

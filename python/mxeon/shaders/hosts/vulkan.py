@@ -15,7 +15,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -44,7 +44,7 @@ BLOCK = {"buffer": {"type": "uniform"}}
 # Bindings of a generated text.
 DECLARATION = re.compile(
     r"^layout \((?:std140, )?binding=(?P<number>\d+)\) uniform "
-    r"(?:sampler2D (?P<texture>\w+);|\w+\s*\{(?P<block>[^}]*)\})",
+    r"(?:(?P<kind>sampler2D|texture2D|sampler) (?P<name>\w+);|\w+\s*\{(?P<block>[^}]*)\})",
     re.MULTILINE,
 )
 
@@ -74,22 +74,24 @@ class Host(base.Host):
 
     name = "vulkan"
     target = "vulkan"
+    path: ClassVar[str] = "Vulkan"  # of a text to the device
+    programs: ClassVar[tuple[str, ...]] = (COMPILER[0], REMOVER[0])
 
     def __init__(self) -> None:
         if wgpu is None:
-            raise NotRun("vulkan: wgpu is not installed; pip install 'mxeon[vulkan]'")
-        for program in (COMPILER[0], REMOVER[0]):
+            raise NotRun(f"{self.name}: wgpu is not installed; pip install 'mxeon[vulkan]'")
+        for program in self.programs:
             if shutil.which(program) is None:
                 raise NotRun(
-                    f"vulkan: no program {program!r}; on Debian: apt-get install glslang-tools"
+                    f"{self.name}: no program {program!r}; on Debian: apt-get install glslang-tools"
                 )
-        self._adapter = _adapter()
+        self._adapter = self._find_adapter()
         self._device = self._adapter.request_device_sync()
 
     def identity(self) -> Identity:
         """Version and device as the driver names them."""
         info = self._adapter.info
-        version = f"Vulkan, {info['description']}; wgpu {wgpu.__version__}"
+        version = f"{self.path}, {info['description']}; wgpu {wgpu.__version__}"
         return Identity(self.name, version, info["device"])
 
     def evaluate(
@@ -115,6 +117,14 @@ class Host(base.Host):
             source, function, parameters, arguments, self.target
         )
         return self._evaluate(pixel, texels)
+
+    def _find_adapter(self) -> Any:
+        for adapter in wgpu.gpu.enumerate_adapters_sync():
+            if adapter.info["backend_type"] == "Vulkan":
+                return adapter
+        raise NotRun(
+            f"{self.name}: no Vulkan device; on Debian: apt-get install mesa-vulkan-drivers"
+        )
 
     def close(self) -> None:
         """Release the device."""
@@ -159,12 +169,11 @@ class Host(base.Host):
         return np.frombuffer(frame, dtype=np.float32).reshape(-1, 4)[:, :3]
 
     def _pipeline(self, pixel: str, layouts: Sequence[Any]) -> Any:
-        vertex = fragment.DIALECTS[self.target].vertex
         position = {"format": "float32x3", "offset": 0, "shader_location": 0}
         return self._device.create_render_pipeline(
             layout=self._device.create_pipeline_layout(bind_group_layouts=layouts),
             vertex={
-                **self._stage("vert", vertex),
+                **self._stage("vert", self._vertex(pixel)),
                 "buffers": [{"array_stride": 12, "attributes": [position]}],
             },
             fragment={**self._stage("frag", pixel), "targets": [{"format": FLOATS[4]}]},
@@ -173,22 +182,39 @@ class Host(base.Host):
 
     def _stage(self, stage: str, text: str) -> dict[str, Any]:
         """A stage, "vert" or "frag", of a pipeline."""
-        code = _spirv(stage, text)
+        code = self._code(stage, text)
         try:
-            module = self._device.create_shader_module(code=code)
+            module = self._device.create_shader_module(label=stage, code=code)
         except wgpu.GPUValidationError as error:
-            raise ShaderError(f"vulkan: {str(error).strip()}") from None
+            raise ShaderError(f"{self.name}: {str(error).strip()}") from None
         return {"module": module, "entry_point": "main"}
+
+    def _vertex(self, pixel: str) -> str:
+        """The vertex stage before a pixel stage."""
+        return fragment.DIALECTS[self.target].vertex
+
+    def _code(self, stage: str, text: str) -> bytes | str:
+        """What wgpu is given for a stage."""
+        return _spirv(stage, text)
 
     def _generated(self, text: str, textures: Mapping[str, NDArray[Any]]) -> Bindings:
         """Bindings that generated text declares: textures, white ones unless given, and blocks."""
         halves = {name: texels.astype(np.float16) for name, texels in textures.items()}
         return {
-            int(match["number"]): (FILTERED, self._texture(halves.get(match["texture"], WHITE)))
-            if match["texture"]
-            else (BLOCK, self._block(match["block"]))
+            int(match["number"]): self._binding(match, halves)
             for match in DECLARATION.finditer(text)
         }
+
+    def _binding(
+        self, declaration: re.Match[str], textures: Mapping[str, NDArray[Any]]
+    ) -> tuple[dict[str, Any], Any]:
+        """Kind and resource of a declaration; a separate texture's name ends in _texture."""
+        if declaration["block"] is not None:
+            return BLOCK, self._block(declaration["block"])
+        if declaration["kind"] == "sampler":
+            return SAMPLER, self._device.create_sampler()
+        texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE)
+        return FILTERED, self._texture(texels)
 
     def _group(self, bindings: Bindings) -> tuple[Any, Any]:
         """Layout and group of one set of bindings."""
@@ -219,13 +245,6 @@ class Host(base.Host):
         """A uniform block with the values of UNIFORMS in it, and 0 elsewhere."""
         data = _std140(members)
         return self._device.create_buffer_with_data(data=data, usage="UNIFORM")
-
-
-def _adapter() -> Any:
-    for adapter in wgpu.gpu.enumerate_adapters_sync():
-        if adapter.info["backend_type"] == "Vulkan":
-            return adapter
-    raise NotRun("vulkan: no Vulkan device; on Debian: apt-get install mesa-vulkan-drivers")
 
 
 @lru_cache(maxsize=8)  # a check evaluates one shader many times
