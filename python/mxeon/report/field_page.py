@@ -105,13 +105,13 @@ def where(cell: Result) -> dict[str, str]:
 
 
 def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
-    """Portraits of a scene, all in one scale, and their difference maps, each in its own."""
+    """Portraits of a scene, and their difference maps, in which the tolerance is dark."""
     for row, entry in enumerate(entries):
         portrait = entry.portraits.get(scene)
         if portrait is None:
             continue
         image, model = read_image(portrait.image), read_image(portrait.reference)
         apart: Any = difference(image, model)
-        scale = difference_scale(apart)
+        scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
         shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
         yield Frame(row, picture_uri(shown), picture_uri(apart), scale, portrait.difference)
