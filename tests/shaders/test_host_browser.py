@@ -23,7 +23,7 @@ from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
 from tests.support.tolerances import PRINTED
 
-QUARTIC = "EON with the paper's quartic of its albedo"
+QUARTIC = "EON with the paper's quartic"
 # The nodes whose pictures are looked at: one for each engine of a host.
 TITLES = {
     "three": ("MeshPhysicalMaterial, WebGLRenderer", "MeshPhysicalMaterial, WebGPURenderer"),

@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
+from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, OwnNode, Subject, Surface
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.errors import InputError
 from mxeon.models import table as reference
@@ -175,7 +175,7 @@ def _identity(report: Report, host: str) -> tuple[str, str]:
 
 def claim(subject: Subject | Surface) -> str:
     """Title of the model that a node claims: of its first published form, if there are several."""
-    forms = subject.forms if isinstance(subject, Subject) else ()
+    forms = subject.forms if isinstance(subject, OwnNode) else ()
     return reference.model((*forms, subject.model)[0]).title
 
 

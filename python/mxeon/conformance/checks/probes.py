@@ -25,7 +25,7 @@ from mxeon.conformance.checks.batch import (
     rounded,
 )
 from mxeon.conformance.checks.bsdfs import BsdfSubject
-from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.checks.nodes import OwnNode, Subject, Surface
 from mxeon.conformance.checks.special import (
     diffuse_edges,
     node_inputs,
@@ -153,7 +153,7 @@ class PictureProbe:
     size: ClassVar[int] = PICTURE_SIZE
 
     host: Host
-    subject: Subject | Surface
+    subject: Subject | Surface | BsdfSubject
     library: str
 
     @cached_property
@@ -249,7 +249,7 @@ class PlaneProbe(PictureProbe):
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
-    subject: Subject
+    subject: OwnNode
 
     @property
     def claims(self) -> dict[str, str]:
