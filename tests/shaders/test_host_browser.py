@@ -38,7 +38,7 @@ export async function draw({ task }) {
 """
 
 of_each_issue = pytest.mark.parametrize(
-    "issue", [each for each in ISSUES if each.library == OWN], ids=lambda each: each.page
+    "issue", [each for each in ISSUES if each.host in TITLES], ids=lambda each: each.page
 )
 
 
