@@ -73,8 +73,9 @@ def dielectric_error(coefficients):
     """Largest absolute error of F_ss on a finer set of points."""
     worst = mp.zero
     for t in reciprocals(4 * COUNT + 1):
-        N = 
-        D = mp.polyval((*coefficients[:ABOVE:-1], 1), t)
+        powers = [t**k for k in range(ABOVE + 1)]
+        N = mp.fdot(coefficients[: ABOVE + 1], powers)
+        D = 1 + mp.fdot(coefficients[ABOVE + 1 :], powers[1 : BELOW + 1])
         worst = max(worst, abs(1 - dielectric_average(1 / t) - t * N / D))
     return float(worst)
 
