@@ -15,8 +15,8 @@ from mxeon.conformance.checks.probes import picture_pairs
 from mxeon.conformance.checks.tolerances import (
     MICROFACET_VALUE,
     ROUNDING,
-    SUM_OF_DIRECTIONS,
     Tolerance,
+    sum_of,
 )
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.errors import NotRun, OutsideModel, ShaderError
@@ -52,7 +52,7 @@ TEXTURED = Tolerance(
 )
 
 FITTED = Tolerance(
-    MICROFACET_VALUE.value + SUM_OF_DIRECTIONS,
+    MICROFACET_VALUE.value + sum_of(256),
     "pi f cos, relative above 1, times cos(theta_o)",
     absolute,
     "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "
