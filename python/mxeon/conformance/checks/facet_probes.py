@@ -49,7 +49,7 @@ class FacetProbe(ExactProbe):
         """Pictures of an environment, (N, 3)."""
         return self._picture(batch)
 
-    def _points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> Pairs:
         return facet_pairs(scene)
 
     def _picture(self, batch: Batch) -> Array:
@@ -64,6 +64,13 @@ class FacetProbe(ExactProbe):
         image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
         values = image[facet_points(scene.size).mask]
         return values[facet_pairs(scene)[2]].astype(np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class CoarseFacetProbe(FacetProbe):
+    """A node on the polyhedron, by a renderer that keeps light in a few bits."""
+
+    kind: ClassVar[str] = "coarse facets"
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +125,7 @@ PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "native": NativeProbe,
     "exact": ExactProbe,
     "facets": FacetProbe,
+    "coarse facets": CoarseFacetProbe,
     "facet pairs": FacetPairProbe,
 }
 

@@ -15,15 +15,18 @@ from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
+    isotropic,
     offset,
     pass_all,
+    rougher,
     scale,
     scale_cosine,
     take_response,
     with_inputs,
 )
+from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.measures import Measurement, Metric
-from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
@@ -43,9 +46,10 @@ SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
 
 
-def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of the other BSDF nodes."""
-    return dict.fromkeys(tolerances.BSDF_KINDS, tolerance)
+def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
+    kinds = tolerances.BSDF_KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    return dict.fromkeys(kinds, tolerance)
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,8 @@ class Check:
         Explanation of a failure.
     open : bool
         Whether an error differs, and does not fail, where a permitted function explains all values.
+    adapt : callable (tolerance, probe) -> Tolerance
+        The tolerance on the probe's host, by the errors of its engine's own functions.
     """
 
     key: str
@@ -82,6 +88,7 @@ class Check:
     applies: Callable[[Any, str], bool] = lambda subject, host: True
     diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
     open: bool = False
+    adapt: Callable[[Tolerance, Any], Tolerance] = lambda tolerance, probe: tolerance
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -96,12 +103,12 @@ def is_lobe(subject: Any, host: str) -> bool:
 
 def is_alone(subject: Any, host: str) -> bool:
     """Whether no other lobe lies beside the diffuse one."""
-    return not (isinstance(subject, Subject) and subject.others)
+    return not (isinstance(subject, OwnNode) and subject.others)
 
 
 def is_sampled(subject: Any, host: str) -> bool:
     """Whether a renderer's own sampling of the subject can be called."""
-    return isinstance(subject, Subject) and subject.sampled
+    return isinstance(subject, OwnNode) and subject.sampled
 
 
 def has_environment(subject: Any, host: str) -> bool:
@@ -119,6 +126,7 @@ CHECKS = (
         gray,
         tolerances.VALUES,
         open=True,
+        adapt=on_engine,
     ),
     Check(
         "lobe",
@@ -173,9 +181,10 @@ CHECKS = (
             "pairs": tolerances.ZERO,
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
-            **of_bsdfs(tolerances.ZERO),
+            **of_bsdfs(tolerances.ZERO, pictures=True),
             "exact": tolerances.ZERO,
             "facets": tolerances.ZERO,
+            "coarse facets": tolerances.ZERO,
             "facet pairs": tolerances.ZERO,
         },
         is_alone,
@@ -286,9 +295,10 @@ CHECKS = (
             "pairs": tolerances.count_of("inputs"),
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
-            **of_bsdfs(tolerances.count_of("inputs")),
+            **of_bsdfs(tolerances.count_of("inputs"), pictures=True),
             "exact": tolerances.count_of("inputs"),
             "facets": tolerances.count_of("inputs"),
+            "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
         },
         diagnose=wiring.of_inputs,
@@ -330,7 +340,7 @@ CHECKS = (
         bsdf_measures.layer,
         "all light passes",
         pass_all,
-        of_bsdfs(tolerances.LAYER),
+        tolerances.LAYER_KINDS,
         diagnose=diagnosis.of_throughput,
     ),
     Check(
@@ -366,8 +376,8 @@ CHECKS = (
         "Two lights of one view give values in the ratio of D F G2.",
         MICROFACETS,
         bsdf_measures.shape,
-        "every channel gets the mean color",
-        gray,
+        "the roughness is a tenth larger",
+        rougher,
         {"microfacet pairs": tolerances.SHAPE},
         open=True,
     ),
@@ -379,6 +389,7 @@ CHECKS = (
         "the flag is dropped",
         with_inputs(retroreflective=False),
         {"microfacet pairs": tolerances.BSDF_VALUE},
+        diagnose=wiring.of_retroreflection,
     ),
     Check(
         "anisotropy",
@@ -388,5 +399,16 @@ CHECKS = (
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
         {"microfacet pairs": tolerances.ANISOTROPY},
+        diagnose=wiring.of_tangent,
+    ),
+    Check(
+        "anisotropic_albedo",
+        "The environment branch of an anisotropic lobe gives the integral of its values.",
+        MICROFACETS,
+        bsdf_measures.stretched,
+        "the roughness is the same in both directions",
+        isotropic,
+        {"microfacet pairs": tolerances.ANISOTROPIC_ALBEDO},
+        diagnose=wiring.of_stretched,
     ),
 )

@@ -13,7 +13,7 @@ from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
-from mxeon.conformance.checks.special import LEAST_TURNED, TURNED
+from mxeon.conformance.checks.special import LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
@@ -105,6 +105,18 @@ def direction_of(sine_error: float) -> Tolerance:
     )
 
 
+def power_of(power_error: float, exponent: float) -> Tolerance:
+    """Tolerance of values that are powers, on an engine whose own power is off by so much."""
+    return Tolerance(
+        rounded_up((32 + exponent) * ROUNDING + power_error),
+        SCALED,
+        scaled,
+        f"32 roundings of float32, 2^-24 each, and one to the power of {exponent:.0f}, of the value or "
+        f"of 1; and the error of the engine's own power in it, {power_error:.1e}; rounded up",
+    )
+
+
+SCALED = "pi f cos, relative above 1"
 VALUE = Tolerance(
     rounded_up(14 * 2.0 * ROUNDING + 2 * 0.5 * LOSS_FIT),
     "pi f cos",
@@ -218,12 +230,19 @@ CYCLES_NOISE = Tolerance(
     "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
 )
 
-SCALED = "pi f cos, relative above 1"
 BSDF_VALUE = Tolerance(
-    rounded_up(32 * ROUNDING),
+    rounded_up(48 * ROUNDING),
     SCALED,
     scaled,
-    "32 roundings of float32, 2^-24 each, of the value or of 1; rounded up",
+    "48 roundings of float32, 2^-24 each, of the value or of 1: an inverse fourth power takes the 8 of "
+    "a length four times, and 16 beside them; rounded up",
+)
+CONTY_KULLA_VALUE = Tolerance(
+    rounded_up((32 + 4 * 0.5 / LEAST_SHEEN) * ROUNDING),
+    SCALED,
+    scaled,
+    "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
+    "the inverse of the roughness, at least 0.01; rounded up",
 )
 BSDF_ALBEDO = Tolerance(
     rounded_up(32 * ROUNDING),
@@ -263,11 +282,17 @@ MICROFACET_VALUE = Tolerance(
 MICROFACET_ALBEDO = Tolerance(
     MICROFACET_FIT, "albedo", absolute, "three fits, whose errors come to 4e-3 at most"
 )
+ANISOTROPIC_ALBEDO = Tolerance(
+    MICROFACET_FIT + SUM_OF_DIRECTIONS,
+    "albedo",
+    scaled,
+    "the fits' 4e-3, and the error of a sum over the directions of an environment",
+)
 SHAPE = Tolerance(
-    rounded_up(64 * ROUNDING),
+    rounded_up(2 * 64 * ROUNDING),
     "relative",
     absolute,
-    "two values of 32 roundings of float32 each, 2^-24; rounded up",
+    "two values of 64 roundings of float32 each, 2^-24; rounded up",
 )
 ANISOTROPY = Tolerance(
     rounded_up(4 * 2 * ROUNDING / (LEAST_COSINE * LEAST_ALPHA)),
@@ -275,6 +300,12 @@ ANISOTROPY = Tolerance(
     scaled,
     "two roundings of a turned direction, 2^-24 each, over the least cosine, 0.1, and the least "
     "alpha, 0.05, times the fourth power of the distribution; rounded up",
+)
+MICROFACET_LAYER = Tolerance(
+    MICROFACET_FIT + BSDF_INTEGRAL.value,
+    "light",
+    absolute,
+    "the fits' 4e-3, and the quadrature's error",
 )
 LAYER = Tolerance(
     ALBEDO_FIT + BSDF_INTEGRAL.value,
@@ -307,6 +338,13 @@ FACETS = Tolerance(
     "the normal of a facet: three float32 vertices, each off by sqrt(3) 2^-24, over the narrowest edge, "
     "0.0245, twice for the edge's two ends; times 8, the largest slope of the diffuse models; rounded up",
 )
+COARSE_FACETS = Tolerance(
+    rounded_up(2.0**-6 + 2.4e-3),
+    "pi f cos or albedo",
+    absolute,
+    "EEVEE keeps light in 32 bits for three channels, of which blue has the fewest: five below the "
+    "leading one, cut off, of numbers up to 1; and 2.4e-3 for its packed normals, measured; rounded up",
+)
 FACET_NOISE = Tolerance(
     rounded_up(4.0 * 0.0716 / math.sqrt(FACET_PIXELS)),
     "mean albedo",
@@ -336,16 +374,39 @@ OWN_DENSITY = Tolerance(
     "direction, whose fourth power it has, lose up to three bits; rounded up",
 )
 
+# Pictures of the other BSDF nodes of pbrlib. A ray's point is off by an angle, by which the logarithm
+# of a lobe changes at most LOBE_SLOPE times as fast: twice 1 / alpha of a distribution, whose alpha is
+# at least 0.4, and 3 for Fresnel's curve, shadowing and the cosine.
+LOBE_SLOPE = 2.0 / 0.4 + 3.0
+BSDF_RAY = Tolerance(
+    rounded_up(LOBE_SLOPE * CYCLES_RAY.value),
+    SCALED,
+    scaled,
+    "8 times the error of a ray in a picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PLANE = Tolerance(
+    rounded_up(LOBE_SLOPE * TESTRENDER.value),
+    SCALED,
+    scaled,
+    "8 times the error of a plane's picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PICTURE_KINDS = ("bsdf pictures", "microfacet pictures", "bsdf planes", "microfacet planes")
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,
     "pictures": CYCLES_RAY,
     "planes": TESTRENDER,
     "closed pairs": BSDF_VALUE,
-    "fitted pairs": BSDF_VALUE,
+    "fitted pairs": CONTY_KULLA_VALUE,
     "microfacet pairs": MICROFACET_VALUE,
+    "bsdf pictures": BSDF_RAY,
+    "microfacet pictures": BSDF_RAY,
+    "bsdf planes": BSDF_PLANE,
+    "microfacet planes": BSDF_PLANE,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
 }
 LOBES = {
@@ -353,6 +414,7 @@ LOBES = {
     "plane lobes": TESTRENDER,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
 }
 ALBEDOS = {
@@ -362,8 +424,13 @@ ALBEDOS = {
     "closed pairs": BSDF_ALBEDO,
     "fitted pairs": FITTED_ALBEDO,
     "microfacet pairs": MICROFACET_ALBEDO,
+    "bsdf pictures": CYCLES_NOISE,
+    "microfacet pictures": CYCLES_NOISE,
+    "bsdf planes": TESTRENDER_NOISE,
+    "microfacet planes": TESTRENDER_NOISE,
     "exact": EXACT_SURROUNDINGS,
     "facets": FACET_NOISE,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_NOISE,
 }
 THROUGHPUTS = {
@@ -377,4 +444,5 @@ FRAMES = {
     "fitted pairs": BSDF_FRAME,
     "microfacet pairs": BSDF_FRAME,
 }
+LAYER_KINDS = {"closed pairs": LAYER, "fitted pairs": LAYER, "microfacet pairs": MICROFACET_LAYER}
 BSDF_KINDS = ("closed pairs", "fitted pairs", "microfacet pairs")
