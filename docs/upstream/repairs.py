@@ -95,6 +95,26 @@ REPAIRS = (
     ),
 )
 
+PATHTRACER, SHADER = "three-gpu-pathtracer", "src/shader"
+PATHTRACER_REPAIRS = (
+    Repair(
+        "pathtracer_webgl_retro",
+        PATHTRACER,
+        f"{SHADER}/bsdf/bsdf_functions.glsl.js",
+        23,
+        "float rr = 0.5 + 2.0 * surf.roughness * fl * fl;",
+        "float rr = 2.0 * surf.roughness * dot( wi, wh ) * dot( wi, wh );",
+    ),
+    Repair(
+        "pathtracer_webgl_nan",
+        PATHTRACER,
+        f"{SHADER}/common/fresnel_functions.glsl.js",
+        36,
+        "float sinThetaISq = 1.0f - cosThetaI * cosThetaI;",
+        "float sinThetaISq = max( 0.0, 1.0f - cosThetaI * cosThetaI );",
+    ),
+)
+
 
 def copied(package: str, folder: Path) -> Path:
     """A node_modules in a folder whose package is a tree of links to the installed one."""

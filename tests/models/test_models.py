@@ -327,6 +327,15 @@ def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     assert np.pi * np.abs(row.brdf(wo, wi, rho, r) - eon_brdf(wo, wi, rho, r)).max() > 1e-2
 
 
+def test_eon_floor_is_the_quartic_but_for_dark_reflectances():
+    row, right = model("eon_floor"), model("eon_approx").brdf
+    wo, wi, _, r = pairs(2000, seed=15)
+    assert np.array_equal(row.brdf(wo, wi, [0.1, 0.5, 1.0], r), right(wo, wi, [0.1, 0.5, 1.0], r))
+    assert not row.brdf(wo, wi, 0.0, r).any()
+    assert (row.brdf(wo, wi, 0.05, r) >= right(wo, wi, 0.05, r)).all()
+    assert (row.brdf(wo, wi, 0.05, r) / right(wo, wi, 0.05, r)).max() > 1.02
+
+
 def test_qon_tinted_twice_is_right_where_it_is_white():
     row = model("qon_tinted_twice")
     wo, wi, rho, sigma = pairs(2000, seed=14)

@@ -27,6 +27,8 @@ VERBS = {
     "plane": (None, SIDE),
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
     "pairs": ("diffuse", None, None, None, None),
+    "sample": (None, None, None),
+    "density": (None, None, None),
 }
 ENGINES = [row for row in hosts.HOSTS if row.module]
 
@@ -111,6 +113,7 @@ def test_a_host_has_the_verb_by_which_checks_ask_it(row):
         "native": "node",
         "exact": "node",
         "facets": "node",
+        "coarse facets": "node",
         "facet pairs": "pairs",
     }
     host = import_module(row.module).Host

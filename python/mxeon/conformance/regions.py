@@ -11,8 +11,10 @@ from mxeon.conformance.checks.batch import Array, Batch
 Mask = NDArray[np.bool_]
 
 COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
+INDICES = {"ior": "an index of refraction", "extinction": "an extinction"}
 LARGEST = 0.6  # share of the pairs that a region may have to be worth its name
 DENSITY = 0.1  # least share of a region's pairs that have to be wrong
+UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds to about 1
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
@@ -52,6 +54,7 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with both directions on the horizon", (mu_o == 0.0) & (mu_i == 0.0)
     yield "in exact retro-reflection (L = V)", _equal(wo, wi)
     yield "in the mirror direction", _equal(wo * [-1.0, -1.0, 1.0], wi)
+    yield "with the half vector along the normal", _upright(wo, wi)
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield f"with the {name} along the normal", mu >= 1.0
         yield f"with the {name}'s cosine above 0.99", mu > 0.99
@@ -93,6 +96,9 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with the largest roughness", roughness >= 0.999999 * roughness.max()
     yield "with a roughness above 1", roughness > 1.0
     yield "with a roughness above 0", roughness > 0.0
+    for name, words in INDICES.items():
+        index = np.reshape(batch.inputs.get(name, np.ones(count)), (count, -1))
+        yield f"with {words} of 0", _any(index == 0.0)
     yield "with a white color", (color == 1.0).all(axis=1)
     yield "with a gray color", (color == color[:, :1]).all(axis=1)
     yield "with a color channel at 0", _any(color == 0.0)
@@ -104,6 +110,12 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
 
 def _equal(one: Array, other: Array) -> Mask:
     return np.asarray((one == other).all(axis=1))
+
+
+def _upright(wo: Array, wi: Array) -> Mask:
+    """Mask of the pairs whose half vector is the normal, but for some roundings of float32."""
+    half = wo + wi
+    return np.asarray(np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2])
 
 
 def _any(channels: Mask) -> Mask:

@@ -38,6 +38,7 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
     -----
     With (wi . wh)^2 = (1 + wo . wi) / 2 there is no half vector to normalize, and opposite
     directions at grazing need no case of their own.
+    Accuracy: error below 66 / roughness times 2^-53 of f + 1 / pi.
 
     References
     ----------
@@ -81,7 +82,7 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
     -----
     Form: f is a polynomial in mu_i and cos(phi). The integrals are 2 n! 5! / (n + 6)! for
     mu_i^n (1 - mu_i)^5: 1/21, 1/84, 1/252.
-    Accuracy: relative error below 1e-14.
+    Accuracy: absolute error below 1e-12.
 
     References
     ----------

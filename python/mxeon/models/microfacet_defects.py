@@ -2,7 +2,7 @@
 """Wrong variants of the microfacet nodes that renderers implement, to recognize them by."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from mxeon.models.microfacet_lobe import (
     Curve,
     Lobe,
     Pair,
+    compensation,
     evaluate_lobe,
     missing,
     uncompensated,
@@ -202,4 +203,14 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect("alpha_squared", "roughness squared once more", Lobe(alpha=np.square)),
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
+)
+# Those beside MaterialX's compensation, as one slip in a copy of its shaders gives them.
+FITTED_DEFECTS = tuple(
+    MicrofacetDefect(
+        f"{each.name}_fitted",
+        f"{each.title}, and MaterialX's compensation",
+        replace(each.lobe, factor=_fitted_half),
+    )
+    for each in MICROFACET_DEFECTS
+    if each.lobe.factor is compensation
 )

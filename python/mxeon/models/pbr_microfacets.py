@@ -16,7 +16,11 @@ from mxeon.models.microfacet_albedo import (
     dielectric_albedo_dir,
     generalized_schlick_albedo_dir,
 )
-from mxeon.models.microfacet_defects import MICROFACET_DEFECTS, averaged_channels
+from mxeon.models.microfacet_defects import (
+    FITTED_DEFECTS,
+    MICROFACET_DEFECTS,
+    averaged_channels,
+)
 from mxeon.models.pbr_node import Inputs, PbrNode, Variant
 
 # Forms of the energy compensation, which the text leaves open.
@@ -107,7 +111,7 @@ def _variants(lobe: Lobe) -> tuple[Variant, ...]:
             partial(_defect, each.value, lobe.category),
             permitted=each.name in OPEN,
         )
-        for each in MICROFACET_DEFECTS
+        for each in (*MICROFACET_DEFECTS, *FITTED_DEFECTS)
     )
     return (
         *values,

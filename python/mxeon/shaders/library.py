@@ -27,7 +27,8 @@ TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run wit
 SOURCES = (".mtlx", ".glsl", ".osl")  # endings of the files that a library is made of
 REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
 
-LIBRARIES = ("eonlib", "stock")
+# eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
+LIBRARIES = ("eonlib", "diffuse", "stock")
 PROFILES = ("cycles",)
 
 # Targets of generators; 1.39.5 alone has all.
@@ -95,6 +96,11 @@ def profile_folder(profile: str, library: str = "eonlib") -> Path:
     return source_folder(library) / "profiles" / profile
 
 
+def specular_folder() -> Path:
+    """Folder of eonlib's microfacet and sheen nodes, to be loaded with that of the diffuse ones."""
+    return data_folder() / "profiles" / "specular"
+
+
 def has_profile(library: str, profile: str) -> bool:
     """Whether a library has implementations of its own for a profile."""
     return library != "stock" and profile_folder(profile, library).is_dir()
@@ -116,9 +122,11 @@ def _folders(library: str, profile: str | None) -> list[str]:
     library = library_name(library)
     if profile is not None and profile not in PROFILES:
         raise InputError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
-    folders = (
-        [] if library == "stock" else [eonlib_folder() if library == "eonlib" else Path(library)]
-    )
+    folders = {
+        "eonlib": [eonlib_folder(), specular_folder()],
+        "diffuse": [eonlib_folder()],
+        "stock": [],
+    }.get(library, [Path(library)])
     if profile is not None and has_profile(library, profile):
         folders.insert(0, profile_folder(profile, library))
     return [str(folder) for folder in folders] + list(mx.getDefaultDataLibraryFolders())
@@ -208,7 +216,7 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
         mx.loadLibraries(_folders(library, profile), mx.getDefaultDataSearchPath(), document)
     except (mx.Exception, mx.ExceptionParseError) as error:
         raise InputError(f"library {library}: {error}") from None
-    if library == "eonlib":
+    if library in ("eonlib", "diffuse"):
         assert_ours(document)
     return document
 

@@ -11,14 +11,16 @@ import numpy as np
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.checks.bsdfs import BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe
-from mxeon.conformance.checks.special import outside_directions, special_directions
+from mxeon.conformance.checks.special import LEAST_TURNED, outside_directions, special_directions
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
 PAIRS = 1 << 13
 FEW = 1 << 11
 ALBEDOS = 1 << 8  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
-LEAST_TURNED = 0.1  # roughness in turned frames
+FIT_COSINE = 1e-4  # least cosine of the domain of the fits
+LEAST_COLOR82 = 0.5  # of a lobe whose albedo is asked; see docs/loading.md
+LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth
 
@@ -29,6 +31,8 @@ class BsdfProbe(PairProbe):
 
     kind: ClassVar[str] = "closed pairs"
     diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
+
+    least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
 
     subject: BsdfSubject
 
@@ -53,7 +57,10 @@ class BsdfProbe(PairProbe):
     def cosines(self) -> tuple[Batch, ...]:
         """Directions of view for albedos, which do not depend on `wi`."""
         pairs, special, *_ = self.batches
-        return pairs.first(ALBEDOS), special.first(ALBEDOS)
+        return tuple(
+            batch.where(batch.wo[:, 2] >= self.least_cosine).first(ALBEDOS)
+            for batch in (pairs, special)
+        )
 
     @cached_property
     def edges(self) -> Batch:
@@ -61,9 +68,9 @@ class BsdfProbe(PairProbe):
         rng = np.random.default_rng(SEED)
         wo, wi = self._lit(special_directions(rng))
         inputs = self.subject.special_inputs(rng, len(wo))
-        for name, step in (("roughness", 4), ("ior", 3), ("extinction", 6)):
+        for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
             if name in inputs:
-                inputs[name][::step] = 0.0
+                inputs[name][start::step] = 0.0
         return Batch(wo, wi, inputs)
 
     @cached_property
@@ -132,6 +139,7 @@ class FittedProbe(BsdfProbe):
     """A node whose shader takes its albedo from a fit."""
 
     kind: ClassVar[str] = "fitted pairs"
+    least_cosine: ClassVar[float] = FIT_COSINE
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +147,7 @@ class MicrofacetProbe(BsdfProbe):
     """A node of microfacets, whose values are large near the mirror direction."""
 
     kind: ClassVar[str] = "microfacet pairs"
+    least_cosine: ClassVar[float] = FIT_COSINE
     diagnosed: ClassVar[int] = 1 << 8  # their references take long
 
     @cached_property
@@ -155,6 +164,16 @@ class MicrofacetProbe(BsdfProbe):
     def cosines(self) -> tuple[Batch, ...]:
         """Directions of view for albedos, with simple inputs."""
         return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in super().cosines)
+
+    @cached_property
+    def stretched(self) -> tuple[Batch, Array]:
+        """Views of materials whose roughness has a direction, and the integrals of their values."""
+        rng = np.random.default_rng(SEED)
+        inputs = simple(self.subject.random_inputs(rng, MATERIALS))
+        inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, MATERIALS)))
+        batch = Batch(directions(rng, MATERIALS), directions(rng, MATERIALS), inputs)
+        batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
+        return batch, self.subject.integral(batch)
 
     @cached_property
     def turned(self) -> Batch:
@@ -198,12 +217,14 @@ def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
     The roughness is the same in both directions. The index of a dielectric is at least 1: below it, F
-    has a kink.
+    has a kink. Deep dips at 82 degrees, which turn F negative, are left out.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
     if np.ndim(inputs.get("ior", ())) == 1 and np.size(inputs.get("ior", ())):
         changed["ior"] = np.maximum(inputs["ior"], 1.0)
+    if "color82" in inputs:
+        changed["color82"] = np.maximum(inputs["color82"], LEAST_COLOR82)
     return changed
 
 

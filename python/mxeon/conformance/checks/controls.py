@@ -104,6 +104,26 @@ def offset(probe: Any) -> Altered:
     return Altered(probe, values=lambda batch, values: values + 1e-3)
 
 
+def rougher(probe: Any) -> Altered:
+    """A control whose roughness is a tenth larger."""
+    return Altered(
+        probe,
+        batch=lambda batch: batch.altered(
+            roughness=np.minimum(1.1 * np.asarray(batch.inputs["roughness"]), 1.0)
+        ),
+    )
+
+
+def isotropic(probe: Any) -> Altered:
+    """A control whose roughness is the same in both directions."""
+    return Altered(
+        probe,
+        batch=lambda batch: batch.altered(
+            roughness=np.repeat(np.asarray(batch.inputs["roughness"])[:, :1], 2, axis=1)
+        ),
+    )
+
+
 def drop_changes(probe: Any) -> Altered:
     """A control that drops every change of inputs: the host sees the first batch only."""
     return Altered(probe, batch=lambda batch: probe.few[0])

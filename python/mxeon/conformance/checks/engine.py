@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.batch import SEED
-from mxeon.conformance.checks.bsdfs import LEAST_SHEEN
+from mxeon.conformance.checks.special import LEAST_SHEEN
 from mxeon.conformance.checks.tolerances import Tolerance, power_of
 from mxeon.shaders.hosts.base import Host
 

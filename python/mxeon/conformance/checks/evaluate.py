@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.measures import Measurement, integrated
-from mxeon.conformance.checks.probes import NativeProbe
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control, Curve, Result
 from mxeon.errors import NotRun, ShaderError
-from mxeon.models import table as reference
 from mxeon.shaders.hosts.base import RendererWarning
 
 CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
@@ -74,15 +72,6 @@ def judge_curve(probe: Any) -> tuple[Curve, ...]:
             expected,
         ),
     )
-
-
-def claims(probe: Any) -> dict[str, str]:
-    """The model that a renderer's own node claims, and the form of it that is judged."""
-    if not isinstance(probe, NativeProbe):
-        return {}
-    model = reference.model(probe.subject.model).title
-    forms = probe.subject.forms
-    return {"claimed": reference.model(forms[0]).title if forms else model, "model": model}
 
 
 def judge_measurements(
@@ -155,7 +144,7 @@ def judge_check(check: Check, probe: Any) -> Result:
         "subject": probe.subject.title,
         "host": probe.host.name,
         "library": probe.library,
-        **claims(probe),
+        **getattr(probe, "claims", {}),  # of a renderer's own node
     }
     tolerance = check.adapt(check.tolerances[probe.kind], probe)
     diagnosis = Diagnosis()

@@ -25,6 +25,7 @@ from mxeon.shaders.facets import facet_points
 from mxeon.shaders.hosts import host_row
 from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions
 
+SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
 OWN_PAIRS = 1 << 13  # random ones: a renderer's own function is called for each
 
 
@@ -48,7 +49,7 @@ class FacetProbe(ExactProbe):
         """Pictures of an environment, (N, 3)."""
         return self._picture(batch)
 
-    def _points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> Pairs:
         return facet_pairs(scene)
 
     def _picture(self, batch: Batch) -> Array:
@@ -66,6 +67,13 @@ class FacetProbe(ExactProbe):
 
 
 @dataclass(frozen=True, eq=False)
+class CoarseFacetProbe(FacetProbe):
+    """A node on the polyhedron, by a renderer that keeps light in a few bits."""
+
+    kind: ClassVar[str] = "coarse facets"
+
+
+@dataclass(frozen=True, eq=False)
 class FacetPairProbe(FacetProbe):
     """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
 
@@ -77,7 +85,8 @@ class FacetPairProbe(FacetProbe):
         rng, subject = np.random.default_rng(SEED), self.subject
         random = directions(rng, OWN_PAIRS), directions(rng, OWN_PAIRS)
         special = Batch(*special_directions(rng), {})
-        special = special.where(special.wo[:, 2] > 0.0)
+        half = np.linalg.norm(special.wo + special.wi, axis=1)
+        special = special.where((special.wo[:, 2] > 0.0) & (half >= SHORTEST))
         outside = Batch(*outside_directions(rng), {})
         return (
             Batch(*random, subject.random_inputs(rng, OWN_PAIRS)),
@@ -116,6 +125,7 @@ PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "native": NativeProbe,
     "exact": ExactProbe,
     "facets": FacetProbe,
+    "coarse facets": CoarseFacetProbe,
     "facet pairs": FacetPairProbe,
 }
 

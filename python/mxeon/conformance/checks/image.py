@@ -12,15 +12,25 @@ from numpy.typing import NDArray
 import mxeon
 from mxeon.conformance.checks.measures import absolute
 from mxeon.conformance.checks.probes import picture_pairs
-from mxeon.conformance.checks.tolerances import ROUNDING, Tolerance
+from mxeon.conformance.checks.tolerances import (
+    MICROFACET_VALUE,
+    ROUNDING,
+    SUM_OF_DIRECTIONS,
+    Tolerance,
+)
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.errors import NotRun, OutsideModel, ShaderError
+from mxeon.models.pbrlib import NODES
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
 from mxeon.shaders.hosts import host_row
 from mxeon.shaders.hosts.base import Host
+from mxeon.shaders.nodes import BSDF_INPUTS
 from mxeon.shaders.scene import Scene, sphere
+
+# Nodes whose shaders take an albedo from a fit.
+FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
 
 Pixels: TypeAlias = NDArray[Any]
 Case: TypeAlias = tuple[Scene, Pixels, Pixels]  # with the host's picture and the reference's
@@ -39,6 +49,14 @@ TEXTURED = Tolerance(
     absolute,
     "a filter's weights have 8 bits after the point, the least OpenGL asks for, and texels differ "
     "by 1 at most",
+)
+
+FITTED = Tolerance(
+    MICROFACET_VALUE.value + SUM_OF_DIRECTIONS,
+    "pi f cos, relative above 1, times cos(theta_o)",
+    absolute,
+    "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "
+    "environment",
 )
 
 MATCH = "The picture is the reference's in every pixel."
@@ -108,6 +126,7 @@ def _judge_material(
         return Result("picture", MATCH, **fields, verdict=FAILED, diagnosis=str(error)), ()
     references: list[Pixels | None] = [None] * len(scenes)
     try:
+        _assert_judged(shader, host)
         expected = [judge.picture(shader, scene) for scene in scenes]
     except OutsideModel as reason:
         return Result("picture", MATCH, **fields, verdict=NOT_RUN, reason=str(reason)), ()
@@ -116,7 +135,7 @@ def _judge_material(
     else:
         references = [*expected]
         cases = list(zip(scenes, images, expected, strict=True))
-        result = _judge_match(fields, cases, TEXTURED if _textured(shader) else PLAIN, front_lit)
+        result = _judge_match(fields, cases, _tolerance(shader), front_lit)
     return result, tuple(
         _picture(file, shader, host, library, case)
         for case in zip(scenes, images, references, strict=True)
@@ -144,6 +163,28 @@ def _picture(
     }
     names = (file.name, shader.element, host.name, library, scene.name)
     return Picture(*names, image, reference, metadata)
+
+
+def _assert_judged(shader: Shader, host: Host) -> None:
+    """Raise NotRun where the host has closures of its own, which are judged by themselves."""
+    own = sorted(_categories(shader) & set(BSDF_INPUTS))
+    if own and host.language == "osl":
+        raise NotRun(
+            f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown, and "
+            "only has to be finite"
+        )
+
+
+def _tolerance(shader: Shader) -> Tolerance:
+    """Tolerance of a material's pictures."""
+    if _categories(shader) & FITTED_NODES:
+        return FITTED
+    return TEXTURED if _textured(shader) else PLAIN
+
+
+def _categories(shader: Shader) -> set[str]:
+    """Categories of the nodes of a shader's document."""
+    return {each.getCategory() for each in shader.document.traverseTree()}
 
 
 def _textured(shader: Shader) -> bool:
@@ -178,11 +219,12 @@ def _judge_match(
     fields: dict[str, Any], cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
 ) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
-    errors = [(*_worst_pixel(case, front_lit), case[0].name) for case in cases]
+    scaled = tolerance is FITTED
+    errors = [(*_worst_pixel(case, front_lit, scaled), case[0].name) for case in cases]
     error, worst, scene = max(errors, key=lambda entry: entry[0])
     first, image, expected = cases[0]
-    brighter = image + np.float32(3.0 * tolerance.value)
-    control_error, _ = _worst_pixel((first, brighter, expected), front_lit)
+    brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
+    control_error, _ = _worst_pixel((first, brighter, expected), front_lit, scaled)
     caught = control_error > tolerance.value
     return Result(
         "picture",
@@ -199,12 +241,14 @@ def _judge_match(
     )
 
 
-def _worst_pixel(case: Case, front_lit: bool) -> tuple[float, dict[str, list[float]]]:
-    """Largest error times cos(theta_o), and its pixel."""
+def _worst_pixel(case: Case, front_lit: bool, scaled: bool) -> tuple[float, dict[str, list[float]]]:
+    """Largest error times cos(theta_o), and its pixel; relative above 1 if scaled."""
     scene, image, reference = case
     mask = sphere(scene.size).mask
     wo, wi, _ = picture_pairs(scene)
     error = absolute(image[mask], reference[mask]) * wo[:, 2]
+    if scaled:
+        error /= np.maximum(1.0, np.abs(reference[mask]).max(axis=-1))
     if front_lit:
         error = np.where((wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0, error, 0.0)
     worst = int(error.argmax())

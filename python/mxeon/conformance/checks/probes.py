@@ -25,7 +25,7 @@ from mxeon.conformance.checks.batch import (
     rounded,
 )
 from mxeon.conformance.checks.bsdfs import BsdfSubject
-from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.checks.nodes import OwnNode, Subject, Surface
 from mxeon.conformance.checks.special import (
     diffuse_edges,
     node_inputs,
@@ -34,6 +34,7 @@ from mxeon.conformance.checks.special import (
     turned_directions,
     turned_frames,
 )
+from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.hosts.base import Host
@@ -197,10 +198,10 @@ class PictureProbe:
         ]
 
     def _batch(self, scene: Scene, inputs: Mapping[str, Any]) -> Batch:
-        wo, wi, mask = self._points(scene)
+        wo, wi, mask = self.points(scene)
         return Batch(wo[mask], wi[mask], inputs, scene)
 
-    def _points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> Pairs:
         """Directions at the points of a picture, and the mask of the points to judge."""
         wo, wi, mask = picture_pairs(scene)
         return wo, wi, mask & self._mask(wo, wi)
@@ -215,7 +216,7 @@ class PictureProbe:
         """Values at the points of a batch."""
         scene = scene_of(batch)
         values = self._radiance(self._shader(batch.inputs), scene)
-        return values[self._points(scene)[2]].astype(np.float64)
+        return values[self.points(scene)[2]].astype(np.float64)
 
     def _shader(self, inputs: Mapping[str, Any]) -> Shader:
         return _compile(self.host, self.subject.document(inputs), self.library)
@@ -236,7 +237,7 @@ class PlaneProbe(PictureProbe):
         for polar in [np.radians(degrees)]
     )
 
-    def _points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> Pairs:
         wo, wi = plane_pairs(scene)
         return wo, wi, self._mask(wo, wi)
 
@@ -248,7 +249,14 @@ class PlaneProbe(PictureProbe):
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
-    subject: Subject
+    subject: OwnNode
+
+    @property
+    def claims(self) -> dict[str, str]:
+        """Titles of the model that the node claims, and of the form of it that is judged."""
+        claimed, *_ = self.subject.forms or (self.subject.model,)
+        names = {"claimed": claimed, "model": self.subject.model}
+        return {key: reference.model(name).title for key, name in names.items()}
 
     def _picture(self, batch: Batch) -> Array:
         scene, inputs = scene_of(batch), batch.inputs

@@ -15,8 +15,10 @@ from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
+    isotropic,
     offset,
     pass_all,
+    rougher,
     scale,
     scale_cosine,
     take_response,
@@ -24,7 +26,7 @@ from mxeon.conformance.checks.controls import (
 )
 from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.measures import Measurement, Metric
-from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.tolerances import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
@@ -101,12 +103,12 @@ def is_lobe(subject: Any, host: str) -> bool:
 
 def is_alone(subject: Any, host: str) -> bool:
     """Whether no other lobe lies beside the diffuse one."""
-    return not (isinstance(subject, Subject) and subject.others)
+    return not (isinstance(subject, OwnNode) and subject.others)
 
 
 def is_sampled(subject: Any, host: str) -> bool:
     """Whether a renderer's own sampling of the subject can be called."""
-    return isinstance(subject, Subject) and subject.sampled
+    return isinstance(subject, OwnNode) and subject.sampled
 
 
 def has_environment(subject: Any, host: str) -> bool:
@@ -182,6 +184,7 @@ CHECKS = (
             **of_bsdfs(tolerances.ZERO, pictures=True),
             "exact": tolerances.ZERO,
             "facets": tolerances.ZERO,
+            "coarse facets": tolerances.ZERO,
             "facet pairs": tolerances.ZERO,
         },
         is_alone,
@@ -295,6 +298,7 @@ CHECKS = (
             **of_bsdfs(tolerances.count_of("inputs"), pictures=True),
             "exact": tolerances.count_of("inputs"),
             "facets": tolerances.count_of("inputs"),
+            "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
         },
         diagnose=wiring.of_inputs,
@@ -336,7 +340,7 @@ CHECKS = (
         bsdf_measures.layer,
         "all light passes",
         pass_all,
-        of_bsdfs(tolerances.LAYER),
+        tolerances.LAYER_KINDS,
         diagnose=diagnosis.of_throughput,
     ),
     Check(
@@ -372,8 +376,8 @@ CHECKS = (
         "Two lights of one view give values in the ratio of D F G2.",
         MICROFACETS,
         bsdf_measures.shape,
-        "every channel gets the mean color",
-        gray,
+        "the roughness is a tenth larger",
+        rougher,
         {"microfacet pairs": tolerances.SHAPE},
         open=True,
     ),
@@ -385,6 +389,7 @@ CHECKS = (
         "the flag is dropped",
         with_inputs(retroreflective=False),
         {"microfacet pairs": tolerances.BSDF_VALUE},
+        diagnose=wiring.of_retroreflection,
     ),
     Check(
         "anisotropy",
@@ -394,5 +399,16 @@ CHECKS = (
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
         {"microfacet pairs": tolerances.ANISOTROPY},
+        diagnose=wiring.of_tangent,
+    ),
+    Check(
+        "anisotropic_albedo",
+        "The environment branch of an anisotropic lobe gives the integral of its values.",
+        MICROFACETS,
+        bsdf_measures.stretched,
+        "the roughness is the same in both directions",
+        isotropic,
+        {"microfacet pairs": tolerances.ANISOTROPIC_ALBEDO},
+        diagnose=wiring.of_stretched,
     ),
 )

@@ -11,10 +11,9 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
-from mxeon.conformance.checks.bsdf_probes import LEAST_TURNED
 from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
-from mxeon.conformance.checks.special import TURNED
+from mxeon.conformance.checks.special import LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
@@ -232,10 +231,18 @@ CYCLES_NOISE = Tolerance(
 )
 
 BSDF_VALUE = Tolerance(
-    rounded_up(32 * ROUNDING),
+    rounded_up(48 * ROUNDING),
     SCALED,
     scaled,
-    "32 roundings of float32, 2^-24 each, of the value or of 1; rounded up",
+    "48 roundings of float32, 2^-24 each, of the value or of 1: an inverse fourth power takes the 8 of "
+    "a length four times, and 16 beside them; rounded up",
+)
+CONTY_KULLA_VALUE = Tolerance(
+    rounded_up((32 + 4 * 0.5 / LEAST_SHEEN) * ROUNDING),
+    SCALED,
+    scaled,
+    "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
+    "the inverse of the roughness, at least 0.01; rounded up",
 )
 BSDF_ALBEDO = Tolerance(
     rounded_up(32 * ROUNDING),
@@ -263,6 +270,7 @@ BSDF_INTEGRAL = Tolerance(
     absolute,
     "the quadrature's own error on the equations, measured",
 )
+SUM_OF_DIRECTIONS = 5e-3  # error of a sum over 256 directions of an environment, to be measured
 LEAST_ALBEDO = 0.4  # of GGX at unit Fresnel: 0.44 at alpha 1 and grazing
 MICROFACET_FIT = 4e-3  # largest error of a microfacet lobe's albedo, made of several fits
 MICROFACET_VALUE = Tolerance(
@@ -274,11 +282,17 @@ MICROFACET_VALUE = Tolerance(
 MICROFACET_ALBEDO = Tolerance(
     MICROFACET_FIT, "albedo", absolute, "three fits, whose errors come to 4e-3 at most"
 )
+ANISOTROPIC_ALBEDO = Tolerance(
+    MICROFACET_FIT + SUM_OF_DIRECTIONS,
+    "albedo",
+    scaled,
+    "the fits' 4e-3, and the error of a sum over the directions of an environment",
+)
 SHAPE = Tolerance(
-    rounded_up(64 * ROUNDING),
+    rounded_up(2 * 64 * ROUNDING),
     "relative",
     absolute,
-    "two values of 32 roundings of float32 each, 2^-24; rounded up",
+    "two values of 64 roundings of float32 each, 2^-24; rounded up",
 )
 ANISOTROPY = Tolerance(
     rounded_up(4 * 2 * ROUNDING / (LEAST_COSINE * LEAST_ALPHA)),
@@ -286,6 +300,12 @@ ANISOTROPY = Tolerance(
     scaled,
     "two roundings of a turned direction, 2^-24 each, over the least cosine, 0.1, and the least "
     "alpha, 0.05, times the fourth power of the distribution; rounded up",
+)
+MICROFACET_LAYER = Tolerance(
+    MICROFACET_FIT + BSDF_INTEGRAL.value,
+    "light",
+    absolute,
+    "the fits' 4e-3, and the quadrature's error",
 )
 LAYER = Tolerance(
     ALBEDO_FIT + BSDF_INTEGRAL.value,
@@ -318,6 +338,13 @@ FACETS = Tolerance(
     "the normal of a facet: three float32 vertices, each off by sqrt(3) 2^-24, over the narrowest edge, "
     "0.0245, twice for the edge's two ends; times 8, the largest slope of the diffuse models; rounded up",
 )
+COARSE_FACETS = Tolerance(
+    rounded_up(2.0**-6 + 2.4e-3),
+    "pi f cos or albedo",
+    absolute,
+    "EEVEE keeps light in 32 bits for three channels, of which blue has the fewest: five below the "
+    "leading one, cut off, of numbers up to 1; and 2.4e-3 for its packed normals, measured; rounded up",
+)
 FACET_NOISE = Tolerance(
     rounded_up(4.0 * 0.0716 / math.sqrt(FACET_PIXELS)),
     "mean albedo",
@@ -340,10 +367,11 @@ CHI_SQUARE = Tolerance(
     "a right sampler exceeds 5 standard deviations once in 3.5 million times",
 )
 OWN_DENSITY = Tolerance(
-    rounded_up(64 * 2.0**3 * ROUNDING),
+    rounded_up(48 * 2.0**3 * ROUNDING),
     "1/sr, relative above 1",
     scaled,
-    "to be derived",
+    "48 roundings of float32, 2^-24 each, as of any density; the differences in the transformed "
+    "direction, whose fourth power it has, lose up to three bits; rounded up",
 )
 
 # Pictures of the other BSDF nodes of pbrlib. A ray's point is off by an angle, by which the logarithm
@@ -382,7 +410,7 @@ VALUES = {
     "pictures": CYCLES_RAY,
     "planes": TESTRENDER,
     "closed pairs": BSDF_VALUE,
-    "fitted pairs": BSDF_VALUE,
+    "fitted pairs": CONTY_KULLA_VALUE,
     "microfacet pairs": MICROFACET_VALUE,
     "bsdf pictures": BSDF_RAY,
     "microfacet pictures": BSDF_RAY,
@@ -390,6 +418,7 @@ VALUES = {
     "microfacet planes": BSDF_PLANE,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
 }
 LOBES = {
@@ -397,6 +426,7 @@ LOBES = {
     "plane lobes": TESTRENDER,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
 }
 ALBEDOS = {
@@ -412,6 +442,7 @@ ALBEDOS = {
     "microfacet planes": BSDF_PLANE_NOISE,
     "exact": EXACT_SURROUNDINGS,
     "facets": FACET_NOISE,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_NOISE,
 }
 THROUGHPUTS = {
@@ -425,4 +456,5 @@ FRAMES = {
     "fitted pairs": BSDF_FRAME,
     "microfacet pairs": BSDF_FRAME,
 }
+LAYER_KINDS = {"closed pairs": LAYER, "fitted pairs": LAYER, "microfacet pairs": MICROFACET_LAYER}
 BSDF_KINDS = ("closed pairs", "fitted pairs", "microfacet pairs")

@@ -26,7 +26,7 @@ from mxeon.shaders.library import data_folder
 try:
     from playwright import sync_api
 except ImportError:
-    sync_api = None  # type: ignore[assignment]
+    sync_api = None
 
 MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
 ORIGIN = "https://renderers.invalid/"  # a secure origin, without which there is no WebGPU
@@ -144,11 +144,9 @@ class Browser:
         try:
             if self._page is None:
                 self._start()
-            # A job that is not done in time ends its wait; the next starts a new browser.
-            self._page.evaluate(
-                "job => { window.done = null; answer(job).then(a => done = a); }", job
+            handle = self._page.wait_for_function(
+                "job => answer(job)", arg=job, timeout=self._limit
             )
-            handle = self._page.wait_for_function("window.done", timeout=self._limit, polling=5)
             answer: dict[str, Any] = handle.json_value()
             return answer | {"browser": self._page.context.browser.version}
         except sync_api.Error as error:
@@ -182,7 +180,7 @@ class Browser:
         own = {"page.js": self._script, "sphere.js": Path(__file__).with_name("sphere.js")}
         file = own.get(path, self._modules / path)
         if file.suffix in TYPES and file.is_file():
-            route.fulfill(body=file.read_bytes(), content_type=TYPES[file.suffix])
+            route.fulfill(path=file, content_type=TYPES[file.suffix])
         else:
             route.fulfill(status=404, body="")
 

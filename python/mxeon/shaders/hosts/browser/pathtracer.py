@@ -21,12 +21,13 @@ from mxeon.shaders.scene import Scene
 PACKAGE = "three-gpu-pathtracer"
 IMPORTS = {**three.IMPORTS, f"{PACKAGE}/": f"{PACKAGE}/"}
 
+LOBE = "WebGLPathTracer, diffuseEval"
 # Title of a node -> function of the WGSL that WebGPUPathTracer has, or "" for that of the GLSL.
 NODES = {
     "WebGPUPathTracer, eonBrdf": "eon",
     "WebGPUPathTracer, fonBrdf": "fon",
-    "WebGLPathTracer, diffuseEval": "",
-    "WebGLPathTracer, diffuseEval, shorter wh": "",
+    LOBE: "",
+    f"{LOBE}, shorter wh": "",
 }
 SHORTER = 1.0 - 2.0**-22  # a half vector whose product with wo exceeds 1 by no rounding
 
@@ -71,7 +72,7 @@ class Host(base.Host):
     def identity(self) -> Identity:
         """Version of the package and the browser, and the WebGPU device."""
         answer = self._browser.ask({})
-        version = f"{self._version}, Chromium {answer['browser']}"
+        version = f"{self.name} {self._version}, Chromium {answer['browser']}"
         return Identity(self.name, version, answer["device"])
 
     def pairs(
@@ -120,7 +121,9 @@ class Host(base.Host):
         size = math.isqrt(count - 1) + 1  # the answer comes as a square
         rows = np.zeros((size * size, table.shape[1]), np.float32)
         rows[:count] = table
-        answer = self._browser.ask({"call": call, "rows": base64.b64encode(rows).decode()})
+        answer = self._browser.ask(
+            {"call": call, "rows": base64.b64encode(rows.tobytes()).decode()}
+        )
         return browser.pixels(answer, size).reshape(-1, 3)[:count]
 
     def _glsl(self) -> webgl.Host:
@@ -150,5 +153,5 @@ def _template(path: Path) -> str:
 def _cut(text: str, begin: str, end: str) -> str:
     """The part of a text from one word to another."""
     if begin not in text or end not in text:
-        raise NotRun(f"{PACKAGE}: no {begin}...) in its shader text")
+        raise NotRun(f"{PACKAGE}: no {begin}) in its shader text")
     return begin + text.split(begin)[1].split(end)[0]
