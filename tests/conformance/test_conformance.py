@@ -9,6 +9,7 @@ import pytest
 
 from mxeon.conformance import known_issues
 from mxeon.conformance.checks.batch import GRAZING, PAIRS, Batch
+from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.evaluate import judge_subject
 from mxeon.conformance.checks.functions import FUNCTION_CHECKS, FunctionProbe, judge_functions
 from mxeon.conformance.checks.nodes import SUBJECTS, Subject
@@ -16,6 +17,7 @@ from mxeon.conformance.checks.probes import PairProbe, PictureProbe
 from mxeon.conformance.checks.sky import sky
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_texts
+from mxeon.conformance.checks.text.sources import TEXT_ONLY
 from mxeon.conformance.diagnosis import of_value
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.conformance.run import check, judge, plan
@@ -243,7 +245,8 @@ def test_a_run_says_version_and_device_of_its_hosts(run):
 
 def test_the_sources_of_every_target_use_every_input():
     results = check_texts(SUBJECTS, "eonlib")
-    assert len([each for each in results if each.check == "source"]) == 3 * len(TARGETS)
+    expected = 3 * len(TARGETS) + len(BSDFS) * len(TEXT_ONLY)
+    assert len([each for each in results if each.check == "source"]) == expected
     assert {each.verdict for each in results} == {PASSED}
     assert all(each.control.caught for each in results)
 
