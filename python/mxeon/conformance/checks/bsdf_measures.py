@@ -12,7 +12,7 @@ from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_o
 
 FEW = 1 << 12
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
-LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
+LEAST_ALPHA = 0.05  # of values whose half vector matters: what rounds in it is divided by alpha
 LEAST_COSINE = 0.1  # of the same
 LIGHT = ("direct", "environment")  # branches that light a base from above
 
@@ -47,7 +47,10 @@ def layer(probe: Any, metric: Metric) -> Measurement:
     """Light that a lobe reflects and light that it passes to a white base, against all of it."""
     views, albedo = _integral(probe)
     passed = probe.throughput(views, "direct")
-    expected = np.maximum(1.0, albedo)  # a lobe that gains energy by itself is not to blame twice
+    own = probe.integrals + probe.subject.passed(
+        views
+    )  # above 1 where the lobe itself gains energy
+    expected = np.maximum(1.0, own)
     return worst_of(metric, [Case(views, albedo + passed, expected)])
 
 
@@ -71,6 +74,7 @@ def shape(probe: Any, metric: Metric) -> Measurement:
     batch, other = (each.first(FEW) for each in probe.mirrored)
     first, second = probe.subject.expected(batch), probe.subject.expected(other)
     lit = (np.minimum(first, second) > LEAST_VALUE).all(axis=1)
+    lit &= batch.inputs["roughness"].min(axis=1) >= LEAST_ALPHA
     lit &= np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2])) >= LEAST_COSINE
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = (probe.direct(batch) / first) / (probe.direct(other) / second)

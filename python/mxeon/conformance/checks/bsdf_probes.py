@@ -18,6 +18,7 @@ PAIRS = 1 << 13
 FEW = 1 << 11
 ALBEDOS = 1 << 8  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
+LEAST_FITTED = 1e-4  # cosine of views where fits of albedos hold
 LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth
 
@@ -28,6 +29,7 @@ class BsdfProbe(PairProbe):
 
     kind: ClassVar[str] = "closed pairs"
     diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
+    quadrature: ClassVar[float] = 1e-8  # largest error of its integrals of the equations
 
     subject: BsdfSubject
 
@@ -127,10 +129,23 @@ class BsdfProbe(PairProbe):
 
 
 @dataclass(frozen=True, eq=False)
+class SheenProbe(BsdfProbe):
+    """A sheen, whose value has high powers."""
+
+    kind: ClassVar[str] = "sheen pairs"
+
+
+@dataclass(frozen=True, eq=False)
 class FittedProbe(BsdfProbe):
-    """A node whose shader takes its albedo from a fit."""
+    """A sheen whose albedo a shader takes from a fit."""
 
     kind: ClassVar[str] = "fitted pairs"
+    quadrature: ClassVar[float] = 2e-4
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """Directions of view for albedos, in the fit's domain."""
+        return tuple(map(fitted, super().cosines))
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +154,7 @@ class MicrofacetProbe(BsdfProbe):
 
     kind: ClassVar[str] = "microfacet pairs"
     diagnosed: ClassVar[int] = 1 << 8  # their references take long
+    quadrature: ClassVar[float] = 6e-4
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -152,8 +168,9 @@ class MicrofacetProbe(BsdfProbe):
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
-        """Directions of view for albedos, with simple inputs."""
-        return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in super().cosines)
+        """Directions of view for albedos, in the fits' domain and with simple inputs."""
+        batches = map(fitted, super().cosines)
+        return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in batches)
 
     @cached_property
     def turned(self) -> Batch:
@@ -193,6 +210,11 @@ class MicrofacetProbe(BsdfProbe):
         return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
 
 
+def fitted(batch: Batch) -> Batch:
+    """The pairs of a batch whose view is in the domain of the fits of albedos."""
+    return batch.where(batch.wo[:, 2] >= LEAST_FITTED)
+
+
 def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
@@ -211,4 +233,4 @@ def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
     return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
-BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, FittedProbe, MicrofacetProbe)}
+BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, SheenProbe, FittedProbe, MicrofacetProbe)}

@@ -84,6 +84,13 @@ def gray(probe: Any) -> Altered:
     return Altered(probe, batch=mean_color)
 
 
+def roughen(probe: Any) -> Altered:
+    """A control whose roughness is a tenth too large."""
+    return Altered(
+        probe, batch=lambda batch: batch.altered(roughness=1.1 * batch.inputs["roughness"])
+    )
+
+
 def take_response(probe: Any) -> Altered:
     """A control that takes the response for another output."""
     return Altered(probe, throughputs=lambda batch, values: probe.direct(batch))

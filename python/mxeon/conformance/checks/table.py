@@ -10,13 +10,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance import diagnosis, wiring
-from mxeon.conformance.checks import bsdf_measures, measures, sampling_measures, tolerances
+from mxeon.conformance.checks import (
+    bsdf_measures,
+    bsdf_tolerances,
+    measures,
+    sampling_measures,
+    tolerances,
+)
+from mxeon.conformance.checks.bsdf_tolerances import MICROFACET, of_bsdfs
 from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
     offset,
     pass_all,
+    roughen,
     scale,
     scale_cosine,
     take_response,
@@ -24,7 +32,7 @@ from mxeon.conformance.checks.controls import (
 )
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import Subject, Surface
-from mxeon.conformance.checks.tolerances import Tolerance
+from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
 from mxeon.models.pbrlib import NODES
@@ -41,11 +49,6 @@ BLACK = tuple(subject.model for subject in BSDFS if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
-
-
-def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of the other BSDF nodes."""
-    return dict.fromkeys(tolerances.BSDF_KINDS, tolerance)
 
 
 @dataclass(frozen=True)
@@ -241,7 +244,7 @@ CHECKS = (
         scale_cosine(1),
         {
             "pairs": tolerances.RECIPROCITY,
-            **of_bsdfs(tolerances.BSDF_VALUE),
+            **bsdf_tolerances.VALUES,
             "facet pairs": tolerances.FACET_PAIRS,
         },
     ),
@@ -330,7 +333,7 @@ CHECKS = (
         bsdf_measures.layer,
         "all light passes",
         pass_all,
-        of_bsdfs(tolerances.LAYER),
+        bsdf_tolerances.LAYERS,
         diagnose=diagnosis.of_throughput,
     ),
     Check(
@@ -340,7 +343,7 @@ CHECKS = (
         bsdf_measures.integral,
         "values are 2 % too large",
         scale(1.02),
-        of_bsdfs(tolerances.BSDF_INTEGRAL),
+        bsdf_tolerances.INTEGRALS,
         open=True,
     ),
     Check(
@@ -350,7 +353,7 @@ CHECKS = (
         bsdf_measures.energy,
         "values are twice as large",
         scale(2.0),
-        of_bsdfs(tolerances.BSDF_INTEGRAL),
+        bsdf_tolerances.INTEGRALS,
     ),
     Check(
         "lossless",
@@ -359,16 +362,16 @@ CHECKS = (
         bsdf_measures.lossless,
         "values are 2 % too large",
         scale(1.02),
-        {"microfacet pairs": tolerances.MICROFACET_VALUE},
+        {MICROFACET: bsdf_tolerances.INTEGRALS[MICROFACET]},
     ),
     Check(
         "shape",
         "Two lights of one view give values in the ratio of D F G2.",
         MICROFACETS,
         bsdf_measures.shape,
-        "every channel gets the mean color",
-        gray,
-        {"microfacet pairs": tolerances.SHAPE},
+        "the roughness is a tenth too large",
+        roughen,
+        {MICROFACET: bsdf_tolerances.SHAPE},
         open=True,
     ),
     Check(
@@ -378,7 +381,7 @@ CHECKS = (
         bsdf_measures.retroreflection,
         "the flag is dropped",
         with_inputs(retroreflective=False),
-        {"microfacet pairs": tolerances.BSDF_VALUE},
+        {MICROFACET: bsdf_tolerances.RETROREFLECTION},
         diagnose=wiring.of_retroreflection,
     ),
     Check(
@@ -388,7 +391,7 @@ CHECKS = (
         bsdf_measures.anisotropy,
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
-        {"microfacet pairs": tolerances.ANISOTROPY},
+        {MICROFACET: bsdf_tolerances.ANISOTROPY},
         diagnose=wiring.of_tangent,
     ),
 )
