@@ -50,7 +50,7 @@ def power(x, eighths):
 def albedo(mu, eighths):
     """E by quadrature at roughness 4 / eighths; its error is below 1e-4 of max(E, 1).
 
-        f cos = (1 + p) sin(theta_h)^(2 p) / (4 pi) mu_i / (mu + mu_i - mu mu_i),  p = 1 / (2 r)
+    f cos = (1 + p) sin(theta_h)^(2 p) / (4 pi) mu_i / (mu + mu_i - mu mu_i),  p = 1 / (2 r)
     """
     mu_i, weight = (each[:, None, None] for each in graded())
     x, w = (each[None, :, None] for each in legendre(NODES))

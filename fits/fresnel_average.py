@@ -74,7 +74,7 @@ def dielectric_error(coefficients):
     worst = mp.zero
     for t in reciprocals(4 * COUNT + 1):
         N = mp.polyval(coefficients[ABOVE::-1], t)
-        D = mp.polyval((*coefficients[: ABOVE : -1], 1), t)
+        D = mp.polyval((*coefficients[:ABOVE:-1], 1), t)
         worst = max(worst, abs(1 - dielectric_average(1 / t) - t * N / D))
     return float(worst)
 

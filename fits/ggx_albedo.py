@@ -11,6 +11,8 @@ and square roots of float64 alone, which are the same on every processor.
     python -m fits.ggx_albedo
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from fits.minimax import mp
@@ -53,7 +55,7 @@ def graded(degree=DEGREE, panels=PANELS):
     """Nodes and weights on [0, 1] in panels, each a quarter of the next."""
     x, w = legendre(degree)
     ends = [0.0] + [4.0 ** (k - panels + 1) for k in range(panels)]
-    pairs = list(zip(ends, ends[1:], strict=False))
+    pairs = list(pairwise(ends))
     nodes = np.concatenate([a + (b - a) * x for a, b in pairs])
     return nodes, np.concatenate([(b - a) * w for a, b in pairs])
 

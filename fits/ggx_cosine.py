@@ -11,7 +11,7 @@ of a kind apart. What is fitted is c, and the largest error of the albedo E_ss F
 curves of Schlick, (1 - c)^q, the exponent 5 counts twice as much as the others.
 
 A third fit is for Hoffman's dip c (1 - c)^6, which is not monotone: its average is that at the
-cosine c of Schlick's curve of exponent 5 plus alpha^2 / (mu + alpha) N / D in mu and alpha.
+cosine c of Schlick's curve of exponent 5 plus alpha^2 / (mu + alpha) N / D in mu and sqrt(alpha).
 
 The arithmetic is that of `ggx_albedo.py`.
 
@@ -20,11 +20,11 @@ The arithmetic is that of `ggx_albedo.py`.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
-from fits.ggx_albedo import graded, incident, legendre
+from fits.ggx_albedo import incident, legendre
 from fits.minimax import mp
 from fits.rational import Form, defines, numerator
 
@@ -115,18 +115,18 @@ SCHLICK = Curves(
     roots=1,
     form=FORM,
     below=(
-        *(10.1126, -1.970135, 72.88341, 0.6907697, -2.319482, -2.104292),
-        *(-7.543936, -112.0349, 0.7941591, -16.24471, 43.33361),
+        *(5.765519, -1.515595, 42.67342, -0.008712644, -2.671278, -2.909114),
+        *(-3.69908, -69.11994, 1.541857, -6.01911, 28.88318),
     ),
 )
-DIP_FORM = Form(above=below(3, 2), below=below(3, 2)[1:])
+DIP_FORM = Form(above=below(4, 2), below=below(3, 2)[1:])
 DIP_BELOW = (
-    *(45.65231, 212.3247, 1196.218, 36.30322, 47.03659),
-    *(7209.172, 20.68808, -413.8458, 430.6794),
+    *(-0.6779946, 31.30452, -13.03859, 40.59569, -261.7102),
+    *(996.3608, 110.6571, -565.9562, 358.4267),
 )
 
 
-def points(across=27, along=17):
+def points(across=43, along=25):
     """Cosines and roughnesses as those of `ggx_albedo.points`, alpha denser near 0."""
     ends = [
         np.array([float((1 - mp.cos(mp.pi * k / (n - 1))) / 2) for k in range(n)])
@@ -165,7 +165,7 @@ def azimuths(scale):
     for _ in range(8):
         ends.append(ends[-1] * root)
     nodes, weights = [ends[8] * x], [ends[8] * w]
-    for b, a in zip(ends, ends[1:], strict=False):
+    for b, a in pairwise(ends):
         divisor = b - (b - a) * x
         nodes.append(a * b / divisor)
         weights.append(a * b * (b - a) / (divisor * divisor) * w)
@@ -179,7 +179,10 @@ def _averages(mu, alpha, functions):
     # Squared sine of half the azimuth from the mirror's, whose tangent is 1 / far beyond 1.
     shape = (len(low), OUTER, low.shape[-1])
     sine2 = np.concatenate(
-        [tangents * tangents / (1.0 + tangents * tangents), np.broadcast_to(1.0 / (1.0 + far * far), shape)],
+        [
+            tangents * tangents / (1.0 + tangents * tangents),
+            np.broadcast_to(1.0 / (1.0 + far * far), shape),
+        ],
         axis=1,
     )
     step = np.concatenate(
@@ -221,20 +224,24 @@ def cosine(curves, mu, alpha, shape, coefficients):
 
 
 def sample(curves, mu, alpha):
-    """Variables, values and weights of the fit of the cosine, all curves one after the other."""
+    """Variables, values and weights of the fit of the cosine, every third curve at each point.
+
+    At one point of x and y a cubic in s takes four residuals; more would make the exchange singular.
+    """
     functions = [lambda c, n=n: curves.reflectance(c, n) for n in curves.parameters]
     albedo, means = averages(mu, alpha, functions)
     columns = []
-    for function, mean, shape, count in zip(
-        functions, means, curves.shapes, curves.counts, strict=True
+    for j, (function, shape, count) in enumerate(
+        zip(functions, curves.shapes, curves.counts, strict=True)
     ):
-        c = inverse(mean, function)
+        kept = (np.arange(len(mu)) + j) % 3 == 0
+        c = inverse(means[j][kept], function)
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
-        arguments, factor = variables(curves, mu, alpha, shape)
+        arguments, factor = variables(curves, mu[kept], alpha[kept], shape)
         # Where the curve is flat c must still be about right, lest it end where the curve is steep.
-        steep = np.maximum(count * slope, FLAT)
-        columns.append((*arguments, (c - mu) / factor, steep * albedo * factor))
+        weight = np.maximum(count * slope, FLAT) * albedo[kept] * factor
+        columns.append((*arguments, (c - mu[kept]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
     return arguments, value, weight
 
@@ -250,20 +257,21 @@ def errors(curves, coefficients, mu, alpha):
     albedo, means = averages(mu, alpha, functions)
     return [
         float(
-            np.max(
-                albedo * np.abs(function(cosine(curves, mu, alpha, shape, coefficients)) - mean)
-            )
+            np.max(albedo * np.abs(function(cosine(curves, mu, alpha, shape, coefficients)) - mean))
         )
         for function, mean, shape in zip(functions, means, curves.shapes, strict=True)
     ]
 
 
 def dip_sample(mu, alpha, schlick_coefficients):
-    """Variables, values and weights of the fit of the dip's average."""
-    albedo, (mean,) = averages(mu, alpha, [dip])
+    """Variables, values and weights of the fit of the dip's average.
+
+    Compensation for a white surface multiplies the albedo by 1 / E_ss, so that all points count.
+    """
+    _, (mean,) = averages(mu, alpha, [dip])
     c = cosine(SCHLICK, mu, alpha, 0.5, schlick_coefficients)
     factor = alpha * alpha / (mu + alpha)
-    return (mu, alpha), (mean - dip(c)) / factor, albedo * factor
+    return (mu, np.sqrt(alpha)), (mean - dip(c)) / factor, factor
 
 
 def main():

@@ -26,7 +26,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior_n, vec3 ior_
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        bsdf.response = mx_environment_radiance(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd)
+        bsdf.response = microfacet_environment(lobe, X, distribution, fd)
                         * scale;
     }
 }

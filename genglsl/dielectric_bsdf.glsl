@@ -23,8 +23,8 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
 
     MicrofacetLobe lobe = microfacet_lobe(closureData.V, N, roughness, retroreflective && !transmission);
 
-    // MaterialX's curve divides 0 by 0 at ior 0 along the normal.
-    FresnelData fd = mx_init_fresnel_dielectric(max(ior, 1e-4), thinfilm_thickness, thinfilm_ior);
+    // MaterialX's curve divides 0 by 0 along the normal where float32 adds nothing to 1.
+    FresnelData fd = mx_init_fresnel_dielectric(max(ior, 1e-3), thinfilm_thickness, thinfilm_ior);
     vec3 F_ss = fd.airy ? fresnel_curve_avg(fd) : vec3(fresnel_dielectric_avg(fd.ior.x));
     vec3 F_o = dielectric_fresnel(ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior), fd);
     vec3 scale = max(tint, 0.0) * microfacet_compensation(lobe, F_ss) * weight;
@@ -43,7 +43,7 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        bsdf.response = mx_environment_radiance(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd)
+        bsdf.response = microfacet_environment(lobe, X, distribution, fd)
                         * scale;
     }
 }

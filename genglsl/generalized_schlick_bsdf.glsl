@@ -13,7 +13,8 @@ vec3 generalized_schlick_average(MicrofacetLobe lobe, FresnelData fd, vec3 dip)
         return mx_fresnel_airy(1.0 - m, fd);
     }
     vec3 average = mix(fd.F0, fd.F90, pow(m, fd.exponent));
-    return dip == vec3(0.0) ? average : average - dip * ggx_dip(lobe.mu_o, lobe.alpha);
+    bool dips = dot(abs(dip), vec3(1.0)) > 0.0;
+    return dips ? average - dip * ggx_dip(lobe.mu_o, lobe.alpha) : average;
 }
 
 void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0, vec3 color82,
@@ -50,7 +51,7 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        bsdf.response = mx_environment_radiance(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd)
+        bsdf.response = microfacet_environment(lobe, X, distribution, fd)
                         * scale;
     }
 }

@@ -5,27 +5,27 @@
 //   c = mu + alpha^2 / (mu + alpha) N / D,  x = mu / (mu + alpha)
 
 // Source: fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
-// Largest absolute error of the albedo: 3e-3, in [1.05, 2.5] 1.7e-3.
-#define GGX_DIELECTRIC_N000 118.94605
-#define GGX_DIELECTRIC_N001 696.51851
-#define GGX_DIELECTRIC_N002 -850.97494
-#define GGX_DIELECTRIC_N003 0.29444766
-#define GGX_DIELECTRIC_N010 -69.352129
-#define GGX_DIELECTRIC_N011 -408.3952
-#define GGX_DIELECTRIC_N012 717.36557
-#define GGX_DIELECTRIC_N020 -100.20088
-#define GGX_DIELECTRIC_N021 -149.66491
-#define GGX_DIELECTRIC_N030 84.993967
-#define GGX_DIELECTRIC_N100 -101.2718
-#define GGX_DIELECTRIC_N101 -333.98074
-#define GGX_DIELECTRIC_N102 355.58144
-#define GGX_DIELECTRIC_N110 -15.012712
-#define GGX_DIELECTRIC_N111 -30.768657
-#define GGX_DIELECTRIC_N120 71.489287
-#define GGX_DIELECTRIC_N200 5.6983261
-#define GGX_DIELECTRIC_N201 19.280812
-#define GGX_DIELECTRIC_N210 -43.963699
-#define GGX_DIELECTRIC_N300 -7.1696364
+// Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
+#define GGX_DIELECTRIC_N000 121.31539
+#define GGX_DIELECTRIC_N001 695.29722
+#define GGX_DIELECTRIC_N002 -852.70243
+#define GGX_DIELECTRIC_N003 0.95958787
+#define GGX_DIELECTRIC_N010 -79.111812
+#define GGX_DIELECTRIC_N011 -404.20459
+#define GGX_DIELECTRIC_N012 719.38075
+#define GGX_DIELECTRIC_N020 -87.272915
+#define GGX_DIELECTRIC_N021 -153.03073
+#define GGX_DIELECTRIC_N030 79.441552
+#define GGX_DIELECTRIC_N100 -107.09138
+#define GGX_DIELECTRIC_N101 -328.78907
+#define GGX_DIELECTRIC_N102 356.88066
+#define GGX_DIELECTRIC_N110 -2.5500696
+#define GGX_DIELECTRIC_N111 -40.596539
+#define GGX_DIELECTRIC_N120 68.03638
+#define GGX_DIELECTRIC_N200 10.033399
+#define GGX_DIELECTRIC_N201 16.886608
+#define GGX_DIELECTRIC_N210 -50.014696
+#define GGX_DIELECTRIC_N300 -7.2080572
 #define GGX_DIELECTRIC_D001 57.90553
 #define GGX_DIELECTRIC_D002 -67.41115
 #define GGX_DIELECTRIC_D010 181.8611
@@ -39,60 +39,65 @@
 #define GGX_DIELECTRIC_D210 107.1744
 
 // Source: fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], exponent 1 to 10. Largest absolute
-// error of the albedo: 3.2e-3, at exponent 5 1.7e-3.
-#define GGX_SCHLICK_N000 6.886951
-#define GGX_SCHLICK_N001 72.20287
-#define GGX_SCHLICK_N002 -17.02765
-#define GGX_SCHLICK_N003 17.39619
-#define GGX_SCHLICK_N010 49.42339
-#define GGX_SCHLICK_N011 16.88316
-#define GGX_SCHLICK_N012 -36.46048
-#define GGX_SCHLICK_N020 -94.37639
-#define GGX_SCHLICK_N021 -2.833864
-#define GGX_SCHLICK_N030 41.28118
-#define GGX_SCHLICK_N100 -10.44367
-#define GGX_SCHLICK_N101 -58.17345
-#define GGX_SCHLICK_N102 -10.35283
-#define GGX_SCHLICK_N110 -35.54946
-#define GGX_SCHLICK_N111 29.46729
-#define GGX_SCHLICK_N120 -10.92889
-#define GGX_SCHLICK_N200 -3.9405
-#define GGX_SCHLICK_N201 -2.28018
-#define GGX_SCHLICK_N210 -35.77534
-#define GGX_SCHLICK_N300 7.950184
-#define GGX_SCHLICK_D001 10.1126
-#define GGX_SCHLICK_D002 -1.970135
-#define GGX_SCHLICK_D010 72.88341
-#define GGX_SCHLICK_D011 0.6907697
-#define GGX_SCHLICK_D020 -2.319482
-#define GGX_SCHLICK_D100 -2.104292
-#define GGX_SCHLICK_D101 -7.543936
-#define GGX_SCHLICK_D110 -112.0349
-#define GGX_SCHLICK_D200 0.7941591
-#define GGX_SCHLICK_D120 -16.24471
-#define GGX_SCHLICK_D210 43.33361
+// error of the albedo: 0.0032, at exponent 5 0.0019.
+#define GGX_SCHLICK_N000 5.211763
+#define GGX_SCHLICK_N001 42.311725
+#define GGX_SCHLICK_N002 -10.177434
+#define GGX_SCHLICK_N003 9.0471791
+#define GGX_SCHLICK_N010 25.522575
+#define GGX_SCHLICK_N011 7.80178
+#define GGX_SCHLICK_N012 -19.109862
+#define GGX_SCHLICK_N020 -51.576518
+#define GGX_SCHLICK_N021 -1.9211355
+#define GGX_SCHLICK_N030 22.933263
+#define GGX_SCHLICK_N100 -9.6045313
+#define GGX_SCHLICK_N101 -35.962843
+#define GGX_SCHLICK_N102 -7.363016
+#define GGX_SCHLICK_N110 -17.683059
+#define GGX_SCHLICK_N111 20.252399
+#define GGX_SCHLICK_N120 -6.4714124
+#define GGX_SCHLICK_N200 -4.1751567
+#define GGX_SCHLICK_N201 3.2087931
+#define GGX_SCHLICK_N210 -18.218307
+#define GGX_SCHLICK_N300 7.9395461
+#define GGX_SCHLICK_D001 5.765519
+#define GGX_SCHLICK_D002 -1.515595
+#define GGX_SCHLICK_D010 42.67342
+#define GGX_SCHLICK_D011 -0.008712644
+#define GGX_SCHLICK_D020 -2.671278
+#define GGX_SCHLICK_D100 -2.909114
+#define GGX_SCHLICK_D101 -3.69908
+#define GGX_SCHLICK_D110 -69.11994
+#define GGX_SCHLICK_D200 1.541857
+#define GGX_SCHLICK_D120 -6.01911
+#define GGX_SCHLICK_D210 28.88318
 
 // Source: fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1]. Largest absolute error of the
-// albedo: 4.3e-3 for a dip from 1 to 0.
-#define GGX_DIP_N00 -1.20679
-#define GGX_DIP_N01 -5.233047
-#define GGX_DIP_N02 1.996696
-#define GGX_DIP_N03 -1.026089
-#define GGX_DIP_N10 -36.85618
-#define GGX_DIP_N11 36.02124
-#define GGX_DIP_N12 2.386277
-#define GGX_DIP_N20 104.768
-#define GGX_DIP_N21 -61.12429
-#define GGX_DIP_N30 -57.03399
-#define GGX_DIP_D01 45.65231
-#define GGX_DIP_D02 212.3247
-#define GGX_DIP_D03 1196.218
-#define GGX_DIP_D10 36.30322
-#define GGX_DIP_D11 47.03659
-#define GGX_DIP_D12 7209.172
-#define GGX_DIP_D20 20.68808
-#define GGX_DIP_D21 -413.8458
-#define GGX_DIP_D30 430.6794
+// albedo: 0.0059 for a dip from 1 to 0.
+#define GGX_DIP_N00 -1.1212709
+#define GGX_DIP_N01 0.39603297
+#define GGX_DIP_N02 5.6746531
+#define GGX_DIP_N03 -8.8707989
+#define GGX_DIP_N04 3.8607241
+#define GGX_DIP_N10 -30.913482
+#define GGX_DIP_N11 60.615644
+#define GGX_DIP_N12 -35.65798
+#define GGX_DIP_N13 3.7650801
+#define GGX_DIP_N20 79.791011
+#define GGX_DIP_N21 -126.02159
+#define GGX_DIP_N22 53.958886
+#define GGX_DIP_N30 -39.917245
+#define GGX_DIP_N31 27.287925
+#define GGX_DIP_N40 7.2080207
+#define GGX_DIP_D01 -0.6779946
+#define GGX_DIP_D02 31.30452
+#define GGX_DIP_D03 -13.03859
+#define GGX_DIP_D10 40.59569
+#define GGX_DIP_D11 -261.7102
+#define GGX_DIP_D12 996.3608
+#define GGX_DIP_D20 110.6571
+#define GGX_DIP_D21 -565.9562
+#define GGX_DIP_D30 358.4267
 
 // Cosine for a dielectric. Indices beyond the domain have that of its end, and indices below 1 that
 // of the other side of the interface.
@@ -146,13 +151,16 @@ float ggx_dip(float mu, float alpha)
     float c = ggx_cosine_schlick(mu, alpha, 5.0);
     float m = 1.0 - c;
     float m2 = m * m;
-    float N0 = GGX_DIP_N00 + alpha * (GGX_DIP_N01 + alpha * (GGX_DIP_N02 + alpha * GGX_DIP_N03));
-    float N1 = GGX_DIP_N10 + alpha * (GGX_DIP_N11 + alpha * GGX_DIP_N12);
-    float N2 = GGX_DIP_N20 + alpha * GGX_DIP_N21;
-    float N = N0 + mu * (N1 + mu * (N2 + mu * GGX_DIP_N30));
-    float D0 = 1.0 + alpha * (GGX_DIP_D01 + alpha * (GGX_DIP_D02 + alpha * GGX_DIP_D03));
-    float D1 = GGX_DIP_D10 + alpha * (GGX_DIP_D11 + alpha * GGX_DIP_D12);
-    float D2 = GGX_DIP_D20 + alpha * GGX_DIP_D21;
+    float y = sqrt(alpha);
+    float N0 = GGX_DIP_N00
+               + y * (GGX_DIP_N01 + y * (GGX_DIP_N02 + y * (GGX_DIP_N03 + y * GGX_DIP_N04)));
+    float N1 = GGX_DIP_N10 + y * (GGX_DIP_N11 + y * (GGX_DIP_N12 + y * GGX_DIP_N13));
+    float N2 = GGX_DIP_N20 + y * (GGX_DIP_N21 + y * GGX_DIP_N22);
+    float N3 = GGX_DIP_N30 + y * GGX_DIP_N31;
+    float N = N0 + mu * (N1 + mu * (N2 + mu * (N3 + mu * GGX_DIP_N40)));
+    float D0 = 1.0 + y * (GGX_DIP_D01 + y * (GGX_DIP_D02 + y * GGX_DIP_D03));
+    float D1 = GGX_DIP_D10 + y * (GGX_DIP_D11 + y * GGX_DIP_D12);
+    float D2 = GGX_DIP_D20 + y * GGX_DIP_D21;
     float D = D0 + mu * (D1 + mu * (D2 + mu * GGX_DIP_D30));
     return c * m2 * m2 * m2 + alpha * alpha / (mu + alpha) * N / D;
 }

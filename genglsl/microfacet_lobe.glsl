@@ -53,3 +53,16 @@ float microfacet_value(MicrofacetLobe lobe, vec3 wi, vec3 X)
     return mx_ggx_NDF(local, lobe.roughness) * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha)
            / (4.0 * lobe.mu_o);
 }
+
+// Light of an environment. MaterialX draws anisotropic visible normals and divides by G_1 at the mean
+// alpha; the factor puts the G_1 of the normals in its place. It is 1 where both alphas are the same.
+vec3 microfacet_environment(MicrofacetLobe lobe, vec3 X, int distribution, FresnelData fd)
+{
+    vec3 radiance = mx_environment_radiance(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd);
+    X = normalize(X - dot(X, lobe.N) * lobe.N);
+    vec2 across = vec2(dot(lobe.wo, X), dot(lobe.wo, cross(lobe.N, X))) * lobe.roughness;
+    float mu2 = lobe.mu_o * lobe.mu_o;
+    float alpha2 = lobe.alpha * lobe.alpha;
+    float drawn = lobe.mu_o + sqrt(dot(across, across) + mu2);
+    return radiance * (drawn / (lobe.mu_o + sqrt(alpha2 + (1.0 - alpha2) * mu2)));
+}

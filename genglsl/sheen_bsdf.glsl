@@ -26,6 +26,21 @@ float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
     return density / (4.0 * (mu_i + mu_o - mu_i * mu_o));
 }
 
+// [MaterialX2026], Zeltner Sheen Model, times the cosine, at unit albedo. The frame comes from a cross
+// product: a view along the normal would leave the rounding of a difference, which points anywhere.
+float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
+{
+    vec3 Y = cross(N, wo);
+    float length2 = dot(Y, Y);
+    Y = length2 > 1e-12 ? Y * inversesqrt(length2) : mx_orthonormal_basis(N)[1];
+    float a = mx_zeltner_sheen_ltc_aInv(mu_o, roughness);
+    float b = mx_zeltner_sheen_ltc_bInv(mu_o, roughness);
+    float mu_i = dot(N, wi);
+    vec3 w = vec3(a * dot(cross(Y, N), wi) + b * mu_i, a * dot(Y, wi), mu_i);
+    float quotient = a / dot(w, w);
+    return max(mu_i, 0.0) * M_PI_INV * quotient * quotient;
+}
+
 void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
                 int mode, inout BSDF bsdf)
 {
@@ -45,18 +60,19 @@ void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughne
     float albedo = mode == 0 ? conty_kulla_albedo_dir(mu_o, rough)
                              : mx_zeltner_sheen_dir_albedo(mu_o, rough);
 
+    // Light through the base passes the sheen as well.
+    bsdf.throughput = max(1.0 - albedo * color * weight, 0.0);
+
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
         float mu_i = clamp(dot(N, wi), 0.0, 1.0);
         float lobe = mode == 0
             ? mu_i * conty_kulla_brdf(mu_o, mu_i, N, normalize(wi + wo), rough)
-            : albedo * mx_zeltner_sheen_brdf(wi, wo, N, mu_o, rough);
+            : albedo * zeltner_lobe(wo, wi, N, mu_o, rough);
         bsdf.response = lobe * color * closureData.occlusion * weight;
-        bsdf.throughput = max(1.0 - albedo * color * weight, 0.0);
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
         bsdf.response = albedo * mx_environment_irradiance(N) * color * weight;
-        bsdf.throughput = max(1.0 - albedo * color * weight, 0.0);
     }
 }

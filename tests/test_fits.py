@@ -9,11 +9,23 @@ import re
 import numpy as np
 import pytest
 
-from fits import arc_tangent, eon_inversion, eon_sampling, fon_loss
+from fits import (
+    arc_tangent,
+    conty_kulla_albedo,
+    eon_inversion,
+    eon_sampling,
+    fon_loss,
+    fresnel_average,
+    ggx_albedo,
+    ggx_cosine,
+)
 from fits.minimax import least_largest, mp
 from mxeon.models import inversion
+from mxeon.models.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import eon as shipped
+from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders import functions as twins
+from mxeon.shaders.library import data_folder
 from tests.support import tolerances
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
@@ -88,3 +100,55 @@ def test_the_script_gives_the_arc_tangent_of_the_compiled_models():
     series = arc_tangent.coefficients(**arc_tangent.COMPILED)
     assert np.ravel(compiled.ATAN).tolist() == series
     assert arc_tangent.largest_error(series, mp.one, 101) <= tolerances.ROUNDING
+
+
+def shipped_in(stem, prefix):
+    """Coefficients of a rational fit in a GLSL file, numerator first."""
+    pattern = rf"#define {prefix}_([ND])\d+ (\S+)"
+    found = re.findall(pattern, (data_folder() / "genglsl" / f"{stem}.glsl").read_text())
+    assert [letter for letter, _ in found] == sorted((each for each, _ in found), reverse=True)
+    return tuple(float(number) for _, number in found)
+
+
+def test_the_albedo_of_ggx_has_the_error_that_stands_beside_it():
+    coefficients = shipped_in("ggx_albedo", "GGX_ALBEDO")
+    assert ggx_albedo.largest_error(coefficients) <= tolerances.FIT_GGX
+    wrong = (coefficients[0] + 1e-2, *coefficients[1:])
+    assert ggx_albedo.largest_error(wrong, 61, 41) > tolerances.FIT_GGX
+
+
+def test_the_quadrature_of_the_fit_is_that_of_the_models():
+    mu, alpha = ggx_albedo.points(11, 9)
+    exact = ggx_albedo_dir(mu, alpha)
+    np.testing.assert_allclose(ggx_albedo.albedo(mu, alpha), exact, atol=tolerances.FIT_QUADRATURE)
+
+
+def test_the_albedo_of_conty_kulla_has_the_error_that_stands_beside_it():
+    coefficients = shipped_in("conty_kulla_albedo", "CONTY_KULLA_ALBEDO")
+    mu, roughness = np.meshgrid(np.linspace(1e-4, 1.0, 60), np.geomspace(1e-4, 1.0, 40))
+    exact = np.minimum(conty_kulla_albedo_dir(mu, roughness), 1.0)
+    error = np.abs(conty_kulla_albedo.fitted(mu, roughness, coefficients) - exact).max()
+    assert error <= tolerances.FIT_CONTY_KULLA
+    wrong = (coefficients[0] + 1e-2, *coefficients[1:])
+    error = np.abs(conty_kulla_albedo.fitted(mu, roughness, wrong) - exact).max()
+    assert error > tolerances.FIT_CONTY_KULLA
+
+
+def test_the_cosines_of_ggx_have_the_errors_that_stand_beside_them():
+    grid = ggx_cosine.points(9, 7)
+    for curves, largest in (
+        (ggx_cosine.DIELECTRIC, [1.7e-3 if 1.05 <= n <= 2.5 else 3e-3 for n in ggx_cosine.IORS]),
+        (ggx_cosine.SCHLICK, [1.9e-3 if q == 5 else 3.2e-3 for q in ggx_cosine.EXPONENTS]),
+    ):
+        coefficients = shipped_in("ggx_cosine", curves.prefix)
+        errors = ggx_cosine.errors(curves, coefficients, *grid)
+        assert np.all(np.array(errors) <= largest)
+        wrong = (coefficients[0] * 1.1, *coefficients[1:])
+        assert np.any(np.array(ggx_cosine.errors(curves, wrong, *grid)) > largest)
+
+
+def test_the_average_of_a_dielectric_has_the_error_that_stands_beside_it():
+    coefficients = shipped_in("fresnel_average", "FRESNEL_AVG")
+    assert fresnel_average.dielectric_error(coefficients) <= 5.35e-5
+    wrong = (coefficients[0] * 1.01, *coefficients[1:])
+    assert fresnel_average.dielectric_error(wrong) > 5.35e-5

@@ -1,17 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blender's own nodes, without OSL, judged as one more renderer."""
 
+from pathlib import Path
+
 import pytest
 
 from mxeon.conformance.checks import nodes
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run import check
 from mxeon.shaders.hosts import open_host
+from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 
 NATIVE = nodes.NATIVE["cycles-native"]
 EXAMPLE = examples_folder() / "plaster.mtlx"
+
+
+# File below the kernel's folder, line, and a word of it.
+CAUSES = (
+    ("closure/bsdf_oren_nayar.h", 79, "sqr(albedo)"),
+    ("osl/closures_setup.h", 138, "weight * closure->albedo"),
+)
 
 
 @pytest.fixture(scope="module")
@@ -41,3 +51,17 @@ def test_blender_has_one_power_of_the_color_too_many(results, subject):
     assert "nearest known model: EON with rho^3" in found["value"].diagnosis
     assert found["value"].distances["EON with rho^3"] < 1e-6
     assert {found[key].verdict for key in ("furnace", "black", "lambert", "inputs")} == {PASSED}
+
+
+@pytest.mark.parametrize("file, line, word", CAUSES, ids=lambda each: str(each))
+def test_the_cause_is_at_its_line(file, line, word):
+    with available("cycles-native"):
+        folder = interpreter().parents[1]
+    [path] = folder.glob(
+        f"lib/python*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel/{file}"
+    )
+    assert word in path.read_text("utf-8").splitlines()[line - 1]
+    page = (Path(__file__).parents[2] / "docs" / "upstream" / "cycles_rho_cubed.md").read_text(
+        "utf-8"
+    )
+    assert f"`intern/cycles/kernel/{file}:{line}`" in page

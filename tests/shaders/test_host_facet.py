@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba and LuxCoreRender: their own nodes, and what may go wrong."""
+"""Mitsuba, LuxCoreRender and EEVEE: their own nodes, and what may go wrong."""
 
 import sys
 from dataclasses import replace
@@ -9,17 +9,17 @@ import pytest
 
 from mxeon.conformance.checks.facet_probes import facet_pairs
 from mxeon.conformance.checks.nodes import NATIVE
-from mxeon.conformance.checks.tolerances import FACET_PAIRS, FACETS
+from mxeon.conformance.checks.tolerances import COARSE_FACETS, FACET_PAIRS, FACETS
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
 from mxeon.models import table
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.hosts import open_host
-from mxeon.shaders.hosts.facet import luxcore, mitsuba
+from mxeon.shaders.hosts.facet import eevee, luxcore, mitsuba
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE
-from tests.support.availability import available
+from tests.support.availability import available, required
 
 EXAMPLE = examples_folder() / "plaster.mtlx"
 HOSTS = {"mitsuba": mitsuba.Host, "luxcore": luxcore.Host}
@@ -77,6 +77,18 @@ def test_luxcores_disney_squares_the_roughness_and_applies_the_cosine_twice(of_l
     assert f"nearest known model: {name}" in result.diagnosis and result.distances[name] < 1e-6
     assert "see docs/upstream/luxcore_disney_cosine.md" in result.diagnosis
     assert ("black", "disney") not in of_luxcore  # what is left of another lobe is taken off
+
+
+def test_eevee_is_lambert_whatever_the_roughness():
+    if "eevee" not in required():
+        pytest.skip("a minute on a software driver: MXEON_REQUIRE=eevee runs it")
+    _, wi, mask = facet_pairs(SMALL)
+    with eevee.Host(limit=300.0) as host:
+        for title in host.nodes:
+            pictures = [host.node(title, COLOR, roughness, SMALL) for roughness in (0.0, 1.0)]
+            np.testing.assert_array_equal(*pictures)
+            values = pictures[0][facet_points(SMALL.size).mask][mask]
+            assert np.abs(values - wi[mask][:, 2:] * COLOR).max() <= COARSE_FACETS.value
 
 
 @pytest.mark.parametrize("scene", [FRONT, SIDE, BACK], ids=lambda each: each.name)

@@ -113,6 +113,7 @@ def test_a_host_has_the_verb_by_which_checks_ask_it(row):
         "native": "node",
         "exact": "node",
         "facets": "node",
+        "coarse facets": "node",
         "facet pairs": "pairs",
     }
     host = import_module(row.module).Host

@@ -119,7 +119,7 @@ def test_a_library_is_loaded_once():
     [
         (
             ("mine",),
-            "library must be one of eonlib, stock, or a folder that holds MaterialX documents; got 'mine'",
+            "library must be one of eonlib, diffuse, stock, or a folder that holds MaterialX documents; got 'mine'",
         ),
         (("eonlib", "arnold"), "profile must be one of cycles; got 'arnold'"),
     ],

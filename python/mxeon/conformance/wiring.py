@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Batch
+from mxeon.conformance.checks.bsdf_measures import stretched_case
 from mxeon.conformance.checks.measures import (
     BRANCHES,
     absolute,
@@ -20,7 +21,7 @@ from mxeon.conformance.checks.measures import (
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.sky import sky
 from mxeon.conformance.checks.tolerances import FRAMES, OPAQUE, SURROUNDINGS
-from mxeon.conformance.diagnosis import Diagnosis, not_finite, of_value, region
+from mxeon.conformance.diagnosis import NEAR, Diagnosis, not_finite, of_value, region
 from mxeon.conformance.faults import normal_ignored
 from mxeon.conformance.regions import smallest
 from mxeon.shaders.nodes import FLAG
@@ -120,6 +121,22 @@ def without_effect(probe: Any, name: str) -> str:
     """Words on an input that changes nothing; "" if it does, or there is none."""
     dead = name in probe.subject.changes and name in dead_inputs(probe)
     return f"{name} is ignored" if dead else ""
+
+
+def of_stretched(probe: Any) -> Diagnosis:
+    """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
+    case = stretched_case(probe)
+    view, alpha = case.batch.wo, case.batch.inputs["roughness"]
+    mu2, mean2 = view[:, 2] ** 2, alpha.prod(axis=1)
+    drawn = np.sqrt((alpha**2 * view[:, :2] ** 2).sum(axis=1) + mu2)
+    factor = (view[:, 2] + np.sqrt(mean2 + (1.0 - mean2) * mu2)) / (view[:, 2] + drawn)
+    errors = (
+        np.sqrt(np.mean((case.measured - scale * case.expected) ** 2))
+        for scale in (factor[:, np.newaxis], 1.0)
+    )
+    if next(errors) < NEAR * next(errors):
+        return Diagnosis("anisotropic visible normals are weighted by G_1 at the mean alpha")
+    return Diagnosis(UNKNOWN)
 
 
 def of_surroundings(probe: Any) -> Diagnosis:

@@ -11,6 +11,8 @@ from mxeon.conformance.checks.batch import Array, Batch, rounded
 from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
 
 FEW = 1 << 12
+ROUNDED = 1e-9  # difference of two albedos that are the same
+LEAST_INDEX = 1.2  # of a dielectric whose values are divided
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
 LEAST_ALPHA = 0.05  # of values whose half vector matters: what rounds in it is divided by alpha
 LEAST_COSINE = 0.1  # of the same
@@ -46,12 +48,10 @@ def _throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
 def layer(probe: Any, metric: Metric) -> Measurement:
     """Light that a lobe reflects and light that it passes to a white base, against all of it."""
     views, albedo = _integral(probe)
-    passed = probe.throughput(views, "direct")
-    own = probe.integrals + probe.subject.passed(
-        views
-    )  # above 1 where the lobe itself gains energy
-    expected = np.maximum(1.0, own)
-    return worst_of(metric, [Case(views, albedo + passed, expected)])
+    total = albedo + probe.throughput(views, "direct")
+    # Where the equations gain energy by themselves, no throughput makes up for it.
+    sound = (probe.integrals <= probe.subject.albedo(views) + ROUNDED).all(axis=1)
+    return worst_of(metric, [Case(views.where(sound), total[sound], np.ones((1, 3)))])
 
 
 def energy(probe: Any, metric: Metric) -> Measurement:
@@ -71,14 +71,23 @@ def lossless(probe: Any, metric: Metric) -> Measurement:
 
 def shape(probe: Any, metric: Metric) -> Measurement:
     """Ratio of two values of one view against that of the equations: compensation cancels."""
-    batch, other = (each.first(FEW) for each in probe.mirrored)
+    batch, other = (_clear(each.first(FEW)) for each in probe.mirrored)
     first, second = probe.subject.expected(batch), probe.subject.expected(other)
-    lit = (np.minimum(first, second) > LEAST_VALUE).all(axis=1)
+    lit = (np.minimum(first, second) > LEAST_VALUE).any(axis=1)
     lit &= batch.inputs["roughness"].min(axis=1) >= LEAST_ALPHA
     lit &= np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2])) >= LEAST_COSINE
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = (probe.direct(batch) / first) / (probe.direct(other) / second)
-    return worst_of(metric, [Case(batch.where(lit), ratio[lit], np.ones_like(ratio[lit]))])
+    scale = (first * second).max(axis=1, keepdims=True)
+    with np.errstate(invalid="ignore"):
+        measured = probe.direct(batch) * second / scale
+        expected = probe.direct(other) * first / scale
+    return worst_of(metric, [Case(batch.where(lit), measured[lit], expected[lit])])
+
+
+def _clear(batch: Batch) -> Batch:
+    """A batch without dielectrics whose index is near 1, of which float32 cannot hold F."""
+    if np.ndim(batch.inputs.get("ior", 0.0)) != 1:
+        return batch
+    return batch.altered(ior=np.maximum(batch.inputs["ior"], LEAST_INDEX))
 
 
 def retroreflection(probe: Any, metric: Metric) -> Measurement:
@@ -89,6 +98,17 @@ def retroreflection(probe: Any, metric: Metric) -> Measurement:
         measured = probe.direct(batch.altered(retroreflective=True))
         cases.append(Case(batch, measured, probe.direct(mirrored.altered(retroreflective=False))))
     return worst_of(metric, cases)
+
+
+def stretched(probe: Any, metric: Metric) -> Measurement:
+    """The environment branch of anisotropic materials against the integrals of their values."""
+    return worst_of(metric, [stretched_case(probe)])
+
+
+def stretched_case(probe: Any) -> Case:
+    """The case of `stretched`."""
+    batch, expected = probe.stretched
+    return Case(batch, probe.albedo(batch), expected)
 
 
 def anisotropy(probe: Any, metric: Metric) -> Measurement:

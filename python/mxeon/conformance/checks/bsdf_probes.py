@@ -18,7 +18,8 @@ PAIRS = 1 << 13
 FEW = 1 << 11
 ALBEDOS = 1 << 8  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
-LEAST_FITTED = 1e-4  # cosine of views where fits of albedos hold
+FIT_COSINE = 1e-4  # least cosine of the domain of the fits
+LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth
 
@@ -30,6 +31,8 @@ class BsdfProbe(PairProbe):
     kind: ClassVar[str] = "closed pairs"
     diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
     quadrature: ClassVar[float] = 1e-8  # largest error of its integrals of the equations
+
+    least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
 
     subject: BsdfSubject
 
@@ -54,7 +57,10 @@ class BsdfProbe(PairProbe):
     def cosines(self) -> tuple[Batch, ...]:
         """Directions of view for albedos, which do not depend on `wi`."""
         pairs, special, *_ = self.batches
-        return pairs.first(ALBEDOS), special.first(ALBEDOS)
+        return tuple(
+            batch.where(batch.wo[:, 2] >= self.least_cosine).first(ALBEDOS)
+            for batch in (pairs, special)
+        )
 
     @cached_property
     def edges(self) -> Batch:
@@ -62,9 +68,9 @@ class BsdfProbe(PairProbe):
         rng = np.random.default_rng(SEED)
         wo, wi = self._lit(special_directions(rng))
         inputs = self.subject.special_inputs(rng, len(wo))
-        for name, step in (("roughness", 4), ("ior", 3), ("extinction", 6)):
+        for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
             if name in inputs:
-                inputs[name][::step] = 0.0
+                inputs[name][start::step] = 0.0
         return Batch(wo, wi, inputs)
 
     @cached_property
@@ -141,11 +147,7 @@ class FittedProbe(BsdfProbe):
 
     kind: ClassVar[str] = "fitted pairs"
     quadrature: ClassVar[float] = 2e-4
-
-    @property
-    def cosines(self) -> tuple[Batch, ...]:
-        """Directions of view for albedos, in the fit's domain."""
-        return tuple(map(fitted, super().cosines))
+    least_cosine: ClassVar[float] = FIT_COSINE
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +155,7 @@ class MicrofacetProbe(BsdfProbe):
     """A node of microfacets, whose values are large near the mirror direction."""
 
     kind: ClassVar[str] = "microfacet pairs"
+    least_cosine: ClassVar[float] = FIT_COSINE
     diagnosed: ClassVar[int] = 1 << 8  # their references take long
     quadrature: ClassVar[float] = 6e-4
 
@@ -168,9 +171,18 @@ class MicrofacetProbe(BsdfProbe):
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
-        """Directions of view for albedos, in the fits' domain and with simple inputs."""
-        batches = map(fitted, super().cosines)
-        return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in batches)
+        """Directions of view for albedos, with simple inputs."""
+        return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in super().cosines)
+
+    @cached_property
+    def stretched(self) -> tuple[Batch, Array]:
+        """Views of materials whose roughness has a direction, and the integrals of their values."""
+        rng = np.random.default_rng(SEED)
+        inputs = simple(self.subject.random_inputs(rng, MATERIALS))
+        inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, MATERIALS)))
+        batch = Batch(directions(rng, MATERIALS), directions(rng, MATERIALS), inputs)
+        batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
+        return batch, self.subject.integral(batch)
 
     @cached_property
     def turned(self) -> Batch:
@@ -208,11 +220,6 @@ class MicrofacetProbe(BsdfProbe):
         density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
         weights = np.tile(np.meshgrid(0.5 * w, np.ones(NODES))[0].ravel() / NODES, len(wo))
         return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
-
-
-def fitted(batch: Batch) -> Batch:
-    """The pairs of a batch whose view is in the domain of the fits of albedos."""
-    return batch.where(batch.wo[:, 2] >= LEAST_FITTED)
 
 
 def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,12 +3,10 @@
 
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
-from mxeon.conformance.checks.bsdfs import LEAST_SHEEN
 from mxeon.conformance.checks.measures import absolute, scaled
-from mxeon.conformance.checks.special import LEAST_TURNED, TURNED
-from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance, rounded_up
+from mxeon.conformance.checks.special import LEAST_SHEEN, LEAST_TURNED, TURNED
+from mxeon.conformance.checks.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 
-SCALED = "pi f cos, relative above 1"
 CLOSED, SHEEN, FITTED, MICROFACET = BSDF_PROBES
 
 # Largest errors of the fits that shaders are held to, each found by its script in fits/.
@@ -16,6 +14,7 @@ ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everyt
 FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
+SUM_OF_DIRECTIONS = 5e-3  # error of a sum over 256 directions of an environment, to be measured
 LEAST_ESS = 0.44  # E_ss at alpha 1 and grazing
 
 DIFFUSE_VALUE = Tolerance(
@@ -26,19 +25,18 @@ DIFFUSE_VALUE = Tolerance(
     "them in the cosine of the half vector, and seven in the products; rounded up",
 )
 ZELTNER_VALUE = Tolerance(
-    rounded_up((4 * 16 + 14) * ROUNDING),
+    rounded_up(48 * ROUNDING),
     SCALED,
     scaled,
-    "78 roundings of float32, 2^-24 each, of the value or of 1: 16 in a length, whose fourth power it "
-    "has, and 14 beside them; rounded up",
+    "48 roundings of float32, 2^-24 each, of the value or of 1: an inverse fourth power takes the 8 of "
+    "a length four times, and 16 beside them; rounded up",
 )
 CONTY_KULLA_VALUE = Tolerance(
-    rounded_up((6 / (2 * LEAST_SHEEN) + 28) * ROUNDING),
+    rounded_up((32 + 4 * 0.5 / LEAST_SHEEN) * ROUNDING),
     SCALED,
     scaled,
-    "328 roundings of float32, 2^-24 each, of the value or of 1: six in the squared sine of the half "
-    "vector, times the exponent 1 / (2 r), 50 at the least roughness, 0.01; and 28 beside them; "
-    "rounded up",
+    "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
+    "the inverse of the roughness, at least 0.01; rounded up",
 )
 COMPENSATION = (ESS_FIT + FRESNEL_FIT * (1.0 - LEAST_ESS)) / LEAST_ESS  # its error, relative
 MICROFACET_VALUE = Tolerance(
@@ -67,6 +65,12 @@ MICROFACET_ALBEDO = Tolerance(
     absolute,
     "the fit of the lobe's albedo, 3.2e-3, and that of E_ss in its compensation, 5e-4 over the least "
     "E_ss, 0.44; rounded up",
+)
+ANISOTROPIC_ALBEDO = Tolerance(
+    MICROFACET_ALBEDO.value + SUM_OF_DIRECTIONS,
+    "albedo",
+    scaled,
+    "the fits, and the error of a sum over the directions of an environment",
 )
 FLAT_FRAME = Tolerance(
     rounded_up(3 * 5 / TURNED[0] * ROUNDING),
@@ -143,8 +147,3 @@ LAYERS = {
     )
     for kind in BSDF_PROBES
 }
-
-
-def of_bsdfs(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of the other BSDF nodes."""
-    return dict.fromkeys(BSDF_PROBES, tolerance)

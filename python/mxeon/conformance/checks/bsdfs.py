@@ -10,6 +10,7 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Batch, Candidate
 from mxeon.conformance.checks.nodes import Changes
+from mxeon.conformance.checks.special import LEAST_SHEEN
 from mxeon.models import pbrlib
 from mxeon.models.pbr_node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
@@ -48,7 +49,6 @@ BLACK = ("color", "tint", "color0", "color90")
 
 NOTHING = Candidate("nothing at all", lambda batch: np.zeros((len(batch.wo), 3)))
 LEAST_ALPHA = 1e-3  # of random pairs
-LEAST_SHEEN = 0.01  # roughness of the other lobes, which the Zeltner sheen has at least
 ROUGH_EDGES = (1e-4, 0.01, 1.0)  # special values of alpha
 SHEEN_EDGES = (0.01, 0.05, 1.0)  # special roughnesses of a lobe that has one
 

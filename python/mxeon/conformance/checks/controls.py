@@ -84,13 +84,6 @@ def gray(probe: Any) -> Altered:
     return Altered(probe, batch=mean_color)
 
 
-def roughen(probe: Any) -> Altered:
-    """A control whose roughness is a tenth too large."""
-    return Altered(
-        probe, batch=lambda batch: batch.altered(roughness=1.1 * batch.inputs["roughness"])
-    )
-
-
 def take_response(probe: Any) -> Altered:
     """A control that takes the response for another output."""
     return Altered(probe, throughputs=lambda batch, values: probe.direct(batch))
@@ -109,6 +102,26 @@ def scale(factor: float) -> Control:
 def offset(probe: Any) -> Altered:
     """A control to whose values a thousandth is added."""
     return Altered(probe, values=lambda batch, values: values + 1e-3)
+
+
+def rougher(probe: Any) -> Altered:
+    """A control whose roughness is a tenth larger."""
+    return Altered(
+        probe,
+        batch=lambda batch: batch.altered(
+            roughness=np.minimum(1.1 * np.asarray(batch.inputs["roughness"]), 1.0)
+        ),
+    )
+
+
+def isotropic(probe: Any) -> Altered:
+    """A control whose roughness is the same in both directions."""
+    return Altered(
+        probe,
+        batch=lambda batch: batch.altered(
+            roughness=np.repeat(np.asarray(batch.inputs["roughness"])[:, :1], 2, axis=1)
+        ),
+    )
 
 
 def drop_changes(probe: Any) -> Altered:

@@ -146,7 +146,7 @@ def judge_check(check: Check, probe: Any) -> Result:
         "library": probe.library,
         **getattr(probe, "claims", {}),  # of a renderer's own node
     }
-    tolerance = check.tolerances[probe.kind]
+    tolerance = check.adapt(check.tolerances[probe.kind], probe)
     diagnosis = Diagnosis()
     try:
         with renderer_warnings() as notes:

@@ -67,6 +67,13 @@ class FacetProbe(ExactProbe):
 
 
 @dataclass(frozen=True, eq=False)
+class CoarseFacetProbe(FacetProbe):
+    """A node on the polyhedron, by a renderer that keeps light in a few bits."""
+
+    kind: ClassVar[str] = "coarse facets"
+
+
+@dataclass(frozen=True, eq=False)
 class FacetPairProbe(FacetProbe):
     """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
 
@@ -118,6 +125,7 @@ PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "native": NativeProbe,
     "exact": ExactProbe,
     "facets": FacetProbe,
+    "coarse facets": CoarseFacetProbe,
     "facet pairs": FacetPairProbe,
 }
 

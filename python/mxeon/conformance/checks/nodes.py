@@ -28,6 +28,7 @@ class OfModel:
     """What a subject has that has to be one of the diffuse models."""
 
     model: str
+    native: ClassVar[bool] = False  # whether it is a renderer's own node
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
@@ -64,7 +65,8 @@ class OfModel:
         """The other models; Burley's with the albedo that the subject's own has."""
         name = self.model if self.model.startswith("burley") else "burley"
         left_out = {"burley", "burley_lambert"} - {name}
-        return tuple(row for row in OTHERS if row.name not in left_out)
+        rows = OTHERS if self.native else [reference.model(name)]
+        return tuple(row for row in rows if row.name not in left_out)
 
     def _candidates(
         self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
@@ -125,6 +127,11 @@ class Subject(OfModel):
         """Name in reports."""
         flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
         return self.node + flag
+
+    @property
+    def native(self) -> bool:  # type: ignore[override]
+        """Whether it is a renderer's own node, which has no weight."""
+        return "weight" not in self.names
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -273,6 +280,10 @@ NATIVE = {
         *_own("burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"),
     ),
     "mitsuba": (Subject("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
+    # Its manual has the roughness of both nodes for Cycles only.
+    "eevee": tuple(
+        Subject(node, None, "lambert", ("color",)) for node in ("Diffuse BSDF", "Principled BSDF")
+    ),
     "luxcore": (
         Subject("matte", None, "lambert", ("color",)),
         *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),

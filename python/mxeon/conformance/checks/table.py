@@ -17,19 +17,22 @@ from mxeon.conformance.checks import (
     sampling_measures,
     tolerances,
 )
-from mxeon.conformance.checks.bsdf_tolerances import MICROFACET, of_bsdfs
+from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdf_tolerances import MICROFACET
 from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
+    isotropic,
     offset,
     pass_all,
-    roughen,
+    rougher,
     scale,
     scale_cosine,
     take_response,
     with_inputs,
 )
+from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.conformance.checks.tolerance import Tolerance
@@ -49,6 +52,12 @@ BLACK = tuple(subject.model for subject in BSDFS if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
+
+
+def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
+    kinds = tuple(BSDF_PROBES) + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    return dict.fromkeys(kinds, tolerance)
 
 
 @dataclass(frozen=True)
@@ -73,6 +82,8 @@ class Check:
         Explanation of a failure.
     open : bool
         Whether an error differs, and does not fail, where a permitted function explains all values.
+    adapt : callable (tolerance, probe) -> Tolerance
+        The tolerance on the probe's host, by the errors of its engine's own functions.
     """
 
     key: str
@@ -85,6 +96,7 @@ class Check:
     applies: Callable[[Any, str], bool] = lambda subject, host: True
     diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
     open: bool = False
+    adapt: Callable[[Tolerance, Any], Tolerance] = lambda tolerance, probe: tolerance
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -122,6 +134,7 @@ CHECKS = (
         gray,
         tolerances.VALUES,
         open=True,
+        adapt=on_engine,
     ),
     Check(
         "lobe",
@@ -176,9 +189,10 @@ CHECKS = (
             "pairs": tolerances.ZERO,
             "pictures": tolerances.ZERO,
             "planes": tolerances.ZERO,
-            **of_bsdfs(tolerances.ZERO),
+            **of_bsdfs(tolerances.ZERO, pictures=True),
             "exact": tolerances.ZERO,
             "facets": tolerances.ZERO,
+            "coarse facets": tolerances.ZERO,
             "facet pairs": tolerances.ZERO,
         },
         is_alone,
@@ -289,9 +303,10 @@ CHECKS = (
             "pairs": tolerances.count_of("inputs"),
             "pictures": tolerances.count_of("inputs"),
             "planes": tolerances.count_of("inputs"),
-            **of_bsdfs(tolerances.count_of("inputs")),
+            **of_bsdfs(tolerances.count_of("inputs"), pictures=True),
             "exact": tolerances.count_of("inputs"),
             "facets": tolerances.count_of("inputs"),
+            "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
         },
         diagnose=wiring.of_inputs,
@@ -369,8 +384,8 @@ CHECKS = (
         "Two lights of one view give values in the ratio of D F G2.",
         MICROFACETS,
         bsdf_measures.shape,
-        "the roughness is a tenth too large",
-        roughen,
+        "the roughness is a tenth larger",
+        rougher,
         {MICROFACET: bsdf_tolerances.SHAPE},
         open=True,
     ),
@@ -393,5 +408,15 @@ CHECKS = (
         with_inputs(tangent=(1.0, 0.0, 0.0)),
         {MICROFACET: bsdf_tolerances.ANISOTROPY},
         diagnose=wiring.of_tangent,
+    ),
+    Check(
+        "anisotropic_albedo",
+        "The environment branch of an anisotropic lobe gives the integral of its values.",
+        MICROFACETS,
+        bsdf_measures.stretched,
+        "the roughness is the same in both directions",
+        isotropic,
+        {MICROFACET: bsdf_tolerances.ANISOTROPIC_ALBEDO},
+        diagnose=wiring.of_stretched,
     ),
 )

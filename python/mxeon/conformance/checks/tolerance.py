@@ -9,6 +9,7 @@ import numpy as np
 from mxeon.conformance.checks.batch import Array
 from mxeon.conformance.checks.measures import Metric, scaled
 
+SCALED = "pi f cos, relative above 1"
 ROUNDING = 2.0**-24  # unit roundoff of float32
 
 

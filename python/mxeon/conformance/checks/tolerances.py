@@ -11,7 +11,7 @@ from mxeon.conformance.checks.batch import LOBE_RIM, RIM
 from mxeon.conformance.checks.measures import absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
 from mxeon.conformance.checks.special import TURNED
-from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance, rounded_up
+from mxeon.conformance.checks.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
@@ -19,7 +19,6 @@ HALF_ROUNDING = 2.0**-11  # of float16
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
 PLANE_PIXELS = 128**2  # of a picture of testrender
 FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
-SUM_OF_DIRECTIONS = 5e-3  # error of a sum over 256 directions of an environment, to be measured
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H, see fits/
 
 
@@ -61,6 +60,17 @@ def direction_of(sine_error: float) -> Tolerance:
         absolute,
         f"16 roundings of float32, 2^-24 each, and four times the error of the engine's own sine and "
         f"cosine, {sine_error:.1e}, which turn a direction twice; rounded up",
+    )
+
+
+def power_of(power_error: float, exponent: float) -> Tolerance:
+    """Tolerance of values that are powers, on an engine whose own power is off by so much."""
+    return Tolerance(
+        rounded_up((32 + exponent) * ROUNDING + power_error),
+        SCALED,
+        scaled,
+        f"32 roundings of float32, 2^-24 each, and one to the power of {exponent:.0f}, of the value or "
+        f"of 1; and the error of the engine's own power in it, {power_error:.1e}; rounded up",
     )
 
 
@@ -201,6 +211,13 @@ FACETS = Tolerance(
     "the normal of a facet: three float32 vertices, each off by sqrt(3) 2^-24, over the narrowest edge, "
     "0.0245, twice for the edge's two ends; times 8, the largest slope of the diffuse models; rounded up",
 )
+COARSE_FACETS = Tolerance(
+    rounded_up(2.0**-6 + 2.4e-3),
+    "pi f cos or albedo",
+    absolute,
+    "EEVEE keeps light in 32 bits for three channels, of which blue has the fewest: five below the "
+    "leading one, cut off, of numbers up to 1; and 2.4e-3 for its packed normals, measured; rounded up",
+)
 FACET_NOISE = Tolerance(
     rounded_up(4.0 * 0.0716 / math.sqrt(FACET_PIXELS)),
     "mean albedo",
@@ -230,13 +247,36 @@ OWN_DENSITY = Tolerance(
     "direction, whose fourth power it has, lose up to three bits; rounded up",
 )
 
+# Pictures of the other BSDF nodes of pbrlib. A ray's point is off by an angle, by which the logarithm
+# of a lobe changes at most LOBE_SLOPE times as fast: twice 1 / alpha of a distribution, whose alpha is
+# at least 0.4, and 3 for Fresnel's curve, shadowing and the cosine.
+LOBE_SLOPE = 2.0 / 0.4 + 3.0
+BSDF_RAY = Tolerance(
+    rounded_up(LOBE_SLOPE * CYCLES_RAY.value),
+    SCALED,
+    scaled,
+    "8 times the error of a ray in a picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PLANE = Tolerance(
+    rounded_up(LOBE_SLOPE * TESTRENDER.value),
+    SCALED,
+    scaled,
+    "8 times the error of a plane's picture: 5, twice over the least alpha, and 3; rounded up",
+)
+BSDF_PICTURE_KINDS = ("bsdf pictures", "microfacet pictures", "bsdf planes", "microfacet planes")
+
 # By kind of probe: those of a value, and of an albedo.
 VALUES = {
     "pairs": VALUE,
     "pictures": CYCLES_RAY,
     "planes": TESTRENDER,
+    "bsdf pictures": BSDF_RAY,
+    "microfacet pictures": BSDF_RAY,
+    "bsdf planes": BSDF_PLANE,
+    "microfacet planes": BSDF_PLANE,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
     **bsdf_tolerances.VALUES,
 }
@@ -245,14 +285,20 @@ LOBES = {
     "plane lobes": TESTRENDER,
     "exact": EXACT,
     "facets": FACETS,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
 }
 ALBEDOS = {
     "pairs": ENVIRONMENT,
     "pictures": CYCLES_NOISE,
     "planes": TESTRENDER_NOISE,
+    "bsdf pictures": CYCLES_NOISE,
+    "microfacet pictures": CYCLES_NOISE,
+    "bsdf planes": TESTRENDER_NOISE,
+    "microfacet planes": TESTRENDER_NOISE,
     "exact": EXACT_SURROUNDINGS,
     "facets": FACET_NOISE,
+    "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_NOISE,
     **bsdf_tolerances.ALBEDOS,
 }

@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdf_pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.checks.documents import generate_document
@@ -197,7 +197,9 @@ def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
     surfaces = {surface.title: surface for surface in SURFACES}
     bsdfs = {bsdf.title: bsdf for bsdf in BSDFS}
     if title in bsdfs:
-        return BSDF_PROBES[bsdfs[title].kind](host, bsdfs[title], library)
+        kind = bsdf_probe_type(bsdfs[title], probe)
+        assert kind is not None  # or there were no task
+        return kind(host, bsdfs[title], library)  # type: ignore[arg-type]
     if title in surfaces:
         return SURFACE_PROBES[probe](host, surfaces[title], library)
     rows = NATIVE.get(host.name, SUBJECTS)

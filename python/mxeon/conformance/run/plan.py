@@ -18,6 +18,7 @@ import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance.checks import functions
+from mxeon.conformance.checks.bsdf_pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdfs import BSDFS, BsdfSubject
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.facet_probes import probe_type
@@ -231,9 +232,9 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
-    if probe is PairProbe:
-        for bsdf in BSDFS:
-            yield from _checks_of(bsdf, bsdf.kind, host, library)
+    for bsdf in BSDFS:
+        if kind := bsdf_probe_type(bsdf, probe):
+            yield from _checks_of(bsdf, kind.kind, host, library)
     if row.surfaces:
         for surface in SURFACES:
             if (library if library in LIBRARIES else "eonlib") in (surface.libraries or LIBRARIES):

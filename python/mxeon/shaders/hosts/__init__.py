@@ -27,8 +27,8 @@ class Row:
     probe : str
         How checks ask it: for "pairs" of directions, for "pictures" of a sphere, for pictures of
         "planes", for pictures of "native" nodes of its own, for "exact" ones, without noise and with
-        the points of float32, for those of "facets" of a polyhedron, for these and for "facet
-        pairs" of directions, or "" for nothing.
+        the points of float32, for those of "facets" of a polyhedron, "coarse" ones or not,
+        for these and for "facet pairs" of directions, or "" for nothing.
     needs : str
         What running it would take, where only its text is checked.
     scenes : tuple of Scene
@@ -77,6 +77,7 @@ HOSTS = (
     Row("babylon", "essl", "mxeon.shaders.hosts.browser.babylon", "exact"),
     Row("three-gpu-pathtracer", "essl", "mxeon.shaders.hosts.browser.pathtracer", "facet pairs"),
     Row("mitsuba", "glsl", "mxeon.shaders.hosts.facet.mitsuba", "facet pairs"),
+    Row("eevee", "osl", "mxeon.shaders.hosts.facet.eevee", "coarse facets"),
     Row("luxcore", "glsl", "mxeon.shaders.hosts.facet.luxcore", "facets"),
     Row("testrender", "osl", "mxeon.shaders.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
