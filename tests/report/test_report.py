@@ -20,6 +20,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.conformance.results import (
+    DIFFERS,
     FAILED,
     NOT_RUN,
     PASSED,

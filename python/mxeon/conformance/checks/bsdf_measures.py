@@ -14,7 +14,7 @@ FEW = 1 << 12
 ROUNDED = 1e-9  # difference of two albedos that are the same
 LEAST_INDEX = 1.2  # of a dielectric whose values are divided
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
-LEAST_ALPHA = 0.05  # of values whose half vector matters: what rounds in it is divided by alpha
+LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
 LEAST_COSINE = 0.1  # of the same
 LIGHT = ("direct", "environment")  # branches that light a base from above
 
@@ -74,7 +74,6 @@ def shape(probe: Any, metric: Metric) -> Measurement:
     batch, other = (_clear(each.first(FEW)) for each in probe.mirrored)
     first, second = probe.subject.expected(batch), probe.subject.expected(other)
     lit = (np.minimum(first, second) > LEAST_VALUE).any(axis=1)
-    lit &= batch.inputs["roughness"].min(axis=1) >= LEAST_ALPHA
     lit &= np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2])) >= LEAST_COSINE
     scale = (first * second).max(axis=1, keepdims=True)
     with np.errstate(invalid="ignore"):

@@ -86,12 +86,11 @@ MICROFACET_FRAME = Tolerance(
     "0.1, times the fourth power of the distribution; rounded up",
 )
 SHAPE = Tolerance(
-    rounded_up(2 * (4 * 5 / LEAST_ALPHA + 2 * 5 / LEAST_COSINE) * ROUNDING),
+    rounded_up(2 * 64 * ROUNDING),
     "relative",
     absolute,
-    "two values, each with five roundings of a half vector, 2^-24 each, over the least alpha, 0.05, "
-    "times the fourth power of the distribution, and five in each of two cosines, over the least, 0.1; "
-    "rounded up",
+    "two values of 64 roundings of float32 each, 2^-24: the half vector of exact directions has no "
+    "others; rounded up",
 )
 RETROREFLECTION = Tolerance(
     DIFFUSE_VALUE.value,

@@ -153,7 +153,7 @@ class PictureProbe:
     size: ClassVar[int] = PICTURE_SIZE
 
     host: Host
-    subject: Subject | Surface
+    subject: Subject | Surface | BsdfSubject
     library: str
 
     @cached_property

@@ -199,7 +199,7 @@ def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
     if title in bsdfs:
         kind = bsdf_probe_type(bsdfs[title], probe)
         assert kind is not None  # or there were no task
-        return kind(host, bsdfs[title], library)  # type: ignore[arg-type]
+        return kind(host, bsdfs[title], library)
     if title in surfaces:
         return SURFACE_PROBES[probe](host, surfaces[title], library)
     rows = NATIVE.get(host.name, SUBJECTS)
