@@ -30,12 +30,15 @@ BLOCK = re.compile(r"(<!-- measured (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 # Rows of the summaries of other pages, and what stock computes.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
-    ("layering", "sheen_bsdf, mode zeltner", "a throughput without the color"),
-    ("environment", "burley_diffuse_bsdf", "a fit"),
     ("frame", "translucent_bsdf", "light of the wrong side, seen from the back"),
     ("layer", "dielectric_bsdf, scatter_mode R", "a throughput without the tint, by a fit"),
     ("lossless", "conductor_bsdf", "energy compensation by a fit"),
+    ("layering", "sheen_bsdf, mode zeltner", "a throughput without the color"),
+    ("environment", "sheen_bsdf, mode conty_kulla", "a fit"),
+    ("environment", "burley_diffuse_bsdf", "a fit"),
+    ("layer", "generalized_schlick_bsdf, scatter_mode R", "one without exponent, of the mean color"),
 )
+SHORT = 4  # rows of the summary in the README
 SUMMARIES = (FOLDER.parent / "README.md", FOLDER / "results.md")
 SUMMARY_HEAD = (
     "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"
@@ -74,15 +77,16 @@ def page(text, data):
 
 
 def table(name, data):
-    """The table of a node, or the summary."""
-    return summary(data) if name == "summary" else node_table(name, data)
+    """The table of a node, the summary, or the first rows of it."""
+    count = {"summary": len(SUMMARY), "short": SHORT}.get(name)
+    return summary(data, count) if count else node_table(name, data)
 
 
-def summary(data):
-    """A short table of what stock computes in place of the specification."""
+def summary(data, count):
+    """A table of what stock computes in place of the specification."""
     errors = {(r["check"], r["subject"], r["library"]): r["error"] for r in data["results"]}
     lines = []
-    for check, subject, words in SUMMARY:
+    for check, subject, words in SUMMARY[:count]:
         stock, eonlib = (errors.get((check, subject, each), "") for each in LIBRARIES)
         name = f"`{subject.split(',')[0]}`{_mode(subject) and ', ' + _mode(subject)}, `{check}`"
         lines.append(f"| {name} | {eonlib} | {stock} | {words} |\n")

@@ -112,7 +112,7 @@ def test_generate_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_p
     "arguments, words",
     [
         (["check", PLASTER, "--host", "abacus"], "host must be one of gl"),
-        (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, stock"),
+        (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, diffuse, stock"),
         (["check", "nowhere.mtlx", "--host", "msl"], "must be a readable file"),
         (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
         (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),

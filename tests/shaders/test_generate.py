@@ -255,7 +255,7 @@ def test_one_element_is_made_by_its_name_or_path():
         ({"element": "none"}, "element must be one of look; got 'none'"),
         (
             {"library": "none"},
-            "library must be one of eonlib, stock, or a folder that holds MaterialX documents; got 'none'",
+            "library must be one of eonlib, diffuse, stock, or a folder that holds MaterialX documents; got 'none'",
         ),
         ({"profile": "none"}, "profile must be one of cycles; got 'none'"),
     ],

@@ -119,7 +119,7 @@ def test_a_library_is_loaded_once():
     [
         (
             ("mine",),
-            "library must be one of eonlib, stock, or a folder that holds MaterialX documents; got 'mine'",
+            "library must be one of eonlib, diffuse, stock, or a folder that holds MaterialX documents; got 'mine'",
         ),
         (("eonlib", "arnold"), "profile must be one of cycles; got 'arnold'"),
     ],
@@ -137,6 +137,14 @@ def test_the_wrong_order_raises_with_node_target_and_remedy():
     assert "ND_oren_nayar_diffuse_bsdf for genglsl must be eonlib's; got " in message
     assert "pbrlib_genglsl_impl.mtlx" in message
     assert message.endswith(f"load {OURS} before the standard libraries")
+
+
+def test_the_microfacet_nodes_are_eonlibs_unless_the_diffuse_part_alone_is_loaded():
+    for name, ours in (("eonlib", True), ("diffuse", False), ("stock", False)):
+        for node in ("dielectric", "conductor", "generalized_schlick", "sheen"):
+            definition = library.load_library(name).getNodeDef(f"ND_{node}_bsdf")
+            found = Path(definition.getImplementation("genglsl").getActiveSourceUri())
+            assert (library.specular_folder() in found.parents) == ours
 
 
 def test_a_missing_library_raises_too():

@@ -92,7 +92,9 @@ class BsdfSubject:
         """Kind of its probe; see `mxeon.conformance.checks.bsdf_probes`."""
         if self.anisotropic:
             return "microfacet pairs"
-        return "fitted pairs" if self.row.fitted else "closed pairs"
+        if self.row.fitted:
+            return "fitted pairs"
+        return "sheen pairs" if self.row.category == "sheen_bsdf" else "closed pairs"
 
     @property
     def changes(self) -> dict[str, Changes]:
