@@ -36,7 +36,11 @@ SUMMARY = (
     ("layering", "sheen_bsdf, mode zeltner", "a throughput without the color"),
     ("environment", "sheen_bsdf, mode conty_kulla", "a fit"),
     ("environment", "burley_diffuse_bsdf", "a fit"),
-    ("layer", "generalized_schlick_bsdf, scatter_mode R", "one without exponent, of the mean color"),
+    (
+        "layer",
+        "generalized_schlick_bsdf, scatter_mode R",
+        "one without exponent, of the mean color",
+    ),
 )
 SHORT = 4  # rows of the summary in the README
 SUMMARIES = (FOLDER.parent / "README.md", FOLDER / "results.md")
