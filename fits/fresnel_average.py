@@ -6,7 +6,7 @@ Of a dielectric of index n above 1, with t = 1 / n:
     1 - F_ss = t N / D,
 
 polynomials in t. Below 1 it follows from the other side: 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)).
-Of any other curve that is 1 at grazing, as those of metals:
+Of a metal, whose curve is 1 at grazing:
 
     1 - F_ss = sum of w_k (1 - F(c_k)),
 

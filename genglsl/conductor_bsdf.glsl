@@ -17,7 +17,9 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior_n, vec3 ior_
 
     MicrofacetLobe lobe = microfacet_lobe(closureData.V, N, roughness, retroreflective);
     FresnelData fd = mx_init_fresnel_conductor(ior_n, ior_k, thinfilm_thickness, thinfilm_ior);
-    vec3 scale = microfacet_compensation(lobe, fresnel_curve_avg(fd)) * weight;
+
+    // The average is that without a film, whose curve costs as much as all the rest at each cosine.
+    vec3 scale = microfacet_compensation(lobe, fresnel_conductor_avg(ior_n, ior_k)) * weight;
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {

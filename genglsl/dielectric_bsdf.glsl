@@ -25,8 +25,10 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
 
     // MaterialX's curve divides 0 by 0 along the normal where float32 adds nothing to 1.
     FresnelData fd = mx_init_fresnel_dielectric(max(ior, 1e-3), thinfilm_thickness, thinfilm_ior);
-    vec3 F_ss = fd.airy ? fresnel_curve_avg(fd) : vec3(fresnel_dielectric_avg(fd.ior.x));
-    vec3 F_o = dielectric_fresnel(ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior), fd);
+
+    // Averages are those without a film: a film's curve costs as much as all the rest, at each cosine.
+    vec3 F_ss = vec3(fresnel_dielectric_avg(ior));
+    float F_o = fresnel_dielectric(ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior), ior);
     vec3 scale = max(tint, 0.0) * microfacet_compensation(lobe, F_ss) * weight;
 
     bsdf.throughput = max(1.0 - lobe.albedo * F_o * scale, 0.0);

@@ -60,11 +60,10 @@ vec3 fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float exponent
     return mix(color0, color90, pow(m, exponent)) * (1.0 - color82) * (7.0 / (m2 * m2 * m2));
 }
 
-// F_ss of a curve that is 1 at grazing: metals, and thin films.
-vec3 fresnel_curve_avg(FresnelData fd)
+// F_ss of a metal.
+vec3 fresnel_conductor_avg(vec3 ior, vec3 extinction)
 {
-    vec3 lost = FRESNEL_AVG_W0 * (1.0 - mx_compute_fresnel(FRESNEL_AVG_C0, fd))
-                + FRESNEL_AVG_W1 * (1.0 - mx_compute_fresnel(FRESNEL_AVG_C1, fd))
-                + FRESNEL_AVG_W2 * (1.0 - mx_compute_fresnel(FRESNEL_AVG_C2, fd));
-    return 1.0 - lost;
+    return 1.0 - FRESNEL_AVG_W0 * (1.0 - mx_fresnel_conductor(FRESNEL_AVG_C0, ior, extinction))
+           - FRESNEL_AVG_W1 * (1.0 - mx_fresnel_conductor(FRESNEL_AVG_C1, ior, extinction))
+           - FRESNEL_AVG_W2 * (1.0 - mx_fresnel_conductor(FRESNEL_AVG_C2, ior, extinction));
 }

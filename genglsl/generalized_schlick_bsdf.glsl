@@ -8,10 +8,6 @@
 vec3 generalized_schlick_average(MicrofacetLobe lobe, FresnelData fd, vec3 dip)
 {
     float m = 1.0 - ggx_cosine_schlick(lobe.mu_o, lobe.alpha, fd.exponent);
-    if (fd.airy)
-    {
-        return mx_fresnel_airy(1.0 - m, fd);
-    }
     vec3 average = mix(fd.F0, fd.F90, pow(m, fd.exponent));
     bool dips = dot(abs(dip), vec3(1.0)) > 0.0;
     return dips ? average - dip * ggx_dip(lobe.mu_o, lobe.alpha) : average;
@@ -33,7 +29,9 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     FresnelData fd = mx_init_fresnel_schlick(max(color0, 0.0), max(color82, 0.0), max(color90, 0.0),
                                              exponent, thinfilm_thickness, thinfilm_ior);
     vec3 dip = fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
-    vec3 F_ss = fd.airy ? fresnel_curve_avg(fd) : fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
+
+    // Averages are those without a film: a film's curve costs as much as all the rest, at each cosine.
+    vec3 F_ss = fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
     vec3 scale = microfacet_compensation(lobe, F_ss) * weight;
 
     bsdf.throughput = max(1.0 - lobe.albedo * generalized_schlick_average(lobe, fd, dip) * scale, 0.0);

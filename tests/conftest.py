@@ -27,6 +27,11 @@ def pytest_configure():
         raise pytest.UsageError(str(error)) from None
 
 
+def pytest_make_parametrize_id(val):
+    """Name of a function as its id, without the address that differs from worker to worker."""
+    return getattr(val, "__name__", None)
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
     """Trace lines in the tests of the models alone, which have to reach them all by themselves."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The documentation: a site without dead links that needs no network, and a README that works."""
 
+import json
 import os
 import re
 import runpy
@@ -16,9 +17,12 @@ import pytest
 import yaml
 from playwright.sync_api import sync_playwright
 
+from docs.upstream.update import figures, written
 from mxeon import albedo, inversion, models, sampling
+from mxeon.conformance.known_issues import BSDF_ISSUES, STOCK
 from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.hosts.webgl import program
+from tests.support.tolerances import PRINTED
 
 ROOT = Path(__file__).resolve().parents[1]
 PROSE = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "fits/README.md")
@@ -199,6 +203,31 @@ def test_the_gallery_page_is_the_one_that_its_script_writes():
     documents = gallery["EXAMPLES"].glob("*.mtlx")
     materials = {name for file in documents for name in gallery["materials"](file)}
     assert {file.stem for file in gallery["PICTURES"].glob("*.png")} == materials
+
+
+def test_the_page_on_the_specification_is_the_one_that_its_script_writes():
+    script = runpy.run_path(str(ROOT / "docs" / "specification.py"))
+    text = script["PAGE"].read_text(encoding="utf-8")
+    data = json.loads(script["DATA"].read_text(encoding="utf-8"))
+    assert text == script["page"](text, data)
+    assert script["page"](text, {"results": []}) != text
+    headings = re.findall(r"^## (\w+_bsdf)$", text, re.MULTILINE)
+    assert headings == re.findall(r"<!-- measured (\w+) -->", text)
+    assert set(headings) == set(script["NODES"])
+
+
+def test_the_page_on_the_specification_has_the_figures_of_the_ledger():
+    data = json.loads((ROOT / "docs" / "specification.json").read_text(encoding="utf-8"))
+    errors = {
+        (r["check"], r["subject"]): r["error"] for r in data["results"] if r["library"] == STOCK
+    }
+    rows = {
+        row: figure
+        for issue in BSDF_ISSUES
+        for row, figure in zip(issue.rows, figures(written(issue.page)), strict=True)
+    }
+    assert len(rows) > 10
+    assert {row: float(errors[row]) for row in rows} == pytest.approx(rows, rel=PRINTED)
 
 
 def test_prose_has_american_spelling():

@@ -78,12 +78,18 @@ def contents(wheel):
 
 def test_the_wheel_holds_the_data_of_the_checkout(wheel):
     files = {name for name in contents(wheel) if name.startswith("mxeon/data/")}
-    assert {name.split("/")[2] for name in files} == set(DATA)
+    assert {name.split("/")[2] for name in files} == {*DATA, "renderers"}
     for folder in DATA:
         source = CHECKOUT / ("libraries" if folder == "eonlib" else folder)
         sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
         names = {f"mxeon/data/{folder}/{path.relative_to(source).as_posix()}" for path in sources}
         assert names and names <= files
+
+
+def test_the_wheel_pins_the_renderers_from_npm_and_holds_none(wheel):
+    folder = "mxeon/data/renderers/"
+    files = {name for name in contents(wheel) if name.startswith(folder)}
+    assert files == {f"{folder}package.json", f"{folder}package-lock.json"}
 
 
 def test_the_wheel_says_that_it_has_types(wheel):

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure the figures of the upstream pages: `python -m docs.upstream.update` rewrites them.
 
-Each page has a block between two markers, which only this program writes.
+With names of hosts, it rewrites the pages of these, and those whose figures need no check. Each page
+has a block between two markers, which only this program writes.
 """
 
 import re
+import sys
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +14,7 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream.pbr_quantities import OF_PBRLIB
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import SOURCE, make_plan
@@ -51,7 +54,9 @@ class Cause:
 
 
 OPENPBR = "bxdf/open_pbr_surface.mtlx"
-MICROFACET = "pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+PBRLIB = "pbrlib/genglsl"
+MICROFACET = f"{PBRLIB}/lib/mx_microfacet_diffuse.glsl"
+SPECULAR = f"{PBRLIB}/lib/mx_microfacet_specular.glsl"
 # Causes by page, where the source is part of MaterialX's data.
 CAUSES = {
     "genglsl_clamped_dot": Cause("pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl", 22, "LdotV"),
@@ -62,6 +67,22 @@ CAUSES = {
     ),
     "openpbr_thin_walled": Cause(OPENPBR, 140, "subsurface_thin_walled_reflection_bsdf"),
     "openpbr_thin_walled_tint": Cause(OPENPBR, 149, "subsurface_thin_walled_brdf_factor"),
+    "genglsl_zeltner_normal": Cause(f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 121, "N*NdotV"),
+    "genglsl_sheen_throughput": Cause(f"{PBRLIB}/mx_sheen_bsdf.glsl", 42, "1.0 - dirAlbedo"),
+    "genglsl_conty_kulla_fit": Cause(
+        f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 28, "sheen_dir_albedo_analytic"
+    ),
+    "genglsl_burley_fit": Cause(MICROFACET, 150, "burley_diffuse_dir_albedo"),
+    "genglsl_translucent_side": Cause(f"{PBRLIB}/mx_translucent_bsdf.glsl", 16, "N = -N"),
+    "genglsl_ior_zero": Cause(SPECULAR, 229, "g2 < 0.0"),
+    "genglsl_microfacet_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "dirAlbedo"),
+    "genglsl_ggx_fit": Cause(SPECULAR, 91, "ggx_dir_albedo_analytic"),
+    "genglsl_microfacet_compensation": Cause(
+        f"{PBRLIB}/mx_dielectric_bsdf.glsl", 47, "energy_compensation"
+    ),
+    "genglsl_anisotropic_environment": Cause(
+        f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
+    ),
 }
 
 
@@ -108,11 +129,16 @@ def shown(defect, results):
 def block(results, place):
     """The block of a page: a table of results, device and versions, and the first diagnosis."""
     rows = [
-        f"| {each.check} | {each.subject} | {each.error:.2g} | {each.tolerance:.2g} | {each.unit} |"
+        f"| {each.check} | {each.subject} | {_figure(each)} | {each.tolerance:.2g} | {each.unit} |"
         for each in results
     ]
     text = f"Measured with {place}.\n\nThe suite says: {_rounded(results[0].diagnosis)}.\n"
     return HEAD + "\n".join(rows) + f"\n\n{text}"
+
+
+def _figure(result):
+    """The error of a result in print, a count with all digits."""
+    return f"{result.error:.0f}" if result.unit == "values" else f"{result.error:.2g}"
 
 
 def figures(text):
@@ -181,6 +207,7 @@ OF_QUANTITIES = {
     "openpbr_printed_pi": printed_pi_block,
     "pbrlib_printed_angles": printed_angles_block,
     "pbrlib_printed_b": printed_b_block,
+    **OF_PBRLIB,
 }
 
 
@@ -191,10 +218,11 @@ def written(page):
 
 
 def main():
-    """Write the blocks of all pages."""
-    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in ISSUES)}
+    """Write the blocks of all pages, or of those that show on the named hosts."""
+    issues = [each for each in ISSUES if not sys.argv[1:] or each.host in sys.argv[1:]]
+    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in issues)}
     blocks = {}
-    for each in ISSUES:
+    for each in issues:
         results, place = measured[each.host]
         blocks[each.page] = block(shown(each, results), place)
     blocks |= {page: measure() for page, measure in OF_QUANTITIES.items()}

@@ -17,7 +17,7 @@ from mxeon.conformance.checks.sky import sky
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_texts
 from mxeon.conformance.diagnosis import of_value
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.conformance.run import check, judge, plan
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models import table as reference
@@ -142,7 +142,15 @@ def test_a_material_with_other_lobes_is_asked_for_numbers_only(run):
 
 def test_pictures_come_with_the_reference_where_there_is_one(run):
     known = {picture.document: picture.reference is not None for picture in run.pictures}
-    assert known == {"plaster.mtlx": True, "openpbr_rough_base.mtlx": False}
+    assert known == {"plaster.mtlx": True, "openpbr_rough_base.mtlx": False, PORTRAIT: True}
+
+
+def test_a_portrait_of_each_node_is_its_model(run):
+    found = [each for each in run.pictures if each.document == PORTRAIT]
+    keys = {(each.element, each.scene) for each in found}
+    assert keys == {(subject.title, scene) for subject in SUBJECTS for scene in ("side", "back")}
+    for each in found:
+        assert np.abs(each.image - each.reference).max() <= 2e-6 < 0.02 < each.reference.max()
 
 
 def test_a_curve_follows_its_closed_form(run):

@@ -317,10 +317,7 @@ def test_a_model_gives_the_closed_form_of_its_albedo_or_refuses():
 # --- known wrong variants --------------------------------------------------------------------
 
 
-QUARTICS = ("eon_fitted", "eon_floor")  # defects of EON with the paper's quartic
-
-
-@named([row for row in KNOWN_DEFECTS if row.parameter == "roughness" and row.name not in QUARTICS])
+@named([row for row in KNOWN_DEFECTS if row.parameter == "roughness"])
 def test_defect_is_right_on_white_front_lit_pairs_and_wrong_elsewhere(row):
     wo, wi, rho, r = pairs(2000, seed=13)
     front = np.sum(wo * wi, axis=-1) > 1e-6

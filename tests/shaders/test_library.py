@@ -139,6 +139,14 @@ def test_the_wrong_order_raises_with_node_target_and_remedy():
     assert message.endswith(f"load {OURS} before the standard libraries")
 
 
+def test_the_microfacet_nodes_are_eonlibs_unless_the_diffuse_part_alone_is_loaded():
+    for name, ours in (("eonlib", True), ("diffuse", False), ("stock", False)):
+        for node in ("dielectric", "conductor", "generalized_schlick", "sheen"):
+            definition = library.load_library(name).getNodeDef(f"ND_{node}_bsdf")
+            found = Path(definition.getImplementation("genglsl").getActiveSourceUri())
+            assert (library.specular_folder() in found.parents) == ours
+
+
 def test_a_missing_library_raises_too():
     with pytest.raises(library.LibraryError, match="must be eonlib's; got nothing: load "):
         library.assert_ours(mx.createDocument())

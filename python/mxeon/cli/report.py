@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon report`: write the report of a run, and compare two."""
+"""`mxeon report`: write the report of a run, compare two, and show those of many renderers."""
 
 import argparse
 import json
@@ -11,7 +11,7 @@ from mxeon.errors import FAILED, PASSED, one_line
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its actions."""
-    summary = "write the report of a run, or compare two reports"
+    summary = "write the report of a run, compare two, or show many renderers on one page"
     actions = commands.add_parser("report", help=summary, description=summary)
     actions = actions.add_subparsers(required=True, metavar="ACTION")
     summary = "write the report of a run, finished or not"
@@ -22,6 +22,14 @@ def add_parser(commands: arguments.Commands) -> None:
     diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
     diff.add_argument("after", metavar="B", help="the same of another run")
     arguments.add_json(diff)
+    summary = "one page with the renderers of any number of reports"
+    field = arguments.add_command(actions, "field", summary, run_field)
+    field.add_argument(
+        "reports", metavar="DIR", nargs="+", help="the folder of a report, or of several reports"
+    )
+    field.add_argument(
+        "--output", metavar="FILE", default="field.html", help="the page (default: field.html)"
+    )
 
 
 def run_make(options: argparse.Namespace) -> int:
@@ -29,6 +37,17 @@ def run_make(options: argparse.Namespace) -> int:
     from mxeon.conformance.run import read_run
 
     return show_run(read_run(options.report), options)
+
+
+def run_field(options: argparse.Namespace) -> int:
+    """Write the page of the field; return PASSED: the page says what failed."""
+    from mxeon.report import write_field
+    from mxeon.report.field import read_field
+
+    entries = read_field(options.reports)
+    page = write_field(entries, options.output)
+    print(one_line(f"field: {page}, {len(entries)} rows"))
+    return PASSED
 
 
 def run_diff(options: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from mxeon.conformance.checks.text.sources import WITH_BSDF
-from mxeon.conformance.results import FAILED, PASSED, Result
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
 
 STOCK = "stock"
 OWN = "its own nodes"  # in the place of a library
@@ -25,6 +25,12 @@ RENDERERS = {
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
 BURLEY = tuple(f"PBRMaterial BURLEY, {engine}" for engine in ("WebGL2", "WebGPU"))
+HARDWARE = ("webgl", "vulkan", "wgsl", "slang")  # hosts whose text comes from that of GLSL
+CONTY_KULLA, ZELTNER = (f"sheen_bsdf, mode {mode}" for mode in ("conty_kulla", "zeltner"))
+DIELECTRIC, SCHLICK = (
+    f"{node}_bsdf, scatter_mode R" for node in ("dielectric", "generalized_schlick")
+)
+MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
 
 
 @dataclass(frozen=True)
@@ -55,7 +61,60 @@ class Issue:
     library: str = STOCK
 
 
+def _product(checks: Sequence[str], subjects: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    """Each of some checks of each of some subjects."""
+    return tuple((check, subject) for check in checks for subject in subjects)
+
+
+BSDF_ISSUES = (
+    Issue("genglsl_zeltner_normal", "gl", (("value", ZELTNER),), HARDWARE),
+    Issue(
+        "genglsl_sheen_throughput",
+        "gl",
+        (("layering", ZELTNER), ("transmission", ZELTNER), ("transmission", CONTY_KULLA)),
+        HARDWARE,
+        (("layering", CONTY_KULLA), ("layer", CONTY_KULLA), ("layer", ZELTNER)),
+    ),
+    Issue(
+        "genglsl_conty_kulla_fit",
+        "gl",
+        (("environment", CONTY_KULLA), ("value", CONTY_KULLA)),
+        HARDWARE,
+        _product(("layering", "layer"), (CONTY_KULLA,)),
+    ),
+    Issue("genglsl_burley_fit", "gl", (("environment", "burley_diffuse_bsdf"),), HARDWARE),
+    Issue("genglsl_translucent_side", "gl", (("frame", "translucent_bsdf"),), HARDWARE),
+    Issue(
+        "genglsl_ior_zero",
+        "gl",
+        (("finite", DIELECTRIC),),
+        HARDWARE,
+        (("finite", "conductor_bsdf"),),
+    ),
+    Issue(
+        "genglsl_microfacet_throughput",
+        "gl",
+        (("layering", DIELECTRIC), ("transmission", DIELECTRIC), ("transmission", SCHLICK)),
+        HARDWARE,
+        (("layering", SCHLICK), ("layer", DIELECTRIC), ("layer", SCHLICK)),
+    ),
+    Issue(
+        "genglsl_ggx_fit",
+        "gl",
+        (("lossless", DIELECTRIC),),
+        HARDWARE,
+        _product(("lossless", "layering", "transmission", "layer"), MICROFACETS),
+    ),
+    Issue(
+        "genglsl_microfacet_compensation",
+        "gl",
+        (("value", DIELECTRIC), ("environment", DIELECTRIC)),
+        HARDWARE,
+        _product(("value", "environment", "integral", "shape"), MICROFACETS),
+    ),
+)
 ISSUES = (
+    *BSDF_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",
@@ -202,8 +261,8 @@ def _software_of(issue: Issue, software: Mapping[str, str]) -> str:
 
 
 def _issues(result: Result) -> list[Issue]:
-    """Issues that a failed result shows, if it is of the library that has them."""
-    if result.verdict != FAILED:
+    """Issues that a result shows that failed or differs, if it is of the library that has them."""
+    if result.verdict not in (FAILED, DIFFERS):
         return []
     return [
         issue

@@ -17,6 +17,9 @@ from mxeon.shaders.hosts.base import Identity
 
 PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
 VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
+# In the place of a document: one material of each node, as every host shows it.
+PORTRAIT = "portrait"
+DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mxeon.kit.questions import Case
 
 # Models nearer to another one than a renderer's noise: EON's quartic is off by 1e-3 at most.
-TOO_NEAR = ("eon_approx", "eon_fitted", "eon_floor")
+TOO_NEAR = ("eon_approx",)
 
 
 @dataclass(frozen=True)

@@ -75,10 +75,10 @@ class PbrNode:
     value: Callable[[Array, Array, Inputs], Array]
     albedo: Callable[[Array, Inputs], Array]
     integral: Callable[[Array, Inputs], Array] | None = None
-    fixed: Mapping[str, str] = field(default_factory=dict)
+    fixed: Mapping[str, str] = field(default_factory=dict, hash=False)
     layerable: bool = False
     transmits: bool = False
     fitted: bool = False
     reciprocal: bool = True
-    mirror: Mapping[str, object] = field(default_factory=dict)
+    mirror: Mapping[str, object] = field(default_factory=dict, hash=False)
     variants: tuple[Variant, ...] = ()

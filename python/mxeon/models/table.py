@@ -161,19 +161,6 @@ KNOWN_DEFECTS = (
         known_defects.fon_white_lobe_albedo_dir,
     ),
     Model(
-        "eon_floor",
-        "EON with a reflectance of at least 0.1",
-        known_defects.eon_floor_brdf,
-        "roughness",
-    ),
-    Model(
-        "eon_fitted",
-        "EON with the paper's quartic of its albedo",
-        models.eon_brdf_approx,
-        "roughness",
-        albedo.eon_albedo_dir_approx,
-    ),
-    Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
         models.qon_brdf,
@@ -189,8 +176,22 @@ KNOWN_DEFECTS = (
     ),
 )
 
-# What renderers have beside the Oren-Nayar family.
+# What renderers' own nodes have beside those: EON with the quartic also in surroundings, a defect of
+# it, and Burley's model. Shaders that are generated have none of them.
 OTHERS = (
+    Model(
+        "eon_fitted",
+        "EON with the paper's quartic",
+        models.eon_brdf_approx,
+        "roughness",
+        albedo.eon_albedo_dir_approx,
+    ),
+    Model(
+        "eon_floor",
+        "EON with a reflectance of at least 0.1",
+        known_defects.eon_floor_brdf,
+        "roughness",
+    ),
     Model("burley", "Burley's diffuse model", burley_brdf, "roughness", burley_albedo_dir),
     Model(
         "burley_lambert",

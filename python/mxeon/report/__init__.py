@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Report of a run: results.json, junit.xml, pictures, and a page."""
 
+from __future__ import annotations
+
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mxeon.conformance.records import make_converter
 from mxeon.conformance.results import Picture, Run, image_names
@@ -15,11 +18,14 @@ from mxeon.io.files import replacing, write_text
 from mxeon.io.images import difference, write_exr, write_png
 from mxeon.report.junit import to_junit
 
+if TYPE_CHECKING:
+    from mxeon.report.field import Entry
+
 JSON_FORMAT = 1
 
 REFERENCE = "reference"
 # Metadata that a picture shares with its reference.
-SHARED_METADATA = ("version", "library", "document", "element", "scene")
+SHARED_METADATA = ("version", "library", "document", "element", "scene", "points")
 
 
 def to_json(run: Run) -> str:
@@ -46,7 +52,8 @@ def to_json(run: Run) -> str:
         - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
           object of variant, figure, caught.
         - pictures: objects of document, element, host, library, scene; exr and png, paths
-          beside the JSON file; largest_difference from the reference, or null without one.
+          beside the JSON file; reference, that of the reference's EXR file, and largest_difference
+          from it, or null without one.
         - curves: objects with the fields of `mxeon.conformance.results.Curve`.
     """
     summary = run.summary
@@ -77,13 +84,20 @@ def to_json(run: Run) -> str:
 def _picture_fields(run: Run) -> list[dict[str, Any]]:
     keys = ("document", "element", "host", "library", "scene")
     fields: list[dict[str, Any]] = []
+    pictures = _with_references(run.pictures)
+    stems = dict(zip(map(_place, pictures), image_names(pictures), strict=True))
     for picture, stem in zip(run.pictures, run.image_names, strict=True):
         largest = None
         if picture.reference is not None:
             largest = float(difference(picture.image, picture.reference).max())
         files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
         named = {key: getattr(picture, key) for key in keys}
-        fields.append(named | files | {"largest_difference": largest})
+        reference = stems.get((REFERENCE, *_subject(picture)))
+        compared = {
+            "reference": f"pictures/{reference}.exr" if reference else None,
+            "largest_difference": largest,
+        }
+        fields.append(named | files | compared)
     return fields
 
 
@@ -126,6 +140,48 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     return folder / "report.html"
 
 
+def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:
+    """Write the page of the field; see `mxeon.report.field_page.render`.
+
+    Parameters
+    ----------
+    entries : sequence of mxeon.report.field.Entry
+    file : path-like
+    pages : str
+        Address of a page of the ledger with `{}` for its name; "" for no links.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    OSError
+        If a picture cannot be read or the page not be written.
+    ImportError
+        If jinja2 or matplotlib, the `report` extra, is not installed.
+    """
+    with needing_extra("the page of the field"):
+        from mxeon.report.field_page import render
+    with replacing(Path(file)) as beside, open(beside, "w", encoding="utf-8") as page:
+        for text in render(entries, pages):
+            page.write(text)
+    return Path(file)
+
+
+@contextmanager
+def needing_extra(name: str) -> Iterator[None]:
+    """Raise PackageError if an import needs a package of the `report` extra, for what has a name."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if error.name in ("jinja2", "matplotlib"):
+            remedy = "pip install 'mxeon[report]'"
+            raise PackageError(f"{name} needs {error.name}: {remedy}") from error
+        raise
+
+
 def html(run: Run) -> Iterator[str]:
     """A run as one self-contained HTML page.
 
@@ -139,19 +195,14 @@ def html(run: Run) -> Iterator[str]:
     ImportError
         If jinja2 or matplotlib, the `report` extra, is not installed.
     """
-    try:
+    with needing_extra("report.html"):
         from mxeon.report.page import render
-    except ModuleNotFoundError as error:
-        if error.name in ("jinja2", "matplotlib"):
-            remedy = "pip install 'mxeon[report]'"
-            raise PackageError(f"report.html needs {error.name}: {remedy}") from error
-        raise
     files = {id(each): stem for each, stem in zip(run.pictures, run.image_names, strict=True)}
     return render(run, lambda picture: f"pictures/{files[id(picture)]}.png")
 
 
 def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    """`pictures`, then the reference of each that has one, once for all hosts."""
+    """`pictures`, then the reference of each that has one, once for all hosts it is the same for."""
     shown = {_subject(picture) for picture in pictures if picture.host == REFERENCE}
     references = []
     for picture in pictures:
@@ -171,4 +222,10 @@ def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
 
 
 def _subject(picture: Picture) -> tuple[str, ...]:
-    return picture.document, picture.element, picture.library, picture.scene
+    """What pictures with one reference share; the points of a portrait are those of its host."""
+    points = picture.metadata.get("points", "")
+    return picture.document, picture.element, picture.library, picture.scene, points
+
+
+def _place(picture: Picture) -> tuple[str, ...]:
+    return picture.host, *_subject(picture)

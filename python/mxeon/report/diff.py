@@ -59,6 +59,7 @@ class ShownPicture:
     exr: str
     png: str
     largest_difference: float | None
+    reference: str | None = None
 
     def __post_init__(self) -> None:
         if (self.largest_difference or 0.0) < 0.0:

@@ -33,6 +33,7 @@ MATERIALS: tuple[Mapping[str, Any], ...] = (
         "weight": 0.5,
     },
 )
+SIZE = 64  # of pictures
 ROUGHNESSES = (0.8, 0.4)  # of both
 INDICES = (1.5, 1.2)
 METALS = ((0.2, 0.9, 1.1), (1.5, 0.6, 2.0))
@@ -43,6 +44,7 @@ class BsdfPictureProbe(PictureProbe):
     """A node of pbrlib on a sphere."""
 
     kind: ClassVar[str] = "bsdf pictures"
+    size: ClassVar[int] = SIZE
 
     subject: BsdfSubject
 
@@ -63,6 +65,7 @@ class BsdfPlaneProbe(PlaneProbe):
     """A node of pbrlib on a plane."""
 
     kind: ClassVar[str] = "bsdf planes"
+    size: ClassVar[int] = SIZE
 
     subject: BsdfSubject
 

@@ -19,6 +19,7 @@ FEW = 1 << 11
 ALBEDOS = 1 << 8  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
+LEAST_COLOR82 = 0.5  # of a lobe whose albedo is asked; see docs/loading.md
 LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth
@@ -226,12 +227,14 @@ def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
     The roughness is the same in both directions. The index of a dielectric is at least 1: below it, F
-    has a kink.
+    has a kink. Deep dips at 82 degrees, which turn F negative, are left out.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
     if np.ndim(inputs.get("ior", ())) == 1 and np.size(inputs.get("ior", ())):
         changed["ior"] = np.maximum(inputs["ior"], 1.0)
+    if "color82" in inputs:
+        changed["color82"] = np.maximum(inputs["color82"], LEAST_COLOR82)
     return changed
 
 

@@ -49,7 +49,7 @@ class FacetProbe(ExactProbe):
         """Pictures of an environment, (N, 3)."""
         return self._picture(batch)
 
-    def _points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> Pairs:
         return facet_pairs(scene)
 
     def _picture(self, batch: Batch) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance.checks.bsdf_tolerances import MICROFACET_VALUE, SUM_OF_DIRECTIONS
+from mxeon.conformance.checks.bsdf_tolerances import MICROFACET_VALUE, sum_of
 from mxeon.conformance.checks.measures import absolute
 from mxeon.conformance.checks.probes import picture_pairs
 from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance
@@ -48,7 +48,7 @@ TEXTURED = Tolerance(
 )
 
 FITTED = Tolerance(
-    MICROFACET_VALUE.value + SUM_OF_DIRECTIONS,
+    MICROFACET_VALUE.value + sum_of(256),
     "pi f cos, relative above 1, times cos(theta_o)",
     absolute,
     "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "

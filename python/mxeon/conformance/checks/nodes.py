@@ -28,12 +28,12 @@ class OfModel:
     """What a subject has that has to be one of the diffuse models."""
 
     model: str
-    native: ClassVar[bool] = False  # whether it is a renderer's own node
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
         """Its model, known defects, and the other models, by their values."""
-        rows = {row.brdf: row for row in reference.KNOWN_DEFECTS + reference.MODELS + self._others}
+        rows = {row.brdf: row for row in self._others + reference.KNOWN_DEFECTS + reference.MODELS}
+        rows[reference.model(self.model).brdf] = reference.model(self.model)
         return self._candidates(rows.values(), Batch.expected)
 
     @property
@@ -62,11 +62,8 @@ class OfModel:
 
     @property
     def _others(self) -> tuple[Model, ...]:
-        """The other models; Burley's with the albedo that the subject's own has."""
-        name = self.model if self.model.startswith("burley") else "burley"
-        left_out = {"burley", "burley_lambert"} - {name}
-        rows = OTHERS if self.native else [reference.model(name)]
-        return tuple(row for row in rows if row.name not in left_out)
+        """Models beside the common ones that it may have."""
+        return ()
 
     def _candidates(
         self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
@@ -105,33 +102,18 @@ class Subject(OfModel):
         Name of a row of `mxeon.models.table.MODELS`.
     names : tuple of str
         Inputs that it may have; the flag counts only where it is not None.
-    forms : tuple of str
-        Forms of the model that its paper publishes, if there are several. The one that is nearest to
-        what is measured is judged.
-    others : bool
-        Whether other lobes lie beside the diffuse one, which do not depend on the color.
-    sampled : bool
-        Whether its renderer draws directions for it by a function that can be called.
     """
 
     node: str
     flag: bool | None
     model: str
     names: tuple[str, ...] = tuple(INPUT_TYPES)
-    forms: tuple[str, ...] = ()
-    others: bool = False
-    sampled: bool = False
 
     @property
     def title(self) -> str:
         """Name in reports."""
         flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
         return self.node + flag
-
-    @property
-    def native(self) -> bool:  # type: ignore[override]
-        """Whether it is a renderer's own node, which has no weight."""
-        return "weight" not in self.names
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -236,9 +218,36 @@ SURFACES = (
 )
 
 
-def _own(model: str, *nodes: str, forms: tuple[str, ...] = ()) -> tuple[Subject, ...]:
+@dataclass(frozen=True)
+class OwnNode(Subject):
+    """A node of a renderer's own, and the model that its documentation claims.
+
+    Attributes
+    ----------
+    forms : tuple of str
+        Forms of the model that its paper publishes, if there are several. The one that is nearest to
+        what is measured is judged.
+    others : bool
+        Whether other lobes lie beside the diffuse one, which do not depend on the color.
+    sampled : bool
+        Whether its renderer draws directions for it by a function that can be called.
+    """
+
+    forms: tuple[str, ...] = ()
+    others: bool = False
+    sampled: bool = False
+
+    @property
+    def _others(self) -> tuple[Model, ...]:
+        """Models of renderers' own nodes; Burley's with the albedo that the node's own has."""
+        name = self.model if self.model.startswith("burley") else "burley"
+        left_out = {"burley", "burley_lambert"} - {name}
+        return tuple(row for row in OTHERS if row.name not in left_out)
+
+
+def _own(model: str, *nodes: str, forms: tuple[str, ...] = ()) -> tuple[OwnNode, ...]:
     """Nodes of a renderer's own with a color and a roughness, which claim a model."""
-    return tuple(Subject(node, None, model, ("color", "roughness"), forms) for node in nodes)
+    return tuple(OwnNode(node, None, model, ("color", "roughness"), forms) for node in nodes)
 
 
 # The paper prints EON with the exact albedo and with a quartic for it.
@@ -279,14 +288,14 @@ NATIVE = {
         *_own("fon", "WebGPUPathTracer, fonBrdf"),
         *_own("burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"),
     ),
-    "mitsuba": (Subject("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
+    "mitsuba": (OwnNode("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
     # Its manual has the roughness of both nodes for Cycles only.
     "eevee": tuple(
-        Subject(node, None, "lambert", ("color",)) for node in ("Diffuse BSDF", "Principled BSDF")
+        OwnNode(node, None, "lambert", ("color",)) for node in ("Diffuse BSDF", "Principled BSDF")
     ),
     "luxcore": (
-        Subject("matte", None, "lambert", ("color",)),
+        OwnNode("matte", None, "lambert", ("color",)),
         *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),
-        Subject("disney", None, "burley", ("color", "roughness"), others=True),
+        OwnNode("disney", None, "burley", ("color", "roughness"), others=True),
     ),
 }

@@ -25,7 +25,7 @@ from mxeon.conformance.checks.batch import (
     rounded,
 )
 from mxeon.conformance.checks.bsdfs import BsdfSubject
-from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.checks.nodes import OwnNode, Subject, Surface
 from mxeon.conformance.checks.special import (
     diffuse_edges,
     node_inputs,
@@ -198,10 +198,10 @@ class PictureProbe:
         ]
 
     def _batch(self, scene: Scene, inputs: Mapping[str, Any]) -> Batch:
-        wo, wi, mask = self._points(scene)
+        wo, wi, mask = self.points(scene)
         return Batch(wo[mask], wi[mask], inputs, scene)
 
-    def _points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> Pairs:
         """Directions at the points of a picture, and the mask of the points to judge."""
         wo, wi, mask = picture_pairs(scene)
         return wo, wi, mask & self._mask(wo, wi)
@@ -216,7 +216,7 @@ class PictureProbe:
         """Values at the points of a batch."""
         scene = scene_of(batch)
         values = self._radiance(self._shader(batch.inputs), scene)
-        return values[self._points(scene)[2]].astype(np.float64)
+        return values[self.points(scene)[2]].astype(np.float64)
 
     def _shader(self, inputs: Mapping[str, Any]) -> Shader:
         return _compile(self.host, self.subject.document(inputs), self.library)
@@ -237,7 +237,7 @@ class PlaneProbe(PictureProbe):
         for polar in [np.radians(degrees)]
     )
 
-    def _points(self, scene: Scene) -> Pairs:
+    def points(self, scene: Scene) -> Pairs:
         wo, wi = plane_pairs(scene)
         return wo, wi, self._mask(wo, wi)
 
@@ -249,7 +249,7 @@ class PlaneProbe(PictureProbe):
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
-    subject: Subject
+    subject: OwnNode
 
     @property
     def claims(self) -> dict[str, str]:

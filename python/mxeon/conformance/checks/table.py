@@ -34,7 +34,7 @@ from mxeon.conformance.checks.controls import (
 )
 from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.measures import Measurement, Metric
-from mxeon.conformance.checks.nodes import Subject, Surface
+from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
@@ -111,12 +111,12 @@ def is_lobe(subject: Any, host: str) -> bool:
 
 def is_alone(subject: Any, host: str) -> bool:
     """Whether no other lobe lies beside the diffuse one."""
-    return not (isinstance(subject, Subject) and subject.others)
+    return not (isinstance(subject, OwnNode) and subject.others)
 
 
 def is_sampled(subject: Any, host: str) -> bool:
     """Whether a renderer's own sampling of the subject can be called."""
-    return isinstance(subject, Subject) and subject.sampled
+    return isinstance(subject, OwnNode) and subject.sampled
 
 
 def has_environment(subject: Any, host: str) -> bool:

@@ -263,6 +263,18 @@ BSDF_PLANE = Tolerance(
     scaled,
     "8 times the error of a plane's picture: 5, twice over the least alpha, and 3; rounded up",
 )
+BSDF_NOISE = Tolerance(
+    mean_noise(3212),
+    "mean albedo",
+    of_mean,
+    "that of Cycles' pictures, for the 3212 pixels of a smaller one",
+)
+BSDF_PLANE_NOISE = Tolerance(
+    2.0 * TESTRENDER_NOISE.value,
+    "mean albedo",
+    of_mean,
+    "that of testrender's pictures, for a quarter of their pixels",
+)
 BSDF_PICTURE_KINDS = ("bsdf pictures", "microfacet pictures", "bsdf planes", "microfacet planes")
 
 # By kind of probe: those of a value, and of an albedo.
@@ -292,10 +304,10 @@ ALBEDOS = {
     "pairs": ENVIRONMENT,
     "pictures": CYCLES_NOISE,
     "planes": TESTRENDER_NOISE,
-    "bsdf pictures": CYCLES_NOISE,
-    "microfacet pictures": CYCLES_NOISE,
-    "bsdf planes": TESTRENDER_NOISE,
-    "microfacet planes": TESTRENDER_NOISE,
+    "bsdf pictures": BSDF_NOISE,
+    "microfacet pictures": BSDF_NOISE,
+    "bsdf planes": BSDF_PLANE_NOISE,
+    "microfacet planes": BSDF_PLANE_NOISE,
     "exact": EXACT_SURROUNDINGS,
     "facets": FACET_NOISE,
     "coarse facets": COARSE_FACETS,

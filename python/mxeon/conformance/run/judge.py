@@ -16,6 +16,7 @@ from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
+from mxeon.conformance.checks.portraits import portraits
 from mxeon.conformance.checks.probes import (
     ExactProbe,
     PairProbe,
@@ -26,7 +27,7 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_definitions, check_texts
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.results import FAILED, NOT_RUN, Result
+from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Picture, Result
 from mxeon.conformance.run.plan import (
     CURVE,
     DEFINITION,
@@ -40,7 +41,7 @@ from mxeon.conformance.run.plan import (
     Task,
     subjects,
 )
-from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun
+from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.hosts import host_row, open_host
 from mxeon.shaders.hosts.base import Host
@@ -160,7 +161,8 @@ class Judge:
         probe = self._probe(host, task.subject, task.library)
         if task.check == CURVE:
             return {"curves": judge_curve(probe)}
-        return {"results": judge_subject(probe, (ROWS[task.check],))}
+        results = judge_subject(probe, (ROWS[task.check],))
+        return {"results": results, "pictures": _portraits(task, probe)}
 
     def _generate(self, task: Task) -> dict[str, Any]:
         path = Path(task.subject)
@@ -177,6 +179,16 @@ class Judge:
         except (DocumentError, ImageError) as error:
             return _unread(path, error)
         return dict(zip(("results", "pictures", "notes"), records, strict=True))
+
+
+def _portraits(task: Task, probe: Any) -> tuple[Picture, ...]:
+    """Portraits of a node, with the check that asks for its value in direct light."""
+    if task.check not in DIRECT:
+        return ()
+    try:
+        return portraits(probe)
+    except (NotRun, ShaderError):  # the check's result says so
+        return ()
 
 
 def _unread(path: Path, error: DocumentError | ImageError) -> dict[str, Any]:

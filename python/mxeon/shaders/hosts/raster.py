@@ -19,7 +19,7 @@ WHITE = np.ones((1, 1, 3), dtype=np.float32)
 # Directions over which a shader of microfacets sums its environment: see docs/hosts.md for the error
 # of each number, and its cost. The environment has no smaller versions of itself.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
-PICTURE = {"u_envRadianceSamples": 64, "u_envRadianceMips": 1}
+PICTURE = {"u_envRadianceSamples": 256, "u_envRadianceMips": 1}
 DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # every sum is 0
 TRIANGLE = {  # attributes of its three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),

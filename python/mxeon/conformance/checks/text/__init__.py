@@ -3,11 +3,12 @@
 
 from collections.abc import Iterable
 
+from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.nodes import Subject
 from mxeon.conformance.checks.text.closures import check_closures
 from mxeon.conformance.checks.text.definitions import check_definitions
 from mxeon.conformance.checks.text.languages import check_languages
-from mxeon.conformance.checks.text.sources import check_sources
+from mxeon.conformance.checks.text.sources import check_calls, check_sources
 from mxeon.conformance.results import Result
 
 __all__ = ["check_definitions", "check_texts"]
@@ -31,4 +32,5 @@ def check_texts(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]
         *check_sources(subjects, library),
         *check_closures(subjects, library),
         *check_languages(library),
+        *check_calls(BSDFS, library),
     )

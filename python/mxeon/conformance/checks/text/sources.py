@@ -6,13 +6,17 @@ import warnings
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 
+from mxeon.conformance.checks.bsdfs import BsdfSubject
 from mxeon.conformance.checks.nodes import Subject
 from mxeon.conformance.checks.text.counts import Claim, counted
 from mxeon.conformance.results import Result
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
+from mxeon.shaders.hosts import HOSTS
+from mxeon.shaders.nodes import input_types
 
 # Targets whose text holds the BSDF itself; the others call a closure of their renderer.
 WITH_BSDF = tuple(target for target in TARGETS if target not in ("osl", "mdl"))
+TEXT_ONLY = tuple(row.target for row in HOSTS if not row.module)  # targets that no host runs
 STOCK_LINE = "    float LdotV = clamp(dot(L, V), M_FLOAT_EPS, 1.0);\n"
 CLAMP = re.compile(r"\bclamp\(dot\(L, V\)")
 FUNCTION = {"eon": "eon_brdf_mu", "qon": "qon_brdf_mu"}
@@ -50,10 +54,23 @@ def check_sources(subjects: Iterable[Subject], library: str) -> tuple[Result, ..
     return tuple(uses + texts)
 
 
+def check_calls(subjects: Iterable[BsdfSubject], library: str) -> tuple[Result, ...]:
+    """Results of the check that every input reaches the call, for the targets that no host runs."""
+    return tuple(
+        _uses_inputs(subject, target, library)
+        for subject in subjects
+        for target in TARGETS
+        if target in TEXT_ONLY
+    )
+
+
 @lru_cache(maxsize=64)
-def source(subject: Subject, target: str, library: str, profile: str | None = None) -> str:
+def source(
+    subject: Subject | BsdfSubject, target: str, library: str, profile: str | None = None
+) -> str:
     """Pixel stage of a subject; the variable of an input is `variable` of its name."""
-    document = subject.document({"normal": (0.0, 0.6, 0.8)})
+    frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
+    document = subject.document({name: frame[name] for name in frame if name in subject.inputs})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ApproximationWarning)
         shader = generate(document, target, library=library, profile=profile)[0]
@@ -71,14 +88,13 @@ def _checks_of_text(subject: Subject, library: str) -> list[Callable[[Subject, s
     return [check for check, does in applies.items() if does]
 
 
-def _uses_inputs(subject: Subject, target: str, library: str) -> Result:
+def _uses_inputs(subject: Subject | BsdfSubject, target: str, library: str) -> Result:
     """Check that every input of the node occurs in the source beyond its declaration."""
     text = source(subject, target, library)
-    unused = _unused(text, subject)
-    noticed = [
-        name for name in subject.inputs if name in _unused(_without_use(text, name), subject)
-    ]
-    control = len(noticed) if len(noticed) == len(subject.inputs) else 0
+    names = tuple(input_types(subject.node)) if isinstance(subject, BsdfSubject) else subject.inputs
+    unused = _unused(text, names)
+    noticed = [name for name in names if name in _unused(_without_use(text, name), names)]
+    control = len(noticed) if len(noticed) == len(names) else 0
     meaning = f"never used: {', '.join(unused)}"
     return counted(USES, f"{subject.title}, {target}", library, len(unused), control, meaning)
 
@@ -115,6 +131,6 @@ def _without_use(text: str, name: str) -> str:
     return head + declaration + _uses(name).sub("x", rest)
 
 
-def _unused(text: str, subject: Subject) -> list[str]:
+def _unused(text: str, names: Iterable[str]) -> list[str]:
     """Inputs whose variable does not occur twice: in its declaration and in a use."""
-    return [name for name in subject.inputs if len(_uses(name).findall(text)) < 2]
+    return [name for name in names if len(_uses(name).findall(text)) < 2]

@@ -23,6 +23,7 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.cycles import closures
 from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.hosts.process import Worker
 from mxeon.shaders.library import data_folder
@@ -192,6 +193,25 @@ class Host(base.Host):
             frame = dict(size=size, samples=1, radius=2.0, light=None, environment=None)
             pixels = self._render(Path(folder), text, **frame)
         return pixels.reshape(-1, 3)[:count]
+
+    def closures(self) -> dict[str, str]:
+        """For each of MaterialX's closures, "" if Cycles renders it, else its reason not to.
+
+        Raises
+        ------
+        NotRun
+            If the process fails.
+        """
+        return {name: self._reason(name) for name in closures.CALLS}
+
+    def _reason(self, closure: str) -> str:
+        frame = dict(size=4, samples=1, radius=1.0, light=(0.0, 0.0, 1.0), environment=None)
+        try:
+            with self._folder() as folder:
+                self._render(Path(folder), closures.text(closure), **frame)
+        except (NotRun, ShaderError) as error:
+            return str(error)
+        return ""
 
     def forget(self) -> None:
         """Forget the pictures that are kept."""

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Make `docs/field.html`: `python docs/field.py` checks every host that runs here, one after the other.
+
+`python docs/field.py DIR` makes it from the reports in a folder instead.
+"""
+
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from mxeon import report
+from mxeon.conformance.run import check
+from mxeon.report.field import read_field
+from mxeon.shaders.hosts import HOSTS
+from mxeon.shaders.library import examples_folder
+
+PAGE = Path(__file__).resolve().parent / "field.html"
+PAGES = "upstream/{}.html"  # beside the page in the built site
+EXAMPLE = examples_folder() / "clay.mtlx"
+LIBRARIES = ("eonlib", "stock")
+TIMEOUT = 600.0
+
+
+def main(folder: str = "") -> None:
+    """Write the page."""
+    if folder:
+        report.write_field(read_field([folder]), PAGE, PAGES)
+        return
+    with TemporaryDirectory(prefix="mxeon-field-") as new:
+        for row in HOSTS:
+            if row.module:
+                run = check([EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT)
+                report.write(run, Path(new, row.name))
+                print(row.name, run.summary.sentence, flush=True)
+        report.write_field(read_field([new]), PAGE, PAGES)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

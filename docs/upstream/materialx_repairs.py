@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The smallest repairs of MaterialX's GLSL, and a copy of its package that has them."""
+
+import os
+import shutil
+from pathlib import Path
+
+import MaterialX as mx
+
+from docs.upstream.repairs import Repair, repair
+
+PACKAGE = "MaterialX"
+SHEEN, LOBES = "mx_sheen_bsdf.glsl", "lib/mx_microfacet_sheen.glsl"
+SPECULAR = "lib/mx_microfacet_specular.glsl"
+
+
+def _glsl(page: str, file: str, line: int, old: str, new: str) -> Repair:
+    """A change of a file of pbrlib's GLSL."""
+    return Repair(page, PACKAGE, f"libraries/pbrlib/genglsl/{file}", line, old, new)
+
+
+REPAIRS = (
+    _glsl(
+        "genglsl_zeltner_normal",
+        LOBES,
+        121,
+        "    vec3 X = V - N*NdotV;\n",
+        "    vec3 X = V - N*NdotV;\n    X -= N*dot(N, X);\n",
+    ),
+    _glsl(
+        "genglsl_sheen_throughput",
+        SHEEN,
+        42,
+        "vec3(1.0 - dirAlbedo * weight)",
+        "1.0 - dirAlbedo * color * weight",
+    ),
+    _glsl(
+        "genglsl_sheen_throughput",
+        SHEEN,
+        44,
+        "else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)",
+        "else",
+    ),
+    _glsl(
+        "genglsl_sheen_throughput",
+        SHEEN,
+        57,
+        "vec3 Li = mx_environment_irradiance(N);",
+        "vec3 Li = (closureData.closureType == CLOSURE_TYPE_INDIRECT) ?"
+        " mx_environment_irradiance(N) : vec3(0.0);",
+    ),
+    _glsl(
+        "genglsl_translucent_side",
+        "mx_translucent_bsdf.glsl",
+        1,
+        '#include "lib/mx_closure_type.glsl"\n',
+        '#include "lib/mx_closure_type.glsl"\n#include "lib/mx_microfacet.glsl"\n',
+    ),
+    _glsl(
+        "genglsl_translucent_side",
+        "mx_translucent_bsdf.glsl",
+        16,
+        "    N = -N;\n",
+        "    N = -mx_forward_facing_normal(N, V);\n",
+    ),
+    _glsl("genglsl_ior_zero", SPECULAR, 229, "    if (g2 < 0.0)", "    if (g2 <= 0.0)"),
+    _glsl(
+        "genglsl_ior_zero",
+        SPECULAR,
+        273,
+        "    vec3 t3 = cosTheta2 * a2plusb2 + vec3(sinTheta2 * sinTheta2);\n",
+        "    vec3 t3 = max(cosTheta2 * a2plusb2 + vec3(sinTheta2 * sinTheta2), 1e-20);\n",
+    ),
+)
+
+
+def installed() -> Path:
+    """Folder of the MaterialX that is installed."""
+    return Path(mx.__file__).parent
+
+
+def repaired(folder: Path) -> Path:
+    """A folder for the path of Python, in which MaterialX is a tree of links with all repairs."""
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(installed(), folder / PACKAGE, copy_function=os.symlink, ignore=ignored)
+    for change in REPAIRS:
+        repair(folder, change)
+    return folder

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The field: what the reports of any number of runs say of each renderer's node, side by side."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from os import PathLike
+from pathlib import Path
+from typing import TypeAlias
+
+from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, OwnNode, Subject, Surface
+from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
+from mxeon.errors import InputError
+from mxeon.models import table as reference
+from mxeon.report.diff import Report, read_results
+
+Place: TypeAlias = tuple[str, str, str]  # host, library and node
+
+RESULTS = "results.json"
+BACK = "back"
+# Column -> the checks that answer it, the first that a node has; `back` is a portrait's.
+CHECKS = {
+    "direct": DIRECT,
+    "surroundings": ("environment",),
+    "energy": ("furnace",),
+    "color": ("albedo", "environment"),
+    "black": ("black",),
+    "back": (),
+    "flag": ("flag",),
+}
+NEAREST = re.compile(r"nearest known model: (.+?) \(rms")
+PAGE = re.compile(r"docs/upstream/(\w+)\.md")
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """A picture of a node and its reference, as EXR files."""
+
+    scene: str
+    image: Path
+    reference: Path
+    difference: float
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A node of a renderer, as one run has judged it.
+
+    Attributes
+    ----------
+    host, library, node, version, device : str
+        Version and device are "" where the host did not run.
+    claimed, form : str
+        Titles of the model that the node claims, and of its published form that was judged.
+    cells : dict of str to Result
+        By the columns of CHECKS that were asked.
+    pages : tuple of str
+        Names of the pages of `docs/upstream` about its defects.
+    portraits : dict of str to Portrait
+        By scene.
+    """
+
+    host: str
+    library: str
+    node: str
+    version: str
+    device: str
+    claimed: str
+    form: str
+    cells: Mapping[str, Result]
+    pages: tuple[str, ...]
+    portraits: Mapping[str, Portrait]
+
+    @property
+    def verdict(self) -> str:
+        """The worst verdict of the cells."""
+        verdicts = [cell.verdict for cell in self.cells.values()]
+        if FAILED in verdicts:
+            return FAILED
+        return PASSED if PASSED in verdicts else NOT_RUN
+
+    @property
+    def found(self) -> str:
+        """The model that direct light shows, or why none is known."""
+        return model_of(self.cells["direct"], self.form or self.claimed)
+
+    @property
+    def found_around(self) -> str:
+        """The model that a white environment shows, "" where that was not asked."""
+        cell = self.cells.get("surroundings")
+        return model_of(cell, self.form or self.claimed) if cell else ""
+
+
+def model_of(result: Result, expected: str) -> str:
+    """The model that a result shows, in words.
+
+    Examples
+    --------
+    >>> cell = Result("value", "", "a", "gl", "stock", "failed", diagnosis="s is wrong; see b.md")
+    >>> model_of(cell, "EON")
+    's is wrong'
+    """
+    if result.verdict == PASSED:
+        return expected
+    if result.verdict == NOT_RUN:
+        return "not run"
+    nearest = NEAREST.search(result.diagnosis)
+    return nearest[1] if nearest else result.diagnosis.partition(";")[0]
+
+
+def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
+    """The entries of the reports in some folders.
+
+    Parameters
+    ----------
+    folders : sequence of path-like
+        Each is that of a report, or holds those of reports.
+
+    Returns
+    -------
+    tuple of Entry
+        One for each host, version, library and node that claims a rough diffuse model; of two
+        reports on one, the later.
+
+    Raises
+    ------
+    ValueError
+        If a folder is and holds no report, or none has such a node.
+    """
+    entries = {}
+    for folder in folders:
+        for report in _reports(Path(folder)):
+            for entry in _entries(read_results(report), report):
+                key = entry.host, entry.version, entry.device, entry.library, entry.node
+                entries[key] = entry
+    if not entries:
+        raise InputError("a report must have a node that claims a rough diffuse model; none has")
+    return tuple(entries.values())
+
+
+def _reports(folder: Path) -> list[Path]:
+    if (folder / RESULTS).is_file():
+        return [folder]
+    reports = sorted(path.parent for path in folder.glob(f"*/{RESULTS}"))
+    if not reports:
+        raise InputError(f"{folder}: must be the folder of a report, or hold some")
+    return reports
+
+
+def _entries(report: Report, folder: Path) -> Iterator[Entry]:
+    """Entries of a report, in its order."""
+    nodes: tuple[Subject | Surface, ...] = (*SUBJECTS, *SURFACES, *chain(*NATIVE.values()))
+    claims = {each.title: claim(each) for each in nodes}
+    places: dict[Place, dict[str, Result]] = {}
+    for result in report.results:
+        place = result.host, result.library, result.subject
+        places.setdefault(place, {})[result.check] = result
+    for place, results in places.items():
+        direct = next((results[key] for key in DIRECT if key in results), None)
+        claimed = direct and (direct.claimed or claims.get(direct.subject))
+        if direct and claimed:
+            portraits = {each.scene: each for each in _portraits(report, place, folder)}
+            cells = _cells(results, direct, portraits.get(BACK))
+            pages = _pages(results.values())
+            names = (*place, *_identity(report, direct.host), claimed, direct.model)
+            yield Entry(*names, cells, pages, portraits)
+
+
+def _identity(report: Report, host: str) -> tuple[str, str]:
+    """Version and device of a host; "" where it did not run."""
+    found = {each.name: (each.version, each.device) for each in report.hosts}
+    return found.get(host, ("", ""))
+
+
+def claim(subject: Subject | Surface) -> str:
+    """Title of the model that a node claims: of its first published form, if there are several."""
+    forms = subject.forms if isinstance(subject, OwnNode) else ()
+    return reference.model((*forms, subject.model)[0]).title
+
+
+def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]:
+    for each in report.pictures:
+        if (each.document, each.host, each.library, each.element) != (PORTRAIT, *place):
+            continue
+        if each.reference and each.largest_difference is not None:
+            # By their names alone: a report may come from anywhere.
+            image, model = (
+                folder / "pictures" / Path(file).name for file in (each.exr, each.reference)
+            )
+            yield Portrait(each.scene, image, model, each.largest_difference)
+
+
+def _cells(
+    results: Mapping[str, Result], direct: Result, behind: Portrait | None
+) -> dict[str, Result]:
+    cells = {
+        column: next(results[key] for key in keys if key in results)
+        for column, keys in CHECKS.items()
+        if any(key in results for key in keys)
+    }
+    if behind:
+        cells["back"] = _back_lit(direct, behind.difference)
+    return cells
+
+
+def _back_lit(direct: Result, error: float) -> Result:
+    """The largest error of the portrait in light from behind, judged as the check of values."""
+    allowed = direct.tolerance or 0.0
+    verdict = PASSED if error <= allowed else FAILED
+    claim = "Light from behind, at the points of a sphere."
+    return Result(
+        PORTRAIT,
+        claim,
+        direct.subject,
+        direct.host,
+        direct.library,
+        verdict,
+        error,
+        direct.unit,
+        allowed,
+    )
+
+
+def _pages(results: Iterable[Result]) -> tuple[str, ...]:
+    pages = (page for result in results for page in PAGE.findall(result.diagnosis))
+    return tuple(dict.fromkeys(pages))

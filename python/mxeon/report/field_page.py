@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page of the field, one self-contained HTML file. Needs the `report` extra."""
+
+import math
+from base64 import b64encode
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.resources import files
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+import mxeon
+from mxeon.conformance.results import Result
+from mxeon.io.images import difference, difference_scale, read_image, srgb_encoded
+from mxeon.report.field import CHECKS, Entry
+from mxeon.report.page import LOOKS, number, share, vector
+from mxeon.report.plots import difference_gradient, difference_pixels, picture_uri
+
+# Column -> its heading, and what it tells.
+HEADINGS = {
+    "direct": ("Direct light", "worst error of π f cos θ over all pairs of directions"),
+    "surroundings": ("Surroundings", "worst error of the albedo in a uniform environment"),
+    "energy": ("White furnace", "what a white surface lacks, or has too much"),
+    "color": ("Color", "error of the albedo at mixed reflectance"),
+    "black": ("Black", "what a black surface scatters"),
+    "back": ("Back-lit", "worst error of the portrait in light from behind"),
+    "flag": ("Flag", "error of the difference that energy_compensation makes"),
+}
+SCENES = {"side": "light from the side", "back": "light from behind"}
+INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A portrait and its difference map as the page shows them."""
+
+    entry: int
+    image: str
+    apart: str
+    scale: float
+    largest: float
+
+
+def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
+    """The page of the field.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+    pages : str
+        Address of a page of the ledger with `{}` for its name; "" for no links.
+
+    Yields
+    ------
+    str
+        Pieces of HTML; a picture is read when its piece is due. The page loads nothing, runs only its
+        own script, and is complete without it. Text of the reports is escaped.
+    """
+    script = files("mxeon.report").joinpath("templates/field.js").read_text(encoding="utf-8")
+    environment = Environment(
+        loader=PackageLoader("mxeon.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"number": number, "share": share, "look": LOOKS.__getitem__}
+    return environment.get_template("field.html.jinja").generate(
+        version=mxeon.__version__,
+        entries=entries,
+        script=Markup(script),
+        script_hash=b64encode(sha256(script.encode()).digest()).decode(),
+        columns={column: HEADINGS[column] for column in CHECKS},
+        claims=sorted({entry.claimed for entry in entries}),
+        verdicts=tuple(dict.fromkeys(entry.verdict for entry in entries)),
+        counts=counts(entries),
+        scenes=SCENES,
+        frames=lambda scene: frames(entries, scene),
+        where=where,
+        order=order,
+        address=pages.format,
+        linked=bool(pages),
+        gradient=Markup(difference_gradient()),
+    )
+
+
+def counts(entries: Sequence[Entry]) -> Mapping[str, int]:
+    """Numbers of entries by verdict."""
+    verdicts = [entry.verdict for entry in entries]
+    return {verdict: verdicts.count(verdict) for verdict in dict.fromkeys(verdicts)}
+
+
+def order(cell: Result | None) -> float:
+    """Number by which a column is sorted: error over tolerance, what did not run last."""
+    ratio = math.inf if cell is None or cell.error is None else share(cell)
+    return ratio if math.isfinite(ratio) else 1e30
+
+
+def where(cell: Result) -> dict[str, str]:
+    """The inputs and values at the worst point, in words."""
+    return {name: vector(cell.worst[name]) for name in INPUTS if name in cell.worst}
+
+
+def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
+    """Portraits of a scene, and their difference maps, in which the tolerance is dark."""
+    for row, entry in enumerate(entries):
+        portrait = entry.portraits.get(scene)
+        if portrait is None:
+            continue
+        image, model = read_image(portrait.image), read_image(portrait.reference)
+        apart: Any = difference(image, model)
+        scale = max(difference_scale(apart), entry.cells["direct"].tolerance or 0.0)
+        shown, apart = srgb_encoded(image), difference_pixels(apart, scale)
+        yield Frame(row, picture_uri(shown), picture_uri(apart), scale, portrait.difference)

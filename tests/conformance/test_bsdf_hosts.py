@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The BSDF nodes of pbrlib on every host: what engines add, and what pictures and texts show."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks import engine
+from mxeon.conformance.checks.bsdf_pictures import PICTURES, bsdf_probe_type, materials
+from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.evaluate import judge_check
+from mxeon.conformance.checks.facet_probes import PROBES
+from mxeon.conformance.checks.probes import NativeProbe, PairProbe, PictureProbe, PlaneProbe
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.checks.text import sources
+from mxeon.conformance.checks.tolerances import BSDF_RAY, BSDF_VALUE
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+
+ROWS = {check.key: check for check in CHECKS}
+SUBJECTS = {subject.model: subject for subject in BSDFS}
+
+
+def judged(host, model, key):
+    """Result of a check of a stock node on a host."""
+    probe = bsdf_probe_type(SUBJECTS[model], PROBES[{"cycles": "pictures"}.get(host.name, "pairs")])
+    return judge_check(ROWS[key], probe(host, SUBJECTS[model], "stock"))
+
+
+class Engine:
+    """A host whose power is off by a share."""
+
+    name = "engine"
+
+    def __init__(self, share):
+        self.share = share
+
+    def execute(self, source, function, x, y):
+        return np.repeat((x**y * (1.0 + self.share))[:, np.newaxis], 3, axis=1)
+
+
+def test_the_error_of_an_engines_power_is_that_of_a_value_of_the_sheen():
+    assert engine.power_error(Engine(0.0)) == 0.0
+    assert engine.power_error(Engine(1e-4)) == pytest.approx(1e-4, rel=1e-2)
+
+
+def test_only_a_sheen_of_powers_takes_the_engine_into_its_tolerance(gl):
+    sheen = BSDF_PROBES["fitted pairs"](gl, SUBJECTS["conty_kulla"], "stock")
+    burley = BSDF_PROBES["closed pairs"](gl, SUBJECTS["burley"], "stock")
+    assert engine.on_engine(BSDF_VALUE, burley) is BSDF_VALUE
+    wider = engine.on_engine(BSDF_VALUE, sheen)
+    assert BSDF_VALUE.value < wider.value < 1e-4 and "100" in wider.derivation
+
+
+@pytest.mark.parametrize("name", ["webgl", "vulkan", "wgsl", "slang"])
+def test_a_node_is_judged_on_every_host_that_evaluates(hosts, name):
+    result = judged(hosts(name), "zeltner", "layering")
+    assert result.verdict == FAILED and "without the color" in result.diagnosis
+
+
+def test_a_host_has_probes_by_what_it_shows():
+    for subject in BSDFS:
+        assert bsdf_probe_type(subject, PairProbe) is BSDF_PROBES[subject.kind]
+        for probe in (PictureProbe, PlaneProbe):
+            assert bsdf_probe_type(subject, probe) is PICTURES[probe][subject.anisotropic]
+        assert bsdf_probe_type(subject, NativeProbe) is None
+
+
+def test_the_materials_of_pictures_have_every_input_of_the_model():
+    for subject in BSDFS:
+        for inputs in materials(subject):
+            assert set(subject.row.inputs) <= set(inputs)
+
+
+def test_light_comes_from_below_where_a_node_transmits():
+    probe = PICTURES[PlaneProbe][False](Engine(0.0), SUBJECTS["translucent"], "stock")
+    assert all((batch.wi[:, 2] < 0.0).all() and len(batch.wi) for batch in probe.batches)
+
+
+def test_cycles_burley_is_the_model_and_its_microfacets_lose_energy(hosts):
+    host, subject = hosts("cycles"), SUBJECTS["conductor"]
+    assert judged(host, "burley", "value").verdict == PASSED
+    probe = PICTURES[PictureProbe][True](host, subject, "stock")
+    batch = probe.batches[0]
+    single = next(each for each in subject.value_candidates if "no energy" in each.title)
+    values, tolerance = probe.direct(batch), BSDF_RAY.value
+    np.testing.assert_allclose(values, single.values(batch), rtol=tolerance, atol=tolerance)
+    assert (subject.expected(batch) - values).max() > 0.1
+
+
+def test_a_closure_that_cycles_lacks_is_not_run_and_is_named(hosts):
+    host = hosts("cycles")
+    result = judged(host, "translucent", "black")
+    assert result.verdict == NOT_RUN and "'translucent_bsdf' is not supported" in result.reason
+    answers = host.closures()
+    assert [name for name, reason in answers.items() if reason] == ["translucent_bsdf"]
+
+
+def test_every_input_reaches_the_call_in_text_that_nothing_runs():
+    results = sources.check_calls(BSDFS, "stock")
+    assert {result.subject.rsplit(", ", 1)[1] for result in results} == {"msl", "mdl"}
+    assert all(result.verdict == PASSED and result.control.caught for result in results)
+
+
+def test_an_input_that_a_text_drops_is_named(monkeypatch):
+    monkeypatch.setattr(sources, "TEXT_ONLY", ("osl",))
+    (result,) = sources.check_calls([SUBJECTS["zeltner"]], "stock")
+    assert result.verdict == FAILED and "mode" in result.diagnosis

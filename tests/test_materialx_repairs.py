@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The smallest repairs of MaterialX's GLSL: with them, the checks that show the defects pass."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from docs.upstream import materialx_repairs as repairs
+from mxeon.conformance.known_issues import CONTY_KULLA, DIELECTRIC, ZELTNER
+from tests.support.availability import available
+
+ROOT = Path(__file__).resolve().parents[1]
+ROWS = (
+    ("value", ZELTNER),
+    ("layering", ZELTNER),
+    ("transmission", ZELTNER),
+    ("layer", ZELTNER),
+    ("transmission", CONTY_KULLA),
+    ("frame", "translucent_bsdf"),
+    ("finite", DIELECTRIC),
+    ("finite", "conductor_bsdf"),
+)
+ROUNDING = (
+    1.5  # tolerances of the value of a sharp Zeltner lobe in float32, from aInv w.x + bInv w.z
+)
+# Judges rows of stock MaterialX on gl, and prints what it found.
+JUDGE = """
+import json, sys
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import Task
+from mxeon.shaders.document.policy import DEFAULT
+judge = Judge(DEFAULT)
+results = {}
+for row in json.loads(sys.argv[1]):
+    [result] = judge.work(Task(*row, "gl", "stock")).results
+    results["|".join(row)] = result.verdict, result.error, result.tolerance, result.diagnosis
+judge.close()
+print(json.dumps(results))
+"""
+
+
+@pytest.fixture(scope="module")
+def judged(tmp_path_factory):
+    """Verdict, error, tolerance and diagnosis of each row with a repaired MaterialX."""
+    with available("gl"):
+        path = [str(repairs.repaired(tmp_path_factory.mktemp("repaired"))), str(ROOT / "python")]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
+    command = [sys.executable, "-c", JUDGE, json.dumps(ROWS)]
+    run = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
+    assert run.returncode == 0, run.stderr
+    return {tuple(key.split("|")): result for key, result in json.loads(run.stdout).items()}
+
+
+@pytest.mark.parametrize("row", [row for row in ROWS if CONTY_KULLA not in row], ids=" ".join)
+def test_a_repair_makes_the_checks_pass_that_show_the_defect(judged, row):
+    verdict, error, tolerance, diagnosis = judged[row]
+    bound = ROUNDING * tolerance if row == ("value", ZELTNER) else tolerance
+    assert verdict == "passed" or error <= bound, diagnosis
+
+
+def test_the_sheen_that_is_repaired_has_no_defect_but_its_fit(judged):
+    diagnosis = judged["transmission", CONTY_KULLA][-1]
+    assert diagnosis.startswith("nearest known model: MaterialX's fit of its albedo (rms ")
+
+
+@pytest.mark.parametrize("change", repairs.REPAIRS, ids=lambda each: f"{each.file}:{each.line}")
+def test_each_repair_is_of_its_line_and_on_its_page(change):
+    lines = (repairs.installed() / change.file).read_text("utf-8").splitlines()
+    assert change.old.splitlines()[0] in lines[change.line - 1]
+    page = (Path(repairs.__file__).parent / f"{change.page}.md").read_text("utf-8")
+    assert Path(change.file).name in page
+    assert change.new.strip().splitlines()[-1].strip() in page
