@@ -366,8 +366,8 @@ CHECKS = (
         "No albedo exceeds 1, nor what the equations have.",
         OTHERS,
         bsdf_measures.energy,
-        "values are twice as large",
-        scale(2.0),
+        "values are 100 times as large",
+        scale(100.0),
         bsdf_tolerances.INTEGRALS,
     ),
     Check(
