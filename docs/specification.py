@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure what the page on the specification shows.
+"""Measure what the page on the specification shows, and its summaries.
 
-python docs/specification.py           judge stock and eonlib on gl, write specification.json and the page
-python docs/specification.py --page    the page alone, from specification.json
+python docs/specification.py           judge stock and eonlib on gl, write specification.json and the pages
+python docs/specification.py --page    the pages alone, from specification.json
 """
 
 import json
@@ -27,6 +27,26 @@ DATA, PAGE = FOLDER / "specification.json", FOLDER / "specification.md"
 HOST, LIBRARIES = "gl", ("stock", "eonlib")
 NODES = (*dict.fromkeys(row.node for row in (*SUBJECTS, *BSDFS) if row.node != "eon_diffuse_bsdf"),)
 BLOCK = re.compile(r"(<!-- measured (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+# Rows of the summaries of other pages, and what stock computes.
+SUMMARY = (
+    ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
+    ("frame", "translucent_bsdf", "light of the wrong side, seen from the back"),
+    ("layer", "dielectric_bsdf, scatter_mode R", "a throughput without the tint, by a fit"),
+    ("lossless", "conductor_bsdf", "energy compensation by a fit"),
+    ("layering", "sheen_bsdf, mode zeltner", "a throughput without the color"),
+    ("environment", "sheen_bsdf, mode conty_kulla", "a fit"),
+    ("environment", "burley_diffuse_bsdf", "a fit"),
+    (
+        "layer",
+        "generalized_schlick_bsdf, scatter_mode R",
+        "one without exponent, of the mean color",
+    ),
+)
+SHORT = 4  # rows of the summary in the README
+SUMMARIES = (FOLDER.parent / "README.md", FOLDER / "results.md")
+SUMMARY_HEAD = (
+    "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"
+)
 HEAD = "| check | mode | allowed | stock | eonlib | stock's defect |\n|---|---|---|---|---|---|\n"
 
 
@@ -60,7 +80,24 @@ def page(text, data):
     return BLOCK.sub(lambda found: found[1] + table(found[2], data) + found[3], text)
 
 
-def table(node, data):
+def table(name, data):
+    """The table of a node, the summary, or the first rows of it."""
+    count = {"summary": len(SUMMARY), "short": SHORT}.get(name)
+    return summary(data, count) if count else node_table(name, data)
+
+
+def summary(data, count):
+    """A table of what stock computes in place of the specification."""
+    errors = {(r["check"], r["subject"], r["library"]): r["error"] for r in data["results"]}
+    lines = []
+    for check, subject, words in SUMMARY[:count]:
+        stock, eonlib = (errors.get((check, subject, each), "") for each in LIBRARIES)
+        name = f"`{subject.split(',')[0]}`{_mode(subject) and ', ' + _mode(subject)}, `{check}`"
+        lines.append(f"| {name} | {eonlib} | {stock} | {words} |\n")
+    return "\n" + SUMMARY_HEAD + "".join(lines)
+
+
+def node_table(node, data):
     """What does not pass of a node with either library, and what passes with both."""
     rows = {}
     for each in data["results"]:
@@ -111,7 +148,8 @@ def main():
     if "--page" not in sys.argv[1:]:
         write_text(DATA, json.dumps(measured(), indent=1) + "\n")
     data = json.loads(DATA.read_text(encoding="utf-8"))
-    write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), data))
+    for file in (PAGE, *SUMMARIES):
+        write_text(file, page(file.read_text(encoding="utf-8"), data))
 
 
 if __name__ == "__main__":

@@ -49,6 +49,28 @@ REPAIRS = (
         "vec3 Li = (closureData.closureType == CLOSURE_TYPE_INDIRECT) ?"
         " mx_environment_irradiance(N) : vec3(0.0);",
     ),
+    _glsl("genglsl_conty_kulla_fit", LOBES, 5, "NDF(float NdotH,", "NDF(float sin2,"),
+    _glsl(
+        "genglsl_conty_kulla_fit",
+        LOBES,
+        8,
+        "    float cos2 = NdotH * NdotH;\n    float sin2 = 1.0 - cos2;\n",
+        "",
+    ),
+    _glsl(
+        "genglsl_conty_kulla_fit",
+        LOBES,
+        67,
+        "float NdotH = clamp(H.z, M_FLOAT_EPS, 1.0);",
+        "float NdotH = dot(H.xy, H.xy);",
+    ),
+    _glsl(
+        "genglsl_conty_kulla_fit",
+        SHEEN,
+        25,
+        "float NdotH = clamp(dot(N, H), M_FLOAT_EPS, 1.0);",
+        "vec3 T = cross(N, H);\n            float NdotH = min(dot(T, T), 1.0);",
+    ),
     _glsl(
         "genglsl_translucent_side",
         "mx_translucent_bsdf.glsl",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Correct Oren-Nayar and EON diffuse shading for every MaterialX target.
+"""MaterialX's specification of physically based shading, executable.
 
 Importing this loads nothing but the standard library; the names below load what they need.
 """

@@ -19,7 +19,7 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_texts
 from mxeon.conformance.checks.text.sources import TEXT_ONLY
 from mxeon.conformance.diagnosis import of_value
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, Result
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.conformance.run import check, judge, plan
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models import table as reference
@@ -363,6 +363,13 @@ def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pas
 def test_what_follows_from_a_defect_of_stock_refers_to_its_page(library, words):
     result = Result("inputs", "claim.", QON.title, "cycles", library, FAILED)
     assert known_issues.with_page(result).diagnosis == words
+
+
+@pytest.mark.parametrize("verdict, named", [(DIFFERS, True), (FAILED, True), (PASSED, False)])
+def test_a_check_that_differs_refers_to_its_page_as_one_that_fails_does(verdict, named):
+    result = Result("value", "claim.", "conductor_bsdf", "wgsl", "stock", verdict)
+    page = "docs/upstream/genglsl_microfacet_compensation.md"
+    assert (page in known_issues.with_page(result).diagnosis) == named
 
 
 def test_every_page_that_a_check_refers_to_is_there():

@@ -228,7 +228,9 @@ SHEENS = (
     ("conty_kulla", conty_kulla_brdf, conty_kulla_albedo_dir),
     ("zeltner", zeltner_brdf, zeltner_albedo_dir),
 )
-every_sheen = pytest.mark.parametrize("mode, brdf, albedo", SHEENS, ids=lambda each: str(each))
+every_sheen = pytest.mark.parametrize(
+    "mode, brdf, albedo", SHEENS, ids=lambda each: getattr(each, "__name__", str(each))
+)
 
 
 def layered(mode, color="0.5, 1, 0.25"):

@@ -172,7 +172,11 @@ REFUSED = (
 )
 
 
-@pytest.mark.parametrize("function, arguments, message", REFUSED, ids=lambda each: str(each)[:40])
+@pytest.mark.parametrize(
+    "function, arguments, message",
+    REFUSED,
+    ids=lambda each: getattr(each, "__name__", str(each)[:40]),
+)
 def test_what_leaves_its_range_is_refused(function, arguments, message):
     with pytest.raises(ValueError, match=message):
         function(*arguments)

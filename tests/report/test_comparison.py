@@ -113,7 +113,11 @@ def refusal_of(folder, capsys):
         ("tolerance", None, "an error must have a tolerance; got 1e-07 and none"),
         ("figure", -1.0, "error and tolerance must be at least 0; got -1.0 and 1e-06"),
         ("figure", "-Infinity", "error and tolerance must be at least 0; got -inf"),
-        ("verdict", "maybe", "verdict must be one of passed, failed, not run; got 'maybe'"),
+        (
+            "verdict",
+            "maybe",
+            "verdict must be one of passed, differs, failed, not run; got 'maybe'",
+        ),
         ("verdict", None, "must be a text; got None @ $.results[0].verdict"),
         ("verdict", [], "must be a text; got [] @ $.results[0].verdict"),
         ("worst", {"a": None}, "$.results[0].worst"),

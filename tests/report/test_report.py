@@ -20,6 +20,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.conformance.results import (
+    DIFFERS,
     FAILED,
     NOT_RUN,
     PASSED,
@@ -160,7 +161,7 @@ def test_a_run_is_as_good_as_its_worst_check(verdicts, expected):
 def test_the_sentence_counts_and_says_where():
     found = summarize([made_result(PASSED), FAILURE])
     assert found.sentence == "1 of 2 checks failed: 1 on gl with stock."
-    assert found.counts == {PASSED: 1, FAILED: 1, NOT_RUN: 0}
+    assert found.counts == {PASSED: 1, DIFFERS: 0, FAILED: 1, NOT_RUN: 0}
 
 
 def test_page_runs_its_own_script_alone_and_escapes_what_it_was_given(page, run):

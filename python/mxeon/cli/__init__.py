@@ -29,8 +29,8 @@ from mxeon.errors import NOT_RUN, InputError, MxeonError
 from mxeon.jobs.signals import SignalExit, raise_signals
 
 DESCRIPTION = (
-    "Correct Oren-Nayar and EON diffuse shading for every MaterialX target, verified by running "
-    "the generated shaders."
+    "MaterialX's specification of physically based shading, executable: a reference, checks of "
+    "generated shaders, and a library that repairs rough diffuse, sheen and layered lobes."
 )
 COMMANDS = (check, generate, render, explore, library, invert, figures, report, kit, doc)
 

@@ -12,13 +12,8 @@ from mxeon.conformance.checks.batch import FEW, Array, Batch, Candidate
 from mxeon.conformance.checks.bsdf_measures import layering_cases, transmission_cases
 from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
 from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.checks.tolerances import (
-    ALBEDOS,
-    LOBES,
-    THROUGHPUTS,
-    VALUES,
-    Tolerance,
-)
+from mxeon.conformance.checks.tolerance import Tolerance
+from mxeon.conformance.checks.tolerances import ALBEDOS, LOBES, THROUGHPUTS, VALUES
 from mxeon.conformance.faults import DIRECT, ENVIRONMENT, Fault, scaled_by
 from mxeon.conformance.regions import Mask, smallest
 from mxeon.models import table as reference

@@ -107,22 +107,6 @@ def of_frame(probe: Any) -> Diagnosis:
     return Diagnosis(UNKNOWN)
 
 
-def of_stretched(probe: Any) -> Diagnosis:
-    """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
-    case = stretched_case(probe)
-    view, alpha = case.batch.wo, case.batch.inputs["roughness"]
-    mu2, mean2 = view[:, 2] ** 2, alpha.prod(axis=1)
-    drawn = np.sqrt((alpha**2 * view[:, :2] ** 2).sum(axis=1) + mu2)
-    factor = (view[:, 2] + np.sqrt(mean2 + (1.0 - mean2) * mu2)) / (view[:, 2] + drawn)
-    errors = (
-        np.sqrt(np.mean((case.measured - scale * case.expected) ** 2))
-        for scale in (factor[:, np.newaxis], 1.0)
-    )
-    if next(errors) < NEAR * next(errors):
-        return Diagnosis("anisotropic visible normals are weighted by G_1 at the mean alpha")
-    return Diagnosis(UNKNOWN)
-
-
 def of_tangent(probe: Any) -> Diagnosis:
     """Whether the tangent is dropped."""
     return Diagnosis(without_effect(probe, "tangent") or of_value(probe).text)
@@ -137,6 +121,22 @@ def without_effect(probe: Any, name: str) -> str:
     """Words on an input that changes nothing; "" if it does, or there is none."""
     dead = name in probe.subject.changes and name in dead_inputs(probe)
     return f"{name} is ignored" if dead else ""
+
+
+def of_stretched(probe: Any) -> Diagnosis:
+    """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
+    case = stretched_case(probe)
+    view, alpha = case.batch.wo, case.batch.inputs["roughness"]
+    mu2, mean2 = view[:, 2] ** 2, alpha.prod(axis=1)
+    drawn = np.sqrt((alpha**2 * view[:, :2] ** 2).sum(axis=1) + mu2)
+    factor = (view[:, 2] + np.sqrt(mean2 + (1.0 - mean2) * mu2)) / (view[:, 2] + drawn)
+    errors = (
+        np.sqrt(np.mean((case.measured - scale * case.expected) ** 2))
+        for scale in (factor[:, np.newaxis], 1.0)
+    )
+    if next(errors) < NEAR * next(errors):
+        return Diagnosis("anisotropic visible normals are weighted by G_1 at the mean alpha")
+    return Diagnosis(UNKNOWN)
 
 
 def of_surroundings(probe: Any) -> Diagnosis:

@@ -31,6 +31,7 @@ class BsdfProbe(PairProbe):
 
     kind: ClassVar[str] = "closed pairs"
     diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
+    quadrature: ClassVar[float] = 1e-8  # largest error of its integrals of the equations
 
     least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
 
@@ -135,10 +136,18 @@ class BsdfProbe(PairProbe):
 
 
 @dataclass(frozen=True, eq=False)
+class SheenProbe(BsdfProbe):
+    """A sheen, whose value has high powers."""
+
+    kind: ClassVar[str] = "sheen pairs"
+
+
+@dataclass(frozen=True, eq=False)
 class FittedProbe(BsdfProbe):
-    """A node whose shader takes its albedo from a fit."""
+    """A sheen whose albedo a shader takes from a fit."""
 
     kind: ClassVar[str] = "fitted pairs"
+    quadrature: ClassVar[float] = 2e-4
     least_cosine: ClassVar[float] = FIT_COSINE
 
 
@@ -149,6 +158,7 @@ class MicrofacetProbe(BsdfProbe):
     kind: ClassVar[str] = "microfacet pairs"
     least_cosine: ClassVar[float] = FIT_COSINE
     diagnosed: ClassVar[int] = 1 << 8  # their references take long
+    quadrature: ClassVar[float] = 6e-4
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -233,4 +243,4 @@ def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
     return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
-BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, FittedProbe, MicrofacetProbe)}
+BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, SheenProbe, FittedProbe, MicrofacetProbe)}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: the other BSDF nodes of pbrlib, in each of their modes."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -92,7 +92,9 @@ class BsdfSubject:
         """Kind of its probe; see `mxeon.conformance.checks.bsdf_probes`."""
         if self.anisotropic:
             return "microfacet pairs"
-        return "fitted pairs" if self.row.fitted else "closed pairs"
+        if self.row.fitted:
+            return "fitted pairs"
+        return "sheen pairs" if self.row.category == "sheen_bsdf" else "closed pairs"
 
     @property
     def changes(self) -> dict[str, Changes]:
@@ -164,7 +166,7 @@ class BsdfSubject:
             for each in self.row.variants
             if each.value
         )
-        return (own, *others, NOTHING)
+        return (own, *others, *_wrong_side(self.row), NOTHING)
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
@@ -194,6 +196,20 @@ class BsdfSubject:
         alpha = LEAST_ALPHA ** (1.0 - uniform)
         alpha[::2] = alpha[::2, :1]
         return alpha
+
+
+def _wrong_side(row: PbrNode) -> Iterator[Candidate]:
+    """A lobe that transmits, taken for one that reflects."""
+    if row.transmits:
+
+        def mirrored(wo: Array, wi: Array, inputs: Inputs) -> Array:
+            return row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
+
+        def reflection(batch: Batch) -> Array:
+            whole = batch.altered(occlusion=1.0)  # as of light through the base
+            return _expected(replace(row, transmits=False), mirrored, whole)
+
+        yield Candidate("a reflection in its place", reflection)
 
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:

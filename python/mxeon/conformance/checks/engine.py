@@ -8,7 +8,8 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import SEED
 from mxeon.conformance.checks.special import LEAST_SHEEN
-from mxeon.conformance.checks.tolerances import Tolerance, power_of
+from mxeon.conformance.checks.tolerance import Tolerance
+from mxeon.conformance.checks.tolerances import power_of
 from mxeon.shaders.hosts.base import Host
 
 COUNT = 1 << 14

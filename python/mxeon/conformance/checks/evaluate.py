@@ -11,7 +11,7 @@ import numpy as np
 
 from mxeon.conformance.checks.measures import Measurement, integrated
 from mxeon.conformance.checks.table import CHECKS, Check
-from mxeon.conformance.checks.tolerances import Tolerance
+from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control, Curve, Result
 from mxeon.errors import NotRun, ShaderError

@@ -16,14 +16,8 @@ from mxeon.conformance.checks import twins
 from mxeon.conformance.checks.batch import Array
 from mxeon.conformance.checks.evaluate import judge_measurements, not_measured
 from mxeon.conformance.checks.measures import Measurement, absolute, relative
-from mxeon.conformance.checks.tolerances import (
-    DENSITY,
-    LOSS,
-    PART,
-    VALUE,
-    Tolerance,
-    direction_of,
-)
+from mxeon.conformance.checks.tolerance import Tolerance
+from mxeon.conformance.checks.tolerances import DENSITY, LOSS, PART, VALUE, direction_of
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import Result
 from mxeon.errors import NotRun, ShaderError

@@ -10,14 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
+from mxeon.conformance.checks.bsdf_tolerances import MICROFACET_VALUE, sum_of
 from mxeon.conformance.checks.measures import absolute
 from mxeon.conformance.checks.probes import picture_pairs
-from mxeon.conformance.checks.tolerances import (
-    MICROFACET_VALUE,
-    ROUNDING,
-    Tolerance,
-    sum_of,
-)
+from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.models.pbrlib import NODES

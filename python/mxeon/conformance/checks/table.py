@@ -10,7 +10,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance import diagnosis, wiring
-from mxeon.conformance.checks import bsdf_measures, measures, sampling_measures, tolerances
+from mxeon.conformance.checks import (
+    bsdf_measures,
+    bsdf_tolerances,
+    measures,
+    sampling_measures,
+    tolerances,
+)
+from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdf_tolerances import MICROFACET
 from mxeon.conformance.checks.bsdfs import BSDFS
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -27,7 +35,7 @@ from mxeon.conformance.checks.controls import (
 from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import OwnNode, Surface
-from mxeon.conformance.checks.tolerances import Tolerance
+from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
 from mxeon.models.pbrlib import NODES
@@ -48,7 +56,7 @@ ROUGH = (*ANY, "fon")
 
 def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
     """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
-    kinds = tolerances.BSDF_KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    kinds = tuple(BSDF_PROBES) + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
     return dict.fromkeys(kinds, tolerance)
 
 
@@ -250,7 +258,7 @@ CHECKS = (
         scale_cosine(1),
         {
             "pairs": tolerances.RECIPROCITY,
-            **of_bsdfs(tolerances.BSDF_VALUE),
+            **bsdf_tolerances.VALUES,
             "facet pairs": tolerances.FACET_PAIRS,
         },
     ),
@@ -340,7 +348,7 @@ CHECKS = (
         bsdf_measures.layer,
         "all light passes",
         pass_all,
-        tolerances.LAYER_KINDS,
+        bsdf_tolerances.LAYERS,
         diagnose=diagnosis.of_throughput,
     ),
     Check(
@@ -350,7 +358,7 @@ CHECKS = (
         bsdf_measures.integral,
         "values are 2 % too large",
         scale(1.02),
-        of_bsdfs(tolerances.BSDF_INTEGRAL),
+        bsdf_tolerances.INTEGRALS,
         open=True,
     ),
     Check(
@@ -358,9 +366,9 @@ CHECKS = (
         "No albedo exceeds 1, nor what the equations have.",
         OTHERS,
         bsdf_measures.energy,
-        "values are twice as large",
-        scale(2.0),
-        of_bsdfs(tolerances.BSDF_INTEGRAL),
+        "values are 100 times as large",
+        scale(100.0),
+        bsdf_tolerances.INTEGRALS,
     ),
     Check(
         "lossless",
@@ -369,7 +377,7 @@ CHECKS = (
         bsdf_measures.lossless,
         "values are 2 % too large",
         scale(1.02),
-        {"microfacet pairs": tolerances.MICROFACET_VALUE},
+        {MICROFACET: bsdf_tolerances.INTEGRALS[MICROFACET]},
     ),
     Check(
         "shape",
@@ -378,7 +386,7 @@ CHECKS = (
         bsdf_measures.shape,
         "the roughness is a tenth larger",
         rougher,
-        {"microfacet pairs": tolerances.SHAPE},
+        {MICROFACET: bsdf_tolerances.SHAPE},
         open=True,
     ),
     Check(
@@ -388,7 +396,7 @@ CHECKS = (
         bsdf_measures.retroreflection,
         "the flag is dropped",
         with_inputs(retroreflective=False),
-        {"microfacet pairs": tolerances.BSDF_VALUE},
+        {MICROFACET: bsdf_tolerances.RETROREFLECTION},
         diagnose=wiring.of_retroreflection,
     ),
     Check(
@@ -398,7 +406,7 @@ CHECKS = (
         bsdf_measures.anisotropy,
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
-        {"microfacet pairs": tolerances.ANISOTROPY},
+        {MICROFACET: bsdf_tolerances.ANISOTROPY},
         diagnose=wiring.of_tangent,
     ),
     Check(
@@ -408,7 +416,7 @@ CHECKS = (
         bsdf_measures.stretched,
         "the roughness is the same in both directions",
         isotropic,
-        {"microfacet pairs": tolerances.ANISOTROPIC_ALBEDO},
+        {MICROFACET: bsdf_tolerances.ANISOTROPIC_ALBEDO},
         diagnose=wiring.of_stretched,
     ),
 )

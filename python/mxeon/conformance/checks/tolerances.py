@@ -5,63 +5,21 @@ The tests and the benchmarks that judge the same quantities import them.
 """
 
 import math
-from dataclasses import dataclass
 
-import numpy as np
-
-from mxeon.conformance.checks.batch import LOBE_RIM, RIM, Array
-from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
-from mxeon.conformance.checks.measures import Metric, absolute, of_mean, relative, scaled
+from mxeon.conformance.checks import bsdf_tolerances
+from mxeon.conformance.checks.batch import LOBE_RIM, RIM
+from mxeon.conformance.checks.measures import absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
-from mxeon.conformance.checks.special import LEAST_SHEEN, LEAST_TURNED, TURNED
+from mxeon.conformance.checks.special import TURNED
+from mxeon.conformance.checks.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
-ROUNDING = 2.0**-24  # unit roundoff of float32
 HALF_ROUNDING = 2.0**-11  # of float16
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
 PLANE_PIXELS = 128**2  # of a picture of testrender
 FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H, see fits/
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """The largest error that passes.
-
-    Attributes
-    ----------
-    value : float
-    unit : str
-        Unit of the error.
-    metric : callable (measured, expected) -> ndarray
-        Error of each row, for checks that compare values.
-    derivation : str
-    """
-
-    value: float
-    unit: str
-    metric: Metric
-    derivation: str
-
-    def scale(self, expected: Array) -> Array:
-        """Numbers that errors are divided by, which are 1 but for large scaled values, (N, 1)."""
-        if self.metric is not scaled:
-            return np.ones((len(expected), 1))
-        largest: Array = np.abs(expected).max(axis=-1, keepdims=True)
-        return np.maximum(1.0, largest)
-
-
-def rounded_up(value: float) -> float:
-    """The next number with one digit.
-
-    Examples
-    --------
-    >>> rounded_up(1.94e-6)
-    2e-06
-    """
-    exponent = math.floor(math.log10(value))
-    return float(f"{math.ceil(value / 10.0**exponent)}e{exponent}")
 
 
 def ray_error(rim: float) -> float:
@@ -81,15 +39,6 @@ def mean_noise(pixels: int) -> float:
     the mean of 3212 pixels has a standard deviation of 3.1e-5, 1.34 times that of independent ones.
     """
     return rounded_up(4.0 * 1.4 * 1.3e-3 / math.sqrt(pixels))
-
-
-def sum_of(directions: int) -> float:
-    """Error of a sum over so many directions of an environment, drawn for a microfacet lobe.
-
-    Measured on pictures of brushed metal in a furnace: 2.5e-2 of 64 directions, 5.1e-3 of 256, 1.4e-3 of
-    1024.
-    """
-    return SUM_OF_DIRECTIONS / directions
 
 
 def count_of(unit: str) -> Tolerance:
@@ -125,7 +74,6 @@ def power_of(power_error: float, exponent: float) -> Tolerance:
     )
 
 
-SCALED = "pi f cos, relative above 1"
 VALUE = Tolerance(
     rounded_up(14 * 2.0 * ROUNDING + 2 * 0.5 * LOSS_FIT),
     "pi f cos",
@@ -239,90 +187,6 @@ CYCLES_NOISE = Tolerance(
     "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
 )
 
-BSDF_VALUE = Tolerance(
-    rounded_up(48 * ROUNDING),
-    SCALED,
-    scaled,
-    "48 roundings of float32, 2^-24 each, of the value or of 1: an inverse fourth power takes the 8 of "
-    "a length four times, and 16 beside them; rounded up",
-)
-CONTY_KULLA_VALUE = Tolerance(
-    rounded_up((32 + 4 * 0.5 / LEAST_SHEEN) * ROUNDING),
-    SCALED,
-    scaled,
-    "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
-    "the inverse of the roughness, at least 0.01; rounded up",
-)
-BSDF_ALBEDO = Tolerance(
-    rounded_up(32 * ROUNDING),
-    "albedo",
-    scaled,
-    "32 roundings of float32, 2^-24 each, of the albedo or of 1; rounded up",
-)
-BSDF_FRAME = Tolerance(
-    rounded_up(4 * 5 * ROUNDING / (TURNED[0] * LEAST_TURNED)),
-    SCALED,
-    scaled,
-    "five roundings of a half vector, 2^-24 each, over the least cosine, 1/4, and the least alpha, "
-    "0.1, times the fourth power of the distribution; rounded up",
-)
-ALBEDO_FIT = 2e-3  # largest error of the fits of albedos, see fits/
-FITTED_ALBEDO = Tolerance(
-    ALBEDO_FIT + BSDF_ALBEDO.value,
-    "albedo",
-    absolute,
-    "the fit's 2e-3, and the roundings of an albedo in closed form",
-)
-BSDF_INTEGRAL = Tolerance(
-    1e-3,
-    "albedo",
-    absolute,
-    "the quadrature's own error on the equations, measured",
-)
-SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
-LEAST_ALBEDO = 0.4  # of GGX at unit Fresnel: 0.44 at alpha 1 and grazing
-MICROFACET_FIT = 4e-3  # largest error of a microfacet lobe's albedo, made of several fits
-MICROFACET_VALUE = Tolerance(
-    rounded_up(ALBEDO_FIT / LEAST_ALBEDO),
-    SCALED,
-    scaled,
-    "the fit of E_ss, 2e-3, over its least value, 0.4: as much as the compensation is off, relative",
-)
-MICROFACET_ALBEDO = Tolerance(
-    MICROFACET_FIT, "albedo", absolute, "three fits, whose errors come to 4e-3 at most"
-)
-ANISOTROPIC_ALBEDO = Tolerance(
-    MICROFACET_FIT + sum_of(1024),
-    "albedo",
-    scaled,
-    "the fits' 4e-3, and the error of a sum over the directions of an environment",
-)
-SHAPE = Tolerance(
-    rounded_up(2 * 64 * ROUNDING),
-    "relative",
-    absolute,
-    "two values of 64 roundings of float32 each, 2^-24; rounded up",
-)
-ANISOTROPY = Tolerance(
-    rounded_up(4 * 2 * ROUNDING / (LEAST_COSINE * LEAST_ALPHA)),
-    SCALED,
-    scaled,
-    "two roundings of a turned direction, 2^-24 each, over the least cosine, 0.1, and the least "
-    "alpha, 0.05, times the fourth power of the distribution; rounded up",
-)
-MICROFACET_LAYER = Tolerance(
-    MICROFACET_FIT + BSDF_INTEGRAL.value,
-    "light",
-    absolute,
-    "the fits' 4e-3, and the quadrature's error",
-)
-LAYER = Tolerance(
-    ALBEDO_FIT + BSDF_INTEGRAL.value,
-    "light",
-    absolute,
-    "the fit's 2e-3, and the quadrature's error",
-)
-
 EXACT = Tolerance(
     rounded_up(14 * 2.0 * ROUNDING + 2 * 5 * (1.0 / RIM + 2.0) * ROUNDING),
     "pi f cos",
@@ -418,9 +282,6 @@ VALUES = {
     "pairs": VALUE,
     "pictures": CYCLES_RAY,
     "planes": TESTRENDER,
-    "closed pairs": BSDF_VALUE,
-    "fitted pairs": CONTY_KULLA_VALUE,
-    "microfacet pairs": MICROFACET_VALUE,
     "bsdf pictures": BSDF_RAY,
     "microfacet pictures": BSDF_RAY,
     "bsdf planes": BSDF_PLANE,
@@ -429,6 +290,7 @@ VALUES = {
     "facets": FACETS,
     "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_PAIRS,
+    **bsdf_tolerances.VALUES,
 }
 LOBES = {
     "lobes": LOBE,
@@ -442,9 +304,6 @@ ALBEDOS = {
     "pairs": ENVIRONMENT,
     "pictures": CYCLES_NOISE,
     "planes": TESTRENDER_NOISE,
-    "closed pairs": BSDF_ALBEDO,
-    "fitted pairs": FITTED_ALBEDO,
-    "microfacet pairs": MICROFACET_ALBEDO,
     "bsdf pictures": BSDF_NOISE,
     "microfacet pictures": BSDF_NOISE,
     "bsdf planes": BSDF_PLANE_NOISE,
@@ -453,17 +312,7 @@ ALBEDOS = {
     "facets": FACET_NOISE,
     "coarse facets": COARSE_FACETS,
     "facet pairs": FACET_NOISE,
+    **bsdf_tolerances.ALBEDOS,
 }
-THROUGHPUTS = {
-    "closed pairs": BSDF_ALBEDO,
-    "fitted pairs": FITTED_ALBEDO,
-    "microfacet pairs": MICROFACET_ALBEDO,
-}
-FRAMES = {
-    "pairs": FRAME,
-    "closed pairs": BSDF_FRAME,
-    "fitted pairs": BSDF_FRAME,
-    "microfacet pairs": BSDF_FRAME,
-}
-LAYER_KINDS = {"closed pairs": LAYER, "fitted pairs": LAYER, "microfacet pairs": MICROFACET_LAYER}
-BSDF_KINDS = ("closed pairs", "fitted pairs", "microfacet pairs")
+THROUGHPUTS = bsdf_tolerances.THROUGHPUTS
+FRAMES = {"pairs": FRAME, **bsdf_tolerances.FRAMES}
