@@ -24,7 +24,8 @@ def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
     """Tolerance of values on a probe's host: wider for a sheen of powers, by the engine's own."""
     if probe.kind != "fitted pairs":
         return tolerance
-    return power_of(power_error(probe.host), 1.0 / LEAST_SHEEN)
+    measured = power_of(power_error(probe.host), 1.0 / LEAST_SHEEN)
+    return max(tolerance, measured, key=lambda each: each.value)
 
 
 @lru_cache(maxsize=16)
