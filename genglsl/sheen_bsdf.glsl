@@ -31,8 +31,11 @@ float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
 float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 {
     vec3 Y = cross(N, wo);
-    float length2 = dot(Y, Y);
-    Y = length2 > 1e-12 ? Y * inversesqrt(length2) : mx_orthonormal_basis(N)[1];
+    if (dot(Y, Y) < 1e-12)
+    {
+        Y = cross(N, abs(N.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
+    }
+    Y = normalize(Y);
     float a = mx_zeltner_sheen_ltc_aInv(mu_o, roughness);
     float b = mx_zeltner_sheen_ltc_bInv(mu_o, roughness);
     float mu_i = dot(N, wi);

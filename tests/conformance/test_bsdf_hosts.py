@@ -62,6 +62,17 @@ def test_a_node_is_judged_on_every_host_that_evaluates(hosts, name):
     assert result.verdict == FAILED and "without the color" in result.diagnosis
 
 
+@pytest.mark.parametrize("name", ["wgsl", "slang"])
+@pytest.mark.parametrize("model", ["zeltner", "dielectric"])
+def test_the_repaired_nodes_are_the_specifications_in_other_languages(hosts, name, model):
+    host, subject = hosts(name), SUBJECTS[model]
+    probe = bsdf_probe_type(subject, PairProbe)(host, subject, "eonlib")
+    batch = probe.batches[1]
+    tolerance = VALUES[probe.kind]
+    errors = tolerance.metric(probe.direct(batch), subject.expected(batch))
+    assert errors.max() <= tolerance.value
+
+
 def test_a_host_has_probes_by_what_it_shows():
     for subject in BSDFS:
         assert bsdf_probe_type(subject, PairProbe) is BSDF_PROBES[subject.kind]
