@@ -27,7 +27,7 @@
 float fresnel_dielectric(float mu, float ior)
 {
     float n2 = ior * ior;
-    float g2 = n2 + mu * mu - 1.0;
+    float g2 = (ior - 1.0) * (ior + 1.0) + mu * mu;  // n^2 + mu^2 - 1 loses mu^2 at grazing
     float g = sqrt(max(g2, 0.0));
     float s = (mu - g) / (mu + g);
     float p = (n2 * mu - g) / (n2 * mu + g);

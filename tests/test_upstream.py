@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from docs.upstream import update as ledger
-from mxeon.conformance.known_issues import OWN
 from mxeon.models.ggx_albedo import ggx_albedo_dir
 from mxeon.models.microfacet_defects import fitted_albedo
 from tests.support.availability import available
@@ -17,8 +16,8 @@ from tests.support.tolerances import PRINTED
 PAGES = [defect.page for defect in ledger.ISSUES] + list(ledger.OF_QUANTITIES)
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
 
-# Those of renderers in a browser are measured in tests/shaders/test_host_browser.py.
-DEFECTS = [defect for defect in ledger.ISSUES if defect.library != OWN]
+# Those of three.js and Babylon.js are measured in tests/shaders/test_host_browser.py.
+DEFECTS = [defect for defect in ledger.ISSUES if defect.host not in ("three", "babylon")]
 of_each_defect = pytest.mark.parametrize("defect", DEFECTS, ids=lambda each: each.page)
 
 

@@ -7,15 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.facet_probes import facet_pairs
+from mxeon.conformance.checks.evaluate import judge_subject
+from mxeon.conformance.checks.facet_probes import PROBES, facet_pairs
 from mxeon.conformance.checks.nodes import NATIVE
 from mxeon.conformance.checks.tolerances import COARSE_FACETS, FACET_PAIRS, FACETS
+from mxeon.conformance.known_issues import OWN, with_page
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
 from mxeon.models import table
 from mxeon.shaders.facets import facet_points
-from mxeon.shaders.hosts import open_host
+from mxeon.shaders.hosts import host_row, open_host
 from mxeon.shaders.hosts.facet import eevee, luxcore, mitsuba
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.scene import BACK, FRONT, SIDE
@@ -31,12 +33,13 @@ def judged(name):
     """Results of a host, by check and subject."""
     with available(name), open_host(name) as host:
         host.identity()
-    run = check([EXAMPLE], [name], ["eonlib"], workers=0)
-    return {
-        (each.check, each.subject): each
-        for each in run.results
-        if each.host == name and each.check != "document"
-    }
+        probe = PROBES[host_row(name).probe]
+        results = [
+            with_page(result)
+            for subject in NATIVE[name]
+            for result in judge_subject(probe(host, subject, OWN))
+        ]
+    return {(each.check, each.subject): each for each in results}
 
 
 @pytest.fixture(scope="module", params=HOSTS)

@@ -74,6 +74,11 @@ def _sheen(
     return lambda wo, wi, inputs: brdf(wo, wi, inputs["color"], inputs["roughness"])
 
 
+def _smooth_burley(wo: Array, wi: Array, inputs: Inputs) -> Array:
+    """Values of the Burley diffuse lobe at roughness 0."""
+    return burley_brdf(wo, wi, inputs["color"], np.zeros(len(wo)))
+
+
 def _colored(albedo: Callable[[Array, Inputs], Array]) -> Callable[[Array, Inputs], Array]:
     """An albedo times the color."""
     return lambda wo, inputs: np.asarray(albedo(wo, inputs) * inputs["color"])
@@ -90,7 +95,11 @@ NODES = (
         lambda wo, inputs: burley_albedo_dir(
             np.minimum(wo[:, 2], 1.0), inputs["color"], inputs["roughness"]
         ),
-        variants=(Variant("MaterialX's fit of its albedo", albedo=materialx_fits.burley_albedo),),
+        variants=(
+            Variant("MaterialX's fit of its albedo", albedo=materialx_fits.burley_albedo),
+            Variant("Burley diffuse of roughness 0, without retro-reflection", _smooth_burley),
+            Variant("Lambert", lambda wo, wi, inputs: inputs["color"] / np.pi),
+        ),
     ),
     PbrNode(
         "translucent",
@@ -113,6 +122,7 @@ NODES = (
         layerable=True,
         fitted=True,
         variants=(
+            Variant("Zeltner sheen", _sheen(zeltner_brdf), _tinted(zeltner_albedo_dir)),
             Variant(
                 "its albedo without the color", albedo=_untinted(_bounded(conty_kulla_albedo_dir))
             ),
@@ -135,7 +145,14 @@ NODES = (
         fixed={"mode": "zeltner"},
         layerable=True,
         reciprocal=False,
-        variants=(Variant("its albedo without the color", albedo=_untinted(zeltner_albedo_dir)),),
+        variants=(
+            Variant(
+                "Conty-Kulla sheen",
+                _sheen(conty_kulla_brdf),
+                _tinted(_bounded(conty_kulla_albedo_dir)),
+            ),
+            Variant("its albedo without the color", albedo=_untinted(zeltner_albedo_dir)),
+        ),
     ),
     *MICROFACET_NODES,
 )

@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tolerances of the checks of the other BSDF nodes of pbrlib, by kind of probe."""
 
+import math
+
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
-from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdfs import (
+    CLOSED,
+    FITTED,
+    KINDS,
+    MICROFACET,
+    QUADRATURES,
+    SHEEN,
+)
 from mxeon.conformance.checks.measures import absolute, scaled
 from mxeon.conformance.checks.special import LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.conformance.checks.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
-
-CLOSED, SHEEN, FITTED, MICROFACET = BSDF_PROBES
 
 # Largest errors of the fits that shaders are held to, each found by its script in fits/.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
@@ -15,7 +22,7 @@ FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
 SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
-LEAST_ESS = 0.44  # E_ss at alpha 1 and grazing
+LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 
 
 def sum_of(directions: int) -> float:
@@ -54,7 +61,7 @@ MICROFACET_VALUE = Tolerance(
     SCALED,
     scaled,
     "the fits of E_ss, 5e-4, and of F_ss, 3.6e-4, as they enter 1 + F_ss (1 - E_ss) / E_ss where E_ss "
-    "is least, 0.44; rounded up",
+    "is least, 1 - ln 2 = 0.31; rounded up",
 )
 CLOSED_ALBEDO = Tolerance(
     rounded_up(32 * ROUNDING),
@@ -74,7 +81,7 @@ MICROFACET_ALBEDO = Tolerance(
     "albedo",
     absolute,
     "the fit of the lobe's albedo, 3.2e-3, and that of E_ss in its compensation, 5e-4 over the least "
-    "E_ss, 0.44; rounded up",
+    "E_ss, 0.31; rounded up",
 )
 ANISOTROPIC_ALBEDO = Tolerance(
     MICROFACET_ALBEDO.value + sum_of(1024),
@@ -138,13 +145,13 @@ FRAMES = {
 }
 INTEGRALS = {
     kind: Tolerance(
-        rounded_up(VALUES[kind].value + probe.quadrature),
+        rounded_up(VALUES[kind].value + quadrature),
         "albedo",
         absolute,
         f"an average of values, each within {VALUES[kind].value:.2g}, and the error of the quadrature on "
-        f"the equations, {probe.quadrature:.0e}; rounded up",
+        f"the equations, {quadrature:.0e}; rounded up",
     )
-    for kind, probe in BSDF_PROBES.items()
+    for kind, quadrature in QUADRATURES.items()
 }
 LAYERS = {
     kind: Tolerance(
@@ -154,5 +161,5 @@ LAYERS = {
         f"an albedo within {INTEGRALS[kind].value:.2g}, and a throughput within "
         f"{THROUGHPUTS[kind].value:.2g}; rounded up",
     )
-    for kind in BSDF_PROBES
+    for kind in KINDS
 }

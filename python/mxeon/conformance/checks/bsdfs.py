@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: the other BSDF nodes of pbrlib, in each of their modes."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -15,6 +15,19 @@ from mxeon.models import pbrlib
 from mxeon.models.pbr_node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
+# Kinds of probes; see `mxeon.conformance.checks.bsdf_probes`.
+CLOSED, SHEEN, FITTED, MICROFACET = KINDS = (
+    "closed pairs",
+    "sheen pairs",
+    "fitted pairs",
+    "microfacet pairs",
+)
+QUADRATURES = {  # largest error of a probe's integrals of the equations
+    CLOSED: 1e-8,
+    SHEEN: 1e-8,
+    FITTED: 2e-4,
+    MICROFACET: 6e-4,
+}
 SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, fixed in a document
 COLORS = ("color", "tint", "color0", "color82", "color90")
 EDGES: dict[str, tuple[float, ...]] = {  # of half of an input's special values
@@ -91,10 +104,10 @@ class BsdfSubject:
     def kind(self) -> str:
         """Kind of its probe; see `mxeon.conformance.checks.bsdf_probes`."""
         if self.anisotropic:
-            return "microfacet pairs"
+            return MICROFACET
         if self.row.fitted:
-            return "fitted pairs"
-        return "sheen pairs" if self.row.category == "sheen_bsdf" else "closed pairs"
+            return FITTED
+        return SHEEN if self.row.category == "sheen_bsdf" else CLOSED
 
     @property
     def changes(self) -> dict[str, Changes]:
@@ -166,7 +179,7 @@ class BsdfSubject:
             for each in self.row.variants
             if each.value
         )
-        return (own, *others, NOTHING)
+        return (own, *others, *_wrong_side(self.row), NOTHING)
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
@@ -196,6 +209,20 @@ class BsdfSubject:
         alpha = LEAST_ALPHA ** (1.0 - uniform)
         alpha[::2] = alpha[::2, :1]
         return alpha
+
+
+def _wrong_side(row: PbrNode) -> Iterator[Candidate]:
+    """A lobe that transmits, taken for one that reflects."""
+    if row.transmits:
+
+        def mirrored(wo: Array, wi: Array, inputs: Inputs) -> Array:
+            return row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
+
+        def reflection(batch: Batch) -> Array:
+            whole = batch.altered(occlusion=1.0)  # as of light through the base
+            return _expected(replace(row, transmits=False), mirrored, whole)
+
+        yield Candidate("a reflection in its place", reflection)
 
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:

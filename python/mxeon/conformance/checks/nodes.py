@@ -278,7 +278,10 @@ NATIVE = {
         ),
         *_own("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
         *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
-        *_own("lambert", "PBRMaterial LAMBERT, WebGL2", "PBRMaterial LAMBERT, WebGPU"),
+        *(
+            OwnNode(f"PBRMaterial LAMBERT, {engine}", None, "lambert", ("color",))
+            for engine in ("WebGL2", "WebGPU")
+        ),
     ),
     "three-gpu-pathtracer": (
         *(

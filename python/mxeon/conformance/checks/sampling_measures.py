@@ -12,7 +12,7 @@ from mxeon.models.sampling.cltc import eon_cltc_pdf
 COSINES = (0.05, 0.3, 0.7, 0.99)  # of the viewer
 SAMPLES = 1 << 15
 BINS = 8, 16  # of the cosine and of the azimuth
-FINE = 16  # points of a bin, along each axis, at which the density is averaged
+FINE = 8  # points of a bin, along each axis, at which the density is averaged
 LEAST = 10.0  # samples that a bin has to expect
 ROUGHNESS = 1.0
 

@@ -17,9 +17,7 @@ from mxeon.conformance.checks import (
     sampling_measures,
     tolerances,
 )
-from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
-from mxeon.conformance.checks.bsdf_tolerances import MICROFACET
-from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.bsdfs import BSDFS, KINDS, MICROFACET
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
@@ -56,7 +54,7 @@ ROUGH = (*ANY, "fon")
 
 def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
     """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
-    kinds = tuple(BSDF_PROBES) + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    kinds = KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
     return dict.fromkeys(kinds, tolerance)
 
 
@@ -366,8 +364,8 @@ CHECKS = (
         "No albedo exceeds 1, nor what the equations have.",
         OTHERS,
         bsdf_measures.energy,
-        "values are twice as large",
-        scale(2.0),
+        "values are 100 times as large",
+        scale(100.0),
         bsdf_tolerances.INTEGRALS,
     ),
     Check(

@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The other BSDF nodes of pbrlib: verdicts on stock MaterialX, and on shaders with one wrong line."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks import bsdf_probes
+from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdf_tolerances import LEAST_ESS
+from mxeon.conformance.checks.bsdfs import BSDFS, QUADRATURES, RANGES
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.models.ggx_albedo import ggx_albedo_dir
+from mxeon.shaders.library import standard_folders
+
+SUBJECTS = {subject.model: subject for subject in BSDFS}
+ROWS = {check.key: check for check in CHECKS}
+SMALL = {"PAIRS": 1 << 9, "FEW": 1 << 8, "ALBEDOS": 1 << 5, "MATERIALS": 32}
+MICROFACETS = ("dielectric", "conductor", "schlick")
+
+# What fails with stock MaterialX, and words of each diagnosis; every other check passes.
+HALF = "compensation with F at the half vector and MaterialX's fit of E_ss (rms "
+VIEW = "compensation with F at the view direction and MaterialX's fit of E_ss (rms "
+G_1 = "anisotropic visible normals are weighted by G_1 at the mean alpha"
+OPEN = {"value": HALF, "integral": HALF, "shape": HALF, "environment": VIEW}
+UNTINTED = "MaterialX's fit of its albedo without a tint (rms "
+AVERAGED = "MaterialX's fit of its albedo, averaged over the channels (rms "
+STOCK = {
+    "burley": {"environment": "MaterialX's fit of its albedo (rms "},
+    "translucent": {"frame": "all of them where the normal faces away from the viewer"},
+    "conty_kulla": {
+        "value": "not as exact as it has to be",
+        "environment": "MaterialX's fit of its albedo (rms ",
+        "layering": "MaterialX's fit of its albedo without the color (rms ",
+        "transmission": "all light passes (rms 0)",
+        "layer": "MaterialX's fit of its albedo without the color (rms ",
+    },
+    "zeltner": {
+        "value": "all of them with dot(N, V) above 1 by a rounding",
+        "layering": "its albedo without the color (rms ",
+        "transmission": "all light passes (rms 0)",
+        "layer": "its albedo without the color (rms ",
+    },
+    "dielectric": {
+        "finite": "with an index of refraction of 0",
+        "layering": UNTINTED,
+        "transmission": UNTINTED,
+        "layer": UNTINTED,
+        "lossless": HALF,
+        "anisotropic_albedo": G_1,
+    },
+    "conductor": {"lossless": HALF, "anisotropic_albedo": G_1},
+    "schlick": {
+        "layering": AVERAGED,
+        "transmission": AVERAGED,
+        "layer": AVERAGED,
+        "lossless": HALF,
+        "anisotropic_albedo": "",
+    },
+}
+
+DIELECTRIC, CONDUCTOR, SCHLICK, SHEEN, BURLEY, TRANSLUCENT = (
+    f"mx_{name}_bsdf.glsl"
+    for name in (
+        "dielectric",
+        "conductor",
+        "generalized_schlick",
+        "sheen",
+        "burley_diffuse",
+        "translucent",
+    )
+)
+COMPENSATION = "mx_ggx_energy_compensation(NdotV, avgAlpha, F)"
+SMITH = "mx_ggx_smith_G2(NdotL, NdotV, avgAlpha)"
+SEPARABLE = "mx_ggx_smith_G1(NdotL, avgAlpha) * mx_ggx_smith_G1(NdotV, avgAlpha)"
+ALPHA = "clamp(roughness, M_FLOAT_EPS, 1.0)"
+TANGENT = "X = normalize(X - dot(X, N) * N);"
+BESIDE = ", and MaterialX's compensation (rms "
+
+# By name: model, file, text, the text in its place, key of the check and words of the diagnosis.
+WRONG = {
+    "no factor 4": (
+        "dielectric", DIELECTRIC, "(4.0 * NdotV)", "NdotV", "value",
+        f"no factor 4 in the denominator{BESIDE}",
+    ),
+    "alpha squared": (
+        "schlick", SCHLICK, ALPHA, ALPHA.replace("roughness", "roughness * roughness"), "shape",
+        f"roughness squared once more{BESIDE}",
+    ),
+    "separable Smith": (
+        "dielectric", DIELECTRIC, SMITH, SEPARABLE, "shape",
+        f"masking and shadowing uncorrelated{BESIDE}",
+    ),
+    "F0 in the compensation": (
+        "dielectric", DIELECTRIC, COMPENSATION, COMPENSATION.replace("F)", "vec3(F0))"), "value",
+        "compensation with F along the normal (rms ",
+    ),
+    "no compensation": (
+        "schlick", SCHLICK, COMPENSATION, "vec3(1.0)", "lossless",
+        "no energy compensation (rms ",
+    ),
+    "tangent": (
+        "schlick", SCHLICK, TANGENT, "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "anisotropy",
+        "tangent is ignored",
+    ),
+    "tangent in turned frames": (
+        "dielectric", DIELECTRIC, TANGENT, "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "frame",
+        "branch direct: tangent is ignored",
+    ),
+    "retroreflection": (
+        "conductor", CONDUCTOR, "V = retroreflective", "V = false", "retroreflection",
+        "retroreflective is ignored",
+    ),
+    "thin film": (
+        "dielectric", DIELECTRIC, "(ior, thinfilm_thickness, ", "(ior, 0.0, ", "inputs",
+        "without effect: thinfilm_thickness, thinfilm_ior",
+    ),
+    "averaged throughput": (
+        "schlick", SCHLICK, "dirAlbedo = mx_ggx_dir_albedo", "dirAlbedo = 1.0 + 0.0 * mx_ggx_dir_albedo",
+        "layering", "",
+    ),
+    "all light through a base": (
+        "dielectric", DIELECTRIC, "1.0 - dirAlbedo * weight;", "vec3(1.0);", "transmission",
+        "all light passes (rms 0)",
+    ),
+    "light through diffuse": (
+        "burley", BURLEY, "bsdf.throughput = vec3(0.0);", "bsdf.throughput = vec3(0.5);",
+        "throughput", "throughput 0.5 (branches: direct, environment, transmission, emission)",
+    ),
+    "unclamped cosine": (
+        "schlick", SCHLICK, "clamp(dot(N, V), M_FLOAT_EPS, 1.0)", "dot(N, V)", "finite",
+        "values that are not finite with the viewer on the horizon",
+    ),
+    "sheen of the other mode": (
+        "conty_kulla", SHEEN, "mode == 0", "mode != 0", "environment",
+        "nearest known model: Zeltner sheen (rms ",
+    ),
+    "Conty-Kulla in its place": (
+        "zeltner", SHEEN, "mode == 0", "mode != 0", "environment",
+        "nearest known model: Conty-Kulla sheen (rms ",
+    ),
+    "sheen without a least roughness": (
+        "zeltner", SHEEN, "roughness = clamp(roughness, 0.01, 1.0);", "", "finite",
+        "values that are not finite with roughness 0",
+    ),
+    "sheen that takes all": (
+        "zeltner", SHEEN, "1.0 - dirAlbedo * weight", "0.0", "layer", "",
+    ),
+    "no retro-reflection": (
+        "burley", BURLEY, "LdotH, roughness)", "LdotH, 0.0)", "value",
+        "Burley diffuse of roughness 0, without retro-reflection (rms ",
+    ),
+    "Lambert": (
+        "burley", BURLEY, "bsdf.response *= mx", "bsdf.response *= 1.0 + 0.0 * mx", "value",
+        "nearest known model: Lambert (rms ",
+    ),
+    "one cosine twice": (
+        "burley", BURLEY, "mx_burley_diffuse(NdotV, NdotL", "mx_burley_diffuse(NdotV, NdotV",
+        "reciprocity", "right but for ",
+    ),
+    "light of its own": (
+        "burley", BURLEY, "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", "",
+    ),
+    "too dark": (
+        "burley", BURLEY, "bsdf.response *= mx", "bsdf.response *= 0.9 * mx", "integral",
+        "fault: every value is 0.9 times the right one (rms ",
+    ),
+    "too bright": (
+        "burley", BURLEY, "bsdf.response *= mx", "bsdf.response *= 1.5 * mx", "energy",
+        "fault: every value is 1.5 times the right one (rms ",
+    ),
+    "normal": (
+        "burley", BURLEY, "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
+        "branch direct: the node's normal is ignored: the surface's takes its place",
+    ),
+    "occlusion": (
+        "burley", BURLEY, "color * closureData.occlusion", "color", "value",
+        "fault: the occlusion is ignored (rms ",
+    ),
+    "weight": (
+        "translucent", TRANSLUCENT, "color * weight * NdotL", "color * NdotL", "value",
+        "fault: the weight is ignored but for 0 and below (rms ",
+    ),
+    "a transmission that reflects": (
+        "translucent", TRANSLUCENT, "N = -N;", "", "value",
+        "nearest known model: a reflection in its place (rms ",
+    ),
+    "color": (
+        "translucent", TRANSLUCENT, "Li * color", "Li * color.bgr", "environment",
+        "fault: the color channels are exchanged: they come as blue, green, red (rms ",
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_pairs():
+    """Let probes have few pairs: what is wrong here is wrong for most."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, count in SMALL.items():
+            patch.setattr(bsdf_probes, name, count)
+        yield
+
+
+# --- stock MaterialX ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", SUBJECTS)
+def test_stock_materialx_has_its_known_departures_and_no_others(gl, model):
+    results = judged(gl, model, "stock")
+    open_rows = OPEN if model in MICROFACETS else {}
+    verdicts = {**dict.fromkeys(open_rows, DIFFERS), **dict.fromkeys(STOCK[model], FAILED)}
+    words = {**open_rows, **STOCK[model]}
+    assert {result.check: result.verdict for result in results} == {
+        result.check: verdicts.get(result.check, PASSED) for result in results
+    }
+    assert all(words.get(result.check, "") in result.diagnosis for result in results)
+    assert all(result.control.caught for result in results)
+
+
+# --- wrong shaders ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_line_of_a_bsdf_fails_a_check_and_is_named(gl, tmp_path, name):
+    model, file, text, other, key, words = WRONG[name]
+    (result,) = judged(gl, model, wrong_library(tmp_path, file, text, other), key)
+    assert result.verdict == FAILED and result.control.caught
+    assert words in result.diagnosis
+
+
+def test_every_check_of_the_nodes_has_a_shader_that_it_fails():
+    failing = {key for rows in STOCK.values() for key in rows}
+    failing |= {key for *_, key, _ in WRONG.values()}
+    assert failing == {
+        row.key for row in CHECKS if any(map(set(SUBJECTS).__contains__, row.models))
+    }
+
+
+def judged(host, model, library, *keys):
+    """Results of the checks of a node, or of those of these keys."""
+    subject = SUBJECTS[model]
+    probe = BSDF_PROBES[subject.kind](host, subject, library)
+    rows = [ROWS[key] for key in keys] or CHECKS
+    return [judge_check(row, probe) for row in rows if applies(row, subject, probe.kind, host.name)]
+
+
+def wrong_library(folder, file, text, other):
+    """A library of one node of stock MaterialX, with one text in place of another."""
+    (pbrlib,) = [
+        path for each in standard_folders() if (path := each / "pbrlib" / "genglsl").is_dir()
+    ]
+    source = (pbrlib / file).read_text(encoding="utf-8")
+    assert text in source
+    source = source.replace('#include "lib/', '#include "libraries/pbrlib/genglsl/lib/')
+    (folder / file).write_text(source.replace(text, other), encoding="utf-8")
+    rows = (pbrlib / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8").splitlines()
+    (row,) = [row for row in rows if f'file="{file}"' in row]
+    document = f'<?xml version="1.0"?>\n<materialx version="1.39">\n{row}\n</materialx>\n'
+    (folder / "implementations.mtlx").write_text(document, encoding="utf-8")
+    return str(folder)
+
+
+# --- probes -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", ["burley", "translucent", "conty_kulla", "zeltner", "dielectric"])
+def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(model):
+    probe = BSDF_PROBES[SUBJECTS[model].kind](None, SUBJECTS[model], "stock")
+    batch, weights = probe.integrated
+    values = probe.subject.expected(batch).reshape(*weights.shape, 3)
+    albedo = (weights[..., np.newaxis] * values).sum(axis=1)
+    assert np.abs(albedo - probe.integrals).max() <= QUADRATURES[probe.kind]
+
+
+@pytest.mark.parametrize("model", SUBJECTS)
+def test_random_inputs_are_float32_numbers_in_their_ranges(model):
+    inputs = SUBJECTS[model].random_inputs(np.random.default_rng(1), 1 << 10)
+    for name, values in inputs.items():
+        low, high = RANGES.get(name, (1e-3, 1.0))
+        assert np.array_equal(values, values.astype(np.float32))
+        assert values.min() >= np.float32(low) and values.max() <= high
+
+
+@pytest.mark.parametrize("model", SUBJECTS)
+def test_a_node_scatters_nothing_to_the_other_side(model):
+    probe = BSDF_PROBES[SUBJECTS[model].kind](None, SUBJECTS[model], "stock")
+    batch, *_ = probe.batches
+    values = probe.subject.expected(batch.first(1 << 6))
+    other = probe.subject.expected(
+        bsdf_probes.replace(batch, wi=batch.wi * [1.0, 1.0, -1.0]).first(1 << 6)
+    )
+    assert values.max() > 0.0 and not other.any()
+
+
+def test_the_least_albedo_of_microfacets_is_that_of_the_roughest_along_the_normal():
+    assert np.isclose(ggx_albedo_dir(1.0, 1.0), LEAST_ESS, rtol=1e-10)
+    mu, alpha = np.meshgrid(np.linspace(1e-4, 1.0, 12), np.linspace(1e-3, 1.0, 12))
+    assert ggx_albedo_dir(mu, alpha).min() >= LEAST_ESS * (1.0 - 1e-10)
