@@ -31,7 +31,6 @@ class BsdfProbe(PairProbe):
 
     kind: ClassVar[str] = "closed pairs"
     diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
-    quadrature: ClassVar[float] = 1e-8  # largest error of its integrals of the equations
 
     least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
 
@@ -147,7 +146,6 @@ class FittedProbe(BsdfProbe):
     """A sheen whose albedo a shader takes from a fit."""
 
     kind: ClassVar[str] = "fitted pairs"
-    quadrature: ClassVar[float] = 2e-4
     least_cosine: ClassVar[float] = FIT_COSINE
 
 
@@ -158,7 +156,6 @@ class MicrofacetProbe(BsdfProbe):
     kind: ClassVar[str] = "microfacet pairs"
     least_cosine: ClassVar[float] = FIT_COSINE
     diagnosed: ClassVar[int] = 1 << 8  # their references take long
-    quadrature: ClassVar[float] = 6e-4
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
