@@ -6,8 +6,8 @@ import pytest
 
 from mxeon.conformance.checks import bsdf_probes
 from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
-from mxeon.conformance.checks.bsdf_tolerances import LEAST_ESS, QUADRATURE
-from mxeon.conformance.checks.bsdfs import BSDFS, RANGES
+from mxeon.conformance.checks.bsdf_tolerances import LEAST_ESS
+from mxeon.conformance.checks.bsdfs import BSDFS, QUADRATURES, RANGES
 from mxeon.conformance.checks.evaluate import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
@@ -270,7 +270,7 @@ def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(model):
     batch, weights = probe.integrated
     values = probe.subject.expected(batch).reshape(*weights.shape, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
-    assert np.abs(albedo - probe.integrals).max() <= QUADRATURE[probe.kind]
+    assert np.abs(albedo - probe.integrals).max() <= QUADRATURES[probe.kind]
 
 
 @pytest.mark.parametrize("model", SUBJECTS)

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
-from mxeon.conformance.checks.bsdfs import BsdfSubject
+from mxeon.conformance.checks.bsdfs import CLOSED, FITTED, MICROFACET, SHEEN, BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.special import LEAST_TURNED, outside_directions, special_directions
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
@@ -29,7 +29,7 @@ NODES = 48  # of a quadrature, in cosine and in azimuth
 class BsdfProbe(PairProbe):
     """A node of pbrlib on a host that evaluates any pairs."""
 
-    kind: ClassVar[str] = "closed pairs"
+    kind: ClassVar[str] = CLOSED
     diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
 
     least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
@@ -138,14 +138,14 @@ class BsdfProbe(PairProbe):
 class SheenProbe(BsdfProbe):
     """A sheen, whose value has high powers."""
 
-    kind: ClassVar[str] = "sheen pairs"
+    kind: ClassVar[str] = SHEEN
 
 
 @dataclass(frozen=True, eq=False)
 class FittedProbe(BsdfProbe):
     """A sheen whose albedo a shader takes from a fit."""
 
-    kind: ClassVar[str] = "fitted pairs"
+    kind: ClassVar[str] = FITTED
     least_cosine: ClassVar[float] = FIT_COSINE
 
 
@@ -153,7 +153,7 @@ class FittedProbe(BsdfProbe):
 class MicrofacetProbe(BsdfProbe):
     """A node of microfacets, whose values are large near the mirror direction."""
 
-    kind: ClassVar[str] = "microfacet pairs"
+    kind: ClassVar[str] = MICROFACET
     least_cosine: ClassVar[float] = FIT_COSINE
     diagnosed: ClassVar[int] = 1 << 8  # their references take long
 

@@ -4,18 +4,17 @@
 import math
 
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
+from mxeon.conformance.checks.bsdfs import (
+    CLOSED,
+    FITTED,
+    KINDS,
+    MICROFACET,
+    QUADRATURES,
+    SHEEN,
+)
 from mxeon.conformance.checks.measures import absolute, scaled
 from mxeon.conformance.checks.special import LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.conformance.checks.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
-
-KINDS = CLOSED, SHEEN, FITTED, MICROFACET = (
-    "closed pairs",
-    "sheen pairs",
-    "fitted pairs",
-    "microfacet pairs",
-)
-# Largest errors of the integrals that the probes take, on the equations themselves.
-QUADRATURE = {CLOSED: 1e-8, SHEEN: 1e-8, FITTED: 2e-4, MICROFACET: 6e-4}
 
 # Largest errors of the fits that shaders are held to, each found by its script in fits/.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
@@ -146,13 +145,13 @@ FRAMES = {
 }
 INTEGRALS = {
     kind: Tolerance(
-        rounded_up(VALUES[kind].value + QUADRATURE[kind]),
+        rounded_up(VALUES[kind].value + quadrature),
         "albedo",
         absolute,
         f"an average of values, each within {VALUES[kind].value:.2g}, and the error of the quadrature on "
-        f"the equations, {QUADRATURE[kind]:.0e}; rounded up",
+        f"the equations, {quadrature:.0e}; rounded up",
     )
-    for kind in KINDS
+    for kind, quadrature in QUADRATURES.items()
 }
 LAYERS = {
     kind: Tolerance(

@@ -15,6 +15,19 @@ from mxeon.models import pbrlib
 from mxeon.models.pbr_node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
+# Kinds of probes; see `mxeon.conformance.checks.bsdf_probes`.
+CLOSED, SHEEN, FITTED, MICROFACET = KINDS = (
+    "closed pairs",
+    "sheen pairs",
+    "fitted pairs",
+    "microfacet pairs",
+)
+QUADRATURES = {  # largest error of a probe's integrals of the equations
+    CLOSED: 1e-8,
+    SHEEN: 1e-8,
+    FITTED: 2e-4,
+    MICROFACET: 6e-4,
+}
 SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, fixed in a document
 COLORS = ("color", "tint", "color0", "color82", "color90")
 EDGES: dict[str, tuple[float, ...]] = {  # of half of an input's special values
@@ -91,10 +104,10 @@ class BsdfSubject:
     def kind(self) -> str:
         """Kind of its probe; see `mxeon.conformance.checks.bsdf_probes`."""
         if self.anisotropic:
-            return "microfacet pairs"
+            return MICROFACET
         if self.row.fitted:
-            return "fitted pairs"
-        return "sheen pairs" if self.row.category == "sheen_bsdf" else "closed pairs"
+            return FITTED
+        return SHEEN if self.row.category == "sheen_bsdf" else CLOSED
 
     @property
     def changes(self) -> dict[str, Changes]:

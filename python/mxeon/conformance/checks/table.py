@@ -17,8 +17,7 @@ from mxeon.conformance.checks import (
     sampling_measures,
     tolerances,
 )
-from mxeon.conformance.checks.bsdf_tolerances import MICROFACET
-from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.bsdfs import BSDFS, KINDS, MICROFACET
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
@@ -55,7 +54,7 @@ ROUGH = (*ANY, "fon")
 
 def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
     """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
-    kinds = bsdf_tolerances.KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    kinds = KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
     return dict.fromkeys(kinds, tolerance)
 
 
