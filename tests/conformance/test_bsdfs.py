@@ -264,7 +264,7 @@ def wrong_library(folder, file, text, other):
 # --- probes -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("model", ["burley", "translucent", "conty_kulla", "zeltner", "dielectric"])
+@pytest.mark.parametrize("model", ["burley", "translucent", "conty_kulla", "zeltner", "schlick"])
 def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(model):
     probe = BSDF_PROBES[SUBJECTS[model].kind](None, SUBJECTS[model], "stock")
     batch, weights = probe.integrated
