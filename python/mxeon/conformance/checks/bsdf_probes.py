@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
-from mxeon.conformance.checks.bsdfs import CLOSED, FITTED, MICROFACET, SHEEN, BsdfSubject
+from mxeon.conformance.checks.bsdfs import CLOSED, COMBINED, FITTED, MICROFACET, SHEEN, BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.special import LEAST_TURNED, outside_directions, special_directions
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
@@ -240,4 +240,23 @@ def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
     return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
-BSDF_PROBES = {probe.kind: probe for probe in (BsdfProbe, SheenProbe, FittedProbe, MicrofacetProbe)}
+@dataclass(frozen=True, eq=False)
+class CombinedProbe(BsdfProbe):
+    """A node that combines two lobes, whose weights stay 1."""
+
+    kind: ClassVar[str] = COMBINED
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Random pairs and special ones; those outside are asked of the lobes."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
+        special = special_directions(rng)
+        return (
+            Batch(wo, wi, self.subject.random_inputs(rng, PAIRS)),
+            Batch(*special, self.subject.random_inputs(rng, len(special[0]))),
+        )
+
+
+PROBES = (BsdfProbe, SheenProbe, FittedProbe, MicrofacetProbe, CombinedProbe)
+BSDF_PROBES = {probe.kind: probe for probe in PROBES}

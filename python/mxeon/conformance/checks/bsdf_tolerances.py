@@ -6,6 +6,7 @@ import math
 from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.bsdfs import (
     CLOSED,
+    COMBINED,
     FITTED,
     KINDS,
     MICROFACET,
@@ -123,18 +124,33 @@ ANISOTROPY = Tolerance(
     "alpha, 0.05, times the fourth power of the distribution; rounded up",
 )
 
+COMBINED_VALUE = Tolerance(
+    rounded_up(2 * ZELTNER_VALUE.value + CLOSED_ALBEDO.value),
+    SCALED,
+    scaled,
+    "two values, and a throughput between them",
+)
+COMBINED_ALBEDO = Tolerance(
+    rounded_up(3 * CLOSED_ALBEDO.value),
+    "albedo",
+    scaled,
+    "two albedos, and a throughput between them",
+)
+
 # By kind of probe.
 VALUES = {
     CLOSED: DIFFUSE_VALUE,
     SHEEN: ZELTNER_VALUE,
     FITTED: CONTY_KULLA_VALUE,
     MICROFACET: MICROFACET_VALUE,
+    COMBINED: COMBINED_VALUE,
 }
 ALBEDOS = {
     CLOSED: CLOSED_ALBEDO,
     SHEEN: CLOSED_ALBEDO,
     FITTED: CONTY_KULLA_ALBEDO,
     MICROFACET: MICROFACET_ALBEDO,
+    COMBINED: COMBINED_ALBEDO,
 }
 THROUGHPUTS = ALBEDOS
 FRAMES = {

@@ -22,6 +22,7 @@ CLOSED, SHEEN, FITTED, MICROFACET = KINDS = (
     "fitted pairs",
     "microfacet pairs",
 )
+COMBINED = "combined pairs"  # of a node that combines lobes
 QUADRATURES = {  # largest error of a probe's integrals of the equations
     CLOSED: 1e-8,
     SHEEN: 1e-8,

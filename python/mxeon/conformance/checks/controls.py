@@ -124,6 +124,16 @@ def isotropic(probe: Any) -> Altered:
     )
 
 
+def shifted(probe: Any) -> Altered:
+    """A control in which each pair has the inputs of another."""
+
+    def batch(batch: Batch) -> Batch:
+        inputs = {name: np.roll(values, 1, axis=0) for name, values in batch.inputs.items()}
+        return batch.altered(**inputs)
+
+    return Altered(probe, batch=batch)
+
+
 def drop_changes(probe: Any) -> Altered:
     """A control that drops every change of inputs: the host sees the first batch only."""
     return Altered(probe, batch=lambda batch: probe.few[0])

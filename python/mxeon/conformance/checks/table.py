@@ -17,7 +17,7 @@ from mxeon.conformance.checks import (
     sampling_measures,
     tolerances,
 )
-from mxeon.conformance.checks.bsdfs import BSDFS, KINDS, MICROFACET
+from mxeon.conformance.checks.bsdfs import BSDFS, COMBINED, KINDS, MICROFACET
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
@@ -27,6 +27,7 @@ from mxeon.conformance.checks.controls import (
     rougher,
     scale,
     scale_cosine,
+    shifted,
     take_response,
     with_inputs,
 )
@@ -35,6 +36,7 @@ from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.models.pbr_combinations import COMBINATIONS
 from mxeon.models.pbr_microfacets import MICROFACET_NODES
 from mxeon.models.pbrlib import NODES
 from mxeon.shaders.hosts import front_lit_only
@@ -44,6 +46,7 @@ EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
 OTHERS = (*(row.name for row in NODES), "burley_lambert")
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
+COMBINATION = tuple(row.name for row in COMBINATIONS)
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
@@ -293,7 +296,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        (*ROUGH, *OTHERS, *SMOOTH),
+        (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION),
         measures.inputs,
         "every change is dropped",
         drop_changes,
@@ -306,6 +309,7 @@ CHECKS = (
             "facets": tolerances.count_of("inputs"),
             "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
+            COMBINED: tolerances.count_of("inputs"),
         },
         diagnose=wiring.of_inputs,
     ),
@@ -416,5 +420,34 @@ CHECKS = (
         isotropic,
         {MICROFACET: bsdf_tolerances.ANISOTROPIC_ALBEDO},
         diagnose=wiring.of_stretched,
+    ),
+    Check(
+        "combination",
+        "The value of two lobes together is that of the node's equation.",
+        COMBINATION,
+        measures.value,
+        "each pair has the inputs of another",
+        shifted,
+        {COMBINED: bsdf_tolerances.COMBINED_VALUE},
+    ),
+    Check(
+        "combined_albedo",
+        "The environment branch of two lobes together gives their albedo.",
+        COMBINATION,
+        measures.environment,
+        "each pair has the inputs of another",
+        shifted,
+        {COMBINED: bsdf_tolerances.COMBINED_ALBEDO},
+        diagnose=diagnosis.of_albedo,
+    ),
+    Check(
+        "combined_throughput",
+        "Two lobes together pass what they do not scatter, as the layer equation asks.",
+        COMBINATION,
+        bsdf_measures.layering,
+        "all light passes",
+        pass_all,
+        {COMBINED: bsdf_tolerances.COMBINED_ALBEDO},
+        diagnose=diagnosis.of_throughput,
     ),
 )

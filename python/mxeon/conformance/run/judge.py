@@ -8,6 +8,7 @@ from typing import Any
 
 from mxeon.conformance.checks.bsdf_pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.combinations import COMBINED_NODES
 from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.checks.documents import generate_document
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
@@ -207,7 +208,7 @@ def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
     """The probe of a subject on a host."""
     probe = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}
-    bsdfs = {bsdf.title: bsdf for bsdf in BSDFS}
+    bsdfs = {bsdf.title: bsdf for bsdf in (*BSDFS, *COMBINED_NODES)}
     if title in bsdfs:
         kind = bsdf_probe_type(bsdfs[title], probe)
         assert kind is not None  # or there were no task

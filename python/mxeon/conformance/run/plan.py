@@ -20,6 +20,7 @@ import mxeon
 from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.bsdf_pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdfs import BSDFS, BsdfSubject
+from mxeon.conformance.checks.combinations import COMBINED_NODES
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.facet_probes import probe_type
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
@@ -201,7 +202,7 @@ def _titles(nodes: Sequence[str]) -> set[str]:
 
 def _rows() -> list[Subject | BsdfSubject | Surface]:
     """The nodes that are judged."""
-    return [*SUBJECTS, *BSDFS, *SURFACES]
+    return [*SUBJECTS, *BSDFS, *COMBINED_NODES, *SURFACES]
 
 
 def subjects(library: str) -> list[Subject]:
@@ -232,7 +233,7 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
-    for bsdf in BSDFS:
+    for bsdf in (*BSDFS, *COMBINED_NODES):
         if kind := bsdf_probe_type(bsdf, probe):
             yield from _checks_of(bsdf, kind.kind, host, library)
     if row.surfaces:

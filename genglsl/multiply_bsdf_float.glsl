@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node multiply for a number: what a scaled lobe does not scatter passes it.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+void multiply_bsdf_float(ClosureData closureData, BSDF in1, float in2, out BSDF result)
+{
+    float weight = clamp(in2, 0.0, 1.0);
+    result.response = in1.response * weight;
+    result.throughput = 1.0 - weight * (1.0 - in1.throughput);
+}
