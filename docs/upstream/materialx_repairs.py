@@ -20,6 +20,16 @@ def _glsl(page: str, file: str, line: int, old: str, new: str) -> Repair:
 
 
 REPAIRS = (
+    *(
+        _glsl(
+            "genglsl_multiply_throughput",
+            f"mx_multiply_bsdf_{kind}.glsl",
+            7,
+            "result.throughput = in1.throughput;",
+            f"result.throughput = 1.0 - {factor} * (1.0 - in1.throughput);",
+        )
+        for kind, factor in (("float", "weight"), ("color3", "tint"))
+    ),
     _glsl(
         "genglsl_zeltner_normal",
         LOBES,

@@ -69,6 +69,9 @@ CAUSES = {
     "openpbr_thin_walled_tint": Cause(OPENPBR, 149, "subsurface_thin_walled_brdf_factor"),
     "genglsl_zeltner_normal": Cause(f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 121, "N*NdotV"),
     "genglsl_sheen_throughput": Cause(f"{PBRLIB}/mx_sheen_bsdf.glsl", 42, "1.0 - dirAlbedo"),
+    "genglsl_multiply_throughput": Cause(
+        f"{PBRLIB}/mx_multiply_bsdf_float.glsl", 7, "in1.throughput"
+    ),
     "genglsl_conty_kulla_fit": Cause(
         f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 28, "sheen_dir_albedo_analytic"
     ),

@@ -82,6 +82,12 @@ BSDF_ISSUES = (
         HARDWARE,
         _product(("layering", "layer"), (CONTY_KULLA,)),
     ),
+    Issue(
+        "genglsl_multiply_throughput",
+        "gl",
+        _product(("combined_throughput",), ("multiply, in2 float", "multiply, in2 color3")),
+        HARDWARE,
+    ),
     Issue("genglsl_burley_fit", "gl", (("environment", "burley_diffuse_bsdf"),), HARDWARE),
     Issue("genglsl_translucent_side", "gl", (("frame", "translucent_bsdf"),), HARDWARE),
     Issue(
