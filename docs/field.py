@@ -9,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mxeon import report
+from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.results import NOT_RUN
 from mxeon.conformance.run import check
 from mxeon.report.field import read_field
@@ -18,6 +19,7 @@ from mxeon.shaders.library import examples_folder
 PAGE = Path(__file__).resolve().parent / "field.html"
 PAGES = "upstream/{}.html"  # beside the page in the built site
 EXAMPLE = examples_folder() / "clay.mtlx"
+DIFFUSE = tuple(dict.fromkeys(row.node for row in (*SUBJECTS, *SURFACES)))
 LIBRARIES = ("eonlib", "stock")
 TIMEOUT = 600.0
 
@@ -30,7 +32,10 @@ def main(folder: str = "") -> None:
     with TemporaryDirectory(prefix="mxeon-field-") as new:
         for row in HOSTS:
             if row.module:
-                run = check([EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT)
+                nodes = () if row.name in NATIVE else DIFFUSE
+                run = check(
+                    [EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT, nodes=nodes
+                )
                 if any(e.host == row.name and e.verdict != NOT_RUN for e in run.results):
                     report.write(run, Path(new, row.name))
                 print(row.name, run.summary.sentence, flush=True)
