@@ -211,7 +211,7 @@ def test_the_page_on_the_specification_is_the_one_that_its_script_writes():
     data = json.loads(script["DATA"].read_text(encoding="utf-8"))
     assert text == script["page"](text, data)
     assert script["page"](text, {"results": []}) != text
-    headings = re.findall(r"^## (\w+_bsdf)$", text, re.MULTILINE)
+    headings = re.findall(r"^##+ (\w+_bsdf|layer|mix|add|multiply)$", text, re.MULTILINE)
     assert headings == re.findall(r"<!-- measured (\w+) -->", text)
     assert set(headings) == set(script["NODES"])
 
