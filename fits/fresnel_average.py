@@ -73,8 +73,8 @@ def dielectric_error(coefficients):
     """Largest absolute error of F_ss on a finer set of points."""
     worst = mp.zero
     for t in reciprocals(4 * COUNT + 1):
-        N = mp.polyval(coefficients[ABOVE::-1], t)
-        D = mp.polyval((*coefficients[:ABOVE:-1], 1), t)
+        N = mp.fdot((c, t**k) for k, c in enumerate(coefficients[: ABOVE + 1]))
+        D = 1 + mp.fdot((c, t**k) for k, c in enumerate(coefficients[ABOVE + 1 :], 1))
         worst = max(worst, abs(1 - dielectric_average(1 / t) - t * N / D))
     return float(worst)
 

@@ -279,7 +279,9 @@ def test_a_limit_beyond_all_memory_is_no_limit(tmp_path):
 def test_without_docstrings_the_command_is_the_same():
     command = [sys.executable, "-OO", "-m", "mxeon", "--help"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert ended.returncode == PASSED and "every MaterialX target" in ended.stdout
+    assert (
+        ended.returncode == PASSED and "specification of physically based shading" in ended.stdout
+    )
 
 
 @pytest.mark.parametrize("buffered", ["", "1"], ids=["buffered", "unbuffered"])

@@ -301,7 +301,7 @@ def test_the_least_albedo_of_microfacets_is_that_of_the_roughest_along_the_norma
 
 
 @pytest.mark.parametrize("subject", COMBINED_NODES, ids=lambda each: each.title)
-def test_a_combination_is_that_of_the_layer_algebra(gl, short, subject):
+def test_a_combination_is_that_of_the_layer_algebra(gl, subject):
     scaled = subject.node == "multiply"
     for library, wrong in (("stock", ["combined_throughput"] if scaled else []), ("eonlib", [])):
         probe = BSDF_PROBES[subject.kind](gl, subject, library)

@@ -8,7 +8,7 @@ import pytest
 
 from mxeon import albedo
 from mxeon.models.brdf import eon_brdf, lambert_brdf, qon_brdf
-from mxeon.models.table import MODELS, model
+from mxeon.models.table import KNOWN_DEFECTS, MODELS, OTHERS, model
 
 UP = [0.0, 0.0, 1.0]
 
@@ -94,8 +94,8 @@ MESSAGES = (
     ),
     (
         lambda: model("phong"),
-        f"model must be one of {', '.join(row.name for row in MODELS)}, eon_clamped, "
-        "eon_rho_cubed, fon_white_lobe, qon_fitted, qon_tinted_twice; got 'phong'",
+        f"model must be one of {', '.join(row.name for row in (*MODELS, *KNOWN_DEFECTS, *OTHERS))}; "
+        "got 'phong'",
     ),
 )
 

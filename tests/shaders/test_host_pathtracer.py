@@ -44,7 +44,7 @@ def test_the_webgpu_lobe_is_eon_with_the_papers_sampling(host, check):
 
 
 def test_the_webgpu_lobe_has_the_quartic_and_beside_it_fon(host):
-    assert judged(host, "value", EON).model == "EON with the paper's quartic of its albedo"
+    assert judged(host, "value", EON).model == "EON with the paper's quartic"
     assert judged(host, "value", FON).verdict == PASSED
 
 

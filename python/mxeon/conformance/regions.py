@@ -2,6 +2,7 @@
 """Named sets of pairs and inputs, to say of a shader that is wrong for some of them for which."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +98,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with a roughness above 1", roughness > 1.0
     yield "with a roughness above 0", roughness > 0.0
     for name, words in INDICES.items():
-        index = np.reshape(batch.inputs.get(name, np.ones(count)), (count, -1))
+        index = _rows(batch.inputs.get(name, 1.0), count)
         yield f"with {words} of 0", _any(index == 0.0)
     yield "with a white color", (color == 1.0).all(axis=1)
     yield "with a gray color", (color == color[:, :1]).all(axis=1)
@@ -106,6 +107,14 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with a color channel at 1", _any(color == 1.0)
     yield "with a color channel above 0.99", _any(color > 0.99)
     yield "where the normal faces away from the viewer", _faces_away(batch)
+
+
+def _rows(values: Any, count: int) -> Array:
+    """Values of an input with a row for each pair: of numbers or colors, or one for all pairs."""
+    array = np.asarray(values, np.float64)
+    if array.shape[:1] == (count,):
+        return array.reshape(count, -1)
+    return np.broadcast_to(array.reshape(1, -1), (count, array.size))
 
 
 def _equal(one: Array, other: Array) -> Mask:
