@@ -108,7 +108,7 @@ def judged(host):
     NotRun
         If the host cannot run here.
     """
-    rows = {row for issue in ISSUES for row in issue.rows}
+    rows = {row for issue in ISSUES if issue.host == host for row in issue.rows}
     tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,)).tasks
     chosen = [
         each
