@@ -11,15 +11,19 @@ import numpy as np
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.checks.bsdfs import CLOSED, COMBINED, FITTED, MICROFACET, SHEEN, BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe
-from mxeon.conformance.checks.special import LEAST_TURNED, outside_directions, special_directions
+from mxeon.conformance.checks.special import (
+    LEAST_COLOR82,
+    LEAST_TURNED,
+    outside_directions,
+    special_directions,
+)
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
-PAIRS = 1 << 13
-FEW = 1 << 11
-ALBEDOS = 1 << 8  # directions of view whose albedo is asked
+PAIRS = 1 << 12
+FEW = 1 << 10
+ALBEDOS = 1 << 7  # directions of view whose albedo is asked
 MATERIALS = 64  # whose values are integrated
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
-LEAST_COLOR82 = 0.5  # of a lobe whose albedo is asked; see docs/loading.md
 LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth

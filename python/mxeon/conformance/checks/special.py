@@ -22,6 +22,7 @@ ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors, by a rounding of float32
 HORIZON = 0.1  # least cosine of the other direction where one is at the horizon or below it
 TURNED = (0.25, 0.95)  # cosines in turned frames, where a cosine has roundings
 LEAST_SHEEN = 0.01  # roughness of the other lobes, which the Zeltner sheen has at least
+LEAST_COLOR82 = 0.5  # of a lobe whose albedo is asked; see docs/loading.md
 LEAST_TURNED = 0.1  # roughness of microfacets in turned frames
 POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
 TINY = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel
