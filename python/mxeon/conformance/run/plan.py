@@ -234,7 +234,8 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
     for bsdf in (*BSDFS, *COMBINED_NODES):
-        if kind := bsdf_probe_type(bsdf, probe):
+        kind = bsdf_probe_type(bsdf, probe)
+        if kind and not _is_renderers(row.target, library):
             yield from _checks_of(bsdf, kind.kind, host, library)
     if row.surfaces:
         for surface in SURFACES:
@@ -242,6 +243,14 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
                 yield from _checks_of(surface, SURFACE_PROBES[probe].kind, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
+
+
+def _is_renderers(target: str, library: str) -> bool:
+    """Whether a library leaves the other BSDF nodes to the renderer, as the stock library does.
+
+    The renderer's closures are judged with the stock library alone.
+    """
+    return target == "osl" and library in LIBRARIES and library != "stock"
 
 
 def _native(host: str) -> Iterator[Task]:
