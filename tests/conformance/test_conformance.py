@@ -21,7 +21,7 @@ from mxeon.conformance.checks.text.sources import TEXT_ONLY
 from mxeon.conformance.diagnosis import of_value
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.conformance.run import check, judge, plan
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.hosts import HOSTS
@@ -242,6 +242,28 @@ def test_a_run_says_version_and_device_of_its_hosts(run):
     [identity] = run.hosts
     assert identity.name == "gl"
     assert identity.version and identity.device
+
+
+def test_a_named_node_is_judged_alone():
+    tasks = plan.make_plan([], ["gl"], ["eonlib"], nodes=["sheen_bsdf"]).tasks
+    assert {task.subject for task in tasks} == {
+        "sheen_bsdf, mode conty_kulla",
+        "sheen_bsdf, mode zeltner",
+    }
+    every = plan.make_plan([], ["gl"], ["eonlib"], nodes=["all"]).tasks
+    assert every == plan.make_plan([], ["gl"], ["eonlib"]).tasks
+
+
+@pytest.mark.parametrize(
+    "host, node, message",
+    [
+        ("gl", "velvet", "^node must be one of oren_nayar_diffuse_bsdf, .*, all; got 'velvet'$"),
+        ("msl", "mix", "^node must be judged on one of the hosts msl; got mix$"),
+    ],
+)
+def test_a_node_that_is_judged_nowhere_is_refused(host, node, message):
+    with pytest.raises(InputError, match=message):
+        plan.make_plan([], [host], ["eonlib"], nodes=[node])
 
 
 def test_the_sources_of_every_target_use_every_input():

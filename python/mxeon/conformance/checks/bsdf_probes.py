@@ -9,7 +9,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
-from mxeon.conformance.checks.bsdfs import CLOSED, COMBINED, FITTED, MICROFACET, SHEEN, BsdfSubject
+from mxeon.conformance.checks.bsdfs import (
+    CLOSED,
+    COMBINED,
+    FITTED,
+    MICROFACET,
+    SCHLICK,
+    SHEEN,
+    BsdfSubject,
+)
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.special import (
     LEAST_COLOR82,
@@ -224,6 +232,13 @@ class MicrofacetProbe(BsdfProbe):
         return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
 
 
+@dataclass(frozen=True, eq=False)
+class SchlickProbe(MicrofacetProbe):
+    """A node of microfacets whose curve may dip at 82 degrees."""
+
+    kind: ClassVar[str] = SCHLICK
+
+
 def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
@@ -262,5 +277,12 @@ class CombinedProbe(BsdfProbe):
         )
 
 
-PROBES = (BsdfProbe, SheenProbe, FittedProbe, MicrofacetProbe, CombinedProbe)
+PROBES = (
+    BsdfProbe,
+    SheenProbe,
+    FittedProbe,
+    MicrofacetProbe,
+    SchlickProbe,
+    CombinedProbe,
+)
 BSDF_PROBES = {probe.kind: probe for probe in PROBES}

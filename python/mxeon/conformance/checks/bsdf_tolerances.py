@@ -10,7 +10,9 @@ from mxeon.conformance.checks.bsdfs import (
     FITTED,
     KINDS,
     MICROFACET,
+    MICROFACET_KINDS,
     QUADRATURES,
+    SCHLICK,
     SHEEN,
 )
 from mxeon.conformance.checks.measures import absolute, scaled
@@ -79,6 +81,13 @@ CONTY_KULLA_ALBEDO = Tolerance(
     "the fit's 1.5e-3, and the roundings of an albedo in closed form",
 )
 MICROFACET_ALBEDO = Tolerance(
+    rounded_up(LOBE_FIT + ESS_FIT / LEAST_ESS),
+    "albedo",
+    absolute,
+    "the fit of the lobe's albedo, 3.2e-3, and that of E_ss in its compensation, 5e-4 over the least "
+    "E_ss, 0.31; rounded up",
+)
+SCHLICK_THROUGHPUT = Tolerance(
     rounded_up(LOBE_FIT + (1.0 - LEAST_COLOR82) * DIP_FIT + ESS_FIT / LEAST_ESS),
     "albedo",
     absolute,
@@ -144,6 +153,7 @@ VALUES = {
     SHEEN: ZELTNER_VALUE,
     FITTED: CONTY_KULLA_VALUE,
     MICROFACET: MICROFACET_VALUE,
+    SCHLICK: MICROFACET_VALUE,
     COMBINED: COMBINED_VALUE,
 }
 ALBEDOS = {
@@ -151,14 +161,16 @@ ALBEDOS = {
     SHEEN: CLOSED_ALBEDO,
     FITTED: CONTY_KULLA_ALBEDO,
     MICROFACET: MICROFACET_ALBEDO,
+    SCHLICK: MICROFACET_ALBEDO,
     COMBINED: COMBINED_ALBEDO,
 }
-THROUGHPUTS = ALBEDOS
+THROUGHPUTS = {**ALBEDOS, SCHLICK: SCHLICK_THROUGHPUT}
 FRAMES = {
     CLOSED: FLAT_FRAME,
     SHEEN: FLAT_FRAME,
     FITTED: FLAT_FRAME,
     MICROFACET: MICROFACET_FRAME,
+    SCHLICK: MICROFACET_FRAME,
 }
 INTEGRALS = {
     kind: Tolerance(
@@ -170,7 +182,12 @@ INTEGRALS = {
     )
     for kind, quadrature in QUADRATURES.items()
 }
-WHITE_FURNACE = 4e-3  # what a layer over white may be off in eonlib: see docs/loading.md
+WHITE_FURNACE = Tolerance(
+    4e-3,
+    "light",
+    absolute,
+    "the light that a repaired layer over white may gain or lose, of which the quadrature takes 6e-4",
+)
 LAYERS = {
     kind: Tolerance(
         rounded_up(INTEGRALS[kind].value + THROUGHPUTS[kind].value),
@@ -181,9 +198,4 @@ LAYERS = {
     )
     for kind in KINDS
 }
-LAYERS[MICROFACET] = Tolerance(
-    WHITE_FURNACE,
-    "light",
-    absolute,
-    "the light that a repaired layer over white may gain or lose, of which the quadrature takes 6e-4",
-)
+LAYERS |= dict.fromkeys(MICROFACET_KINDS, WHITE_FURNACE)

@@ -16,18 +16,21 @@ from mxeon.models.pbr_node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
 # Kinds of probes; see `mxeon.conformance.checks.bsdf_probes`.
-CLOSED, SHEEN, FITTED, MICROFACET = KINDS = (
+CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
     "closed pairs",
     "sheen pairs",
     "fitted pairs",
     "microfacet pairs",
+    "Schlick pairs",
 )
+MICROFACET_KINDS = (MICROFACET, SCHLICK)
 COMBINED = "combined pairs"  # of a node that combines lobes
 QUADRATURES = {  # largest error of a probe's integrals of the equations
     CLOSED: 1e-8,
     SHEEN: 1e-8,
     FITTED: 2e-4,
     MICROFACET: 6e-4,
+    SCHLICK: 6e-4,
 }
 SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, fixed in a document
 COLORS = ("color", "tint", "color0", "color82", "color90")
@@ -105,7 +108,7 @@ class BsdfSubject:
     def kind(self) -> str:
         """Kind of its probe; see `mxeon.conformance.checks.bsdf_probes`."""
         if self.anisotropic:
-            return MICROFACET
+            return SCHLICK if "color82" in self.row.inputs else MICROFACET
         if self.row.fitted:
             return FITTED
         return SHEEN if self.row.category == "sheen_bsdf" else CLOSED

@@ -17,7 +17,7 @@ from mxeon.conformance.checks import (
     sampling_measures,
     tolerances,
 )
-from mxeon.conformance.checks.bsdfs import BSDFS, COMBINED, KINDS, MICROFACET
+from mxeon.conformance.checks.bsdfs import BSDFS, COMBINED, KINDS, MICROFACET, MICROFACET_KINDS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
@@ -59,6 +59,11 @@ def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Toleranc
     """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
     kinds = KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
     return dict.fromkeys(kinds, tolerance)
+
+
+def of_microfacets(tolerance: Tolerance) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of microfacets."""
+    return dict.fromkeys(MICROFACET_KINDS, tolerance)
 
 
 @dataclass(frozen=True)
@@ -379,7 +384,7 @@ CHECKS = (
         bsdf_measures.lossless,
         "values are 2 % too large",
         scale(1.02),
-        {MICROFACET: bsdf_tolerances.INTEGRALS[MICROFACET]},
+        of_microfacets(bsdf_tolerances.INTEGRALS[MICROFACET]),
     ),
     Check(
         "shape",
@@ -388,7 +393,7 @@ CHECKS = (
         bsdf_measures.shape,
         "the roughness is a tenth larger",
         rougher,
-        {MICROFACET: bsdf_tolerances.SHAPE},
+        of_microfacets(bsdf_tolerances.SHAPE),
         open=True,
     ),
     Check(
@@ -398,7 +403,7 @@ CHECKS = (
         bsdf_measures.retroreflection,
         "the flag is dropped",
         with_inputs(retroreflective=False),
-        {MICROFACET: bsdf_tolerances.RETROREFLECTION},
+        of_microfacets(bsdf_tolerances.RETROREFLECTION),
         diagnose=wiring.of_retroreflection,
     ),
     Check(
@@ -408,7 +413,7 @@ CHECKS = (
         bsdf_measures.anisotropy,
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
-        {MICROFACET: bsdf_tolerances.ANISOTROPY},
+        of_microfacets(bsdf_tolerances.ANISOTROPY),
         diagnose=wiring.of_tangent,
     ),
     Check(
@@ -418,7 +423,7 @@ CHECKS = (
         bsdf_measures.stretched,
         "the roughness is the same in both directions",
         isotropic,
-        {MICROFACET: bsdf_tolerances.ANISOTROPIC_ALBEDO},
+        of_microfacets(bsdf_tolerances.ANISOTROPIC_ALBEDO),
         diagnose=wiring.of_stretched,
     ),
     Check(

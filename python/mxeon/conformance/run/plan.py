@@ -154,7 +154,8 @@ def make_plan(
     Raises
     ------
     ValueError
-        If a host, a library or a node is unknown; lists the known ones.
+        If a host, a library or a node is unknown; lists the known ones. If none of the nodes is
+        judged on a host.
     ImportError
         If this MaterialX is too old.
     """
@@ -179,6 +180,10 @@ def make_plan(
     if nodes and ALL not in nodes:
         chosen = {*_titles(nodes), *map(str, files)}
         tasks = [task for task in tasks if task.subject in chosen]
+        if not tasks:
+            raise InputError(
+                f"node must be judged on one of the hosts {', '.join(hosts)}; got {', '.join(nodes)}"
+            )
         documents = documents if files else []
     return Plan(
         version=mxeon.__version__,
