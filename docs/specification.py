@@ -13,8 +13,7 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.conformance.checks.bsdfs import BSDFS
-from mxeon.conformance.checks.combinations import COMBINED_NODES
+from mxeon.conformance.checks.families import PBR_SUBJECTS
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.results import PASSED
@@ -26,7 +25,7 @@ from mxeon.shaders.document.policy import DEFAULT
 FOLDER = Path(__file__).resolve().parent
 DATA, PAGE = FOLDER / "specification.json", FOLDER / "specification.md"
 HOST, LIBRARIES = "gl", ("stock", "eonlib")
-JUDGED = (*SUBJECTS, *BSDFS, *COMBINED_NODES)
+JUDGED = (*SUBJECTS, *PBR_SUBJECTS)
 NODES = (*dict.fromkeys(row.node for row in JUDGED if row.node != "eon_diffuse_bsdf"),)
 BLOCK = re.compile(r"(<!-- measured (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 # Rows of the summaries of other pages, and what stock computes.

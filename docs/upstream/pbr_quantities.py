@@ -7,8 +7,8 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.conformance.checks.batch import Batch
-from mxeon.conformance.checks.bsdf_probes import MicrofacetProbe
-from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.bsdf.probes import MicrofacetProbe
+from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.models import conductor_brdf
 from mxeon.models.burley import burley_albedo_dir
 from mxeon.models.fresnel import fresnel_schlick

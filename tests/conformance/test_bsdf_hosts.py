@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.checks import engine
-from mxeon.conformance.checks.bsdf_pictures import PICTURES, bsdf_probe_type, materials
-from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
-from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.bsdf.pictures import PICTURES, bsdf_probe_type, materials
+from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.evaluate import judge_check
 from mxeon.conformance.checks.facet_probes import PROBES
 from mxeon.conformance.checks.probes import NativeProbe, PairProbe, PictureProbe, PlaneProbe

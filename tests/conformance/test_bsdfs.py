@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks import bsdf_probes
-from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
-from mxeon.conformance.checks.bsdf_tolerances import LEAST_ESS
-from mxeon.conformance.checks.bsdfs import BSDFS, QUADRATURES, RANGES
-from mxeon.conformance.checks.combinations import COMBINED_NODES
+from mxeon.conformance.checks.bsdf import probes as bsdf_probes
+from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
+from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdf.subjects import BSDFS, QUADRATURES, RANGES
+from mxeon.conformance.checks.bsdf.tolerances import LEAST_ESS
 from mxeon.conformance.checks.evaluate import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED

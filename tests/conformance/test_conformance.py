@@ -9,7 +9,7 @@ import pytest
 
 from mxeon.conformance import known_issues
 from mxeon.conformance.checks.batch import GRAZING, PAIRS, Batch
-from mxeon.conformance.checks.bsdfs import BSDFS, KINDS
+from mxeon.conformance.checks.bsdf.subjects import BSDFS, KINDS
 from mxeon.conformance.checks.evaluate import judge_subject
 from mxeon.conformance.checks.functions import FUNCTION_CHECKS, FunctionProbe, judge_functions
 from mxeon.conformance.checks.nodes import SUBJECTS, Subject

@@ -6,9 +6,9 @@ import pytest
 
 from mxeon.models import materialx_fits
 from mxeon.models.layering import Bsdf, layer
-from mxeon.models.pbr_combinations import COMBINATIONS, ROUGHNESS
-from mxeon.models.pbr_microfacets import MICROFACET_NODES
 from mxeon.models.pbrlib import NODES, node
+from mxeon.models.pbrlib.combinations import COMBINATIONS, ROUGHNESS
+from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
 from mxeon.models.quadrature import hemisphere_nodes
 from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
 

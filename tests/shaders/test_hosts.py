@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.bsdf_probes import BsdfProbe
-from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.bsdf.probes import BsdfProbe
+from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.errors import ShaderError

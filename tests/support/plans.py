@@ -4,12 +4,12 @@
 from dataclasses import replace
 
 from mxeon.conformance import run
-from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.families import PBR_SUBJECTS
 
 
 def keep_checks(patch, *keys):
     """Let every run that this process plans consist of these checks of diffuse nodes alone."""
-    whole, others = run.make_plan, {subject.title for subject in BSDFS}
+    whole, others = run.make_plan, {subject.title for subject in PBR_SUBJECTS}
 
     def make_plan(*arguments, **options):
         plan = whole(*arguments, **options)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.batch import FEW, Array, Batch, Candidate
-from mxeon.conformance.checks.bsdf_measures import layering_cases, transmission_cases
+from mxeon.conformance.checks.bsdf.measures import layering_cases, transmission_cases
 from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.tolerance import Tolerance

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Batch
-from mxeon.conformance.checks.bsdf_measures import stretched_case
+from mxeon.conformance.checks.bsdf.measures import stretched_case
 from mxeon.conformance.checks.measures import (
     BRANCHES,
     absolute,

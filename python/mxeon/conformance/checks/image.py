@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance.checks.bsdf_tolerances import MICROFACET_VALUE, sum_of
+from mxeon.conformance.checks.bsdf.tolerances import MICROFACET_VALUE, sum_of
 from mxeon.conformance.checks.measures import absolute
 from mxeon.conformance.checks.probes import picture_pairs
 from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance

@@ -24,7 +24,7 @@ from mxeon.conformance.checks.batch import (
     directions,
     rounded,
 )
-from mxeon.conformance.checks.bsdfs import BsdfSubject
+from mxeon.conformance.checks.bsdf.subjects import BsdfSubject
 from mxeon.conformance.checks.nodes import OwnNode, Subject, Surface
 from mxeon.conformance.checks.special import (
     diffuse_edges,

@@ -6,8 +6,8 @@ The tests and the benchmarks that judge the same quantities import them.
 
 import math
 
-from mxeon.conformance.checks import bsdf_tolerances
 from mxeon.conformance.checks.batch import LOBE_RIM, RIM
+from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
 from mxeon.conformance.checks.measures import absolute, of_mean, relative, scaled
 from mxeon.conformance.checks.sky import ROWS, SLOPE
 from mxeon.conformance.checks.special import TURNED

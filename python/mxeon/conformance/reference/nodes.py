@@ -13,8 +13,8 @@ from mxeon.conformance.reference.lobes import Lobe, diffuse, weighted
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models import layering
 from mxeon.models.layering import Bsdf
-from mxeon.models.pbr_node import PbrNode
 from mxeon.models.pbrlib import NODES
+from mxeon.models.pbrlib.node import PbrNode
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
 COMPONENTS = {"color3": 3, "vector2": 2}

@@ -6,13 +6,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.checks.bsdf_pictures import bsdf_probe_type
-from mxeon.conformance.checks.bsdfs import BSDFS
-from mxeon.conformance.checks.combinations import COMBINED_NODES
 from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.checks.documents import generate_document
 from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
 from mxeon.conformance.checks.facet_probes import PROBES
+from mxeon.conformance.checks.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
@@ -20,8 +18,6 @@ from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.portraits import portraits
 from mxeon.conformance.checks.probes import (
     ExactProbe,
-    PairProbe,
-    PictureProbe,
 )
 from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
@@ -204,15 +200,15 @@ def _with_pages(findings: Findings) -> Findings:
     return replace(findings, results=tuple(map(with_page, findings.results)))
 
 
-def _probe(host: Host, title: str, library: str) -> PairProbe | PictureProbe:
+def _probe(host: Host, title: str, library: str) -> Any:
     """The probe of a subject on a host."""
     probe = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}
-    bsdfs = {bsdf.title: bsdf for bsdf in (*BSDFS, *COMBINED_NODES)}
-    if title in bsdfs:
-        kind = bsdf_probe_type(bsdfs[title], probe)
+    nodes = {subject.title: subject for subject in PBR_SUBJECTS}
+    if title in nodes:
+        kind = probe_type_of(nodes[title], probe)
         assert kind is not None  # or there were no task
-        return kind(host, bsdfs[title], library)
+        return kind(host, nodes[title], library)
     if title in surfaces:
         return SURFACE_PROBES[probe](host, surfaces[title], library)
     rows = NATIVE.get(host.name, SUBJECTS)

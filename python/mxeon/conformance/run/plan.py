@@ -10,6 +10,7 @@ import platform
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import MaterialX as mx
 import moderngl
@@ -18,12 +19,10 @@ import OpenImageIO as oiio
 
 import mxeon
 from mxeon.conformance.checks import functions
-from mxeon.conformance.checks.bsdf_pictures import bsdf_probe_type
-from mxeon.conformance.checks.bsdfs import BSDFS, BsdfSubject
-from mxeon.conformance.checks.combinations import COMBINED_NODES
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.facet_probes import probe_type
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject, Surface
+from mxeon.conformance.checks.families import PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject
 from mxeon.conformance.checks.probes import (
     NativeProbe,
     PairProbe,
@@ -205,9 +204,9 @@ def _titles(nodes: Sequence[str]) -> set[str]:
     return {row.title for row in _rows() if row.node in nodes}
 
 
-def _rows() -> list[Subject | BsdfSubject | Surface]:
+def _rows() -> list[Any]:
     """The nodes that are judged."""
-    return [*SUBJECTS, *BSDFS, *COMBINED_NODES, *SURFACES]
+    return [*SUBJECTS, *PBR_SUBJECTS, *SURFACES]
 
 
 def subjects(library: str) -> list[Subject]:
@@ -238,10 +237,10 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
-    for bsdf in (*BSDFS, *COMBINED_NODES):
-        kind = bsdf_probe_type(bsdf, probe)
+    for each in PBR_SUBJECTS:
+        kind = probe_type_of(each, probe)
         if kind and not _is_renderers(row.target, library):
-            yield from _checks_of(bsdf, kind.kind, host, library)
+            yield from _checks_of(each, kind.kind, host, library)
     if row.surfaces:
         for surface in SURFACES:
             if (library if library in LIBRARIES else "eonlib") in (surface.libraries or LIBRARIES):
@@ -266,9 +265,7 @@ def _native(host: str) -> Iterator[Task]:
             yield from _checks_of(subject, probe.kind, host, OWN)
 
 
-def _checks_of(
-    subject: Subject | Surface | BsdfSubject, kind: str, host: str, library: str
-) -> Iterator[Task]:
+def _checks_of(subject: Any, kind: str, host: str, library: str) -> Iterator[Task]:
     """Tasks of one subject: the checks that apply to it."""
     for check in CHECKS:
         if applies(check, subject, kind, host):

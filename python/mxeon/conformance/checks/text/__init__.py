@@ -3,7 +3,7 @@
 
 from collections.abc import Iterable
 
-from mxeon.conformance.checks.bsdfs import BSDFS
+from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.nodes import Subject
 from mxeon.conformance.checks.text.closures import check_closures
 from mxeon.conformance.checks.text.definitions import check_definitions

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 
-from mxeon.conformance.checks.bsdfs import BsdfSubject
+from mxeon.conformance.checks.bsdf.subjects import BsdfSubject
 from mxeon.conformance.checks.nodes import Subject
 from mxeon.conformance.checks.text.counts import Claim, counted
 from mxeon.conformance.results import Result

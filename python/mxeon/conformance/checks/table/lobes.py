@@ -1,53 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of checks: a claim, how it is measured, how wrong it may be, and what it must catch.
+"""Checks of a lobe: its values and albedos, its frame, its inputs and its edges."""
 
-A check passes at error <= tolerance. Its control is the same probe made wrong on purpose, on the same
-host; the check has to fail on it. Every tolerance is the expression that its derivation describes.
-"""
-
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance import diagnosis, wiring
-from mxeon.conformance.checks import (
-    bsdf_measures,
-    bsdf_tolerances,
-    measures,
-    sampling_measures,
-    tolerances,
-)
-from mxeon.conformance.checks.bsdfs import BSDFS, COMBINED, KINDS, MICROFACET, MICROFACET_KINDS
+from mxeon.conformance.checks import measures, sampling_measures, tolerances
+from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
+from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, KINDS
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
-    isotropic,
     offset,
-    pass_all,
-    rougher,
-    scale,
     scale_cosine,
-    shifted,
     take_response,
     with_inputs,
 )
 from mxeon.conformance.checks.engine import on_engine
-from mxeon.conformance.checks.measures import Measurement, Metric
 from mxeon.conformance.checks.nodes import OwnNode, Surface
+from mxeon.conformance.checks.table.check import Check
+from mxeon.conformance.checks.table.names import COMBINATION, OTHERS
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.models.pbr_combinations import COMBINATIONS
-from mxeon.models.pbr_microfacets import MICROFACET_NODES
 from mxeon.models.pbrlib import NODES
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
-OTHERS = (*(row.name for row in NODES), "burley_lambert")
-MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
-COMBINATION = tuple(row.name for row in COMBINATIONS)
-LAYERS = tuple(row.name for row in NODES if row.layerable)
 OPAQUE = tuple(row.name for row in NODES if not row.layerable)
 BLACK = tuple(subject.model for subject in BSDFS if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
@@ -59,50 +38,6 @@ def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Toleranc
     """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
     kinds = KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
     return dict.fromkeys(kinds, tolerance)
-
-
-def of_microfacets(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of microfacets."""
-    return dict.fromkeys(MICROFACET_KINDS, tolerance)
-
-
-@dataclass(frozen=True)
-class Check:
-    """A row of the table: what is asked of a probe.
-
-    Attributes
-    ----------
-    key, claim : str
-        One word, and a sentence.
-    models : tuple of str
-        The models that it holds for.
-    measure : callable (probe, metric) -> Measurement
-    variant : str
-        The error that the control makes.
-    control : callable (probe) -> probe
-    tolerances : dict of str to Tolerance
-        By kind of probe; one that is missing cannot be asked.
-    applies : callable (subject, host) -> bool
-        Whether the check can be asked about a subject of those models on the host of a name.
-    diagnose : callable (probe) -> Diagnosis
-        Explanation of a failure.
-    open : bool
-        Whether an error differs, and does not fail, where a permitted function explains all values.
-    adapt : callable (tolerance, probe) -> Tolerance
-        The tolerance on the probe's host, by the errors of its engine's own functions.
-    """
-
-    key: str
-    claim: str
-    models: tuple[str, ...]
-    measure: Callable[[Any, Metric], Measurement]
-    variant: str
-    control: Callable[[Any], Any]
-    tolerances: Mapping[str, Tolerance]
-    applies: Callable[[Any, str], bool] = lambda subject, host: True
-    diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
-    open: bool = False
-    adapt: Callable[[Tolerance, Any], Tolerance] = lambda tolerance, probe: tolerance
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -327,132 +262,5 @@ CHECKS = (
         scale_cosine(-1),
         {"pairs": tolerances.count_of("values"), **of_bsdfs(tolerances.count_of("values"))},
         diagnose=wiring.of_finite,
-    ),
-    Check(
-        "layering",
-        "The throughput of a layer is 1 - E for light from above, for every weight.",
-        LAYERS,
-        bsdf_measures.layering,
-        "all light passes",
-        pass_all,
-        tolerances.THROUGHPUTS,
-        diagnose=diagnosis.of_throughput,
-    ),
-    Check(
-        "transmission",
-        "The throughput of a layer is 1 - E for light through the base as well.",
-        LAYERS,
-        bsdf_measures.transmission,
-        "all light passes",
-        pass_all,
-        tolerances.THROUGHPUTS,
-        diagnose=diagnosis.of_transmission,
-    ),
-    Check(
-        "layer",
-        "A layer over a white base returns all light.",
-        LAYERS,
-        bsdf_measures.layer,
-        "all light passes",
-        pass_all,
-        bsdf_tolerances.LAYERS,
-        diagnose=diagnosis.of_throughput,
-    ),
-    Check(
-        "integral",
-        "Values integrate to the directional albedo of the equations.",
-        OTHERS,
-        bsdf_measures.integral,
-        "values are 2 % too large",
-        scale(1.02),
-        bsdf_tolerances.INTEGRALS,
-        open=True,
-    ),
-    Check(
-        "energy",
-        "No albedo exceeds 1, nor what the equations have.",
-        OTHERS,
-        bsdf_measures.energy,
-        "values are 100 times as large",
-        scale(100.0),
-        bsdf_tolerances.INTEGRALS,
-    ),
-    Check(
-        "lossless",
-        "A lobe that reflects all light returns all of it, at every roughness.",
-        MICROFACETS,
-        bsdf_measures.lossless,
-        "values are 2 % too large",
-        scale(1.02),
-        of_microfacets(bsdf_tolerances.INTEGRALS[MICROFACET]),
-    ),
-    Check(
-        "shape",
-        "Two lights of one view give values in the ratio of D F G2.",
-        MICROFACETS,
-        bsdf_measures.shape,
-        "the roughness is a tenth larger",
-        rougher,
-        of_microfacets(bsdf_tolerances.SHAPE),
-        open=True,
-    ),
-    Check(
-        "retroreflection",
-        "The retroreflective lobe is the mirror lobe of the mirrored view.",
-        MICROFACETS,
-        bsdf_measures.retroreflection,
-        "the flag is dropped",
-        with_inputs(retroreflective=False),
-        of_microfacets(bsdf_tolerances.RETROREFLECTION),
-        diagnose=wiring.of_retroreflection,
-    ),
-    Check(
-        "anisotropy",
-        "The lobe turns with the tangent.",
-        MICROFACETS,
-        bsdf_measures.anisotropy,
-        "the tangent is dropped",
-        with_inputs(tangent=(1.0, 0.0, 0.0)),
-        of_microfacets(bsdf_tolerances.ANISOTROPY),
-        diagnose=wiring.of_tangent,
-    ),
-    Check(
-        "anisotropic_albedo",
-        "The environment branch of an anisotropic lobe gives the integral of its values.",
-        MICROFACETS,
-        bsdf_measures.stretched,
-        "the roughness is the same in both directions",
-        isotropic,
-        of_microfacets(bsdf_tolerances.ANISOTROPIC_ALBEDO),
-        diagnose=wiring.of_stretched,
-    ),
-    Check(
-        "combination",
-        "The value of two lobes together is that of the node's equation.",
-        COMBINATION,
-        measures.value,
-        "each pair has the inputs of another",
-        shifted,
-        {COMBINED: bsdf_tolerances.COMBINED_VALUE},
-    ),
-    Check(
-        "combined_albedo",
-        "The environment branch of two lobes together gives their albedo.",
-        COMBINATION,
-        measures.environment,
-        "each pair has the inputs of another",
-        shifted,
-        {COMBINED: bsdf_tolerances.COMBINED_ALBEDO},
-        diagnose=diagnosis.of_albedo,
-    ),
-    Check(
-        "combined_throughput",
-        "Two lobes together pass what they do not scatter, as the layer equation asks.",
-        COMBINATION,
-        bsdf_measures.layering,
-        "all light passes",
-        pass_all,
-        {COMBINED: bsdf_tolerances.COMBINED_ALBEDO},
-        diagnose=diagnosis.of_throughput,
     ),
 )

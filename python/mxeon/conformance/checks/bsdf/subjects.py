@@ -12,10 +12,10 @@ from mxeon.conformance.checks.batch import Array, Batch, Candidate
 from mxeon.conformance.checks.nodes import Changes
 from mxeon.conformance.checks.special import LEAST_SHEEN
 from mxeon.models import pbrlib
-from mxeon.models.pbr_node import Inputs, PbrNode
+from mxeon.models.pbrlib.node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
-# Kinds of probes; see `mxeon.conformance.checks.bsdf_probes`.
+# Kinds of probes; see `mxeon.conformance.checks.bsdf.probes`.
 CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
     "closed pairs",
     "sheen pairs",
@@ -106,7 +106,7 @@ class BsdfSubject:
 
     @property
     def kind(self) -> str:
-        """Kind of its probe; see `mxeon.conformance.checks.bsdf_probes`."""
+        """Kind of its probe; see `mxeon.conformance.checks.bsdf.probes`."""
         if self.anisotropic:
             return SCHLICK if "color82" in self.row.inputs else MICROFACET
         if self.row.fitted:

@@ -12,7 +12,7 @@ import numpy as np
 from mxeon.models import layering
 from mxeon.models.arrays import Array
 from mxeon.models.layering import Bsdf
-from mxeon.models.pbr_node import Inputs, PbrNode, Variant
+from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
 
 ROUGHNESS = ("top/roughness", "base/roughness")

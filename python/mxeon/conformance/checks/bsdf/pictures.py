@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 from mxeon.conformance.checks.batch import Batch
-from mxeon.conformance.checks.bsdf_probes import BSDF_PROBES
-from mxeon.conformance.checks.bsdfs import BsdfSubject
+from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
+from mxeon.conformance.checks.bsdf.subjects import BsdfSubject
 from mxeon.conformance.checks.probes import PairProbe, PictureProbe, PlaneProbe
 
 # Values of the inputs that a node has, of the two materials that stand for it.

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.batch import Array
-from mxeon.conformance.checks.bsdfs import COMBINED, BsdfSubject
+from mxeon.conformance.checks.bsdf.subjects import COMBINED, BsdfSubject
 from mxeon.conformance.checks.nodes import Changes
 from mxeon.conformance.checks.special import LEAST_SHEEN
-from mxeon.models.pbr_combinations import AMOUNT, COMBINATIONS, FACTOR, ROUGHNESS
+from mxeon.models.pbrlib.combinations import AMOUNT, COMBINATIONS, FACTOR, ROUGHNESS
 from mxeon.shaders.nodes import SURFACE, document_text, lobe_text, node_text
 
 # XML of the ports of each node, by category; that of a factor is a value, which an evaluation sets.
@@ -25,7 +25,7 @@ PORTS = {
 
 @dataclass(frozen=True)
 class CombinedSubject(BsdfSubject):
-    """A node of `mxeon.models.pbr_combinations`."""
+    """A node of `mxeon.models.pbrlib.combinations`."""
 
     @property
     def title(self) -> str:

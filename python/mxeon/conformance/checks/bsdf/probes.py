@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
-from mxeon.conformance.checks.bsdfs import (
+from mxeon.conformance.checks.bsdf.subjects import (
     CLOSED,
     COMBINED,
     FITTED,

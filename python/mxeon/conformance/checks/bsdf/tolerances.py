@@ -3,8 +3,8 @@
 
 import math
 
-from mxeon.conformance.checks.bsdf_measures import LEAST_ALPHA, LEAST_COSINE
-from mxeon.conformance.checks.bsdfs import (
+from mxeon.conformance.checks.bsdf.measures import LEAST_ALPHA, LEAST_COSINE
+from mxeon.conformance.checks.bsdf.subjects import (
     CLOSED,
     COMBINED,
     FITTED,

@@ -21,7 +21,7 @@ from mxeon.models.microfacet_defects import (
     MICROFACET_DEFECTS,
     averaged_channels,
 )
-from mxeon.models.pbr_node import Inputs, PbrNode, Variant
+from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
 
 # Forms of the energy compensation, which the text leaves open.
 OPEN = ("compensation_half", "compensation_f0", "compensation_view", "compensation_fitted")

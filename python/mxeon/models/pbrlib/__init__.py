@@ -8,8 +8,8 @@ import numpy as np
 from mxeon.models import materialx_fits
 from mxeon.models.arrays import Array
 from mxeon.models.burley import burley_albedo_dir, burley_brdf
-from mxeon.models.pbr_microfacets import MICROFACET_NODES
-from mxeon.models.pbr_node import Inputs, PbrNode, Variant
+from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
+from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes of pbrlib that are judged beside the rough diffuse ones, and the probes that they take."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
+from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
+from mxeon.conformance.checks.bsdf.subjects import BSDFS
+
+
+@dataclass(frozen=True)
+class Family:
+    """Subjects that share a way of probing.
+
+    Attributes
+    ----------
+    subjects : tuple
+        Each has `title` and `node`, the category; a title is of one subject.
+    probe_type : callable (subject, probe) -> type or None
+        Class of a subject's probes on a host that has probes of a class; None if it has none.
+    """
+
+    subjects: tuple[Any, ...]
+    probe_type: Callable[[Any, type[Any]], type[Any] | None]
+
+
+FAMILIES = (Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type),)
+PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
+
+
+def probe_type_of(subject: Any, probe: type[Any]) -> type[Any] | None:
+    """Class of the probes of one of PBR_SUBJECTS on a host that has probes of a class, or None."""
+    [family] = (family for family in FAMILIES if subject in family.subjects)
+    return family.probe_type(subject, probe)

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the nodes that combine two lobes."""
+
+from mxeon.conformance import diagnosis
+from mxeon.conformance.checks import measures
+from mxeon.conformance.checks.bsdf import measures as bsdf_measures
+from mxeon.conformance.checks.bsdf import tolerances
+from mxeon.conformance.checks.bsdf.subjects import COMBINED
+from mxeon.conformance.checks.controls import pass_all, shifted
+from mxeon.conformance.checks.table.check import Check
+from mxeon.conformance.checks.table.names import COMBINATION
+
+CHECKS = (
+    Check(
+        "combination",
+        "The value of two lobes together is that of the node's equation.",
+        COMBINATION,
+        measures.value,
+        "each pair has the inputs of another",
+        shifted,
+        {COMBINED: tolerances.COMBINED_VALUE},
+    ),
+    Check(
+        "combined_albedo",
+        "The environment branch of two lobes together gives their albedo.",
+        COMBINATION,
+        measures.environment,
+        "each pair has the inputs of another",
+        shifted,
+        {COMBINED: tolerances.COMBINED_ALBEDO},
+        diagnose=diagnosis.of_albedo,
+    ),
+    Check(
+        "combined_throughput",
+        "Two lobes together pass what they do not scatter, as the layer equation asks.",
+        COMBINATION,
+        bsdf_measures.layering,
+        "all light passes",
+        pass_all,
+        {COMBINED: tolerances.COMBINED_ALBEDO},
+        diagnose=diagnosis.of_throughput,
+    ),
+)

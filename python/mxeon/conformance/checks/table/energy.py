@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the light that a lobe scatters in all."""
+
+from mxeon.conformance.checks.bsdf import measures, tolerances
+from mxeon.conformance.checks.controls import scale
+from mxeon.conformance.checks.table.check import Check
+from mxeon.conformance.checks.table.names import OTHERS
+
+CHECKS = (
+    Check(
+        "integral",
+        "Values integrate to the directional albedo of the equations.",
+        OTHERS,
+        measures.integral,
+        "values are 2 % too large",
+        scale(1.02),
+        tolerances.INTEGRALS,
+        open=True,
+    ),
+    Check(
+        "energy",
+        "No albedo exceeds 1, nor what the equations have.",
+        OTHERS,
+        measures.energy,
+        "values are 100 times as large",
+        scale(100.0),
+        tolerances.INTEGRALS,
+    ),
+)

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of what a lobe lets through to the one below it."""
+
+from mxeon.conformance import diagnosis
+from mxeon.conformance.checks.bsdf import measures, tolerances
+from mxeon.conformance.checks.controls import pass_all
+from mxeon.conformance.checks.table.check import Check
+from mxeon.models.pbrlib import NODES
+
+LAYERS = tuple(row.name for row in NODES if row.layerable)
+
+CHECKS = (
+    Check(
+        "layering",
+        "The throughput of a layer is 1 - E for light from above, for every weight.",
+        LAYERS,
+        measures.layering,
+        "all light passes",
+        pass_all,
+        tolerances.THROUGHPUTS,
+        diagnose=diagnosis.of_throughput,
+    ),
+    Check(
+        "transmission",
+        "The throughput of a layer is 1 - E for light through the base as well.",
+        LAYERS,
+        measures.transmission,
+        "all light passes",
+        pass_all,
+        tolerances.THROUGHPUTS,
+        diagnose=diagnosis.of_transmission,
+    ),
+    Check(
+        "layer",
+        "A layer over a white base returns all light.",
+        LAYERS,
+        measures.layer,
+        "all light passes",
+        pass_all,
+        tolerances.LAYERS,
+        diagnose=diagnosis.of_throughput,
+    ),
+)
