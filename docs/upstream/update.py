@@ -17,7 +17,7 @@ import numpy as np
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import SOURCE, make_plan
+from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
 from mxeon.io.files import write_text
 from mxeon.models import albedo, formulas
 from mxeon.models import brdf as models
@@ -83,6 +83,11 @@ CAUSES = {
     "genglsl_microfacet_compensation": Cause(
         f"{PBRLIB}/mx_dielectric_bsdf.glsl", 47, "energy_compensation"
     ),
+    "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
+    "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
+    "genosl_hair_constants": Cause(
+        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
+    ),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -109,7 +114,7 @@ def judged(host):
         If the host cannot run here.
     """
     rows = {row for issue in ISSUES if issue.host == host for row in issue.rows}
-    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,)).tasks
+    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,), nodes=(ALL,)).tasks
     chosen = [
         each
         for each in tasks

@@ -119,8 +119,26 @@ BSDF_ISSUES = (
         _product(("value", "environment", "integral", "shape"), MICROFACETS),
     ),
 )
+HAIR_ROUGHNESS = tuple(f"chiang_hair_roughness, roughness_{lobe}" for lobe in ("R", "TT", "TRT"))
+HAIR = (
+    *HAIR_ROUGHNESS,
+    "deon_hair_absorption_from_melanin",
+    "chiang_hair_absorption_from_color",
+)
+UTILITY_ISSUES = (
+    Issue("genglsl_blackbody_cold", "gl", (("output", "blackbody"),), HARDWARE),
+    Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR[3]),), HARDWARE),
+    Issue(
+        "genosl_hair_constants",
+        "cycles",
+        _product(("output",), HAIR),
+        ("testrender",),
+        _product(("output_inputs",), HAIR),
+    ),
+)
 ISSUES = (
     *BSDF_ISSUES,
+    *UTILITY_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",

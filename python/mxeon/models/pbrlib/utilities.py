@@ -13,7 +13,8 @@ import numpy as np
 
 from mxeon.models.arrays import Array
 from mxeon.models.artistic_ior import artistic_ior
-from mxeon.models.blackbody import blackbody
+from mxeon.models.blackbody import LUMINANCE, blackbody, kang_xyz
+from mxeon.models.colorimetry import XYZ_TO_REC709
 from mxeon.models.hair_parameters import (
     EUMELANIN,
     PHEOMELANIN,
@@ -27,6 +28,7 @@ from mxeon.models.roughness import glossiness_anisotropy, roughness_anisotropy, 
 LARGEST_REFLECTIVITY = 0.99  # of artistic_ior; its n is infinite at 1
 LEAST_HAIR = 1e-3  # roughnesses and colors of hair: below, a lobe has no width
 LARGEST_MELANIN = 1.0 - 1e-4  # concentration; at 1 the absorption is infinite
+LEAST_PIGMENT = 1e-30  # color of a pigment, whose logarithm is finite
 TEMPERATURES = (800.0, 25000.0)  # K, from about where a body glows to the end of the fits in use
 
 Values = Callable[[Inputs], dict[str, Array]]
@@ -121,9 +123,21 @@ def _artistic(inputs: Inputs) -> dict[str, Array]:
     return {"ior": ior, "extinction": extinction}
 
 
-def _blackbody(inputs: Inputs) -> dict[str, Array]:
-    """The color inside Rec. 709: its negative channels are 0."""
+def _clipped(inputs: Inputs) -> dict[str, Array]:
+    """The color of luminance 1 whose negative channels are then 0."""
     return {"out": np.maximum(blackbody(_share(inputs, "temperature", *TEMPERATURES)), 0.0)}
+
+
+def _blackbody(inputs: Inputs) -> dict[str, Array]:
+    """The color inside Rec. 709, whose negative channels are 0, with luminance 1."""
+    color = _clipped(inputs)["out"]
+    return {"out": color / (color @ LUMINANCE)[..., np.newaxis]}
+
+
+def _kang(inputs: Inputs) -> dict[str, Array]:
+    """The color by the cubic fits of [Kang2002], clipped."""
+    color = kang_xyz(_share(inputs, "temperature", *TEMPERATURES)) @ XYZ_TO_REC709.T
+    return {"out": np.maximum(color, 0.0)}
 
 
 def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
@@ -135,8 +149,7 @@ def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
 
 def _melanin(inputs: Inputs) -> dict[str, Array]:
     colors = [
-        _share(inputs, name, float(np.finfo(np.float32).tiny))
-        for name in ("eumelanin_color", "pheomelanin_color")
+        _share(inputs, name, LEAST_PIGMENT) for name in ("eumelanin_color", "pheomelanin_color")
     ]
     concentration = _share(inputs, "melanin_concentration", 0.0, LARGEST_MELANIN)
     redness = _share(inputs, "melanin_redness")
@@ -186,7 +199,16 @@ UTILITIES = (
         {"ior": "color3", "extinction": "color3"},
         _artistic,
     ),
-    UtilityNode("blackbody", {"temperature": 5000.0}, {"out": "color3"}, _blackbody),
+    UtilityNode(
+        "blackbody",
+        {"temperature": 5000.0},
+        {"out": "color3"},
+        _blackbody,
+        (
+            UtilityVariant("luminance 1 before negative channels are clipped", _clipped, True),
+            UtilityVariant("Kang's cubic, drawn on below 1667 K", _kang),
+        ),
+    ),
     UtilityNode(
         "chiang_hair_roughness",
         {"longitudinal": 0.1, "azimuthal": 0.2, "scale_TT": 0.5, "scale_TRT": 2.0},

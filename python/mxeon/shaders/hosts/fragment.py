@@ -169,7 +169,7 @@ def bsdf_call(
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
     if branch == GRAPH:
-        return _graph_call(shader, inputs)
+        return _graph_call(shader, wo, inputs)
     called, closure = CLOSURES[branch]
     statements, result, names = _find_calls(shader.stages["pixel"], called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
@@ -279,18 +279,21 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[s
     return block[: block.index(end) + len(end)], results[-1], arguments
 
 
-def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
+def _graph_call(shader: Shader, wo: ArrayLike, inputs: Mapping[str, Any]) -> Call:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
     text = shader.stages["pixel"]
     color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
     if not color:
-        raise InputError(f"element {shader.element!r} must call a uniform EDF; its shader calls none")
+        raise InputError(
+            f"element {shader.element!r} must call a uniform EDF; its shader calls none"
+        )
     before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
     # Slang's own main begins with its stage's inputs and outputs.
     statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
     ports = _ports(shader)
     words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
-    arguments = {name: _argument(name, ports, inputs) for name in words if name in ports}
+    arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing
+    arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
     return Call(statements, color[1], arguments)
 
 

@@ -8,6 +8,7 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,7 +24,7 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.hosts.cycles import closures
+from mxeon.shaders.hosts.cycles import closures, graphs
 from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.hosts.process import Worker
 from mxeon.shaders.library import data_folder
@@ -130,6 +131,23 @@ class Host(base.Host):
         if isinstance(scene.environment, (str, Path)):
             raise NotRun("cycles: environment must be uniform; got an image")
         return self._picture(scene, text=_on_sphere(shader.stages["pixel"]))
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's graph, the one branch that is none of closures; see `base.Host`."""
+        if branch != graphs.BRANCH:
+            raise self._unsupported("values for pairs of directions", "gl")
+        source, arguments = graphs.graph_function(shader, inputs)
+        return self.execute(_with_header(source), graphs.FUNCTION, *arguments)
 
     def blender_node(self, kind: str, inputs: dict[str, Any], scene: Scene) -> NDArray[Any]:
         """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
@@ -280,11 +298,15 @@ def _frame(scene: Scene) -> dict[str, Any]:
     }
 
 
+def _with_header(text: str) -> str:
+    """A generated text with the path of its include."""
+    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+    return text.replace('"mx_funcs.h"', f'"{header.asString()}"')
+
+
 def _on_sphere(text: str) -> str:
     """A generated shader with the path of its include and the sphere's texture coordinates."""
-    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
-    text = text.replace('"mx_funcs.h"', f'"{header.asString()}"')
-    head, brace, body = text.rpartition("\n)\n{\n")
+    head, brace, body = _with_header(text).rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"
 
 
