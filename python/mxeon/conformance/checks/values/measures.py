@@ -49,7 +49,7 @@ def finite(probe: Any, _: Metric) -> Measurement:
 
 
 def explained_finite(probe: Any) -> Diagnosis:
-    """The explanation of outputs that are not finite: the inputs at a bound that all of them have."""
+    """The explanation of outputs that are not finite: a bound that an input of each exceeds."""
     batch = probe.edges
     bad = ~np.isfinite(probe.direct(batch)).all(axis=1)
     if not bad.any():
@@ -57,9 +57,11 @@ def explained_finite(probe: Any) -> Diagnosis:
     share = f"{int(bad.sum())} of {len(bad)} outputs are not finite"
     for name, values in batch.inputs.items():
         rows = np.reshape(values, (len(bad), -1))
-        for bound in np.unique(rows):
-            if (rows == bound).any(axis=1)[bad].all():
-                return Diagnosis(f"{share}, all of them with {name} {bound:g}")
+        low, high = rows.min(axis=1), rows.max(axis=1)
+        if low[bad].max() <= 0.0:
+            return Diagnosis(f"{share}, all of them with {name} {low[bad].max():g} or below")
+        if high[bad].min() >= 1.0:
+            return Diagnosis(f"{share}, all of them with {name} {high[bad].min():g} or above")
     return Diagnosis(share)
 
 

@@ -71,6 +71,19 @@ class UtilityOslProbe(UtilityProbe):
 
     kind: ClassVar[str] = OSL_VALUES
 
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """All inputs together: a shader is compiled for each batch."""
+        batches = super().batches
+        names = batches[0].inputs
+        together = {name: np.concatenate([each.inputs[name] for each in batches]) for name in names}
+        return (_batch(together),)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """The same."""
+        return self.batches
+
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
     """A batch of inputs, whose directions mean nothing."""
