@@ -34,6 +34,17 @@ RANGES = {
     "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
     "ior": (0.0, 1e50, "[0, 1e50]"),
     "extinction": (0.0, 1e50, "[0, 1e50]"),
+    "radiance": (0.0, 1e50, "[0, 1e50]"),
+    "intensity": (0.0, 1e50, "[0, 1e50]"),
+    "exposure": (-1000.0, 1000.0, "[-1000, 1000]"),
+    "opacity": (0.0, 1.0, "[0, 1]"),
+    "inner_angle": (0.0, 360.0, "[0, 360]"),
+    "outer_angle": (0.0, 360.0, "[0, 360]"),
+    "absorption": (0.0, 1e50, "[0, 1e50]"),
+    "scattering": (0.0, 1e50, "[0, 1e50]"),
+    "distance": (0.0, 1e50, "[0, 1e50]"),
+    "cos_theta": (-1.0, 1.0, "[-1, 1]"),
+    "g": (-float(np.nextafter(1.0, 0.0)), float(np.nextafter(1.0, 0.0)), "(-1, 1)"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
@@ -117,6 +128,15 @@ def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
     z = array[..., 2]
     if (z > 0.0).any():
         _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > 0.0), "z = ")
+    return array
+
+
+def checked_sphere(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 3) of unit vectors, on either side of the surface."""
+    array = checked_triples(name, value)
+    mirrored = np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1)
+    if not are_directions(np.moveaxis(mirrored, -1, 0)):
+        refuse_direction(name, mirrored)
     return array
 
 

@@ -128,7 +128,8 @@ class Host(ABC):
         branch : str
             "direct", "environment", "transmission" or "emission": what the shader asks of its BSDF.
         output : str
-            "response"; or "throughput", the share of the light from below that passes the BSDF.
+            "response"; "throughput", the share of the light from below that passes the BSDF; or
+            "radiance", what the EDF emits towards `wo`, in any branch.
         irradiance : ndarray, shape (rows, columns, 3), or None
             Irradiance over pi of the environment for every normal, as a latitude-longitude map with
             row 0 upwards (+y) and its middle towards +z; None for a uniform environment of radiance 1.

@@ -28,7 +28,8 @@ CLOSURES = {
     "transmission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_TRANSMISSION"),
     "emission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_EMISSION"),
 }
-OUTPUTS = ("response", "throughput")
+EMISSION = "CLOSURE_TYPE_EMISSION"  # of the call of an EDF, in every branch
+OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
 FETCH = {
     "float": "float {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).x;",
     "boolean": "bool {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).x > 0.5;",
@@ -166,18 +167,20 @@ def bsdf_call(
     for rule, word, known in (("branch", branch, tuple(CLOSURES)), ("output", output, OUTPUTS)):
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
-    called, closure = CLOSURES[branch]
+    emitted = output == "radiance"
+    called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
     statements, result, names = _find_calls(shader.stages["pixel"], called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
-    arguments[ASKED] = ("boolean", output == "throughput")
+    if not emitted:
+        arguments[ASKED] = ("boolean", output == "throughput")
     ports = {port.name: port for port in shader.inputs}
     for name in BOOLEAN.findall(shader.stages["pixel"]):
         if name in ports:
             ports[name] = replace(ports[name], type="boolean")
     for name in names:
         arguments[name] = _argument(name, ports, inputs)
-    value = f"{ASKED} ? {result}.throughput : {result}.response"
+    value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
     return Call(statements.replace(called, closure), value, arguments)
 
 
@@ -269,8 +272,9 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[s
     block = match[0] if match else ""
     calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block)
     if not calls:
+        kind = "an EDF" if closure == EMISSION else "a BSDF"
         raise InputError(
-            f"element {element!r} must call a BSDF to be evaluated; its shader calls none"
+            f"element {element!r} must call {kind} to be evaluated; its shader calls none"
         )
     end, results = f", {calls[-1][1]});", [result for _, result in calls]
     names = [name for arguments, _ in calls for name in arguments.split(", ")]
