@@ -34,6 +34,8 @@ RANGES = {
     "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
     "ior": (0.0, 1e50, "[0, 1e50]"),
     "extinction": (0.0, 1e50, "[0, 1e50]"),
+    "thinfilm_thickness": (0.0, 1e9, "[0, 1e9]"),  # nm
+    "thinfilm_ior": (1.0, 1e50, "[1, 1e50]"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
