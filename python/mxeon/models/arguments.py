@@ -61,6 +61,8 @@ RANGES = {
     "pheomelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
     "hair_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
     "azimuthal_roughness": (0.0, 1.0, "[0, 1]"),
+    "thinfilm_thickness": (0.0, 1e9, "[0, 1e9]"),  # nm
+    "thinfilm_ior": (1.0, 1e50, "[1, 1e50]"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
