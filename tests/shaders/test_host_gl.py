@@ -173,7 +173,7 @@ def test_a_material_without_a_bsdf_cannot_be_evaluated(gl):
 
 def test_an_unknown_branch_lists_the_known_ones(gl):
     wo = np.array([[0.0, 0.0, 1.0]])
-    with pytest.raises(ValueError, match="^branch must be one of direct, .*, emission; got 'up'$"):
+    with pytest.raises(ValueError, match="^branch must be one of graph, direct, .*, emission; got 'up'$"):
         gl.evaluate(shader(LOBES["eon"]), wo, wo, {}, "up")
 
 

@@ -34,6 +34,22 @@ RANGES = {
     "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
     "ior": (0.0, 1e50, "[0, 1e50]"),
     "extinction": (0.0, 1e50, "[0, 1e50]"),
+    "anisotropy": (0.0, 1.0, "[0, 1]"),
+    "glossiness": (0.0, 1.0, "[0, 1]"),
+    "reflectivity": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
+    "edge_color": (0.0, 1.0, "[0, 1]"),
+    "temperature": (1.0, 1e9, "[1, 1e9]"),
+    "wavelength": (1.0, 1e9, "[1, 1e9]"),
+    "longitudinal": (0.0, 1.0, "[0, 1]"),
+    "azimuthal": (0.0, 1.0, "[0, 1]"),
+    "scale_tt": (0.0, 1e50, "[0, 1e50]"),
+    "scale_trt": (0.0, 1e50, "[0, 1e50]"),
+    "melanin_concentration": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
+    "melanin_redness": (0.0, 1.0, "[0, 1]"),
+    "eumelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
+    "pheomelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
+    "hair_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
+    "azimuthal_roughness": (0.0, 1.0, "[0, 1]"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 

@@ -20,14 +20,20 @@ class Family:
         Each has `title` and `node`, the category; a title is of one subject.
     probe_type : callable (subject, probe) -> type or None
         Class of a subject's probes on a host that has probes of a class; None if it has none.
+    common : bool
+        Whether every run judges them; others are judged where they are asked for by name.
     """
 
     subjects: tuple[Any, ...]
     probe_type: Callable[[Any, type[Any]], type[Any] | None]
+    common: bool = False
 
 
-FAMILIES = (Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type),)
+FAMILIES = (Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),)
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
+COMMON_SUBJECTS = tuple(
+    subject for family in FAMILIES if family.common for subject in family.subjects
+)
 
 
 def probe_type_of(subject: Any, probe: type[Any]) -> type[Any] | None:

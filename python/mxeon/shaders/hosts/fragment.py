@@ -28,6 +28,7 @@ CLOSURES = {
     "transmission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_TRANSMISSION"),
     "emission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_EMISSION"),
 }
+GRAPH = "graph"  # in place of a branch: the color that the shader gives to its uniform EDF
 OUTPUTS = ("response", "throughput")
 FETCH = {
     "float": "float {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).x;",
@@ -161,20 +162,20 @@ def bsdf_call(
     Raises
     ------
     ValueError
-        If the shader calls no BSDF, or branch or output is unknown.
+        If the shader calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
     """
-    for rule, word, known in (("branch", branch, tuple(CLOSURES)), ("output", output, OUTPUTS)):
+    branches = (GRAPH, *CLOSURES)
+    for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
+    if branch == GRAPH:
+        return _graph_call(shader, inputs)
     called, closure = CLOSURES[branch]
     statements, result, names = _find_calls(shader.stages["pixel"], called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     arguments[ASKED] = ("boolean", output == "throughput")
-    ports = {port.name: port for port in shader.inputs}
-    for name in BOOLEAN.findall(shader.stages["pixel"]):
-        if name in ports:
-            ports[name] = replace(ports[name], type="boolean")
+    ports = _ports(shader)
     for name in names:
         arguments[name] = _argument(name, ports, inputs)
     value = f"{ASKED} ? {result}.throughput : {result}.response"
@@ -276,6 +277,30 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[s
     names = [name for arguments, _ in calls for name in arguments.split(", ")]
     arguments = [name for name in dict.fromkeys(names) if name not in results]
     return block[: block.index(end) + len(end)], results[-1], arguments
+
+
+def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
+    """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
+    text = shader.stages["pixel"]
+    color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
+    if not color:
+        raise InputError(f"element {shader.element!r} must call a uniform EDF; its shader calls none")
+    before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
+    # Slang's own main begins with its stage's inputs and outputs.
+    statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
+    ports = _ports(shader)
+    words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
+    arguments = {name: _argument(name, ports, inputs) for name in words if name in ports}
+    return Call(statements, color[1], arguments)
+
+
+def _ports(shader: Shader) -> dict[str, Input]:
+    """Inputs of a shader by name, with the booleans that its text makes of integers."""
+    ports = {port.name: port for port in shader.inputs}
+    for name in BOOLEAN.findall(shader.stages["pixel"]):
+        if name in ports:
+            ports[name] = replace(ports[name], type="boolean")
+    return ports
 
 
 def _argument(
