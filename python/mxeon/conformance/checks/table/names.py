@@ -3,6 +3,8 @@
 
 from mxeon.models.pbrlib import NODES
 from mxeon.models.pbrlib.combinations import COMBINATIONS
+from mxeon.models.pbrlib.emissions import COMBINED_EMISSIONS, EMISSIONS
 
 OTHERS = (*(row.name for row in NODES), "burley_lambert")
 COMBINATION = tuple(row.name for row in COMBINATIONS)
+EMITTER = tuple(row.name for row in (*EMISSIONS, *COMBINED_EMISSIONS))
