@@ -10,8 +10,9 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import FEW, Array, Batch, Candidate
 from mxeon.conformance.checks.bsdf.measures import layering_cases, transmission_cases
-from mxeon.conformance.checks.emission.measures import back_cases
-from mxeon.conformance.checks.emission.tolerances import RADIANCES
+from mxeon.conformance.checks.emission.measures import back_cases, transmittance_cases
+from mxeon.conformance.checks.emission.subjects import MEDIUM
+from mxeon.conformance.checks.emission.tolerances import RADIANCES, TRANSMITTANCE
 from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.tolerance import Tolerance
@@ -104,9 +105,14 @@ def of_back(probe: Any) -> Diagnosis:
     return _of_emission(probe, list(back_cases(probe)))
 
 
+def of_medium(probe: Any) -> Diagnosis:
+    """The explanation of the transmittance of a medium."""
+    return _of_emission(probe, list(transmittance_cases(probe)))
+
+
 def _of_emission(probe: Any, cases: Sequence[Case]) -> Diagnosis:
-    """The explanation of radiances."""
-    tolerance = RADIANCES[probe.kind]
+    """The explanation of radiances and transmittances."""
+    tolerance = {**RADIANCES, MEDIUM: TRANSMITTANCE}[probe.kind]
     return _explained(probe, cases, probe.subject.value_candidates, (), tolerance)
 
 

@@ -8,8 +8,7 @@ from typing import Any
 from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
-from mxeon.conformance.checks.emission.probes import emission_probe_type
-from mxeon.conformance.checks.emission.subjects import COMBINED_EDFS, EDFS
+from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ class Family:
 
 FAMILIES = (
     Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
-    Family((*EDFS, *COMBINED_EDFS), emission_probe_type),
+    Family(EMISSION_SUBJECTS, emission_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(

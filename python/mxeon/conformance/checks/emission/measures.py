@@ -33,3 +33,27 @@ def exitance(probe: Any, metric: Metric) -> Measurement:
     each = batch.where(np.arange(count) * nodes)
     measured = (weights[..., np.newaxis] * values).sum(axis=1)
     return worst_of(metric, [Case(each, measured, probe.subject.exitance(each) / np.pi)])
+
+
+def transmittance(probe: Any, metric: Metric) -> Measurement:
+    """Light through a medium and the throughput of a surface over it, against its transmittance."""
+    return worst_of(metric, transmittance_cases(probe))
+
+
+def transmittance_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `transmittance`."""
+    (batch,) = probe.batches
+    expected = probe.subject.expected(batch)
+    yield Case(batch, probe.direct(batch), expected)
+    yield Case(batch, probe.through, expected)
+
+
+def opacity(probe: Any, metric: Metric) -> Measurement:
+    """Pictures of a surface that emits, against its radiance times its opacity."""
+    return worst_of(metric, opacity_cases(probe))
+
+
+def opacity_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `opacity`."""
+    for batch in probe.batches:
+        yield Case(batch, probe.direct(batch), probe.expected(batch))

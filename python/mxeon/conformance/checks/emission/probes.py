@@ -9,7 +9,6 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.checks.emission.subjects import CLOSED, CONE, POWER, EmissionSubject
-from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.special import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
 from mxeon.models.emission import cone_cosine
@@ -191,8 +190,3 @@ def _nodes(stops: Array) -> tuple[Array, Array]:
 
 
 PROBES = {probe.kind: probe for probe in (EmissionProbe, PowerProbe, ConeProbe)}
-
-
-def emission_probe_type(subject: Any, probe: type[Any]) -> type[NodeProbe] | None:
-    """Class of a subject's probes on a host that has probes of a class; None if it has none."""
-    return PROBES[subject.kind] if probe is PairProbe else None

@@ -23,6 +23,8 @@ from mxeon.shaders.nodes import document_text, input_text, node_text
 
 # Kinds of probes; see `mxeon.conformance.checks.emission.probes`.
 CLOSED, POWER, CONE = KINDS = ("emission views", "power views", "cone views")
+MEDIUM = "media"
+SURFACES = "emitting surfaces"
 ABSENT = "absent nodes"  # of a node that no target of the standard library has
 
 EMITTER = """  <surface name="shading" type="surfaceshader">

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tolerances of the checks of nodes that emit light, by kind of probe, with those of the engine's power."""
+"""Tolerances of the checks of nodes that emit light, by kind of probe, with those of the engine's own functions."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -13,6 +13,7 @@ from mxeon.conformance.checks.emission.subjects import (
     CONE,
     EXPONENTS,
     LEAST_FALLOFF,
+    MEDIUM,
     POWER,
 )
 from mxeon.conformance.checks.measures import scaled
@@ -26,6 +27,10 @@ COUNT = 1 << 14
 FUNCTIONS = """float mxeon_power(float x, float y)
 {
     return pow(x, y);
+}
+float mxeon_exponential(float x, float y)
+{
+    return exp(-x) + 0.0 * y;
 }
 """
 
@@ -64,6 +69,19 @@ CONE_RADIANCE = Tolerance(
     "them, times the slope of a smoothstep over 20 degrees, 3/2 over its width in cosine, and eight of "
     "the step; rounded up",
 )
+TRANSMITTANCE = Tolerance(
+    rounded_up(12 * ROUNDING),
+    "transmittance",
+    scaled,
+    "twelve roundings of float32, 2^-24 each: of the exponential of a rounded sum, of a product and of "
+    "the quotient of two such values; and twice the error of the engine's own exponential; rounded up",
+)
+OPACITY = Tolerance(
+    rounded_up(3 * ROUNDING),
+    UNIT,
+    scaled,
+    "a product and two sums with 0 of float32, 2^-24 each; rounded up",
+)
 RADIANCES = {CLOSED: UNIFORM_RADIANCE, POWER: POWER_RADIANCE, CONE: CONE_RADIANCE}
 EXITANCES = {
     kind: Tolerance(
@@ -81,6 +99,9 @@ def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
     """Tolerance of an emission on a probe's host, with the errors of the engine's own functions."""
     if probe.kind == POWER:
         return replace(tolerance, value=rounded_up(tolerance.value + power_error(probe.host)))
+    if probe.kind == MEDIUM:
+        error = 2.0 * exponential_error(probe.host)
+        return replace(tolerance, value=rounded_up(tolerance.value + error))
     return tolerance
 
 
@@ -93,6 +114,13 @@ def power_error(host: Host) -> float:
         for each in (rng.random(COUNT), rng.uniform(*EXPONENTS, COUNT))
     )
     return _beside(base**exponent, host.execute(FUNCTIONS, "mxeon_power", base, exponent)[:, 0])
+
+
+@lru_cache(maxsize=16)
+def exponential_error(host: Host) -> float:
+    """Error of the engine's own exp(-x) for x in [0, 8], beside its rounding."""
+    depth = np.linspace(0.0, 8.0, COUNT).astype(np.float32).astype(np.float64)
+    return _beside(np.exp(-depth), host.execute(FUNCTIONS, "mxeon_exponential", depth, depth)[:, 0])
 
 
 def _beside(exact: Any, values: Any) -> float:
