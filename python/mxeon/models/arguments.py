@@ -34,6 +34,19 @@ RANGES = {
     "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
     "ior": (0.0, 1e50, "[0, 1e50]"),
     "extinction": (0.0, 1e50, "[0, 1e50]"),
+    **dict.fromkeys(("tint_R", "tint_TT", "tint_TRT"), (0.0, 1.0, "[0, 1]")),
+    "variance": (1e-12, 1e12, "[1e-12, 1e12]"),  # where exponents and squares still fit
+    "scale": (1e-12, 1e12, "[1e-12, 1e12]"),
+    **dict.fromkeys(
+        ("roughness_R", "roughness_TT", "roughness_TRT"), (1e-12, 1e12, "[1e-12, 1e12]")
+    ),
+    "cuticle_angle": (0.0, 1.0, "[0, 1]"),
+    "absorption_coefficient": (0.0, 1e50, "[0, 1e50]"),
+    "x": (0.0, _LARGEST, "[0, inf)"),
+    "theta": (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]"),
+    "phi": (-_LARGEST, _LARGEST, "(-inf, inf)"),
+    "reflectance": (0.0, 1.0, "[0, 1]"),
+    "transmittance": (0.0, 1.0, "[0, 1]"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
@@ -117,6 +130,13 @@ def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
     z = array[..., 2]
     if (z > 0.0).any():
         _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > 0.0), "z = ")
+    return array
+
+
+def checked_sphere(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 3), of unit vectors on either side of the horizon."""
+    array = checked_triples(name, value)
+    checked_directions(name, array * np.where(array[..., 2:] < 0.0, [1.0, 1.0, -1.0], 1.0))
     return array
 
 
