@@ -11,7 +11,7 @@ from mxeon.models.hair import (
     hair_azimuthal,
     hair_longitudinal,
 )
-from mxeon.models.hair_defects import FORMS, READINGS, materialx_longitudinal
+from mxeon.models.hair_defects import FORMS, READINGS, TILTED, materialx_longitudinal
 from mxeon.models.hair_formulas import TEXT, bessel_scaled, longitudinal
 
 ROUND = 1e-14  # 45 roundings of float64
@@ -99,7 +99,7 @@ def test_only_a_tilt_of_the_viewer_keeps_the_furnace():
     cuticle = 0.5 + 2.0 / 180.0
     tilted = np.pi * furnace(VIEWS[2], cuticle_angle=cuticle)
     np.testing.assert_allclose(tilted, 0.9775, atol=1e-3)
-    kept = FORMS["the viewer's inclination tilted in place of the light's"]
+    kept = FORMS[TILTED]
     np.testing.assert_allclose(
         np.pi * furnace(VIEWS[2], cuticle_angle=cuticle, form=kept), 1.0, atol=1e-9
     )
@@ -160,7 +160,7 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
             roughness_TRT=(4.0 * v, s),
             absorption_coefficient=absorption,
             cuticle_angle=0.5 - tilt / 180.0,
-            form=FORMS["the viewer's inclination tilted in place of the light's"],
+            form=FORMS[TILTED],
         )
         np.testing.assert_allclose(value, expected, rtol=2e-6)
 

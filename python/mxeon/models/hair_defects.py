@@ -41,19 +41,20 @@ def _series(x: Array) -> Array:
     return value
 
 
-UNIFORM = replace(TEXT, uniform=0.5 * np.pi)
+UNIFORM, BESSEL, CLAMPED, TILTED = (
+    "N of TRRT+ pi/2 in place of 1/(2 pi)",
+    "I_0 by ten terms, and half a term of its logarithm",
+    "every roughness in [0.001, 1]",
+    "the viewer's inclination tilted in place of the light's",
+)
 FORMS: dict[str, Form] = {
-    "N of TRRT+ pi/2 in place of 1/(2 pi)": UNIFORM,
-    "I_0 by ten terms, and half a term of its logarithm": replace(
-        TEXT, longitudinal=materialx_longitudinal
+    UNIFORM: replace(TEXT, uniform=0.5 * np.pi),
+    BESSEL: replace(TEXT, longitudinal=materialx_longitudinal),
+    CLAMPED: replace(TEXT, limits=LIMITS),
+    TILTED: replace(TEXT, tilts_light=False),
+    f"MaterialX's GLSL: {UNIFORM}; {BESSEL}; {CLAMPED}": replace(
+        TEXT, uniform=0.5 * np.pi, longitudinal=materialx_longitudinal, limits=LIMITS
     ),
-    "every roughness in [0.001, 1]": replace(TEXT, limits=LIMITS),
-    "N of TRRT+ pi/2, I_0 by ten terms": replace(UNIFORM, longitudinal=materialx_longitudinal),
-    "N of TRRT+ pi/2, every roughness in [0.001, 1]": replace(UNIFORM, limits=LIMITS),
-    "MaterialX's GLSL: N of TRRT+ pi/2, I_0 by ten terms, every roughness in [0.001, 1]": replace(
-        UNIFORM, longitudinal=materialx_longitudinal, limits=LIMITS
-    ),
-    "the viewer's inclination tilted in place of the light's": replace(TEXT, tilts_light=False),
 }
 
 # Readings that the text leaves open, or that its later versions have.

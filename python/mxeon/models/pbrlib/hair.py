@@ -34,7 +34,7 @@ def _whole(wo: Array, inputs: Inputs) -> Array:
     return np.pi * _albedo(wo, inputs)
 
 
-HAIR = PbrNode(
+HAIR_NODE = PbrNode(
     "hair",
     "Chiang hair",
     "chiang_hair_bsdf",

@@ -3,6 +3,7 @@
 
 from mxeon.models.pbrlib import NODES
 from mxeon.models.pbrlib.combinations import COMBINATIONS
+from mxeon.models.pbrlib.hair import HAIR_NODE
 
-OTHERS = (*(row.name for row in NODES), "burley_lambert")
+OTHERS = (*(row.name for row in NODES), "burley_lambert", HAIR_NODE.name)
 COMBINATION = tuple(row.name for row in COMBINATIONS)
