@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -172,7 +173,7 @@ def bsdf_call(
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     arguments[ASKED] = ("boolean", output == "throughput")
     ports = {port.name: port for port in shader.inputs}
-    for name in BOOLEAN.findall(shader.stages["pixel"]):
+    for name in _booleans(shader.stages["pixel"]):
         if name in ports:
             ports[name] = replace(ports[name], type="boolean")
     for name in names:
@@ -211,11 +212,10 @@ def bsdf_evaluation(
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch, output)
     version, text = shader.stages["pixel"].split("\n", 1)
-    pixel = re.findall(r"\bout vec4 (\w+);", text)[0]
-    body = ["vec3 P = vec3(0.0);", call.statements, f"{pixel} = vec4({call.value}, 1.0);"]
+    body = ["vec3 P = vec3(0.0);", call.statements, f"{_output(text)} = vec4({call.value}, 1.0);"]
     head = f"{version}\n{dialect.prelude}{RENAME}"
     main, texels = _main(dialect, call.arguments, body)
-    macros = "".join(f"#undef {name}\n" for name in ["main", *BOOLEAN.findall(text)])
+    macros = "".join(f"#undef {name}\n" for name in ["main", *_booleans(text)])
     return f"{head}{text}{macros}{main}", texels
 
 
@@ -258,6 +258,7 @@ def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
     }
 
 
+@lru_cache(maxsize=16)  # the checks of a node share its shader
 def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[str]]:
     """Statements that evaluate the BSDFs for a closure type, their result and their arguments.
 
@@ -276,6 +277,18 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[s
     names = [name for arguments, _ in calls for name in arguments.split(", ")]
     arguments = [name for name in dict.fromkeys(names) if name not in results]
     return block[: block.index(end) + len(end)], results[-1], arguments
+
+
+@lru_cache(maxsize=16)
+def _booleans(text: str) -> list[str]:
+    """Names of the inputs that a text for WGSL makes booleans of."""
+    return BOOLEAN.findall(text)
+
+
+@lru_cache(maxsize=16)
+def _output(text: str) -> str:
+    """Name of the output of a pixel stage."""
+    return str(re.findall(r"\bout vec4 (\w+);", text)[0])
 
 
 def _argument(
