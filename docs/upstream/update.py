@@ -15,6 +15,7 @@ import MaterialX as mx
 import numpy as np
 
 from docs.upstream.pbr_quantities import OF_PBRLIB
+from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import SOURCE, make_plan
@@ -211,6 +212,7 @@ OF_QUANTITIES = {
     "pbrlib_printed_angles": printed_angles_block,
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
+    **OF_SUBSURFACE,
 }
 
 
