@@ -14,6 +14,7 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
@@ -221,6 +222,7 @@ def _quantities(name, measured, expected):
 
 OF_QUANTITIES = {
     "dropped_normal": dropped_normal_block,
+    "genglsl_light_scope": light_block,
     "openpbr_printed_pi": printed_pi_block,
     "pbrlib_edf_sides": edf_sides_block,
     "pbrlib_printed_angles": printed_angles_block,
