@@ -119,8 +119,34 @@ BSDF_ISSUES = (
         _product(("value", "environment", "integral", "shape"), MICROFACETS),
     ),
 )
+EMISSION_ISSUES = (
+    Issue(
+        "genglsl_missing_nodes",
+        "gl",
+        _product(
+            ("implemented",),
+            (
+                "conical_edf",
+                "measured_edf",
+                "absorption_vdf",
+                "mix, VDF",
+                "add, VDF",
+                "multiply, VDF",
+            ),
+        ),
+        HARDWARE,
+    ),
+    Issue(
+        "genglsl_medium_scattering",
+        "gl",
+        _product(("transmittance", "inputs"), ("anisotropic_vdf",)),
+        HARDWARE,
+    ),
+    Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
+)
 ISSUES = (
     *BSDF_ISSUES,
+    *EMISSION_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",
