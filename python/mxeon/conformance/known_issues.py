@@ -68,7 +68,13 @@ def _product(checks: Sequence[str], subjects: Sequence[str]) -> tuple[tuple[str,
 
 HAIR = "chiang_hair_bsdf"
 HAIR_ISSUES = (
-    Issue("genglsl_hair_uniform_lobe", "gl", (("lobes", HAIR),), HARDWARE),
+    Issue(
+        "genglsl_hair_uniform_lobe",
+        "gl",
+        (("lobes", HAIR),),
+        HARDWARE,
+        _product(("value", "integral"), (HAIR,)),
+    ),
     Issue(
         "genglsl_hair_longitudinal",
         "gl",
