@@ -16,10 +16,12 @@ from mxeon.conformance.checks.controls import (
     take_response,
     with_inputs,
 )
+from mxeon.conformance.checks.emission.subjects import KINDS as EMISSION_KINDS
+from mxeon.conformance.checks.emission.subjects import MEDIUM
 from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.table.check import Check
-from mxeon.conformance.checks.table.names import COMBINATION, OTHERS
+from mxeon.conformance.checks.table.names import COMBINATION, EMITTER, MEDIUM_NAMES, OTHERS
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbrlib import NODES
@@ -238,7 +240,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION),
+        (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION, *EMITTER, *MEDIUM_NAMES),
         measures.inputs,
         "every change is dropped",
         drop_changes,
@@ -252,6 +254,7 @@ CHECKS = (
             "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
             COMBINED: tolerances.count_of("inputs"),
+            **dict.fromkeys((*EMISSION_KINDS, MEDIUM), tolerances.count_of("inputs")),
         },
         diagnose=wiring.of_inputs,
     ),
