@@ -90,6 +90,17 @@ CAUSES = {
     ),
     "genglsl_medium_scattering": Cause(f"{PBRLIB}/mx_anisotropic_vdf.glsl", 9, "exp(-absorption)"),
     "pbrlib_edf_sides": Cause(f"{PBRLIB}/mx_generalized_schlick_edf.glsl", 8, "forward_facing"),
+    **{
+        f"genglsl_hair_{page}": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", line, word)
+        for page, line, word in (
+            ("uniform_lobe", 263, "1.0 / 2.0 * M_PI"),
+            ("longitudinal", 88, "1.0 / (8.0 * x)"),
+            ("roughness", 247, "clamp(roughness_R"),
+            ("azimuth", 218, "sinGammaO"),
+            ("grazing", 186, "T * f"),
+            ("environment", 286, "mx_environment_radiance"),
+        )
+    },
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
