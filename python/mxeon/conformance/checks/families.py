@@ -8,6 +8,7 @@ from typing import Any
 from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
+from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,10 @@ class Family:
     common: bool = False
 
 
-FAMILIES = (Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),)
+FAMILIES = (
+    Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
+    Family(TRANSMITTING, transmission_probe_type),
+)
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(
     subject for family in FAMILIES if family.common for subject in family.subjects
