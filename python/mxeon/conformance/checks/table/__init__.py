@@ -7,7 +7,9 @@ host; the check has to fail on it. Every tolerance is the expression that its de
 
 from mxeon.conformance.checks.table import (
     combinations,
+    emission,
     energy,
+    hair,
     layers,
     lobes,
     microfacets,
@@ -23,5 +25,7 @@ CHECKS = (
     *energy.CHECKS,
     *microfacets.CHECKS,
     *combinations.CHECKS,
+    *emission.CHECKS,
+    *hair.CHECKS,
     *transmission.CHECKS,
 )
