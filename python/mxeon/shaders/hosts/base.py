@@ -147,6 +147,7 @@ class Host(ABC):
         irradiance : ndarray, shape (rows, columns, 3), or None
             Irradiance over pi of the environment for every normal, as a latitude-longitude map with
             row 0 upwards (+y) and its middle towards +z; None for a uniform environment of radiance 1.
+            What looks up radiance finds the same map.
 
         Returns
         -------

@@ -204,3 +204,17 @@ LAYERS = {
     for kind in KINDS
 }
 LAYERS |= dict.fromkeys(MICROFACET_KINDS, WHITE_FURNACE)
+TRANSMITTED = {  # by kind of probe of transmission
+    "transmission pairs": MICROFACET_ALBEDO,
+    "Schlick transmission pairs": SCHLICK_THROUGHPUT,
+}
+CLEAR = {
+    kind: Tolerance(
+        rounded_up(MICROFACET_ALBEDO.value + passed.value),
+        "light",
+        absolute,
+        f"a reflected albedo within {MICROFACET_ALBEDO.value:.2g}, and light that passes within "
+        f"{passed.value:.2g}; rounded up",
+    )
+    for kind, passed in TRANSMITTED.items()
+}
