@@ -66,6 +66,27 @@ def _product(checks: Sequence[str], subjects: Sequence[str]) -> tuple[tuple[str,
     return tuple((check, subject) for check in checks for subject in subjects)
 
 
+HAIR = "chiang_hair_bsdf"
+HAIR_ISSUES = (
+    Issue(
+        "genglsl_hair_uniform_lobe",
+        "gl",
+        (("lobes", HAIR),),
+        HARDWARE,
+        _product(("value", "integral"), (HAIR,)),
+    ),
+    Issue(
+        "genglsl_hair_longitudinal",
+        "gl",
+        _product(("narrow_lobes", "tilted_lobes"), (HAIR,)),
+        HARDWARE,
+        _product(("value", "black", "integral", "finite"), (HAIR,)),
+    ),
+    Issue("genglsl_hair_roughness", "gl", (("wide_lobes", HAIR),), HARDWARE),
+    Issue("genglsl_hair_azimuth", "gl", (("straight_views", HAIR),), HARDWARE, (("lobes", HAIR),)),
+    Issue("genglsl_hair_grazing", "gl", (("finite", HAIR),), HARDWARE, (("value", HAIR),)),
+    Issue("genglsl_hair_environment", "gl", (("environment", HAIR),), HARDWARE),
+)
 BSDF_ISSUES = (
     Issue("genglsl_zeltner_normal", "gl", (("value", ZELTNER),), HARDWARE),
     Issue(
@@ -120,24 +141,51 @@ BSDF_ISSUES = (
     ),
 )
 HAIR_ROUGHNESS = tuple(f"chiang_hair_roughness, roughness_{lobe}" for lobe in ("R", "TT", "TRT"))
-HAIR = (
+HAIR_NODES = (
     *HAIR_ROUGHNESS,
     "deon_hair_absorption_from_melanin",
     "chiang_hair_absorption_from_color",
 )
 UTILITY_ISSUES = (
     Issue("genglsl_blackbody_cold", "gl", (("output", "blackbody"),), HARDWARE),
-    Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR[3]),), HARDWARE),
+    Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR_NODES[3]),), HARDWARE),
     Issue(
         "genosl_hair_constants",
         "cycles",
-        _product(("output",), HAIR),
+        _product(("output",), HAIR_NODES),
         ("testrender",),
-        _product(("output_inputs",), HAIR),
+        _product(("output_inputs",), HAIR_NODES),
     ),
+)
+EMISSION_ISSUES = (
+    Issue(
+        "genglsl_missing_nodes",
+        "gl",
+        _product(
+            ("implemented",),
+            (
+                "conical_edf",
+                "measured_edf",
+                "absorption_vdf",
+                "mix, VDF",
+                "add, VDF",
+                "multiply, VDF",
+            ),
+        ),
+        HARDWARE,
+    ),
+    Issue(
+        "genglsl_medium_scattering",
+        "gl",
+        _product(("transmittance", "inputs"), ("anisotropic_vdf",)),
+        HARDWARE,
+    ),
+    Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
 )
 ISSUES = (
     *BSDF_ISSUES,
+    *EMISSION_ISSUES,
+    *HAIR_ISSUES,
     *UTILITY_ISSUES,
     Issue(
         "genglsl_clamped_dot",

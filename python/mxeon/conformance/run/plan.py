@@ -241,7 +241,8 @@ def _on_host(
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
         kind = probe_type_of(each, probe)
-        if kind and not (getattr(each, "closure", True) and _is_renderers(row.target, library)):
+        own = getattr(each, "closure", True) and _is_renderers(row.target, library)
+        if kind and not own and _is_judged(each, library):
             yield from _checks_of(each, kind.kind, host, library)
     if row.surfaces:
         for surface in SURFACES:
@@ -257,6 +258,11 @@ def _is_renderers(target: str, library: str) -> bool:
     The renderer's closures are judged with the stock library alone.
     """
     return target == "osl" and library in LIBRARIES and library != "stock"
+
+
+def _is_judged(subject: Any, library: str) -> bool:
+    """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
+    return library not in LIBRARIES or library in (getattr(subject, "libraries", ()) or LIBRARIES)
 
 
 def _native(host: str) -> Iterator[Task]:

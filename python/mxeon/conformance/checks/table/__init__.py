@@ -7,10 +7,13 @@ host; the check has to fail on it. Every tolerance is the expression that its de
 
 from mxeon.conformance.checks.table import (
     combinations,
+    emission,
     energy,
+    hair,
     layers,
     lobes,
     microfacets,
+    transmission,
     utilities,
 )
 from mxeon.conformance.checks.table.check import Check
@@ -23,5 +26,8 @@ CHECKS = (
     *energy.CHECKS,
     *microfacets.CHECKS,
     *combinations.CHECKS,
+    *emission.CHECKS,
+    *hair.CHECKS,
+    *transmission.CHECKS,
     *utilities.CHECKS,
 )
