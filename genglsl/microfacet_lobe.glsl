@@ -66,3 +66,11 @@ vec3 microfacet_environment(MicrofacetLobe lobe, vec3 X, int distribution, Fresn
     float drawn = lobe.mu_o + sqrt(dot(across, across) + mu2);
     return radiance * (drawn / (lobe.mu_o + sqrt(alpha2 + (1.0 - alpha2) * mu2)));
 }
+
+// Light of an environment from facets that reflect everything. A film's curve stays outside this sum,
+// as an average over the same facets.
+vec3 microfacet_white_environment(MicrofacetLobe lobe, vec3 X, int distribution)
+{
+    FresnelData white = mx_init_fresnel_schlick(vec3(1.0), vec3(1.0), vec3(1.0), 5.0, 0.0, 1.0);
+    return microfacet_environment(lobe, X, distribution, white);
+}

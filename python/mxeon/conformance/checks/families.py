@@ -8,6 +8,7 @@ from typing import Any
 from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
+from mxeon.conformance.checks.bsdf.thin_films import FILMS, film_probe_type
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,10 @@ class Family:
     probe_type: Callable[[Any, type[Any]], type[Any] | None]
 
 
-FAMILIES = (Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type),)
+FAMILIES = (
+    Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type),
+    Family(FILMS, film_probe_type),
+)
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 
 
