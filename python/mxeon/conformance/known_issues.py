@@ -31,6 +31,9 @@ DIELECTRIC, SCHLICK = (
     f"{node}_bsdf, scatter_mode R" for node in ("dielectric", "generalized_schlick")
 )
 MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
+FILMS = tuple(
+    f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
+)
 
 
 @dataclass(frozen=True)
@@ -138,6 +141,27 @@ BSDF_ISSUES = (
         (("value", DIELECTRIC), ("environment", DIELECTRIC)),
         HARDWARE,
         _product(("value", "environment", "integral", "shape"), MICROFACETS),
+    ),
+    Issue(
+        "genglsl_film_half",
+        "gl",
+        _product(("film", "film_limit"), FILMS[2:]),
+        HARDWARE,
+        _product(("film_environment", "film_throughput"), FILMS[2:]),
+    ),
+    Issue(
+        "genglsl_film_throughput",
+        "gl",
+        (("film_throughput", FILMS[0]),),
+        HARDWARE,
+        (("film_throughput", FILMS[2]),),
+    ),
+    Issue(
+        "pbrlib_thin_film",
+        "gl",
+        _product(("film", "film_limit"), FILMS[:2]),
+        HARDWARE,
+        _product(("film_environment",), FILMS[:2]),
     ),
 )
 EMISSION_ISSUES = (

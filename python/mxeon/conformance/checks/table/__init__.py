@@ -13,6 +13,7 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    thin_films,
     transmission,
 )
 from mxeon.conformance.checks.table.check import Check
@@ -28,4 +29,5 @@ CHECKS = (
     *emission.CHECKS,
     *hair.CHECKS,
     *transmission.CHECKS,
+    *thin_films.CHECKS,
 )
