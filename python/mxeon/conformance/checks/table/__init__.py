@@ -15,6 +15,7 @@ from mxeon.conformance.checks.table import (
     microfacets,
     thin_films,
     transmission,
+    utilities,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -30,4 +31,5 @@ CHECKS = (
     *hair.CHECKS,
     *transmission.CHECKS,
     *thin_films.CHECKS,
+    *utilities.CHECKS,
 )
