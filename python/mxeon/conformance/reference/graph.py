@@ -220,7 +220,8 @@ class Graph:
     def _given(self, path: Path, name: str) -> Any:
         """Value that was handed in, (N, 1) if it is one number for each point."""
         number = self._port(path, name).getType() in NUMBERS
-        return np.reshape(self._inputs[name], (-1, 1)) if number else self._inputs[name]
+        value = np.asarray(self._inputs[name])
+        return np.reshape(value, (-1, 1)) if number else value
 
     def _connected(self, around: Path, port: Any) -> Path:
         """Path of what an input or output within another path is connected to."""

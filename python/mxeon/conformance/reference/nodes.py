@@ -118,6 +118,8 @@ def _shaped(node: Any, port: str, value: Any) -> NDArray[np.float64]:
     if definition(node).getActiveInput(port).getType() in ("float", "boolean"):
         return np.reshape(np.asarray(value, np.float64), -1)
     array = np.atleast_2d(np.asarray(value, np.float64))
+    if port == "roughness":  # OpenPBR stretches a lobe beyond 1, and shaders take 1
+        array = np.clip(array, 0.0, 1.0)
     return np.broadcast_to(
         array, (len(array), COMPONENTS[definition(node).getActiveInput(port).getType()])
     )

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements of surface shaders as a whole."""
+
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.checks.batch import Batch
+from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+
+FEW = 32  # pairs that an input has to change
+BRANCHES = ("direct", "environment", "transmission")
+
+
+def value(probe: Any, metric: Metric) -> Measurement:
+    """Values against the sum of the lobes by the layer equation."""
+    pairs = zip(probe.batches, probe.expected, strict=True)
+    return worst_of(metric, (Case(batch, probe.direct(batch), each) for batch, each in pairs))
+
+
+def energy(probe: Any, metric: Metric) -> Measurement:
+    """Albedos above 1 over random materials with every lobe."""
+    albedo = probe.albedo(probe.materials)
+    return worst_of(metric, [Case(probe.materials, np.maximum(albedo, 1.0), np.ones((1, 3)))])
+
+
+def furnace(probe: Any, metric: Metric) -> Measurement:
+    """Albedo against 1 of a material that loses no light."""
+    albedo = probe.albedo(probe.white)
+    return worst_of(metric, [Case(probe.white, albedo, np.ones((1, 3)))])
+
+
+def reach(probe: Any, _: Metric) -> Measurement:
+    """Number of inputs that change something where the page says nothing, or the reverse."""
+    wrong = misplaced(probe)
+    return Measurement(len(wrong), {name: [0.0] for name in wrong})
+
+
+def misplaced(probe: Any) -> list[str]:
+    """The inputs of `reach`."""
+    silent = set(probe.subject.table.silent)
+    return sorted(silent.symmetric_difference(without_effect(probe)))
+
+
+def without_effect(probe: Any) -> list[str]:
+    """Inputs that change no value in any branch."""
+    [batch, *_] = probe.batches
+    pairs = batch.first(FEW)
+    names = list(probe.subject.changes)
+    for branch in BRANCHES:
+        names = [name for name in names if not _changes(probe, pairs, name, branch)]
+    return names
+
+
+def _changes(probe: Any, pairs: Batch, name: str, branch: str) -> bool:
+    """Whether a change of an input changes a value in a branch."""
+    before, after = (
+        probe.response(Batch(pairs.wo, pairs.wi, inputs), branch)
+        for inputs in probe.subject.changes[name]
+    )
+    return not np.array_equal(before, after)
