@@ -74,6 +74,13 @@ def of_value(probe: Any) -> Diagnosis:
     )
 
 
+def of_case(
+    probe: Any, case: Case, candidates: Sequence[Candidate], tolerance: Tolerance
+) -> Diagnosis:
+    """The explanation of values of one case, for pairs of directions, by candidates."""
+    return _explained(probe, [case], candidates, DIRECT, tolerance)
+
+
 @lru_cache(maxsize=2)
 def of_albedo(probe: Any) -> Diagnosis:
     """The explanation of the probe's environment branch."""

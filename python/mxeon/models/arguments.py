@@ -63,6 +63,19 @@ RANGES = {
     "azimuthal_roughness": (0.0, 1.0, "[0, 1]"),
     "thinfilm_thickness": (0.0, 1e9, "[0, 1e9]"),  # nm
     "thinfilm_ior": (1.0, 1e50, "[1, 1e50]"),
+    **dict.fromkeys(("tint_R", "tint_TT", "tint_TRT"), (0.0, 1.0, "[0, 1]")),
+    "variance": (1e-12, 1e12, "[1e-12, 1e12]"),  # where exponents and squares still fit
+    "scale": (1e-12, 1e12, "[1e-12, 1e12]"),
+    **dict.fromkeys(
+        ("roughness_R", "roughness_TT", "roughness_TRT"), (1e-12, 1e12, "[1e-12, 1e12]")
+    ),
+    "cuticle_angle": (0.0, 1.0, "[0, 1]"),
+    "absorption_coefficient": (0.0, 1e50, "[0, 1e50]"),
+    "x": (0.0, _LARGEST, "[0, inf)"),
+    "theta": (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]"),
+    "phi": (-_LARGEST, _LARGEST, "(-inf, inf)"),
+    "reflectance": (0.0, 1.0, "[0, 1]"),
+    "transmittance": (0.0, 1.0, "[0, 1]"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
@@ -155,6 +168,9 @@ def checked_sphere(name: str, value: ArrayLike) -> Numbers:
     mirrored = np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1)
     if not are_directions(np.moveaxis(mirrored, -1, 0)):
         refuse_direction(name, mirrored)
+    """Argument of shape (..., 3), of unit vectors on either side of the horizon."""
+    array = checked_triples(name, value)
+    checked_directions(name, array * np.where(array[..., 2:] < 0.0, [1.0, 1.0, -1.0], 1.0))
     return array
 
 

@@ -6,9 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
+from mxeon.conformance.checks.bsdf.hair import HAIRS, HairSubject
+from mxeon.conformance.checks.bsdf.hair_probes import HairProbe
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
+from mxeon.conformance.checks.probes import PairProbe
 
 
 @dataclass(frozen=True)
@@ -30,8 +33,14 @@ class Family:
     common: bool = False
 
 
+def hair_probe_type(_: HairSubject, probe: type[Any]) -> type[HairProbe] | None:
+    """Class of the probes of the hair node, which needs a host that evaluates any pairs."""
+    return HairProbe if probe is PairProbe else None
+
+
 FAMILIES = (
     Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
+    Family(HAIRS, hair_probe_type),
     Family(EMISSION_SUBJECTS, emission_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -227,16 +228,15 @@ def bsdf_evaluation(
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch, output)
     version, text = shader.stages["pixel"].split("\n", 1)
-    pixel = re.findall(r"\bout vec4 (\w+);", text)[0]
     # Subsurface scattering divides by what P changes from pixel to pixel: here it is that of a plane.
     body = [
         "vec3 P = vec3(gl_FragCoord.xy, 0.0);",
         call.statements,
-        f"{pixel} = vec4({call.value}, 1.0);",
+        f"{_output(text)} = vec4({call.value}, 1.0);",
     ]
     head = f"{version}\n{dialect.prelude}{RENAME}"
     main, texels = _main(dialect, call.arguments, body)
-    macros = "".join(f"#undef {name}\n" for name in ["main", *BOOLEAN.findall(text)])
+    macros = "".join(f"#undef {name}\n" for name in ["main", *_booleans(text)])
     return f"{head}{text}{macros}{main}", texels
 
 
@@ -281,6 +281,7 @@ def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
     }
 
 
+@lru_cache(maxsize=16)  # the checks of a node share its shader
 def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
     """Place and text of the statements that evaluate BSDFs for a closure type, result, arguments.
 
@@ -333,10 +334,22 @@ def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
 def _ports(shader: Shader) -> dict[str, Input]:
     """Inputs of a shader by name, with the booleans that its text makes of integers."""
     ports = {port.name: port for port in shader.inputs}
-    for name in BOOLEAN.findall(shader.stages["pixel"]):
+    for name in _booleans(shader.stages["pixel"]):
         if name in ports:
             ports[name] = replace(ports[name], type="boolean")
     return ports
+
+
+@lru_cache(maxsize=16)
+def _booleans(text: str) -> list[str]:
+    """Names of the inputs that a text for WGSL makes booleans of."""
+    return BOOLEAN.findall(text)
+
+
+@lru_cache(maxsize=16)
+def _output(text: str) -> str:
+    """Name of the output of a pixel stage."""
+    return str(re.findall(r"\bout vec4 (\w+);", text)[0])
 
 
 def _argument(

@@ -9,6 +9,7 @@ from mxeon.conformance.checks.table import (
     combinations,
     emission,
     energy,
+    hair,
     layers,
     lobes,
     microfacets,
@@ -24,4 +25,5 @@ CHECKS = (
     *microfacets.CHECKS,
     *combinations.CHECKS,
     *emission.CHECKS,
+    *hair.CHECKS,
 )

@@ -6,6 +6,7 @@ from typing import Any
 from mxeon.conformance import diagnosis, wiring
 from mxeon.conformance.checks import measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
+from mxeon.conformance.checks.bsdf.hair import HAIRS
 from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, KINDS
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -24,13 +25,14 @@ from mxeon.conformance.checks.table.names import COMBINATION, EMITTER, MEDIUM_NA
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbrlib import NODES
+from mxeon.models.pbrlib.hair import HAIR_NODE
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
-OPAQUE = tuple(row.name for row in NODES if not row.layerable)
-BLACK = tuple(subject.model for subject in BSDFS if subject.black)
+OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name)
+BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS) if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
