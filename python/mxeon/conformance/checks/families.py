@@ -12,6 +12,8 @@ from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.surfaces.probes import surface_probe_type
+from mxeon.conformance.checks.surfaces.subjects import SHADERS
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ FAMILIES = (
     Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
     Family(HAIRS, hair_probe_type),
     Family(EMISSION_SUBJECTS, emission_probe_type),
+    Family(SHADERS, surface_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(

@@ -2,7 +2,7 @@
 """Inputs of surface shaders, with the ranges that are asked of them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -37,6 +37,8 @@ class Inputs:
         surface_inputs.md says why.
     white : mapping of str to value
         A material that loses no light, by the layer equation.
+    needs : mapping of str to mapping
+        What else the material has where an input is changed.
     """
 
     judged: Mapping[str, Range]
@@ -45,6 +47,7 @@ class Inputs:
     changed: Mapping[str, Any]
     silent: tuple[str, ...]
     white: Mapping[str, Any]
+    needs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 def drawn(rng: np.random.Generator, count: int, ranges: Mapping[str, Range]) -> dict[str, Array]:
@@ -61,7 +64,9 @@ def drawn(rng: np.random.Generator, count: int, ranges: Mapping[str, Range]) -> 
 def _changed(ranges: Mapping[str, Range], **others: Any) -> dict[str, Any]:
     """A change for each input of a table, and for others."""
     changes: dict[str, Any] = {
-        name: CHANGED_COLOR if isinstance(limits, str) else limits[0] + 0.7 * (limits[1] - limits[0])
+        name: CHANGED_COLOR
+        if isinstance(limits, str)
+        else limits[0] + 0.7 * (limits[1] - limits[0])
         for name, limits in ranges.items()
     }
     return {**changes, **others}
@@ -187,9 +192,11 @@ OPEN_PBR = Inputs(
         "base_metalness": 0.4,
         "specular_roughness_anisotropy": 0.5,
         "coat_weight": 0.5,
+        "coat_roughness": 0.4,
         "coat_roughness_anisotropy": 0.5,
         "fuzz_weight": 0.5,
         "transmission_weight": 0.4,
+        "transmission_color": (0.5, 0.6, 0.7),
         "subsurface_weight": 0.4,
         "thin_film_weight": 0.5,
     },
@@ -266,11 +273,10 @@ GLTF = Inputs(
         attenuation_distance=2.0,
         attenuation_color=CHANGED_COLOR,
         dispersion=0.5,
-        occlusion=0.5,
         clearcoat_normal=TURNED["normal"],
         **TURNED,
     ),
-    silent=("thickness", "attenuation_distance", "attenuation_color", "dispersion", "occlusion"),
+    silent=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
     white={
         "base_color": (1.0, 1.0, 1.0),
         "metallic": 0.0,
@@ -295,7 +301,7 @@ _PREVIEW_OTHERS: dict[str, Range] = {"opacity": SHARE}
 PREVIEW = Inputs(
     _PREVIEW,
     _PREVIEW_OTHERS,
-    seen={"metallic": 0.4, "clearcoat": 0.5, "useSpecularWorkflow": 0},
+    seen={"metallic": 0.4, "clearcoat": 0.5, "opacity": 0.6},
     changed=_changed(
         {**_PREVIEW, **_PREVIEW_OTHERS},
         useSpecularWorkflow=1,
@@ -303,8 +309,8 @@ PREVIEW = Inputs(
         opacityThreshold=0.5,
         normal=(0.6, 0.0, 0.8),
         displacement=0.5,
-        occlusion=0.5,
     ),
-    silent=("displacement", "occlusion"),
+    silent=("displacement",),
     white={"diffuseColor": (1.0, 1.0, 1.0), "clearcoat": 1.0, "clearcoatRoughness": 0.4},
+    needs={"specularColor": {"useSpecularWorkflow": 1}},
 )

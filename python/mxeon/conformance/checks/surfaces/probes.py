@@ -12,11 +12,13 @@ from mxeon.conformance.checks.bsdf.probes import LEAST_VIEW, reflected
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.surfaces.subjects import SurfaceShader
 from mxeon.conformance.reference import Host as Reference
+from mxeon.shaders.hosts.fragment import NORMAL, TANGENT
 
 WHOLE = "surface pairs"  # kind of probe
 PAIRS = 256  # of directions, each with a material of its own
 VIEWS = 64  # whose albedo is asked
-MATERIALS = 1 << 12  # whose energy is
+MATERIALS = 1 << 11  # whose energy is
+CHANGED = 8  # pairs that a change of an input has to show in
 SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
 
@@ -27,7 +29,7 @@ class SurfaceProbe(PairProbe):
 
     kind: ClassVar[str] = WHOLE
 
-    subject: SurfaceShader
+    subject: SurfaceShader  # type: ignore[assignment]  # evaluated by the same verbs
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -74,6 +76,33 @@ class SurfaceProbe(PairProbe):
         [batch] = self.cosines
         return replace(batch, inputs=self.subject.table.white)
 
+    @cached_property
+    def changed(self) -> Batch:
+        """A few views for each input: of the material with every lobe, then with a change of it."""
+        table = self.subject.table
+        rows = []
+        for name in self.subject.inputs:
+            before = {**table.seen, **table.needs.get(name, {})}
+            rows += [before, {**before, name: table.changed[name]}]
+        [batch] = self.batches
+        few = batch.first(CHANGED)
+        defaults = self._defaults
+        names = sorted({name for row in rows for name in row})
+        inputs = {
+            name: np.repeat(
+                [np.asarray(row.get(name, defaults[name]), float) for row in rows], CHANGED, 0
+            )
+            for name in names
+        }
+        return Batch(np.tile(few.wo, (len(rows), 1)), np.tile(few.wi, (len(rows), 1)), inputs)
+
+    @property
+    def _defaults(self) -> dict[str, Any]:
+        """Values of the inputs that a document does not set."""
+        vectors = {name: TANGENT if "tangent" in name else NORMAL for name in self.subject.inputs}
+        ports = {port.path.rsplit("/", 1)[-1]: port.value for port in self._shader.inputs}
+        return vectors | ports
+
     def response(self, batch: Batch, branch: str) -> Array:
         """Values in any branch, (N, 3)."""
         return self._evaluate(batch, branch)
@@ -86,7 +115,9 @@ class SurfaceProbe(PairProbe):
     def _views(self, rng: np.random.Generator, count: int) -> Array:
         """Random directions, none so grazing that a sheen's own equations gain energy."""
         wo = directions(rng, count)
-        return np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo).astype(np.float32).astype(float)
+        return (
+            np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo).astype(np.float32).astype(float)
+        )
 
     def _reference(self, batch: Batch, branch: str) -> Array:
         """Values of the reference for the same document, (N, 3)."""

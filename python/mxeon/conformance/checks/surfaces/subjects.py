@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Candidate
-from mxeon.conformance.checks.nodes import Changes
 from mxeon.conformance.checks.surfaces.inputs import (
     GLTF,
     OPEN_PBR,
@@ -30,15 +29,10 @@ class SurfaceShader:
         Category.
     table : Inputs
         Its inputs.
-    microfacets, sheens, layers : int
-        Most lobes of microfacets and of sheen that lie over each other, and layers among them.
     """
 
     node: str
     table: Inputs
-    microfacets: int
-    sheens: int
-    layers: int
 
     flag = None
 
@@ -54,14 +48,8 @@ class SurfaceShader:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the inputs that reach its lobes."""
-        return tuple(self.changes)
-
-    @property
-    def changes(self) -> dict[str, Changes]:
-        """For each input: inputs without and with a change of it alone."""
-        seen = self.table.seen
-        return {name: (seen, {**seen, name: value}) for name, value in self.table.changed.items()}
+        """Names of the inputs that its lobes may depend on."""
+        return tuple(self.table.changed)
 
     def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
         """The inputs."""
@@ -88,8 +76,8 @@ class SurfaceShader:
 
 
 SHADERS = (
-    SurfaceShader("standard_surface", STANDARD, microfacets=2, sheens=1, layers=3),
-    SurfaceShader("open_pbr_surface", OPEN_PBR, microfacets=2, sheens=1, layers=3),
-    SurfaceShader("gltf_pbr", GLTF, microfacets=2, sheens=1, layers=3),
-    SurfaceShader("UsdPreviewSurface", PREVIEW, microfacets=2, sheens=0, layers=2),
+    SurfaceShader("standard_surface", STANDARD),
+    SurfaceShader("open_pbr_surface", OPEN_PBR),
+    SurfaceShader("gltf_pbr", GLTF),
+    SurfaceShader("UsdPreviewSurface", PREVIEW),
 )

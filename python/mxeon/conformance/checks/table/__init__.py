@@ -13,6 +13,7 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    surfaces,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -26,4 +27,5 @@ CHECKS = (
     *combinations.CHECKS,
     *emission.CHECKS,
     *hair.CHECKS,
+    *surfaces.CHECKS,
 )
