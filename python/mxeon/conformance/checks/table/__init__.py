@@ -13,6 +13,8 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    surfaces,
+    thin_films,
     transmission,
     utilities,
 )
@@ -29,5 +31,7 @@ CHECKS = (
     *emission.CHECKS,
     *hair.CHECKS,
     *transmission.CHECKS,
+    *thin_films.CHECKS,
     *utilities.CHECKS,
+    *surfaces.CHECKS,
 )
