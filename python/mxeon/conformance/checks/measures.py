@@ -222,10 +222,14 @@ def inputs(probe: Any, _: Metric) -> Measurement:
 def dead_inputs(probe: Any) -> list[str]:
     """The inputs of `inputs`."""
     batch = probe.few[0]
+    plain = probe.direct(batch)  # most changes are of the batch as it is
     return [
         name
-        for name, pair in probe.subject.changes.items()
-        if np.array_equal(*(probe.direct(batch.altered(**change)) for change in pair))
+        for name, (before, after) in probe.subject.changes.items()
+        if np.array_equal(
+            probe.direct(batch.altered(**before)) if before else plain,
+            probe.direct(batch.altered(**after)),
+        )
     ]
 
 
