@@ -38,7 +38,13 @@ def dielectric(mu: Array, ior: Array) -> Array:
 
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
-    """F: [MaterialX2026], Conductor Fresnel Equations, without a cancellation.
+    """F: [MaterialX2026], Conductor Fresnel Equations."""
+    Rp, Rs = polarized(mu, ior, extinction)
+    return np.minimum(0.5 * (Rs + Rp), 1.0)
+
+
+def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
+    """R_p and R_s: [MaterialX2026], Conductor Fresnel Equations, without a cancellation.
 
     w = a + i b = sqrt(n^2 - sin^2), n = ior + i extinction;  R_s = |n^2 - 1|^2 / |w + c|^4.
     No interface (n = 1) reflects nothing, at grazing too; n = 0 reflects all, along the normal too.
@@ -62,10 +68,10 @@ def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
     smaller = ior * extinction / np.where(larger > 0.0, larger, 1.0)
     a, b = np.where(real >= 0.0, larger, smaller), np.where(real >= 0.0, smaller, larger)
     total = (a + mu) ** 2 + b * b
-    Rs = (gap / np.where(total > 0.0, total, 1.0)) ** 2
+    Rs = np.minimum((gap / np.where(total > 0.0, total, 1.0)) ** 2, 1.0)
     minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
     Rp = Rs * np.where(plus > 0.0, minus / np.where(plus > 0.0, plus, 1.0), 1.0)
-    return np.minimum(0.5 * (Rs + Rp), 1.0)
+    return Rp, Rs
 
 
 def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:

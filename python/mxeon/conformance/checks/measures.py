@@ -223,14 +223,13 @@ def dead_inputs(probe: Any) -> list[str]:
     """The inputs of `inputs`."""
     batch = probe.few[0]
     plain = probe.direct(batch)  # most changes are of the batch as it is
-    return [
-        name
-        for name, (before, after) in probe.subject.changes.items()
-        if np.array_equal(
-            probe.direct(batch.altered(**before)) if before else plain,
-            probe.direct(batch.altered(**after)),
-        )
-    ]
+    dead = []
+    for name, (before, after) in probe.subject.changes.items():
+        one = probe.direct(batch.altered(**before)) if before else plain
+        other = probe.direct(batch.altered(**after))
+        if np.array_equal(one, other, equal_nan=True):
+            dead.append(name)
+    return dead
 
 
 def finite(probe: Any, _: Metric) -> Measurement:
