@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from docs.upstream import materialx_repairs as repairs
-from mxeon.conformance.known_issues import CONTY_KULLA, DIELECTRIC, ZELTNER
+from mxeon.conformance.known_issues import CONTY_KULLA, DIELECTRIC, TRANSMITTING, ZELTNER
 from mxeon.conformance.results import PASSED
 from tests.support.availability import available
 
@@ -26,6 +26,9 @@ ROWS = (
     ("frame", "translucent_bsdf"),
     ("finite", DIELECTRIC),
     ("finite", "conductor_bsdf"),
+    ("transmitted", TRANSMITTING[1]),
+    ("refraction", TRANSMITTING[1]),
+    ("transmitted_finite", TRANSMITTING[3]),
 )
 ROUNDING = (
     1.5  # tolerances of the value of a sharp Zeltner lobe in float32, from aInv w.x + bInv w.z

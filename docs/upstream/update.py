@@ -15,9 +15,10 @@ import MaterialX as mx
 import numpy as np
 
 from docs.upstream.pbr_quantities import OF_PBRLIB
+from docs.upstream.transmission_quantities import OF_TRANSMISSION
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import SOURCE, make_plan
+from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
 from mxeon.io.files import write_text
 from mxeon.models import albedo, formulas
 from mxeon.models import brdf as models
@@ -83,6 +84,8 @@ CAUSES = {
     "genglsl_microfacet_compensation": Cause(
         f"{PBRLIB}/mx_dielectric_bsdf.glsl", 47, "energy_compensation"
     ),
+    "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
+    "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -109,7 +112,7 @@ def judged(host):
         If the host cannot run here.
     """
     rows = {row for issue in ISSUES if issue.host == host for row in issue.rows}
-    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,)).tasks
+    tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,), nodes=(ALL,)).tasks
     chosen = [
         each
         for each in tasks
@@ -211,6 +214,7 @@ OF_QUANTITIES = {
     "pbrlib_printed_angles": printed_angles_block,
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
+    **OF_TRANSMISSION,
 }
 
 
