@@ -139,15 +139,17 @@ def _smooth(probe: Any) -> Batch:
 
 def finite(probe: Any, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
-    batch = probe.edges
-    bad = ~np.isfinite(probe.transmitted(batch)).all(axis=1)
+    batch, values, _expected = finite_case(probe)
+    bad = ~np.isfinite(values).all(axis=1)
     return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
 
 
 def finite_case(probe: Any) -> Case:
-    """The case of `finite`."""
-    values = probe.transmitted(probe.edges)
-    return Case(probe.edges, values, np.zeros_like(values))
+    """The case of `finite`, of every fifth pair: each costs a sum over directions."""
+    batch: Batch = probe.edges
+    batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
+    values = probe.transmitted(batch)
+    return Case(batch, values, np.zeros_like(values))
 
 
 def inputs(probe: Any, _: Metric) -> Measurement:
