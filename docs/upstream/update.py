@@ -17,6 +17,7 @@ import numpy as np
 from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
+from docs.upstream.transmission_quantities import OF_TRANSMISSION
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
@@ -106,6 +107,8 @@ CAUSES = {
     "genosl_hair_constants": Cause(
         "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
     ),
+    "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
+    "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -246,6 +249,7 @@ OF_QUANTITIES = {
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
     **OF_SUBSURFACE,
+    **OF_TRANSMISSION,
 }
 
 

@@ -34,6 +34,11 @@ MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
 FILMS = tuple(
     f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
 )
+TRANSMITTING = tuple(
+    f"{node}_bsdf, scatter_mode {mode}"
+    for node in ("dielectric", "generalized_schlick")
+    for mode in ("T", "RT")
+)
 
 
 @dataclass(frozen=True)
@@ -119,7 +124,27 @@ BSDF_ISSUES = (
         "gl",
         (("finite", DIELECTRIC),),
         HARDWARE,
-        (("finite", "conductor_bsdf"),),
+        (
+            ("finite", "conductor_bsdf"),
+            *_product(("transmitted_finite",), TRANSMITTING[:2]),
+        ),
+    ),
+    Issue(
+        "genglsl_transmission_masking",
+        "gl",
+        (("transmitted", TRANSMITTING[1]), ("clear", TRANSMITTING[1])),
+        HARDWARE,
+        _product(("transmitted", "clear"), TRANSMITTING),
+    ),
+    Issue(
+        "genglsl_refraction_nan",
+        "gl",
+        (("transmitted_finite", TRANSMITTING[3]),),
+        HARDWARE,
+        (
+            *_product(("transmitted_finite",), TRANSMITTING),
+            *_product(("transmitted", "clear"), TRANSMITTING[2:]),
+        ),
     ),
     Issue(
         "genglsl_microfacet_throughput",
