@@ -25,6 +25,8 @@ ROWS = (
     ("value", CONTY_KULLA),
     OF_FIT,
     ("frame", "translucent_bsdf"),
+    ("transmittance", "anisotropic_vdf"),
+    ("inputs", "anisotropic_vdf"),
     ("finite", DIELECTRIC),
     ("finite", "conductor_bsdf"),
     *((check, HAIR) for check in ("value", "black", "finite", "integral", "lobes", "narrow_lobes")),

@@ -134,6 +134,13 @@ REPAIRS = (
         for kind, factor in (("float", "weight"), ("color3", "tint"))
     ),
     _glsl(
+        "genglsl_medium_scattering",
+        "mx_anisotropic_vdf.glsl",
+        9,
+        "exp(-absorption)",
+        "exp(-(absorption + scattering))",
+    ),
+    _glsl(
         "genglsl_zeltner_normal",
         LOBES,
         121,

@@ -13,6 +13,10 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    surfaces,
+    thin_films,
+    transmission,
+    utilities,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -26,4 +30,8 @@ CHECKS = (
     *combinations.CHECKS,
     *emission.CHECKS,
     *hair.CHECKS,
+    *transmission.CHECKS,
+    *thin_films.CHECKS,
+    *utilities.CHECKS,
+    *surfaces.CHECKS,
 )
