@@ -134,7 +134,7 @@ EMISSION_ISSUES = (
                 "multiply, VDF",
             ),
         ),
-        HARDWARE,
+        (*HARDWARE, "cycles"),
     ),
     Issue(
         "genglsl_medium_scattering",
