@@ -16,6 +16,7 @@ import numpy as np
 
 from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
+from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
@@ -89,6 +90,22 @@ CAUSES = {
     ),
     "genglsl_medium_scattering": Cause(f"{PBRLIB}/mx_anisotropic_vdf.glsl", 9, "exp(-absorption)"),
     "pbrlib_edf_sides": Cause(f"{PBRLIB}/mx_generalized_schlick_edf.glsl", 8, "forward_facing"),
+    **{
+        f"genglsl_hair_{page}": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", line, word)
+        for page, line, word in (
+            ("uniform_lobe", 263, "1.0 / 2.0 * M_PI"),
+            ("longitudinal", 88, "1.0 / (8.0 * x)"),
+            ("roughness", 247, "clamp(roughness_R"),
+            ("azimuth", 218, "sinGammaO"),
+            ("grazing", 186, "T * f"),
+            ("environment", 286, "mx_environment_radiance"),
+        )
+    },
+    "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
+    "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
+    "genosl_hair_constants": Cause(
+        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
+    ),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -228,6 +245,7 @@ OF_QUANTITIES = {
     "pbrlib_printed_angles": printed_angles_block,
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
+    **OF_SUBSURFACE,
 }
 
 

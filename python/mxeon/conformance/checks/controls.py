@@ -55,6 +55,10 @@ class Altered:
         """Albedos of the changed batch, changed."""
         return self.values(batch, self.probe.albedo(self.batch(batch), *irradiance))
 
+    def transmitted(self, batch: Batch, *radiance: Array) -> Array:
+        """Light through the surface of the changed batch, changed."""
+        return self.values(batch, self.probe.transmitted(self.batch(batch), *radiance))
+
     def throughput(self, batch: Batch, branch: str) -> Array:
         """Throughputs of the changed batch, changed."""
         return self.throughputs(batch, self.probe.throughput(self.batch(batch), branch))
@@ -102,6 +106,14 @@ def scale(factor: float) -> Control:
 def offset(probe: Any) -> Altered:
     """A control to whose values a thousandth is added."""
     return Altered(probe, values=lambda batch, values: values + 1e-3)
+
+
+def no_number(probe: Any) -> Altered:
+    """A control whose first value is not a number."""
+    return Altered(
+        probe,
+        values=lambda batch, values: np.where(np.arange(len(values))[:, None], values, np.nan),
+    )
 
 
 def rougher(probe: Any) -> Altered:

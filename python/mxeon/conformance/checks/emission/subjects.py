@@ -73,9 +73,9 @@ class EmissionSubject:
     libraries: tuple[str, ...] = field(default=(), init=False)
 
     @property
-    def in_osl(self) -> bool:
-        """Whether eonlib has an implementation of its own in OSL."""
-        return self.row.name == "conical"
+    def closure(self) -> bool:
+        """Whether eonlib leaves it to the closures of a renderer, in OSL."""
+        return self.row.name != "conical"
 
     @property
     def title(self) -> str:

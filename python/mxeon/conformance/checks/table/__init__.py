@@ -13,6 +13,9 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    thin_films,
+    transmission,
+    utilities,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -26,4 +29,7 @@ CHECKS = (
     *combinations.CHECKS,
     *emission.CHECKS,
     *hair.CHECKS,
+    *transmission.CHECKS,
+    *thin_films.CHECKS,
+    *utilities.CHECKS,
 )
