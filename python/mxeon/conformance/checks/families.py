@@ -14,6 +14,8 @@ from mxeon.conformance.checks.bsdf.thin_films import FILMS, film_probe_type
 from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.surfaces.probes import surface_probe_type
+from mxeon.conformance.checks.surfaces.subjects import SHADERS
 from mxeon.conformance.checks.values.probes import utility_probe_type
 from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 
@@ -49,6 +51,7 @@ FAMILIES = (
     Family(TRANSMITTING, transmission_probe_type),
     Family(FILMS, film_probe_type),
     Family(UTILITY_SUBJECTS, utility_probe_type),
+    Family(SHADERS, surface_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(

@@ -13,6 +13,7 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    surfaces,
     thin_films,
     transmission,
     utilities,
@@ -32,4 +33,5 @@ CHECKS = (
     *transmission.CHECKS,
     *thin_films.CHECKS,
     *utilities.CHECKS,
+    *surfaces.CHECKS,
 )
