@@ -204,7 +204,7 @@ EMISSION_ISSUES = (
                 "multiply, VDF",
             ),
         ),
-        HARDWARE,
+        (*HARDWARE, "cycles"),
     ),
     Issue(
         "genglsl_medium_scattering",
