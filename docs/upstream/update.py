@@ -18,6 +18,7 @@ from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
+from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
@@ -103,6 +104,7 @@ CAUSES = {
         )
     },
     "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
+    "genslang_blackbody_constant": Cause(f"{PBRLIB}/mx_blackbody.glsl", 2, "const mat3"),
     "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
     "genosl_hair_constants": Cause(
         "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
@@ -225,6 +227,14 @@ def dropped_normal_block():
     )
 
 
+def slang_constant_block():
+    """Matrices outside of functions in the Slang of a black body that are no static constants."""
+    [subject] = [each for each in UTILITY_SUBJECTS if each.node == "blackbody"]
+    [shader] = generate(subject.document(), "slang", library=STOCK)
+    found = re.findall(r"^const float3x3 \w+ =", shader.stages["pixel"], re.MULTILINE)
+    return _quantities("constants outside of functions without static", [float(len(found))], [0.0])
+
+
 def edf_sides_block():
     """Factor of generalized_schlick_edf at 60 degrees from the normal, on both sides."""
     cosines = np.array([0.5, -0.5])
@@ -243,6 +253,7 @@ def _quantities(name, measured, expected):
 OF_QUANTITIES = {
     "dropped_normal": dropped_normal_block,
     "genglsl_light_scope": light_block,
+    "genslang_blackbody_constant": slang_constant_block,
     "openpbr_printed_pi": printed_pi_block,
     "pbrlib_edf_sides": edf_sides_block,
     "pbrlib_printed_angles": printed_angles_block,

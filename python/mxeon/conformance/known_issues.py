@@ -221,7 +221,13 @@ HAIR_UTILITIES = (
     "chiang_hair_absorption_from_color",
 )
 UTILITY_ISSUES = (
-    Issue("genglsl_blackbody_cold", "gl", (("output", "blackbody"),), HARDWARE),
+    Issue(
+        "genglsl_blackbody_cold",
+        "gl",
+        (("output", "blackbody"),),
+        HARDWARE,
+        _product(("output_inputs", "output_finite"), ("blackbody",)),  # of Slang, see the page
+    ),
     Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR_UTILITIES[3]),), HARDWARE),
     Issue(
         "genosl_hair_constants",
