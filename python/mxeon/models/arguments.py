@@ -34,6 +34,10 @@ RANGES = {
     "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
     "ior": (0.0, 1e50, "[0, 1e50]"),
     "extinction": (0.0, 1e50, "[0, 1e50]"),
+    "single_scatter": (0.0, 1.0, "[0, 1]"),
+    "anisotropy": (-1.0, 1.0, "[-1, 1]"),
+    "distance": (float(np.nextafter(0.0, 1.0)), _LARGEST, "(0, inf)"),
+    "radius": (float(np.nextafter(0.0, 1.0)), _LARGEST, "(0, inf)"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
