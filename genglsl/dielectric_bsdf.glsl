@@ -29,7 +29,8 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     // Averages are those without a film: a film's curve costs as much as all the rest, at each cosine.
     vec3 F_ss = vec3(fresnel_dielectric_avg(ior));
     float F_o = fresnel_dielectric(ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior), ior);
-    vec3 scale = max(tint, 0.0) * microfacet_compensation(lobe, F_ss) * weight;
+    vec3 compensation = microfacet_compensation(lobe, F_ss);
+    vec3 scale = max(tint, 0.0) * compensation * weight;
 
     bsdf.throughput = max(1.0 - lobe.albedo * F_o * scale, 0.0);
 
@@ -40,8 +41,8 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     }
     else if (transmission && scatter_mode != 0)
     {
-        bsdf.response = mx_surface_transmission(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd,
-                                                max(tint, 0.0)) * weight;
+        vec3 passed = max(1.0 - lobe.albedo * F_o * compensation, 0.0);
+        bsdf.response = microfacet_transmission(lobe, X, distribution, fd, max(tint, 0.0), passed) * weight;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {

@@ -32,9 +32,11 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
 
     // Averages are those without a film: a film's curve costs as much as all the rest, at each cosine.
     vec3 F_ss = fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
-    vec3 scale = microfacet_compensation(lobe, F_ss) * weight;
+    vec3 compensation = microfacet_compensation(lobe, F_ss);
+    vec3 scale = compensation * weight;
+    vec3 single = lobe.albedo * generalized_schlick_average(lobe, fd, dip);
 
-    bsdf.throughput = max(1.0 - lobe.albedo * generalized_schlick_average(lobe, fd, dip) * scale, 0.0);
+    bsdf.throughput = max(1.0 - single * scale, 0.0);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
@@ -44,8 +46,8 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     else if (transmission && scatter_mode != 0)
     {
         fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));
-        bsdf.response = mx_surface_transmission(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd,
-                                                vec3(1.0)) * weight;
+        vec3 passed = max(1.0 - single * compensation, 0.0);
+        bsdf.response = microfacet_transmission(lobe, X, distribution, fd, vec3(1.0), passed) * weight;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {

@@ -115,6 +115,14 @@ XYZ_TO_REC709 = np.array(
         [0.0556434, -0.2040259, 1.0572252],
     ]
 )
+# The same for a white of equal energy, which becomes D65 by a Bradford adaptation: rows sum to 1.
+XYZ_TO_REC709_E = np.array(
+    [
+        [3.1462511, -1.6661240, -0.4801271],
+        [-0.9955350, 1.9557635, 0.0397715],
+        [0.0635978, -0.2145965, 1.1509987],
+    ]
+)
 
 
 def matching_functions(wavelength: ArrayLike) -> Array:

@@ -65,7 +65,7 @@ def dielectric_albedo_dir(
     vectors = {"tint": np.atleast_1d(checked("tint", tint))}
 
     numbers = {"ior": checked("ior", ior)}
-    return _albedo(DIELECTRIC, wo, roughness, vectors, numbers, compensate)
+    return lobe_albedo(DIELECTRIC, wo, roughness, vectors, numbers, compensate)
 
 
 def conductor_albedo_dir(
@@ -110,7 +110,7 @@ def conductor_albedo_dir(
         "ior": np.atleast_1d(checked("ior", ior)),
         "extinction": np.atleast_1d(checked("extinction", extinction)),
     }
-    return _albedo(CONDUCTOR, wo, roughness, vectors, {}, compensate)
+    return lobe_albedo(CONDUCTOR, wo, roughness, vectors, {}, compensate)
 
 
 def generalized_schlick_albedo_dir(
@@ -156,7 +156,7 @@ def generalized_schlick_albedo_dir(
     colors = {"color0": color0, "color82": color82, "color90": color90}
     vectors = {name: np.atleast_1d(checked(name, value)) for name, value in colors.items()}
     numbers = {"exponent": checked("exponent", exponent)}
-    return _albedo(SCHLICK, wo, roughness, vectors, numbers, compensate)
+    return lobe_albedo(SCHLICK, wo, roughness, vectors, numbers, compensate)
 
 
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
@@ -198,10 +198,10 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     array([0.837774, 0.874089])
     """
 
-    return _albedo(WHITE, wo, roughness, {"tint": np.ones(1)}, {}, False)[..., 0][()]
+    return lobe_albedo(WHITE, wo, roughness, {"tint": np.ones(1)}, {}, False)[..., 0][()]
 
 
-def _albedo(
+def lobe_albedo(
     curve: Curve,
     wo: ArrayLike,
     roughness: ArrayLike,

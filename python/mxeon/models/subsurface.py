@@ -16,7 +16,7 @@ SQUARED = (9.59217, 41.6808, 17.7126)
 LOSS, GAIN = 0.139, 1.17  # of van de Hulst's fit
 
 
-def subsurface_albedo(rho: ArrayLike, anisotropy: ArrayLike = 0.0) -> Array:
+def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
     """Single-scattering albedo of a medium that has a diffuse reflectance.
 
         d = 4.09712 + 4.20863 rho - sqrt(9.59217 + 41.6808 rho + 17.7126 rho^2)
@@ -26,7 +26,7 @@ def subsurface_albedo(rho: ArrayLike, anisotropy: ArrayLike = 0.0) -> Array:
     ----------
     rho : array_like
         Diffuse reflectance, dimensionless, in [0, 1]: the node's color.
-    anisotropy : array_like, broadcasts with rho
+    scatter_anisotropy : array_like, broadcasts with rho
         Mean cosine g of a scattering, dimensionless, in [-1, 1].
 
     Returns
@@ -55,14 +55,14 @@ def subsurface_albedo(rho: ArrayLike, anisotropy: ArrayLike = 0.0) -> Array:
     array([0.613357, 0.911709, 0.990589])
     """
     color = np.asarray(checked("rho", rho), np.float64)
-    g = np.asarray(checked("anisotropy", anisotropy), np.float64)
+    g = np.asarray(checked("scatter_anisotropy", scatter_anisotropy), np.float64)
     polynomial = SQUARED[0] + SQUARED[1] * color + SQUARED[2] * color**2
     d = LINEAR[0] + LINEAR[1] * color - np.sqrt(polynomial)
     isotropic = 1.0 - d * d
     return np.asarray(isotropic / (1.0 - g * d * d))
 
 
-def subsurface_reflectance(single_scatter: ArrayLike, anisotropy: ArrayLike = 0.0) -> Array:
+def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
     """Diffuse reflectance of a half space, by van de Hulst's fit.
 
         s^2 = (1 - w) / (1 - g w),  rho = (1 - s) (1 - 0.139 s) / (1 + 1.17 s)
@@ -71,7 +71,7 @@ def subsurface_reflectance(single_scatter: ArrayLike, anisotropy: ArrayLike = 0.
     ----------
     single_scatter : array_like
         Single-scattering albedo w, dimensionless, in [0, 1].
-    anisotropy : array_like, broadcasts with it
+    scatter_anisotropy : array_like, broadcasts with it
         Mean cosine g of a scattering, dimensionless, in [-1, 1).
 
     Returns
@@ -99,14 +99,14 @@ def subsurface_reflectance(single_scatter: ArrayLike, anisotropy: ArrayLike = 0.
     0.5
     """
     w = np.asarray(checked("single_scatter", single_scatter), np.float64)
-    g = np.asarray(checked("anisotropy", anisotropy), np.float64)
+    g = np.asarray(checked("scatter_anisotropy", scatter_anisotropy), np.float64)
     with np.errstate(invalid="ignore", divide="ignore"):
         s = np.sqrt(np.where(w == 1.0, 0.0, (1.0 - w) / (1.0 - g * w)))
     return np.asarray((1.0 - s) * (1.0 - LOSS * s) / (1.0 + GAIN * s))
 
 
 def subsurface_coefficients(
-    rho: ArrayLike, radius: ArrayLike, anisotropy: ArrayLike = 0.0
+    rho: ArrayLike, radius: ArrayLike, scatter_anisotropy: ArrayLike = 0.0
 ) -> tuple[Array, Array]:
     """Coefficients of scattering and of absorption, each over a length.
 
@@ -118,7 +118,7 @@ def subsurface_coefficients(
         Diffuse reflectance, dimensionless, in [0, 1].
     radius : array_like, broadcasts with rho
         Mean free path l, a length, above 0.
-    anisotropy : array_like, broadcasts with rho
+    scatter_anisotropy : array_like, broadcasts with rho
         Mean cosine g of a scattering, dimensionless, in [-1, 1].
 
     Returns
@@ -140,20 +140,20 @@ def subsurface_coefficients(
     >>> [round(float(each), 4) for each in subsurface_coefficients(0.5, 0.1)]
     [9.1171, 0.8829]
     """
-    albedo, length = subsurface_albedo(rho, anisotropy), checked("radius", radius)
+    albedo, length = subsurface_albedo(rho, scatter_anisotropy), checked("radius", radius)
     return np.asarray(albedo / length), np.asarray((1.0 - albedo) / length)
 
 
-def diffusion_profile(distance: ArrayLike, radius: ArrayLike) -> Array:
+def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
     """Share of the light that leaves at a distance from where it enters, per area.
 
         R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
 
     Parameters
     ----------
-    distance : array_like
+    separation : array_like
         Distance r, a length, above 0.
-    radius : array_like, broadcasts with distance
+    radius : array_like, broadcasts with separation
         Mean free path l, a length, above 0.
 
     Returns
@@ -176,20 +176,20 @@ def diffusion_profile(distance: ArrayLike, radius: ArrayLike) -> Array:
     >>> diffusion_profile(1.0, 1.0).round(6).item()
     0.043147
     """
-    r, length = checked("distance", distance), checked("radius", radius)
+    r, length = checked("separation", separation), checked("radius", radius)
     return np.asarray(
         (np.exp(-r / length) + np.exp(-r / (3.0 * length))) / (8.0 * np.pi * length * r)
     )
 
 
-def diffusion_cdf(distance: ArrayLike, radius: ArrayLike) -> Array:
+def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
     """Share of the light that leaves a plane within a distance of where it enters.
 
         C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
 
     Parameters
     ----------
-    distance, radius : array_like
+    separation, radius : array_like
         As in `diffusion_profile`.
 
     Returns
@@ -207,7 +207,7 @@ def diffusion_cdf(distance: ArrayLike, radius: ArrayLike) -> Array:
     >>> diffusion_cdf(2.5, 1.0).round(6).item()
     0.65353
     """
-    x = checked("distance", distance) / checked("radius", radius)
+    x = checked("separation", separation) / checked("radius", radius)
     return np.asarray(-0.25 * np.expm1(-x) - 0.75 * np.expm1(-x / 3.0))
 
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of pbrlib's microfacet nodes, scatter mode R, without thin film."""
+"""Rows of pbrlib's microfacet nodes, scatter mode R.
+
+Their functions have a thin film where the inputs have `thinfilm_thickness` and `thinfilm_ior`.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,6 +24,7 @@ from mxeon.models.microfacet_defects import (
     MICROFACET_DEFECTS,
     averaged_channels,
 )
+from mxeon.models.microfacet_film import film_albedo_dir, film_brdf
 from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
 
 # Forms of the energy compensation, which the text leaves open.
@@ -80,23 +84,72 @@ def _schlick(inputs: Inputs) -> tuple[Array, Array, Array]:
     return inputs["color0"], inputs["color82"], inputs["color90"]
 
 
+def _has_film(inputs: Inputs) -> bool:
+    return bool(np.any(inputs.get("thinfilm_thickness", np.zeros(1))))
+
+
+def _filmed_value(
+    category: str, bare: Callable[[Array, Array, Inputs], Array]
+) -> Callable[[Array, Array, Inputs], Array]:
+    """Values of a node, under a thin film where its inputs have one."""
+
+    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
+        film = _has_film(inputs)
+        return film_brdf(category, wo, wi, inputs) if film else bare(wo, wi, inputs)
+
+    return value
+
+
+def _filmed_albedo(category: str, bare: Callable[..., Array]) -> Callable[..., Array]:
+    """Albedo of a node, under a thin film where its inputs have one."""
+
+    def albedo(wo: Array, inputs: Inputs, compensate: bool = True) -> Array:
+        if _has_film(inputs):
+            return film_albedo_dir(category, wo, inputs, compensate=compensate)
+        return bare(wo, inputs, compensate=compensate)
+
+    return albedo
+
+
 DIELECTRIC = Lobe(
     "dielectric_bsdf",
-    lambda wo, wi, i: dielectric_brdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
-    lambda wo, i, **how: dielectric_albedo_dir(wo, i["tint"], i["roughness"], i["ior"], **how),
+    _filmed_value(
+        "dielectric_bsdf",
+        lambda wo, wi, i: dielectric_brdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
+    ),
+    _filmed_albedo(
+        "dielectric_bsdf",
+        lambda wo, i, **how: dielectric_albedo_dir(wo, i["tint"], i["roughness"], i["ior"], **how),
+    ),
     lambda mu, i: fresnel_dielectric(mu, i["ior"])[:, np.newaxis],
 )
 CONDUCTOR = Lobe(
     "conductor_bsdf",
-    lambda wo, wi, i: conductor_brdf(wo, wi, i["roughness"], i["ior"], i["extinction"]),
-    lambda wo, i, **how: conductor_albedo_dir(wo, i["roughness"], i["ior"], i["extinction"], **how),
+    _filmed_value(
+        "conductor_bsdf",
+        lambda wo, wi, i: conductor_brdf(wo, wi, i["roughness"], i["ior"], i["extinction"]),
+    ),
+    _filmed_albedo(
+        "conductor_bsdf",
+        lambda wo, i, **how: conductor_albedo_dir(
+            wo, i["roughness"], i["ior"], i["extinction"], **how
+        ),
+    ),
     lambda mu, i: fresnel_conductor(mu, i["ior"], i["extinction"]),
 )
 SCHLICK = Lobe(
     "generalized_schlick_bsdf",
-    lambda wo, wi, i: generalized_schlick_brdf(wo, wi, *_schlick(i), i["roughness"], i["exponent"]),
-    lambda wo, i, **how: generalized_schlick_albedo_dir(
-        wo, *_schlick(i), i["roughness"], i["exponent"], **how
+    _filmed_value(
+        "generalized_schlick_bsdf",
+        lambda wo, wi, i: generalized_schlick_brdf(
+            wo, wi, *_schlick(i), i["roughness"], i["exponent"]
+        ),
+    ),
+    _filmed_albedo(
+        "generalized_schlick_bsdf",
+        lambda wo, i, **how: generalized_schlick_albedo_dir(
+            wo, *_schlick(i), i["roughness"], i["exponent"], **how
+        ),
     ),
     lambda mu, i: fresnel_schlick(mu, *_schlick(i), i["exponent"]),
     edge="color90",

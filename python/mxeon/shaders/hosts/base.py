@@ -139,12 +139,15 @@ class Host(ABC):
             Node inputs by name, (N, ...) or constant, and "occlusion", 1 unless given. The node's
             normal is that of the surface unless given.
         branch : str
-            "direct", "environment", "transmission" or "emission": what the shader asks of its BSDF.
+            "direct", "environment", "transmission" or "emission": what the shader asks of its BSDF;
+            or "graph": the color that it gives to its uniform EDF, which the directions do not change.
         output : str
-            "response"; or "throughput", the share of the light from below that passes the BSDF.
+            "response"; "throughput", the share of the light from below that passes the BSDF; or
+            "radiance", what the EDF emits towards `wo`, in any branch.
         irradiance : ndarray, shape (rows, columns, 3), or None
             Irradiance over pi of the environment for every normal, as a latitude-longitude map with
             row 0 upwards (+y) and its middle towards +z; None for a uniform environment of radiance 1.
+            What looks up radiance finds the same map.
 
         Returns
         -------

@@ -208,7 +208,7 @@ class Host(base.Host):
         return {
             name: self._texture(values, name == "u_envRadiance")
             for name, values in texels.items()
-            if name in program
+            if program.get(name, None)
         }
 
     def _texture(self, texels: NDArray[Any], mipmaps: bool) -> moderngl.Texture:
@@ -250,12 +250,12 @@ def _buffers(
     return [
         (context.buffer(values), f"{values.shape[1]}f", name)
         for name, values in vertices.items()
-        if name in program
+        if program.get(name, None)
     ]
 
 
 def _set(program: moderngl.Program, values: Mapping[str, Any]) -> None:
     """Set the uniforms that the program has."""
     for name, value in values.items():
-        if name in program:
-            cast(moderngl.Uniform, program[name]).value = value
+        if member := program.get(name, None):
+            cast(moderngl.Uniform, member).value = value

@@ -55,10 +55,9 @@ def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
 
 def environment(irradiance: NDArray[Any] | None) -> dict[str, NDArray[Any]]:
     """Texels of the environment of an evaluation; see `mxeon.shaders.hosts.base.Host.evaluate`."""
-    return {
-        "u_envRadiance": WHITE,
-        "u_envIrradiance": WHITE if irradiance is None else irradiance,
-    }
+    return dict.fromkeys(
+        ("u_envRadiance", "u_envIrradiance"), WHITE if irradiance is None else irradiance
+    )
 
 
 def inputs(shader: Shader) -> dict[str, Any]:

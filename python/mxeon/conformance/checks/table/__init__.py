@@ -5,7 +5,16 @@ A check passes at error <= tolerance. Its control is the same probe made wrong o
 host; the check has to fail on it. Every tolerance is the expression that its derivation describes.
 """
 
-from mxeon.conformance.checks.table import combinations, energy, layers, lobes, microfacets
+from mxeon.conformance.checks.table import (
+    combinations,
+    emission,
+    energy,
+    hair,
+    layers,
+    lobes,
+    microfacets,
+    transmission,
+)
 from mxeon.conformance.checks.table.check import Check
 
 __all__ = ["CHECKS", "Check"]
@@ -16,4 +25,7 @@ CHECKS = (
     *energy.CHECKS,
     *microfacets.CHECKS,
     *combinations.CHECKS,
+    *emission.CHECKS,
+    *hair.CHECKS,
+    *transmission.CHECKS,
 )

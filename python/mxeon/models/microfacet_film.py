@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values and albedos of the microfacet nodes of pbrlib under a thin film, by the names of their ports."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from mxeon.models.arguments import checked
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.microfacet_albedo import lobe_albedo
+from mxeon.models.microfacet_lobe import Curve, Lobe, evaluate_lobe
+from mxeon.models.thin_film_curve import CURVES, TEXT, Form, film_curve, without_clamp
+
+FILM = ("thinfilm_thickness", "thinfilm_ior")
+# Inputs of each node with channels, and those without.
+INPUTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "dielectric_bsdf": (("tint",), ("ior",)),
+    "conductor_bsdf": (("ior", "extinction"), ()),
+    "generalized_schlick_bsdf": (("color0", "color82", "color90"), ("exponent",)),
+}
+DEGREE = 48  # of a film's curve in the cosine where an albedo is integrated
+
+
+def film_brdf(
+    category: str,
+    wo: ArrayLike,
+    wi: ArrayLike,
+    inputs: Mapping[str, ArrayLike],
+    form: Form = TEXT,
+    lobe: Lobe | None = None,
+) -> Array:
+    """BRDF of a microfacet node under a thin film, scatter mode R.
+
+    Parameters
+    ----------
+    category : str
+        Category of the node.
+    wo, wi : array_like, shape (..., 3)
+        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
+    inputs : mapping of str to array_like
+        The node's inputs by the names of its ports, colors with three channels;
+        `thinfilm_thickness` in nm, 0 for no film, and `thinfilm_ior`, at least 1.
+    form : Form
+        Choices that the specification leaves open.
+    lobe : Lobe, optional
+        Other terms than the specification's.
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        BRDF in 1/sr.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
+
+    Examples
+    --------
+    >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
+    >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
+    >>> w = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
+    >>> film_brdf("dielectric_bsdf", *w, inputs | soap).round(4)
+    array([0.    , 0.0394, 0.0542])
+    """
+    vectors, numbers = _material(category, inputs)
+    curve = film_curve(category, form)
+    return evaluate_lobe(lobe or Lobe(), curve, wo, wi, inputs["roughness"], vectors, numbers)
+
+
+def film_albedo_dir(
+    category: str,
+    wo: ArrayLike,
+    inputs: Mapping[str, ArrayLike],
+    form: Form = TEXT,
+    compensate: bool = True,
+) -> Array:
+    """Directional albedo of `film_brdf`, by quadrature.
+
+    Parameters
+    ----------
+    category, wo, inputs, form
+        As those of `film_brdf`.
+    compensate : bool
+        Whether the energy compensation enters.
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Dimensionless.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    Notes
+    -----
+    The film's curve is a polynomial of degree 48 in the cosine, within 1e-4 of the curve for films up to
+    2000 nm of index up to 2.
+
+    References
+    ----------
+    [MaterialX2026], Directional Albedo and Energy Conservation.
+
+    Examples
+    --------
+    >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
+    >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
+    >>> film_albedo_dir("dielectric_bsdf", [0.6, 0.0, 0.8], inputs | soap).round(4)
+    array([0.0046, 0.0263, 0.0328])
+    """
+    vectors, numbers = _material(category, inputs)
+    curve = Curve(PolynomialCurve(category, form), film_curve(category, form).average)
+    return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate)
+
+
+def _material(
+    category: str, inputs: Mapping[str, ArrayLike]
+) -> tuple[dict[str, Numbers], dict[str, Numbers]]:
+    """Checked inputs with channels and without."""
+    colors, numbers = INPUTS[category]
+    return (
+        {name: np.atleast_1d(checked(name, inputs[name])) for name in colors},
+        {name: checked(name, inputs[name]) for name in (*numbers, *FILM)},
+    )
+
+
+class PolynomialCurve:
+    """Curve of a film, by a polynomial in the cosine for each material."""
+
+    def __init__(self, category: str, form: Form) -> None:
+        self._bare = CURVES[category].at
+        self._curve = film_curve(category, without_clamp(form)).at
+
+    def __call__(self, mu: Array, **material: Array) -> Array:
+        """F at cosines of shape (nodes, nodes, ...), shape (3, nodes, nodes, ...)."""
+        x = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+        cosines = (0.5 * (1.0 + x)).reshape(-1, 1, *(1,) * (mu.ndim - 2))
+        sampled = self._curve(cosines, **material)
+        series = np.tensordot(_transform(x), sampled, (1, 1))[:, :, np.newaxis]
+        F = np.clip(_clenshaw(series, 2.0 * mu - 1.0), 0.0, 1.0)
+        film = material["thinfilm_thickness"] > 0.0
+        if film.all():
+            return F
+        bare = {k: v for k, v in material.items() if k not in FILM}
+        return np.where(film, F, self._bare(mu, **bare))
+
+
+def _transform(x: Array) -> Array:
+    """Chebyshev coefficients from values at the roots."""
+    matrix = 2.0 / len(x) * np.asarray(chebyshev.chebvander(x, DEGREE), np.float64).T
+    matrix[0] *= 0.5
+    return np.asarray(matrix)
+
+
+def _clenshaw(series: Array, x: Array) -> Array:
+    """Chebyshev series, coefficients along the first axis."""
+    last = before = np.zeros(1)
+    for coefficient in series[:0:-1]:
+        last, before = coefficient + 2.0 * x * last - before, last
+    return np.asarray(series[0] + x * last - before)

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Airy reflectances of the microfacet nodes of pbrlib under a thin film, in linear RGB.
+
+A film of thickness 0 is the node's own Fresnel curve. `Form` says what the specification leaves open.
+"""
+
+import numpy as np
+
+from mxeon.models.arguments import checked
+from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.evaluation import evaluate_material
+from mxeon.models.thin_film_curve import CIE_RGB, MATERIALX, PRINTED, TEXT, Form, film_curve
+
+__all__ = [
+    "CIE_RGB",
+    "MATERIALX",
+    "PRINTED",
+    "TEXT",
+    "Form",
+    "film_conductor",
+    "film_dielectric",
+    "film_schlick",
+]
+
+
+def film_dielectric(
+    mu: ArrayLike,
+    thickness: ArrayLike,
+    film_ior: ArrayLike,
+    ior: ArrayLike,
+    form: Form = TEXT,
+) -> Array:
+    """Reflectance of a dielectric under a thin film for unpolarized light.
+
+    Parameters
+    ----------
+    mu : array_like, shape (...)
+        Cosine between direction and microfacet normal, dimensionless, in [0, 1].
+    thickness : array_like, shape (...)
+        Of the film, in nm, in [0, 1e9].
+    film_ior, ior : array_like, shape (...)
+        Indices of the film, at least 1, and of the dielectric, in [0, 1e50].
+    form : Form
+        Choices that the specification leaves open.
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Linear RGB, in [0, 1].
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Below 1 the specification's phases of the first interface do not hold: the s polarization has its
+    phase of pi from a film that is denser than the vacuum. Accuracy: the infinite sum is within 1e-6,
+    for cosines above 0.01.
+
+    References
+    ----------
+    [MaterialX2026], Thin-Film Iridescence Model; [Belcour2017].
+
+    Examples
+    --------
+    >>> film_dielectric(1.0, [0.0, 100.0, 300.0], 1.38, 1.5).round(4)
+    array([[0.04  , 0.04  , 0.04  ],
+           [0.015 , 0.014 , 0.0178],
+           [0.0209, 0.0142, 0.0348]])
+    """
+    return _reflectance(
+        "dielectric_bsdf", form, {}, {"mu": mu, "ior": ior} | _film(thickness, film_ior)
+    )
+
+
+def film_conductor(
+    mu: ArrayLike,
+    thickness: ArrayLike,
+    film_ior: ArrayLike,
+    ior: ArrayLike,
+    extinction: ArrayLike,
+    form: Form = TEXT,
+) -> Array:
+    """Reflectance of a conductor under a thin film for unpolarized light.
+
+    Parameters
+    ----------
+    mu, thickness, film_ior, form
+        As those of `film_dielectric`.
+    ior, extinction : array_like, shape (..., 3)
+        Complex index of refraction per channel, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Linear RGB, in [0, 1].
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Accuracy: as that of `film_dielectric`; at grazing angles, where all orders count, within 1e-4.
+
+    References
+    ----------
+    [MaterialX2026], Thin-Film Iridescence Model; [Belcour2017].
+
+    Examples
+    --------
+    >>> gold = [0.183, 0.421, 1.373], [3.424, 2.346, 1.770]
+    >>> film_conductor(1.0, [0.0, 200.0], 1.5, *gold).round(4)
+    array([[0.9442, 0.7762, 0.3733],
+           [0.9554, 0.7184, 0.1298]])
+    """
+    colors = {"ior": ior, "extinction": extinction}
+    return _reflectance("conductor_bsdf", form, colors, {"mu": mu} | _film(thickness, film_ior))
+
+
+def film_schlick(
+    mu: ArrayLike,
+    thickness: ArrayLike,
+    film_ior: ArrayLike,
+    color0: ArrayLike,
+    color82: ArrayLike,
+    color90: ArrayLike,
+    exponent: ArrayLike,
+    form: Form = TEXT,
+) -> Array:
+    """Reflectance of a generalized Schlick curve under a thin film.
+
+    Parameters
+    ----------
+    mu, thickness, film_ior, form
+        As those of `film_dielectric`.
+    color0, color82, color90 : array_like, shape (..., 3)
+        As those of `mxeon.models.fresnel_schlick`.
+    exponent : array_like, shape (...)
+        q, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Linear RGB, in [0, 1] where the thickness is above 0.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The curve stands for the film's lower interface at the refracted angle, so that the value jumps
+    where the thickness leaves 0. A curve below 0 counts as 0, for it has no amplitude.
+
+    References
+    ----------
+    [MaterialX2026], Thin-Film Iridescence Model; [Belcour2017].
+
+    Examples
+    --------
+    >>> film_schlick(0.5, [0.0, 300.0], 1.5, [1.0, 0.8, 0.1], np.ones(3), np.ones(3), 5.0).round(4)
+    array([[1.    , 0.8062, 0.1281],
+           [1.    , 0.7633, 0.1166]])
+    """
+    colors = {"color0": color0, "color82": color82, "color90": color90}
+    numbers = {"mu": mu, "exponent": exponent} | _film(thickness, film_ior)
+    return _reflectance("generalized_schlick_bsdf", form, colors, numbers)
+
+
+def _film(thickness: ArrayLike, film_ior: ArrayLike) -> dict[str, ArrayLike]:
+    return {"thinfilm_thickness": thickness, "thinfilm_ior": film_ior}
+
+
+def _reflectance(
+    category: str, form: Form, colors: dict[str, ArrayLike], numbers: dict[str, ArrayLike]
+) -> Array:
+    """Curve of a node under a film over arguments that broadcast."""
+    curve = film_curve(category, form)
+
+    def at(mu: Array, **material: Array) -> Array:
+        if category == "dielectric_bsdf":
+            material["tint"] = np.ones(1)  # which the curve leaves alone
+        return curve.at(mu, **material)
+
+    vectors = {name: np.atleast_1d(checked(name, value)) for name, value in colors.items()}
+    return evaluate_material(
+        at, vectors, {name: checked(name, value) for name, value in numbers.items()}, 3
+    )

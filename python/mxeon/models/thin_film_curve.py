@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fresnel curves of the microfacet nodes under a thin film, in linear RGB, and their averages.
+
+The specification leaves four things open, which a Form says: the matrix to RGB, the number of orders,
+what becomes of an index for each color channel in a sum over CIE XYZ, and of values outside [0, 1],
+which it clamps at the very end.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mxeon.models import fresnel_formulas as fresnel
+from mxeon.models import thin_film_formulas as film
+from mxeon.models.arrays import Array
+from mxeon.models.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
+from mxeon.models.microfacet_lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve
+
+AVERAGE_NODES = 16  # of Gauss-Legendre in the cosine
+
+
+@dataclass(frozen=True)
+class Form:
+    """Choices that the specification leaves to implementations, and a defect.
+
+    Attributes
+    ----------
+    matrix : tuple of tuple of float
+        From CIE XYZ to linear RGB, by rows.
+    orders : int or None
+        M; None sums all orders.
+    mixed : bool
+        Whether the index of RGB channel k enters XYZ value k. If not, each RGB channel has its index
+        in all of XYZ, so that a film that vanishes leaves the channels alone.
+    share : float
+        Factor of the Schlick substrate's reflectance in each polarization; by the text 1.
+    clamped : bool
+        Whether values outside [0, 1] are clamped, as the text does.
+    """
+
+    matrix: tuple[tuple[float, ...], ...] = tuple(map(tuple, XYZ_TO_REC709_E.tolist()))
+    orders: int | None = None
+    mixed: bool = False
+    share: float = 1.0
+    clamped: bool = True
+
+
+# XYZ to CIE RGB of white E, of MaterialX 1.39.5.
+CIE_RGB = (
+    (2.3706743, -0.9000405, -0.4706338),
+    (-0.5138850, 1.4253036, 0.0885814),
+    (0.0052982, -0.0146949, 1.0093968),
+)
+TEXT = Form()
+PRINTED = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())), 2, True)
+MATERIALX = Form(CIE_RGB, 2, True, 0.5)
+
+
+def film_curve(category: str, form: Form = TEXT) -> Curve:
+    """Curve of a microfacet node that has `thinfilm_thickness` and `thinfilm_ior` beside its inputs.
+
+    Where the thickness is 0 it is the node's own.
+    """
+    bare = CURVES[category]
+
+    def at(
+        mu: Array, *, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array
+    ) -> Array:
+        plain = bare.at(mu, **material)
+        coated = _airy(category, form, mu, thinfilm_thickness, thinfilm_ior, material)
+        return np.where(thinfilm_thickness > 0.0, coated, plain)
+
+    def average(**material: Array) -> Array:
+        x, w = np.polynomial.legendre.leggauss(AVERAGE_NODES)
+        mu = 0.5 * (1.0 + x)
+        nodes = (
+            at(np.asarray(c), **material) * weight for c, weight in zip(mu, w * mu, strict=True)
+        )
+        plain = bare.average(**{k: v for k, v in material.items() if not k.startswith("thinfilm")})
+        total = sum(nodes, np.zeros(1))
+        return np.where(material["thinfilm_thickness"] > 0.0, total, plain)
+
+    return Curve(at, average)
+
+
+def without_clamp(form: Form) -> Form:
+    """The form with values outside [0, 1] as they are."""
+    return replace(form, clamped=False)
+
+
+def _airy(
+    category: str,
+    form: Form,
+    mu: Array,
+    thickness: Array,
+    film_ior: Array,
+    material: dict[str, Array],
+) -> Array:
+    """F_airy in linear RGB, shape (3, ...)."""
+    mu, thickness, film_ior = np.broadcast_arrays(mu, thickness, film_ior)
+    inputs = {k: v for k, v in material.items() if k != "tint"}
+    opd = film.path_difference(mu, thickness, film_ior)
+    xyz = sum(
+        film.tristimulus(film.Interface(*interface), opd, form.orders)
+        for interface in SUBSTRATES[category](mu, film_ior, form.share, **inputs)
+    )
+    rgb = _to_rgb(0.5 * np.asarray(xyz), form)
+    return np.clip(rgb, 0.0, 1.0) if form.clamped else rgb
+
+
+def _to_rgb(xyz: Array, form: Form) -> Array:
+    """RGB, shape (3, ...), of XYZ of the substrate of each channel, shape (3, channels, ...)."""
+    xyz = np.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
+    matrix = np.array(form.matrix)
+    if form.mixed:
+        mixed: Array = np.einsum("jk,k...->j...", matrix, np.einsum("kk...->k...", xyz))
+        return mixed
+    rgb: Array = np.einsum("jk,kj...->j...", matrix, xyz)
+    return rgb
+
+
+def _dielectric(mu: Array, film_ior: Array, _: float, ior: Array) -> tuple[film.Interface, ...]:
+    return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], np.zeros(1))
+
+
+def _conductor(
+    mu: Array, film_ior: Array, _: float, ior: Array, extinction: Array
+) -> tuple[film.Interface, ...]:
+    return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior, extinction)
+
+
+def _schlick(
+    mu: Array,
+    film_ior: Array,
+    share: float,
+    color0: Array,
+    color82: Array,
+    color90: Array,
+    exponent: Array,
+) -> tuple[film.Interface, ...]:
+    mu_t = film.refracted(mu, film_ior)
+    F = share * fresnel.schlick(mu_t, color0, color82, color90, exponent)
+    return film.over_schlick(mu[np.newaxis], film_ior[np.newaxis], F, color0)
+
+
+CURVES = {
+    "dielectric_bsdf": DIELECTRIC,
+    "conductor_bsdf": CONDUCTOR,
+    "generalized_schlick_bsdf": SCHLICK,
+}
+SUBSTRATES: dict[str, Callable[..., tuple[film.Interface, ...]]] = {
+    "dielectric_bsdf": _dielectric,
+    "conductor_bsdf": _conductor,
+    "generalized_schlick_bsdf": _schlick,
+}
