@@ -13,6 +13,7 @@ from mxeon.models.arrays import Array, ArrayLike
 # Of the text's inversion, with its digits: the quotients of van de Hulst's fit, rounded.
 LINEAR = (4.09712, 4.20863)
 SQUARED = (9.59217, 41.6808, 17.7126)
+NODES = 1000  # of the quadrature of the blur, whose integrand has a kink
 LOSS, GAIN = 0.139, 1.17  # of van de Hulst's fit
 
 
@@ -244,3 +245,60 @@ def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     with np.errstate(divide="ignore"):
         logarithm = np.log(2.0 * np.sinh(np.arcsinh(2.0 * rest) / 3.0))
     return np.asarray(-3.0 * checked("radius", radius) * np.minimum(logarithm, 0.0))
+
+
+def diffusion_blur(mu: ArrayLike, reach: float) -> Array:
+    """Cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
+
+        W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
+
+    Parameters
+    ----------
+    mu : array_like
+        Cosine of the light with the normal, dimensionless, in [-1, 1].
+    reach : float
+        Mean free path over the radius of the sphere, above 0; its limit 0 is max(mu, 0).
+
+    Returns
+    -------
+    ndarray, float64
+        Dimensionless, in [0, 1]. Its mean over the sphere is 1/4, that of max(mu, 0).
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Distances are those of the text, through the body; light whose distance has no point on the sphere
+    leaves as the rest does, since a body of no absorption keeps none.
+    Accuracy: absolute error below 1e-6.
+
+    Examples
+    --------
+    >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
+    array([0.0015, 0.0807, 0.9532])
+    """
+    cosine = np.asarray(checked("cos_theta", mu), np.float64)
+    checked("radius", reach)
+    parts = [(0.25, _exponential(cosine, reach)), (0.75, _exponential(cosine, 3.0 * reach))]
+    total = sum(weight * share for weight, (_, share) in parts)
+    return np.asarray(sum(weight * share * mean for weight, (mean, share) in parts) / total)
+
+
+def _exponential(mu: Array, reach: float) -> tuple[Array, float]:
+    """Mean over the circles of one exponential of the profile, and its share on the sphere."""
+    x, w = np.polynomial.legendre.leggauss(NODES)
+    share = float(-np.expm1(-2.0 / reach))
+    distance = np.minimum(-reach * np.log1p(-0.5 * (x + 1.0) * share), 2.0)
+    return (0.5 * w * _circle(mu[..., np.newaxis], distance)).sum(axis=-1), share
+
+
+def _circle(mu: Array, distance: Array) -> Array:
+    """Mean of max(cos(theta), 0) over the circle at a distance from a point of the unit sphere."""
+    squared = distance * distance
+    along = mu * (1.0 - 0.5 * squared)
+    across = np.sqrt(np.maximum((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0))
+    lit = np.arccos(np.clip(-along / np.maximum(across, 1e-300), -1.0, 1.0))
+    return (along * lit + np.sqrt(np.maximum(across**2 - along**2, 0.0))) / np.pi

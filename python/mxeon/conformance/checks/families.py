@@ -10,6 +10,7 @@ from mxeon.conformance.checks.bsdf.hair import HAIRS, HairSubject
 from mxeon.conformance.checks.bsdf.hair_probes import HairProbe
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
+from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES, subsurface_probe_type
 from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 from mxeon.conformance.checks.probes import PairProbe
@@ -44,6 +45,7 @@ FAMILIES = (
     Family(HAIRS, hair_probe_type),
     Family(EMISSION_SUBJECTS, emission_probe_type),
     Family(TRANSMITTING, transmission_probe_type),
+    Family(SUBSURFACES, subsurface_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(
