@@ -31,6 +31,9 @@ DIELECTRIC, SCHLICK = (
     f"{node}_bsdf, scatter_mode R" for node in ("dielectric", "generalized_schlick")
 )
 MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
+FILMS = tuple(
+    f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
+)
 
 
 @dataclass(frozen=True)
@@ -146,6 +149,27 @@ BSDF_ISSUES = (
         HARDWARE,
         _product(("value", "environment", "integral", "shape"), MICROFACETS),
     ),
+    Issue(
+        "genglsl_film_half",
+        "gl",
+        _product(("film", "film_limit"), FILMS[2:]),
+        HARDWARE,
+        _product(("film_environment", "film_throughput"), FILMS[2:]),
+    ),
+    Issue(
+        "genglsl_film_throughput",
+        "gl",
+        (("film_throughput", FILMS[0]),),
+        HARDWARE,
+        (("film_throughput", FILMS[2]),),
+    ),
+    Issue(
+        "pbrlib_thin_film",
+        "gl",
+        _product(("film", "film_limit"), FILMS[:2]),
+        HARDWARE,
+        _product(("film_environment",), FILMS[:2]),
+    ),
 )
 EMISSION_ISSUES = (
     Issue(
@@ -172,10 +196,28 @@ EMISSION_ISSUES = (
     ),
     Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
 )
+HAIR_ROUGHNESS = tuple(f"chiang_hair_roughness, roughness_{lobe}" for lobe in ("R", "TT", "TRT"))
+HAIR_UTILITIES = (
+    *HAIR_ROUGHNESS,
+    "deon_hair_absorption_from_melanin",
+    "chiang_hair_absorption_from_color",
+)
+UTILITY_ISSUES = (
+    Issue("genglsl_blackbody_cold", "gl", (("output", "blackbody"),), HARDWARE),
+    Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR_UTILITIES[3]),), HARDWARE),
+    Issue(
+        "genosl_hair_constants",
+        "cycles",
+        _product(("output",), HAIR_UTILITIES),
+        ("testrender",),
+        _product(("output_inputs",), HAIR_UTILITIES),
+    ),
+)
 ISSUES = (
     *BSDF_ISSUES,
     *EMISSION_ISSUES,
     *HAIR_ISSUES,
+    *UTILITY_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",

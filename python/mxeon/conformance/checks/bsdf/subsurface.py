@@ -2,14 +2,11 @@
 """The subject `subsurface_bsdf`, as a host that evaluates pairs of directions shows it: on a plane."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Batch, Candidate
-from mxeon.conformance.checks.bsdf.probes import BsdfProbe
 from mxeon.conformance.checks.bsdf.subjects import BsdfSubject, whole
-from mxeon.conformance.checks.probes import PairProbe
 from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE, circle_blur
 
 LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
@@ -49,11 +46,6 @@ def _blurred(batch: Batch) -> Array:
     inputs = whole(batch)
     light = np.where(mu[:, np.newaxis] > 1.0, 0.0, circle_blur(mu, inputs["radius"]))
     return np.asarray(batch.strength * inputs["color"] * light * lit)
-
-
-def subsurface_probe_type(_: Any, probe: type[Any]) -> type[BsdfProbe] | None:
-    """Class of the probes of the node, which needs a host that evaluates any pairs."""
-    return BsdfProbe if probe is PairProbe else None
 
 
 SUBSURFACES = (SubsurfaceSubject(SUBSURFACE_NODE),)
