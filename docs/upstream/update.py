@@ -80,6 +80,7 @@ CAUSES = {
         f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 28, "sheen_dir_albedo_analytic"
     ),
     "genglsl_burley_fit": Cause(MICROFACET, 150, "burley_diffuse_dir_albedo"),
+    "genglsl_subsurface_circle": Cause(MICROFACET, 170, "mx_integrate_burley_diffusion"),
     "genglsl_translucent_side": Cause(f"{PBRLIB}/mx_translucent_bsdf.glsl", 16, "N = -N"),
     "genglsl_ior_zero": Cause(SPECULAR, 229, "g2 < 0.0"),
     "genglsl_microfacet_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "dirAlbedo"),

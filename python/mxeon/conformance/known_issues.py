@@ -117,6 +117,13 @@ BSDF_ISSUES = (
         _product(("combined_throughput",), ("multiply, in2 float", "multiply, in2 color3")),
         HARDWARE,
     ),
+    Issue(
+        "genglsl_subsurface_circle",
+        "gl",
+        (("value", "subsurface_bsdf"),),
+        HARDWARE,
+        _product(("integral", "energy"), ("subsurface_bsdf",)),
+    ),
     Issue("genglsl_burley_fit", "gl", (("environment", "burley_diffuse_bsdf"),), HARDWARE),
     Issue("genglsl_translucent_side", "gl", (("frame", "translucent_bsdf"),), HARDWARE),
     Issue(
