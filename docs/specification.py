@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure what the page on the specification shows, and its summaries.
 
-python docs/specification.py           judge stock and eonlib on gl, write specification.json and the pages
-python docs/specification.py --page    the pages alone, from specification.json
+python docs/specification.py [HOST ...]  judge stock and eonlib on these hosts, on all of HOSTS if none is
+                                         named; write specification.json and the pages
+python docs/specification.py --page      the pages alone, from specification.json
 """
 
 import json
@@ -16,7 +17,7 @@ import MaterialX as mx
 from mxeon.conformance.checks.families import PBR_SUBJECTS
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.known_issues import ISSUES
-from mxeon.conformance.results import PASSED
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.io.files import write_text
@@ -24,7 +25,18 @@ from mxeon.shaders.document.policy import DEFAULT
 
 FOLDER = Path(__file__).resolve().parent
 DATA, PAGE = FOLDER / "specification.json", FOLDER / "specification.md"
-HOST, LIBRARIES = "gl", ("stock", "eonlib")
+TARGETS = FOLDER / "specification_targets.md"
+# By host: the shader that it runs.
+HOSTS = {
+    "gl": "GLSL",
+    "webgl": "ESSL",
+    "vulkan": "Vulkan GLSL",
+    "wgsl": "WGSL's GLSL",
+    "slang": "Slang",
+    "cycles": "OSL",
+}
+HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the page and its summaries
+MARKS = {PASSED: "", DIFFERS: " (differs)", FAILED: " (failed)", NOT_RUN: "not run"}
 JUDGED = (*SUBJECTS, *PBR_SUBJECTS)
 NODES = (*dict.fromkeys(row.node for row in JUDGED if row.node != "eon_diffuse_bsdf"),)
 BLOCK = re.compile(r"(<!-- measured (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -48,13 +60,22 @@ SUMMARIES = (FOLDER.parent / "README.md", FOLDER / "results.md")
 SUMMARY_HEAD = (
     "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"
 )
+TARGETS_HEAD = """# The specification on every target
+
+Each check of [the specification, executable](specification.md) on every host that evaluates or draws
+generated shaders: the error with stock MaterialX / with eonlib. An error without a word passed; *differs*
+is permitted by the text; an empty cell is a check that the host cannot be asked. On Cycles the errors are
+of pictures, relative to the values, and the allowed ones are its own; eonlib leaves these closures
+to the renderer, so that there stands stock's figure alone. `python docs/specification.py` measures them again.
+
+"""
 HEAD = "| check | mode | allowed | stock | eonlib | stock's defect |\n|---|---|---|---|---|---|\n"
 
 
-def measured():
-    """Results of the nodes with both libraries, as plain data, and where they were measured."""
-    tasks = make_plan((), (HOST,), LIBRARIES, nodes=NODES).tasks
-    chosen = [task for task in tasks if task.host == HOST and task.check != "curve"]
+def measured(host):
+    """Where a host ran, and its results of the nodes with both libraries, as rows of text."""
+    tasks = make_plan((), (host,), LIBRARIES, nodes=NODES).tasks
+    chosen = [task for task in tasks if task.host == host and task.check != "curve"]
     with closing(Judge(DEFAULT)) as judge:
         findings = [judge.work(task) for task in chosen]
     [device] = findings[0].hosts
@@ -70,10 +91,8 @@ def measured():
         for finding in findings
         for each in finding.results
     ]
-    return {
-        "place": f"{device.device}, {device.version}, MaterialX {mx.__version__}",
-        "results": results,
-    }
+    place = f"{device.device}, {device.version}, MaterialX {mx.__version__}"
+    return {"place": place, "results": results}
 
 
 def page(text, data):
@@ -124,7 +143,9 @@ def _line(check, subject, found):
 
 def _mode(subject):
     """The mode of a subject, without its node; "" where the node has one alone."""
-    return "" if "scatter_mode" in subject else subject.partition(", ")[2].removeprefix("mode ")
+    if sum(row.node == subject.split(",")[0] for row in JUDGED) == 1:
+        return ""
+    return subject.partition(", ")[2].removeprefix("scatter_").removeprefix("mode ")
 
 
 def _modes(modes, rows):
@@ -144,13 +165,70 @@ def _links(check, subject):
     return ", ".join(f"[{name}](upstream/{each}.md)" for each, name in names.items())
 
 
+def targets(data):
+    """The page of every target: a table of each node."""
+    hosts = [host for host in HOSTS if host in data]
+    parts = [
+        TARGETS_HEAD,
+        *(f"- `{host}`: {HOSTS[host]}, {data[host]['place']}\n" for host in hosts),
+    ]
+    cells = {
+        (row["check"], row["subject"], host, row["library"]): row
+        for host in hosts
+        for row in data[host]["results"]
+    }
+    for node in NODES:
+        rows = {key[:2]: None for key in cells if key[1].split(",")[0] == node}
+        head = " | ".join(["check", "mode", "allowed on gl", *hosts])
+        lines = [f"\n## {node}\n\n| {head} |\n|{'---|' * (3 + len(hosts))}\n"]
+        for check, subject in rows:
+            found = {
+                host: [cells.get((check, subject, host, each)) for each in LIBRARIES]
+                for host in hosts
+            }
+            lines.append(_targets_line(check, subject, found))
+        parts += lines if rows else []
+    return "".join(parts)
+
+
+def _targets_line(check, subject, found):
+    """A row of a table of every target."""
+    first = next(each for pair in found.values() for each in pair if each)
+    cells = [
+        "" if not any(pair) else " / ".join(_cell(each) for each in pair) for pair in found.values()
+    ]
+    return f"| {' | '.join([check, _mode(subject), first['allowed'], *cells])} |\n"
+
+
+def _cell(result):
+    """An error with its verdict."""
+    if not result:
+        return "-"
+    words = MARKS[result["verdict"]]
+    return words if result["verdict"] == NOT_RUN else result["error"] + words
+
+
 def main():
-    """Write the page, and the data that it shows unless --page is given."""
-    if "--page" not in sys.argv[1:]:
-        write_text(DATA, json.dumps(measured(), indent=1) + "\n")
-    data = json.loads(DATA.read_text(encoding="utf-8"))
+    """Write the pages, and the data that they show unless --page is given."""
+    words = sys.argv[1:]
+    data = json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}
+    for host in [] if words == ["--page"] else words or HOSTS:
+        data[host] = measured(host)
+    write_text(DATA, _text(data))
     for file in (PAGE, *SUMMARIES):
-        write_text(file, page(file.read_text(encoding="utf-8"), data))
+        write_text(file, page(file.read_text(encoding="utf-8"), data[HOST]))
+    write_text(TARGETS, targets(data))
+
+
+def _text(data):
+    """The data as JSON, a result in each line."""
+    hosts = []
+    for host, found in data.items():
+        rows = ",\n".join(json.dumps(row) for row in found["results"])
+        hosts.append(
+            f'{json.dumps(host)}: {{"place": {json.dumps(found["place"])}, "results": [\n{rows}\n]}}'
+        )
+    return "{" + ",\n".join(hosts) + "}\n"
 
 
 if __name__ == "__main__":

@@ -35,7 +35,8 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
         F_ss = vec3(fresnel_dielectric_avg(ior));
         F_o = vec3(fresnel_dielectric(ggx_cosine_dielectric(lobe.mu_o, lobe.alpha, ior), ior));
     }
-    vec3 scale = max(tint, 0.0) * microfacet_compensation(lobe, F_ss) * weight;
+    vec3 compensation = microfacet_compensation(lobe, F_ss);
+    vec3 scale = max(tint, 0.0) * compensation * weight;
 
     bsdf.throughput = max(1.0 - lobe.albedo * F_o * scale, 0.0);
 
@@ -47,8 +48,8 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     }
     else if (transmission && scatter_mode != 0)
     {
-        bsdf.response = mx_surface_transmission(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd,
-                                                max(tint, 0.0)) * weight;
+        vec3 passed = max(1.0 - lobe.albedo * F_o * compensation, 0.0);
+        bsdf.response = microfacet_transmission(lobe, X, distribution, fd, max(tint, 0.0), passed) * weight;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {

@@ -43,9 +43,11 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
         F_ss = fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
         F_o = generalized_schlick_average(lobe, fd, dip);
     }
-    vec3 scale = microfacet_compensation(lobe, F_ss) * weight;
+    vec3 compensation = microfacet_compensation(lobe, F_ss);
+    vec3 scale = compensation * weight;
+    vec3 single = lobe.albedo * F_o;
 
-    bsdf.throughput = max(1.0 - lobe.albedo * F_o * scale, 0.0);
+    bsdf.throughput = max(1.0 - single * scale, 0.0);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
@@ -56,8 +58,8 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     else if (transmission && scatter_mode != 0)
     {
         fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));
-        bsdf.response = mx_surface_transmission(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd,
-                                                vec3(1.0)) * weight;
+        vec3 passed = max(1.0 - single * compensation, 0.0);
+        bsdf.response = microfacet_transmission(lobe, X, distribution, fd, vec3(1.0), passed) * weight;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {

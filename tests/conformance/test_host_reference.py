@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mxeon.conformance.checks.bsdf.tolerances import MICROFACET_VALUE
 from mxeon.conformance.checks.image import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference import lobes
@@ -25,7 +26,7 @@ from mxeon.models.sheen import (
 from mxeon.shaders.document.reading import DocumentWarning
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import open_host
-from mxeon.shaders.nodes import EON, OREN_NAYAR
+from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, VIEW, Scene, sphere
 from tests.support.documents import connected, lobe, material
 
@@ -158,10 +159,10 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
             "no model for this mode of node 'dielectric_bsdf'",
         ),
         (
-            f"""<normalmap name="bump" type="vector3"/><{EON} name="lobe" type="BSDF">
+            f"""<noise2d name="bump" type="vector3"/><{EON} name="lobe" type="BSDF">
             <input name="normal" type="vector3" nodename="bump"/></{EON}>""",
             FRONT,
-            "no model for node 'normalmap'|a normal other than",
+            "no model for node 'noise2d'",
         ),
         (
             f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
@@ -175,7 +176,7 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
         "subsurface",
         "thin film",
         "transmission",
-        "normal map",
+        "noise",
         "color space",
         "image of an environment",
     ],
@@ -184,6 +185,70 @@ def test_what_the_models_do_not_cover_did_not_run(nodes, scene, words):
     shader = generate(material(nodes), "glsl")[0]
     with pytest.raises(NotRun, match=words):
         Reference().picture(shader, scene)
+
+
+def turned(category, normal, tangent):
+    """A lobe with a normal and a tangent, each a node of its own."""
+    return f"""<constant name="n" type="vector3"><input name="value" type="vector3"
+      value="{normal}"/></constant><constant name="t" type="vector3"><input name="value"
+      type="vector3" value="{tangent}"/></constant><{category} name="lobe" type="BSDF">
+      <input name="roughness" type="vector2" value="0.2, 0.6"/>
+      <input name="normal" type="vector3" nodename="n"/>
+      <input name="tangent" type="vector3" nodename="t"/></{category}>"""
+
+
+def test_a_lobe_has_the_frame_of_its_normal_and_tangent():
+    wo, wi = np.array([[0.6, 0.0, 0.8]]), np.array([[0.0, -0.8, 0.6]])
+    axes = np.array([[0.0, 1.0, 0.0], [-0.8, 0.0, 0.6], [0.6, 0.0, 0.8]])
+    nodes = turned("conductor_bsdf", "0.6, 0.0, 0.8", "0.0, 1.0, 0.0")
+    values = Reference().evaluate(generate(material(nodes), "glsl")[0], wo, wi, {}, "direct")
+    straight = """<conductor_bsdf name="lobe" type="BSDF">
+      <input name="roughness" type="vector2" value="0.2, 0.6"/></conductor_bsdf>"""
+    shader = generate(material(straight), "glsl")[0]
+    expected = Reference().evaluate(shader, wo @ axes.T, wi @ axes.T, {}, "direct")
+    assert np.allclose(values, expected, rtol=1e-9)
+
+
+def test_a_normal_that_is_no_unit_vector_is_refused():
+    nodes = turned("conductor_bsdf", "0.0, 0.0, 2.0", "1.0, 0.0, 0.0")
+    with pytest.raises(OutsideModel, match="normal must have the length 1; got 2"):
+        Reference().picture(generate(material(nodes), "glsl")[0], SMALL)
+
+
+SURFACES = ("standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface")
+
+
+@pytest.mark.parametrize("category", [*SURFACES, "disney_principled"])
+def test_a_surface_shader_has_a_picture_like_gl(category):
+    shading = f'<{category} name="shading" type="surfaceshader"/>'
+    shader = generate(document_text(shading), "glsl", lights=True)[0]
+    scene = replace(SIDE, size=32)
+    with open_host("gl") as host:
+        measured = host.picture(shader, scene)
+    assert np.abs(measured - Reference().picture(shader, scene)).max() < MICROFACET_VALUE.value
+
+
+def test_a_lobe_of_no_weight_adds_nothing_whatever_it_is():
+    node = """<subsurface_bsdf name="lobe" type="BSDF"><input name="weight" type="float"
+      value="0"/></subsurface_bsdf>"""
+    assert not center(material(node)).any()
+
+
+def test_emission_is_scaled_by_the_opacity():
+    text = document_text("""<uniform_edf name="lamp" type="EDF">
+      <input name="color" type="color3" value="2, 4, 6"/></uniform_edf>
+      <surface name="shading" type="surfaceshader"><input name="edf" type="EDF" nodename="lamp"/>
+      <input name="opacity" type="float" value="0.5"/></surface>""")
+    assert np.allclose(center(text), [1.0, 2.0, 3.0])
+
+
+def test_inputs_of_a_surface_shader_can_be_handed_in():
+    shader = generate(document_text('<gltf_pbr name="shading" type="surfaceshader"/>'), "glsl")[0]
+    wo, wi = np.array([[0.6, 0.0, 0.8]] * 2), np.array([[0.0, -0.8, 0.6]] * 2)
+    inputs = {"base_color": np.eye(3)[:2], "metallic": np.array([0.0, 1.0])}
+    values = Reference().evaluate(shader, wo, wi, {**inputs, "specular": 0.0}, "direct")
+    assert np.allclose(values[0], [0.6 / np.pi, 0.0, 0.0])
+    assert values[1, 1] > 10.0 * values[1, 0]
 
 
 def test_a_white_furnace_of_eon_is_white():
@@ -368,7 +433,8 @@ def test_a_lobe_scaled_to_nothing_hides_nothing():
             r"node 'lobe': roughness must lie in \[0, 1\]; got 1.5",
         ),
         (
-            """<anisotropic_vdf name="fog" type="VDF"/><sheen_bsdf name="top" type="BSDF"/>
+            """<anisotropic_vdf name="fog" type="VDF"><input name="scattering" type="vector3"
+            value="0, 1, 0"/></anisotropic_vdf><sheen_bsdf name="top" type="BSDF"/>
             <layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename="top"/>
             <input name="base" type="VDF" nodename="fog"/></layer>""",
             NotRun,

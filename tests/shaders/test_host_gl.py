@@ -10,7 +10,9 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.conformance.checks.batch import directions
+from mxeon.conformance.checks.bsdf.tolerances import MICROFACET_VALUE
 from mxeon.conformance.checks.probes import picture_pairs
+from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader, generate
@@ -164,6 +166,21 @@ def test_nodes_are_evaluated_together_with_inputs_by_their_paths(gl):
     assert np.allclose(both, one + other, rtol=1e-6)
 
 
+SHADERS = ("standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface")
+
+
+@pytest.mark.parametrize("category", SHADERS)
+def test_it_evaluates_a_surface_shader_with_inputs_of_each_pair(gl, category):
+    shader = gl.compile(document_text(f'<{category} name="shading" type="surfaceshader"/>'))[0]
+    wo, wi = np.array([[0.6, 0.0, 0.8]] * 2), np.array([[0.0, -0.8, 0.6]] * 2)
+    color = "diffuseColor" if category == "UsdPreviewSurface" else "base_color"
+    inputs = {color: np.array([[0.8, 0.4, 0.1], [0.1, 0.2, 0.6]]), "metallic": 0.0}
+    values = np.pi * gl.evaluate(shader, wo, wi, inputs, "direct")
+    expected = np.pi * Reference().evaluate(shader, wo, wi, inputs, "direct")
+    assert np.abs(values - expected).max() < MICROFACET_VALUE.value
+    assert np.abs(values[0] - values[1]).max() > 0.05
+
+
 def test_a_material_without_a_bsdf_cannot_be_evaluated(gl):
     text = document_text('<surface_unlit name="shading" type="surfaceshader"/>')
     wo = np.array([[0.0, 0.0, 1.0]])
@@ -173,7 +190,9 @@ def test_a_material_without_a_bsdf_cannot_be_evaluated(gl):
 
 def test_an_unknown_branch_lists_the_known_ones(gl):
     wo = np.array([[0.0, 0.0, 1.0]])
-    with pytest.raises(ValueError, match="^branch must be one of direct, .*, emission; got 'up'$"):
+    with pytest.raises(
+        ValueError, match="^branch must be one of graph, direct, .*, emission; got 'up'$"
+    ):
         gl.evaluate(shader(LOBES["eon"]), wo, wo, {}, "up")
 
 

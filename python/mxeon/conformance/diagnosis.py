@@ -10,6 +10,9 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import FEW, Array, Batch, Candidate
 from mxeon.conformance.checks.bsdf.measures import layering_cases, transmission_cases
+from mxeon.conformance.checks.emission.measures import back_cases, transmittance_cases
+from mxeon.conformance.checks.emission.subjects import MEDIUM
+from mxeon.conformance.checks.emission.tolerances import RADIANCES, TRANSMITTANCE
 from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.tolerance import Tolerance
@@ -71,6 +74,13 @@ def of_value(probe: Any) -> Diagnosis:
     )
 
 
+def of_case(
+    probe: Any, case: Case, candidates: Sequence[Candidate], tolerance: Tolerance
+) -> Diagnosis:
+    """The explanation of values of one case, for pairs of directions, by candidates."""
+    return _explained(probe, [case], candidates, DIRECT, tolerance)
+
+
 @lru_cache(maxsize=2)
 def of_albedo(probe: Any) -> Diagnosis:
     """The explanation of the probe's environment branch."""
@@ -89,6 +99,28 @@ def of_throughput(probe: Any) -> Diagnosis:
 def of_transmission(probe: Any) -> Diagnosis:
     """The explanation of the throughput of a layer for light through the base."""
     return _of_rest(probe, list(transmission_cases(probe)))
+
+
+@lru_cache(maxsize=2)
+def of_radiance(probe: Any) -> Diagnosis:
+    """The explanation of what an emission is from the front."""
+    return _of_emission(probe, list(value_cases(probe)))
+
+
+def of_back(probe: Any) -> Diagnosis:
+    """The explanation of what an emission is from the back."""
+    return _of_emission(probe, list(back_cases(probe)))
+
+
+def of_medium(probe: Any) -> Diagnosis:
+    """The explanation of the transmittance of a medium."""
+    return _of_emission(probe, list(transmittance_cases(probe)))
+
+
+def _of_emission(probe: Any, cases: Sequence[Case]) -> Diagnosis:
+    """The explanation of radiances and transmittances."""
+    tolerance = {**RADIANCES, MEDIUM: TRANSMITTANCE}[probe.kind]
+    return _explained(probe, cases, probe.subject.value_candidates, (), tolerance)
 
 
 def _of_rest(probe: Any, cases: Sequence[Case]) -> Diagnosis:

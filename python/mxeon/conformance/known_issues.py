@@ -69,6 +69,27 @@ def _product(checks: Sequence[str], subjects: Sequence[str]) -> tuple[tuple[str,
     return tuple((check, subject) for check in checks for subject in subjects)
 
 
+HAIR = "chiang_hair_bsdf"
+HAIR_ISSUES = (
+    Issue(
+        "genglsl_hair_uniform_lobe",
+        "gl",
+        (("lobes", HAIR),),
+        HARDWARE,
+        _product(("value", "integral"), (HAIR,)),
+    ),
+    Issue(
+        "genglsl_hair_longitudinal",
+        "gl",
+        _product(("narrow_lobes", "tilted_lobes"), (HAIR,)),
+        HARDWARE,
+        _product(("value", "black", "integral", "finite"), (HAIR,)),
+    ),
+    Issue("genglsl_hair_roughness", "gl", (("wide_lobes", HAIR),), HARDWARE),
+    Issue("genglsl_hair_azimuth", "gl", (("straight_views", HAIR),), HARDWARE, (("lobes", HAIR),)),
+    Issue("genglsl_hair_grazing", "gl", (("finite", HAIR),), HARDWARE, (("value", HAIR),)),
+    Issue("genglsl_hair_environment", "gl", (("environment", HAIR),), HARDWARE),
+)
 BSDF_ISSUES = (
     Issue("genglsl_zeltner_normal", "gl", (("value", ZELTNER),), HARDWARE),
     Issue(
@@ -143,8 +164,35 @@ BSDF_ISSUES = (
         _product(("film_environment",), FILMS[:2]),
     ),
 )
+EMISSION_ISSUES = (
+    Issue(
+        "genglsl_missing_nodes",
+        "gl",
+        _product(
+            ("implemented",),
+            (
+                "conical_edf",
+                "measured_edf",
+                "absorption_vdf",
+                "mix, VDF",
+                "add, VDF",
+                "multiply, VDF",
+            ),
+        ),
+        HARDWARE,
+    ),
+    Issue(
+        "genglsl_medium_scattering",
+        "gl",
+        _product(("transmittance", "inputs"), ("anisotropic_vdf",)),
+        HARDWARE,
+    ),
+    Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
+)
 ISSUES = (
     *BSDF_ISSUES,
+    *EMISSION_ISSUES,
+    *HAIR_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",

@@ -100,6 +100,8 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     for name, words in INDICES.items():
         index = _rows(batch.inputs.get(name, 1.0), count)
         yield f"with {words} of 0", _any(index == 0.0)
+    if "cuticle_angle" in batch.inputs:
+        yield "with a tilted cuticle", _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
     yield "with a white color", (color == 1.0).all(axis=1)
     yield "with a gray color", (color == color[:, :1]).all(axis=1)
     yield "with a color channel at 0", _any(color == 0.0)

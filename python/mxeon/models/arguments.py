@@ -34,8 +34,48 @@ RANGES = {
     "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
     "ior": (0.0, 1e50, "[0, 1e50]"),
     "extinction": (0.0, 1e50, "[0, 1e50]"),
+    "radiance": (0.0, 1e50, "[0, 1e50]"),
+    "intensity": (0.0, 1e50, "[0, 1e50]"),
+    "exposure": (-1000.0, 1000.0, "[-1000, 1000]"),
+    "opacity": (0.0, 1.0, "[0, 1]"),
+    "inner_angle": (0.0, 360.0, "[0, 360]"),
+    "outer_angle": (0.0, 360.0, "[0, 360]"),
+    "absorption": (0.0, 1e50, "[0, 1e50]"),
+    "scattering": (0.0, 1e50, "[0, 1e50]"),
+    "distance": (0.0, 1e50, "[0, 1e50]"),
+    "cos_theta": (-1.0, 1.0, "[-1, 1]"),
+    "g": (-float(np.nextafter(1.0, 0.0)), float(np.nextafter(1.0, 0.0)), "(-1, 1)"),
+    "anisotropy": (0.0, 1.0, "[0, 1]"),
+    "glossiness": (0.0, 1.0, "[0, 1]"),
+    "reflectivity": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
+    "edge_color": (0.0, 1.0, "[0, 1]"),
+    "temperature": (1.0, 1e9, "[1, 1e9]"),
+    "wavelength": (1.0, 1e9, "[1, 1e9]"),
+    "longitudinal": (0.0, 1.0, "[0, 1]"),
+    "azimuthal": (0.0, 1.0, "[0, 1]"),
+    "scale_tt": (0.0, 1e50, "[0, 1e50]"),
+    "scale_trt": (0.0, 1e50, "[0, 1e50]"),
+    "melanin_concentration": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
+    "melanin_redness": (0.0, 1.0, "[0, 1]"),
+    "eumelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
+    "pheomelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
+    "hair_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
+    "azimuthal_roughness": (0.0, 1.0, "[0, 1]"),
     "thinfilm_thickness": (0.0, 1e9, "[0, 1e9]"),  # nm
     "thinfilm_ior": (1.0, 1e50, "[1, 1e50]"),
+    **dict.fromkeys(("tint_R", "tint_TT", "tint_TRT"), (0.0, 1.0, "[0, 1]")),
+    "variance": (1e-12, 1e12, "[1e-12, 1e12]"),  # where exponents and squares still fit
+    "scale": (1e-12, 1e12, "[1e-12, 1e12]"),
+    **dict.fromkeys(
+        ("roughness_R", "roughness_TT", "roughness_TRT"), (1e-12, 1e12, "[1e-12, 1e12]")
+    ),
+    "cuticle_angle": (0.0, 1.0, "[0, 1]"),
+    "absorption_coefficient": (0.0, 1e50, "[0, 1e50]"),
+    "x": (0.0, _LARGEST, "[0, inf)"),
+    "theta": (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]"),
+    "phi": (-_LARGEST, _LARGEST, "(-inf, inf)"),
+    "reflectance": (0.0, 1.0, "[0, 1]"),
+    "transmittance": (0.0, 1.0, "[0, 1]"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 
@@ -119,6 +159,18 @@ def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
     z = array[..., 2]
     if (z > 0.0).any():
         _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > 0.0), "z = ")
+    return array
+
+
+def checked_sphere(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 3) of unit vectors, on either side of the surface."""
+    array = checked_triples(name, value)
+    mirrored = np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1)
+    if not are_directions(np.moveaxis(mirrored, -1, 0)):
+        refuse_direction(name, mirrored)
+    """Argument of shape (..., 3), of unit vectors on either side of the horizon."""
+    array = checked_triples(name, value)
+    checked_directions(name, array * np.where(array[..., 2:] < 0.0, [1.0, 1.0, -1.0], 1.0))
     return array
 
 

@@ -67,7 +67,16 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss on valid float64 arrays."""
+    """E_ss on valid float64 arrays; cosines that are alike, as those of pictures, count once."""
+    if alpha.size == 1 < mu.size:
+        each, indices = np.unique(mu, return_inverse=True)
+        found: Array = _albedo(each, alpha.reshape(1))[indices]
+        return found.reshape(np.broadcast_shapes(mu.shape, alpha.shape))
+    return _albedo(mu, alpha)
+
+
+def _albedo(mu: Array, alpha: Array) -> Array:
+    """E_ss by quadrature."""
     rough = np.maximum(alpha, LEAST_ALPHA)
     scaled = np.minimum(mu * (rough / np.maximum(alpha, 1e-300)), 1.0)
     elevation = np.maximum(np.arcsin(scaled), LEAST_ELEVATION)

@@ -78,5 +78,10 @@ def channels_first(array: Numbers) -> Array:
 
 
 def with_axes(array: Numbers, ndim: int) -> Numbers:
-    """Array with leading axes of length 1, `ndim` axes in all."""
-    return array.reshape((1,) * (ndim - array.ndim) + array.shape)
+    """Array with leading axes of length 1, `ndim` axes in all.
+
+    An axis but the last along which it was broadcast has length 1 again.
+    """
+    *strides, _ = array.strides
+    narrow = array[tuple(slice(None if stride else 1) for stride in strides)]
+    return narrow.reshape((1,) * (ndim - array.ndim) + narrow.shape)

@@ -72,6 +72,15 @@ BSDF_INPUTS: dict[str, dict[str, str]] = {
         "normal": "vector3",
         "mode": "string",
     },
+    "chiang_hair_bsdf": {
+        **dict.fromkeys(("tint_R", "tint_TT", "tint_TRT"), "color3"),
+        "ior": "float",
+        **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), "vector2"),
+        "cuticle_angle": "float",
+        "absorption_coefficient": "vector3",
+        "normal": "vector3",
+        "curve_direction": "vector3",
+    },
 }
 
 SURFACE = """  <surface name="shading" type="surfaceshader">
@@ -87,7 +96,7 @@ DOCUMENT = """<?xml version="1.0"?>
 """
 
 
-FRAME = ("normal", "tangent")  # inputs that are vectors of the surface
+FRAME = ("normal", "tangent", "curve_direction")  # inputs that are vectors of the surface
 
 
 def input_types(category: str) -> Mapping[str, str]:

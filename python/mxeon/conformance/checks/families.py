@@ -6,9 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
+from mxeon.conformance.checks.bsdf.hair import HAIRS, HairSubject
+from mxeon.conformance.checks.bsdf.hair_probes import HairProbe
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.bsdf.thin_films import FILMS, film_probe_type
+from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
+from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
+from mxeon.conformance.checks.probes import PairProbe
 
 
 @dataclass(frozen=True)
@@ -21,17 +26,31 @@ class Family:
         Each has `title` and `node`, the category; a title is of one subject.
     probe_type : callable (subject, probe) -> type or None
         Class of a subject's probes on a host that has probes of a class; None if it has none.
+    common : bool
+        Whether every run judges them; others are judged where they are asked for by name.
     """
 
     subjects: tuple[Any, ...]
     probe_type: Callable[[Any, type[Any]], type[Any] | None]
+    common: bool = False
+
+
+def hair_probe_type(_: HairSubject, probe: type[Any]) -> type[HairProbe] | None:
+    """Class of the probes of the hair node, which needs a host that evaluates any pairs."""
+    return HairProbe if probe is PairProbe else None
 
 
 FAMILIES = (
-    Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type),
+    Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
+    Family(HAIRS, hair_probe_type),
+    Family(EMISSION_SUBJECTS, emission_probe_type),
+    Family(TRANSMITTING, transmission_probe_type),
     Family(FILMS, film_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
+COMMON_SUBJECTS = tuple(
+    subject for family in FAMILIES if family.common for subject in family.subjects
+)
 
 
 def probe_type_of(subject: Any, probe: type[Any]) -> type[Any] | None:

@@ -222,11 +222,12 @@ def inputs(probe: Any, _: Metric) -> Measurement:
 def dead_inputs(probe: Any) -> list[str]:
     """The inputs of `inputs`."""
     batch = probe.few[0]
-    return [
-        name
-        for name, pair in probe.subject.changes.items()
-        if np.array_equal(*(probe.direct(batch.altered(**change)) for change in pair))
-    ]
+    dead = []
+    for name, pair in probe.subject.changes.items():
+        one, other = (probe.direct(batch.altered(**change)) for change in pair)
+        if np.array_equal(one, other, equal_nan=True):
+            dead.append(name)
+    return dead
 
 
 def finite(probe: Any, _: Metric) -> Measurement:

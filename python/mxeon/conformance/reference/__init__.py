@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.reference.graph import Graph
-from mxeon.conformance.reference.lobes import furnace, lit
+from mxeon.conformance.reference.points import Points
 from mxeon.errors import NotRun
 from mxeon.shaders import hosts
 from mxeon.shaders.generation import Shader
@@ -39,18 +39,22 @@ class Host(base.Host):
         ------
         NotRun
             If the material has lobes that the models do not cover, or the light is an image.
+        ValueError
+            If the scene asks for paths.
         """
+        self.refuse_paths(scene)
         points = sphere(scene.size)
         normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
-        wo = _local(normal, VIEW)
+        wo = np.broadcast_to(VIEW, normal.shape)
         if scene.light is not None:
-            lobe = lit(wo, _local(normal, scene.light), np.pi)
+            wi, strength = np.broadcast_to(scene.light, normal.shape), np.pi
         elif isinstance(scene.environment, float):
-            lobe = furnace(wo, scene.environment)
+            wi, strength = None, scene.environment
         else:
             raise NotRun("reference: environment must be uniform; got an image")
+        lit = Points(wo, wi, strength, normal, tangents(normal), texcoord)
         image = np.zeros(points.normal.shape)
-        image[points.mask] = Graph(shader.document, texcoord, lobe).element(shader.element)
+        image[points.mask] = Graph(shader.document, lit).element(shader.element)
         return image
 
     def evaluate(
@@ -64,7 +68,7 @@ class Host(base.Host):
         output: str = "response",
         irradiance: NDArray[Any] | None = None,
     ) -> NDArray[np.float64]:
-        """Values of the document's one lobe; see `mxeon.shaders.hosts.base.Host`.
+        """Values of the document's lobes; see `mxeon.shaders.hosts.base.Host`.
 
         Raises
         ------
@@ -79,17 +83,7 @@ class Host(base.Host):
             raise NotRun(
                 "reference: only the response to a light or a uniform environment is known"
             )
-        lobe = furnace(wo, 1.0) if branch == "environment" else lit(wo, wi, 1.0)
-        values: NDArray[np.float64] = Graph(shader.document, None, lobe, inputs).element(
-            shader.element
-        )
-        return values
-
-
-def _local(normal: NDArray[np.float64], direction: tuple[float, ...]) -> NDArray[np.float64]:
-    """A direction in the frames of the sphere, tangent +x and normal +z, as unit vectors (N, 3)."""
-    tangent = tangents(normal)
-    axes = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
-    local = axes @ np.asarray(direction)
-    unit: NDArray[np.float64] = local / np.linalg.norm(local, axis=1, keepdims=True)
-    return unit
+        normal, tangent = (np.broadcast_to(axis, wo.shape) for axis in ((0, 0, 1.0), (1.0, 0, 0)))
+        points = Points(wo, wi if branch == "direct" else None, 1.0, normal, tangent)
+        values = Graph(shader.document, points, inputs, emits=False).element(shader.element)
+        return np.array(np.broadcast_to(values, wo.shape), np.float64)

@@ -1,66 +1,53 @@
 # SPDX-License-Identifier: Apache-2.0
 """Material graphs evaluated in NumPy, over all the points of a picture at once.
 
-A graph may contain rough diffuse lobes and the nodes of `mxeon.models.pbrlib`; layer, mix, add and
-multiply; values, arithmetic and images; nodes that are nodegraphs of these. Any other node is NotRun,
-with its name.
+A graph may contain the lobes that have a model, with their combinations; emissions; images; the
+operations of the standard library; and nodes that are nodegraphs of these, surface shaders among
+them. Any other node is NotRun, with its name, unless it adds nothing: a lobe whose weight is 0
+everywhere, or that a mix leaves out.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Mapping
-from functools import partial
-from operator import add, mul, pow, sub, truediv
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property, partial
+from operator import itemgetter
 from typing import Any, TypeAlias
 
 import MaterialX as mx
 import numpy as np
-from numpy.typing import NDArray
 
-from mxeon.conformance.reference.lobes import Lobe
+from mxeon.conformance.reference.emissions import EMISSIONS
+from mxeon.conformance.reference.images import looked_up
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
+    NOTHING,
     combined,
     definition,
     node_lobe,
     plain,
 )
+from mxeon.conformance.reference.operations import OPERATIONS, fitted
+from mxeon.conformance.reference.points import Points
+from mxeon.conformance.reference.utilities import UTILITIES
+from mxeon.conformance.reference.walk import evaluated
 from mxeon.errors import NotRun
 from mxeon.io.images import srgb_decoded
 from mxeon.models.layering import Bsdf
 from mxeon.shaders.document.graphs import reachable
-from mxeon.shaders.hosts.textures import read_texture
 
 Path: TypeAlias = tuple[str, ...]  # see Graph
 Step: TypeAlias = tuple[Callable[..., Any], tuple[Path, ...]]
 
-# Operations on values and on lobes alike: node category -> its inputs, and the function of them.
-OPERATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Any]]] = {
-    "constant": (("value",), lambda value: value),
-    "add": (("in1", "in2"), add),
-    "subtract": (("in1", "in2"), sub),
-    "multiply": (("in1", "in2"), mul),
-    "divide": (("in1", "in2"), truediv),
-    "power": (("in1", "in2"), pow),
-    "invert": (("amount", "in"), sub),
-    "sqrt": (("in",), np.sqrt),
-    "convert": (("in",), lambda value: value),
-    "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
-    "surface": (
-        ("bsdf", "edf", "opacity"),
-        lambda bsdf, edf, opacity: bsdf.value * opacity + edf,
-    ),
-    "surfacematerial": (("surfaceshader",), lambda shader: shader),
-}
 # Where nothing is connected: black, and for a lobe nothing at all, which hides nothing.
-UNCONNECTED = {
-    "BSDF": Bsdf(np.zeros(3), np.ones(3)),
-    "EDF": 0.0,
-    "surfaceshader": 0.0,
+UNCONNECTED = {"BSDF": NOTHING, "EDF": np.zeros(3), "surfaceshader": np.zeros(3), "VDF": None}
+NUMBERS = ("float", "boolean", "integer")
+# A surface with its opacity and what it emits, or its lobes alone.
+SURFACES: dict[bool, tuple[tuple[str, ...], Callable[..., Any]]] = {
+    True: (("bsdf", "edf", "opacity"), lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity),
+    False: (("bsdf",), lambda bsdf: bsdf.value),
 }
-CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
 
 
 class Graph:
@@ -69,31 +56,33 @@ class Graph:
     Parameters
     ----------
     document : MaterialX.Document
-    texcoord : ndarray, shape (N, 2)
-    lobe : callable
-        Lobe at these points; see `mxeon.conformance.reference.lobes`.
+    points : Points
     inputs : mapping of str to array
-        Inputs of lobes that take the place of the document's.
+        Inputs of the surface shader, or of lobes where the document has none, that take the place
+        of the document's.
+    emits : bool
+        Whether emission and opacity count.
 
     Notes
     -----
     A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the
-    outermost first. A loop evaluates each path once, so that neither a long chain nor a node with
-    many uses does harm, and forgets its value after the last use.
+    outermost first.
     """
 
     def __init__(
         self,
         document: Any,
-        texcoord: NDArray[np.float64] | None,
-        lobe: Lobe,
+        points: Points,
         inputs: Mapping[str, Any] | None = None,
+        emits: bool = True,
     ) -> None:
         self._document = document
-        self._texcoord = texcoord
-        self._lobe = lobe
+        self._points = points
         self._inputs = inputs or {}
-        self._layered = False  # whether throughputs are needed
+        self._emits = emits
+        self._shader: Path | None = None  # the surface shader that is a nodegraph
+        self._tops: list[Path] = []  # of layers: their throughputs are needed
+        self._hiding: set[Path] = set()  # and those of what they are made of
         self._elements: dict[Path, Any] = {}
         self._steps: dict[Path, Step] = {}
 
@@ -107,26 +96,19 @@ class Graph:
         """
         element = self._document.getDescendant(name_path)
         root = element.getConnectedNode() if element.isA(mx.Output) else element
-        return self._evaluate(self._inner((), root))
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # of values that another node leaves out
+            path = self._inner((), root)
+            self._parts([path])
+            self._hiding.update(self._parts(self._tops))
+            return self._evaluate(path)
+
+    def _parts(self, roots: Iterable[Path]) -> dict[Path, tuple[Path, ...]]:
+        return reachable(roots, lambda path: self._step(path)[1])
 
     def _evaluate(self, root: Path) -> Any:
-        parts = reachable([root], lambda path: self._step(path)[1])
-        uses = Counter(part for inner in parts.values() for part in inner)
-        values: dict[Path, Any] = {}
-        waiting = [root]
-        while waiting:
-            path = waiting[-1]
-            if path in values:
-                waiting.pop()
-            elif missing := [part for part in parts[path] if part not in values]:
-                waiting.append(missing[0])
-            else:
-                values[path] = self._steps[path][0](*(values[part] for part in parts[path]))
-                for part in parts[path]:
-                    uses[part] -= 1
-                    if not uses[part]:
-                        del values[part]
-        return values[root]
+        return evaluated(root, self._parts([root]), lambda path: self._step(path)[0])
 
     def _step(self, path: Path) -> Step:
         """Function that computes the value at a path, and the paths of its arguments."""
@@ -136,59 +118,142 @@ class Graph:
 
     def _node_step(self, path: Path) -> Step:
         node = self._elements[path]
-        category = node.getCategory()
+        category, kind = node.getCategory(), node.getType()
         if category in LOBES:
-            names = tuple(port.getName() for port in definition(node).getActiveInputs())
-            sources = self._sources(path, names)
-            return lambda *values: self._lobe_of(
-                node, dict(zip(names, values, strict=True))
-            ), sources
-        if category in COMBINATIONS and node.getType() == "BSDF":
+            return self._lobe(path, node)
+        if kind == "BSDF" and category in COMBINATIONS:
             return self._combination(path, node)
         if category == "image":
-            return partial(self._image, node), ()
-        if category in OPERATIONS:
-            ports, operation = OPERATIONS[category]
-            return operation, self._sources(path, ports)
-        inside = node.getImplementation()
-        outputs: Any = inside.getOutputs() if inside and inside.isA(mx.NodeGraph) else ()
-        if len(outputs) != 1 or not outputs[0].getConnectedNode():
-            raise NotRun(f"reference: there is no model for node {category!r}")
-        return lambda value: value, (self._inner(path, outputs[0].getConnectedNode()),)
+            return partial(looked_up, node, self._points.texcoord, self._linear), ()
+        if category in self._operations:
+            ports, operation = self._operations[category]
+            return partial(_computed, kind, operation), self._sources(path, ports)
+        if kind == "surfaceshader" and self._shader is None:
+            self._shader = path
+        if inner := self._inside(path, node):
+            return _same, (inner,)
+        if kind == "BSDF" and not self._weighs(path, node):
+            return lambda: NOTHING, ()
+        raise NotRun(f"reference: there is no model for node {category!r}")
+
+    @cached_property
+    def _operations(self) -> dict[str, tuple[tuple[str, ...], Callable[..., Any]]]:
+        """Nodes that compute numbers or colors, some of them by the points."""
+        emissions = {
+            category: (ports, partial(emission, self._points))
+            for category, (ports, emission) in EMISSIONS.items()
+        }
+        surface = {"surface": SURFACES[self._emits], "surfacematerial": (("surfaceshader",), _same)}
+        return {**OPERATIONS, **UTILITIES, **emissions, **surface}
+
+    def _inside(self, path: Path, node: Any, output: str = "") -> Path | None:
+        """Path of what an output of a node has in its nodegraph; None if that is none."""
+        graph = node.getImplementation()
+        outputs: Any = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else ()
+        named = [each for each in outputs if each.getName() == output] or outputs
+        if len(named) != 1 or not named[0].getConnectedNode():
+            return None
+        return self._connected(path, named[0])
+
+    def _weighs(self, path: Path, node: Any) -> bool:
+        """Whether a lobe without a model has a weight that is not 0 everywhere."""
+        if not definition(node).getActiveInput("weight"):
+            return True
+        return bool(np.any(self._evaluate(self._source(path, "weight"))))
+
+    def _lobe(self, path: Path, node: Any) -> Step:
+        names = tuple(port.getName() for port in definition(node).getActiveInputs())
+
+        def lobe(*values: Any) -> Bsdf:
+            inputs = dict(zip(names, values, strict=True))
+            return node_lobe(node, inputs, self._points, path in self._hiding)
+
+        return lobe, self._sources(path, names)
 
     def _combination(self, path: Path, node: Any) -> Step:
-        """Step of a node that combines lobes."""
-        ports, operation = COMBINATIONS[node.getCategory()]
-        if node.getCategory() == "layer":
-            self._layered = True
+        """Step of a node that combines lobes; a mix leaves out what has no share."""
+        category = node.getCategory()
+        ports, operation = COMBINATIONS[category]
+        if category == "mix":
+            share = self._evaluate(self._source(path, "mix"))
+            for port, none in (("bg", 0.0), ("fg", 1.0)):
+                if np.all(share == none):
+                    return _same, self._sources(path, (port,))
+        if category == "layer":
+            self._tops.append(self._source(path, "top"))
             if definition(node).getActiveInput("base").getType() != "BSDF":
-                raise NotRun("reference: there is no model for a layer over a volume")
+                self._assert_empty(path)
+                return _same, self._sources(path, ("top",))
         return partial(combined, node.getNamePath(), operation), self._sources(path, ports)
 
+    def _assert_empty(self, path: Path) -> None:
+        """Raise NotRun if the volume below a layer absorbs or scatters anything."""
+        base = self._source(path, "base")
+        volume = self._elements.get(base)
+        for name in ("absorption", "scattering") if volume else ():
+            if definition(volume).getActiveInput(name) is None:
+                continue
+            if np.any(self._evaluate(self._source(base, name))):
+                raise NotRun("reference: there is no model for a layer over a volume")
+
     def _sources(self, path: Path, names: tuple[str, ...]) -> tuple[Path, ...]:
-        values = self._inputs if self._elements[path].getCategory() in LOBES else {}
-        return tuple(
-            self._constant(path, name, values[name]) if name in values else self._source(path, name)
-            for name in names
-        )
+        return tuple(self._source(path, name) for name in names)
 
     def _source(self, path: Path, name: str) -> Path:
         """Path of an input's value: of the node connected to it, or of a constant."""
-        while (port := self._port(path, name)).hasInterfaceName():
+        while not self._is_given(path, name):
+            port = self._port(path, name)
+            if not port.hasInterfaceName():
+                break
             path, name = path[:-1], port.getInterfaceName()
-        if node := port.getConnectedNode():
-            graph, parent = node.getParent(), self._elements[path].getParent()
-            if graph.getNamePath() == parent.getNamePath():
-                return self._inner(path[:-1], node)
-            return self._inner(self._inner((), graph), node)
+        else:
+            return self._constant(path, name, self._given(path, name))
+        if port.getConnectedNode():
+            return self._connected(path[:-1], port)
         return self._constant(path, name, self._value(path, name, port))
+
+    def _is_given(self, path: Path, name: str) -> bool:
+        """Whether one of the inputs that were handed in takes the place of a node's."""
+        if name not in self._inputs:
+            return False
+        if self._shader is not None:
+            return path == self._shader
+        element = self._elements.get(path)
+        return element is not None and element.getCategory() in LOBES
+
+    def _given(self, path: Path, name: str) -> Any:
+        """Value that was handed in, (N, 1) if it is one number for each point."""
+        number = self._port(path, name).getType() in NUMBERS
+        return np.reshape(self._inputs[name], (-1, 1)) if number else self._inputs[name]
+
+    def _connected(self, around: Path, port: Any) -> Path:
+        """Path of what an input or output within another path is connected to."""
+        node, source = port.getConnectedNode(), port
+        graph, scope = node.getParent(), port.getParent()
+        if port.getNodeGraphString():
+            source = port.getConnectedOutput()
+        if port.isA(mx.Input):
+            scope = scope.getParent()
+        if graph.getNamePath() != scope.getNamePath():
+            around = self._inner((), graph)
+        path, output = self._inner(around, node), source.getOutputString()
+        if node.getType() != "multioutput":
+            return path
+        if node.getCategory() in UTILITIES:
+            part = (*path, f".{output}")
+            self._steps[part] = itemgetter(output), (path,)
+            return part
+        if inner := self._inside(path, node, output):
+            return inner
+        raise NotRun(f"reference: there is no model for node {node.getCategory()!r}")
 
     def _value(self, path: Path, name: str, port: Any) -> Any:
         """Value of an input without a connection, in the document's color space."""
-        definition = self._elements[path].getNodeDef()
-        declared = definition.getActiveInput(name) if definition else None
-        if declared and declared.hasDefaultGeomPropString():
-            return None  # the surface's own: nothing sets it
+        element = self._elements[path]
+        nodedef = element.getNodeDef() if element.isA(mx.Node) else None
+        declared = nodedef.getActiveInput(name) if nodedef else None
+        if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
+            return self._points.geometry(declared.getDefaultGeomPropString())
         value = port.getValue()
         if value is None and declared:  # a connection that MaterialX ignores
             value = declared.getValue()
@@ -199,9 +264,9 @@ class Graph:
     def _port(self, path: Path, name: str) -> Any:
         """Input of a node, or else of its nodedef."""
         element = self._elements.get(path)
-        definition = element.getNodeDef() if element else None
+        nodedef = element.getNodeDef() if element else None
         port = element and element.getInput(name)
-        port = port or (definition and definition.getActiveInput(name))
+        port = port or (nodedef and nodedef.getActiveInput(name))
         if not port:
             raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
         return port
@@ -221,39 +286,16 @@ class Graph:
     def _linear(self, element: Any, value: Any) -> Any:
         """Color in the document's linear space, as the generators' color management has it."""
         space = element.getActiveColorSpace()
-        if space in ("", "none", self._document.getColorSpace()):
+        if space in ("", "none", self._document.getColorSpace() or "lin_rec709"):
             return value
         if space != "srgb_texture":
             raise NotRun(f"reference: there is no transform for color space {space!r}")
         return srgb_decoded(value)
 
-    def _lobe_of(self, node: Any, inputs: Mapping[str, Any]) -> Bsdf:
-        return node_lobe(node, inputs, self._lobe, self._layered)
 
-    def _image(self, node: Any) -> Any:
-        """Bilinear, periodic look-up; texel centers at half-integers, v = 0 at the bottom."""
-        if self._texcoord is None or node.getInput("texcoord") is not None:
-            raise NotRun("reference: images are read at the sphere's own coordinates only")
-        file = node.getInput("file")
-        if not file or not file.getValueString():
-            raise NotRun("reference: an image must name its file itself")
-        texels = read_texture(file.getValueString()).astype(np.float64)
-        channels = CHANNELS.get(node.getType(), 0)
-        if not 0 < channels <= texels.shape[-1]:
-            raise NotRun(
-                f"reference: {file.getValueString()}: must be read as float, or as color3 from an "
-                f"image of 3 channels; got {node.getType()} from {texels.shape[-1]}"
-            )
-        height, width = texels.shape[:2]
-        texel = self._texcoord * [width, height] - 0.5
-        corner = np.floor(texel).astype(int)
-        u, v = (texel - corner).T[..., None]
-        x, y = corner.T
+def _same(value: Any) -> Any:
+    return value
 
-        def at(dx: int, dy: int) -> Any:
-            return texels[(y + dy) % height, (x + dx) % width, :channels]
 
-        lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
-        upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
-        value = lower * (1.0 - v) + upper * v
-        return self._linear(file, value) if channels == 3 else value
+def _computed(kind: str, operation: Callable[..., Any], *values: Any) -> Any:
+    return fitted(kind, operation(*values))

@@ -84,7 +84,9 @@ def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Values]:
     """Inputs at some of the points, each (M,) or (M, components)."""
     count = int(points.sum())
     return {
-        name: value[points] if len(value) == len(points) else np.repeat(value, count, axis=0)
+        name: value[points]
+        if len(value) == len(points)
+        else np.broadcast_to(value, (count, *value.shape[1:]))  # which the models compute once
         for name, value in inputs.items()
     }
 

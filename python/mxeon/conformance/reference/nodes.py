@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.reference.lobes import Lobe, diffuse, weighted
+from mxeon.conformance.reference.lobes import diffuse, weighted
+from mxeon.conformance.reference.points import Points
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models import layering
 from mxeon.models.layering import Bsdf
@@ -24,6 +25,8 @@ LOBES = {
     for category in (*DIFFUSE_NODES, *(row.category for row in NODES))
 }
 
+NOTHING = Bsdf(np.zeros(3), np.ones(3))  # a lobe that is not there
+
 # Nodes that combine lobes: category -> inputs, and the function of them.
 COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
     "layer": (("top", "base"), layering.layer),
@@ -33,7 +36,7 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 }
 
 
-def node_lobe(node: Any, inputs: Mapping[str, Any], lobe: Lobe, layered: bool) -> Bsdf:
+def node_lobe(node: Any, inputs: Mapping[str, Any], points: Points, layered: bool) -> Bsdf:
     """Lobe of a node.
 
     Parameters
@@ -42,8 +45,7 @@ def node_lobe(node: Any, inputs: Mapping[str, Any], lobe: Lobe, layered: bool) -
         Of a category in LOBES.
     inputs : mapping of str to value
         Of all its inputs, each one value or one for each point.
-    lobe : callable
-        See `mxeon.conformance.reference.lobes`.
+    points : Points
     layered : bool
         Whether the throughput is needed.
 
@@ -52,17 +54,21 @@ def node_lobe(node: Any, inputs: Mapping[str, Any], lobe: Lobe, layered: bool) -
     NotRun
         If an input has a value that the models do not cover.
     """
-    row = _row(node, inputs)
-    _assert_known(node, row, inputs)
     name = f"reference: node {node.getNamePath()!r}"
     weight = np.reshape(inputs["weight"], (-1, 1))
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
         raise OutsideModel(f"{name}: weight must lie in [0, 1]; got {beyond[0]:g}")
+    if not weight.any():
+        layerable = any(row.layerable for row in LOBES[node.getCategory()])
+        return Bsdf(np.zeros(3), np.full(3, 1.0 if layerable else 0.0))
+    row = _row(node, inputs)
+    _assert_known(node, row, inputs)
     arguments = {port: _shaped(node, port, inputs[port]) for port in row.inputs}
     if row.name == "qon":
         # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
+    lobe = points.lobe(inputs["normal"], inputs.get("tangent", points.tangent))
     try:
         values = lobe(row, arguments, layered)
     except ValueError as error:
@@ -87,7 +93,7 @@ def _row(node: Any, inputs: Mapping[str, Any]) -> PbrNode:
     """Row of the model that a node with these inputs has."""
     category = node.getCategory()
     if category in DIFFUSE_NODES:
-        return DIFFUSE[category == EON or bool(inputs[FLAG])]
+        return DIFFUSE[category == EON or bool(np.any(inputs[FLAG]))]
     for row in LOBES[category]:
         if all(value_text(inputs[port]) == value for port, value in row.fixed.items()):
             return row
@@ -97,14 +103,9 @@ def _row(node: Any, inputs: Mapping[str, Any]) -> PbrNode:
 def _assert_known(node: Any, row: PbrNode, inputs: Mapping[str, Any]) -> None:
     """Raise NotRun if an input that the model does not have differs from its default."""
     for port, value in inputs.items():
-        if port in ("weight", FLAG, *row.inputs, *row.fixed):
+        if port in ("weight", "normal", "tangent", FLAG, *row.inputs, *row.fixed):
             continue
-        if port in ("normal", "tangent"):
-            if value is not None:
-                raise NotRun(
-                    f"reference: there are no models for a {port} other than the surface's"
-                )
-        elif not np.array_equal(value, plain(definition(node).getActiveInput(port).getValue())):
+        if not np.array_equal(value, plain(definition(node).getActiveInput(port).getValue())):
             raise NotRun(
                 f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
             )

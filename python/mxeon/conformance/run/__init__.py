@@ -68,7 +68,7 @@ def check(
     policy : Policy
         Permissions and limits of documents.
     nodes : sequence of str
-        Categories of the nodes to judge; none for all.
+        Categories of the nodes to judge, ALL for all; none for the common ones.
     progress : callable (iterable, int) -> iterable
         Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
 

@@ -21,7 +21,7 @@ import mxeon
 from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.facet_probes import probe_type
-from mxeon.conformance.checks.families import PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.checks.families import COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject
 from mxeon.conformance.checks.probes import (
     NativeProbe,
@@ -143,8 +143,8 @@ def make_plan(
     resumable : bool
         Whether to list the files that the run depends on.
     nodes : sequence of str
-        Categories of the nodes to judge, and nothing else is judged but `files`; none or ALL for
-        every check.
+        Categories of the nodes to judge, and nothing else is judged but `files`; ALL for every
+        check. Without any, nodes are left out whose family is not common.
 
     Returns
     -------
@@ -173,7 +173,7 @@ def make_plan(
         for host in hosts:
             if files and not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, str(file), host, library) for file in files]
-            tasks += _on_host(host, library, paths)
+            tasks += _on_host(host, library, paths, PBR_SUBJECTS if nodes else COMMON_SUBJECTS)
     for host in hosts:
         tasks += _native(host)
     if nodes and ALL not in nodes:
@@ -221,8 +221,10 @@ def inversions(library: str) -> list[str]:
     return [node for node in INVERSIONS if data.getMatchingNodeDefs(node)]
 
 
-def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
-    """Tasks of one host with one library."""
+def _on_host(
+    host: str, library: str, files: Iterable[Path], nodes: Iterable[Any]
+) -> Iterator[Task]:
+    """Tasks of one host with one library, for files and nodes of pbrlib."""
     probe, row = probe_type(host), host_row(host)
     if probe is None:
         yield Task(HOST, EVERY_NODE, host, library)
@@ -237,9 +239,9 @@ def _on_host(host: str, library: str, files: Iterable[Path]) -> Iterator[Task]:
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
-    for each in PBR_SUBJECTS:
+    for each in nodes:
         kind = probe_type_of(each, probe)
-        if kind and not _is_renderers(row.target, library):
+        if kind and not _is_renderers(row.target, library) and _is_judged(each, library):
             yield from _checks_of(each, kind.kind, host, library)
     if row.surfaces:
         for surface in SURFACES:
@@ -255,6 +257,11 @@ def _is_renderers(target: str, library: str) -> bool:
     The renderer's closures are judged with the stock library alone.
     """
     return target == "osl" and library in LIBRARIES and library != "stock"
+
+
+def _is_judged(subject: Any, library: str) -> bool:
+    """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
+    return library not in LIBRARIES or library in (getattr(subject, "libraries", ()) or LIBRARIES)
 
 
 def _native(host: str) -> Iterator[Task]:

@@ -56,7 +56,7 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     view, (u1, u2), alpha = _components(
         vectors | {"roughness": checked_pairs("roughness", roughness)}
     )
-    wh = _visible_normal(view, u1, u2, alpha)
+    wh = visible_normal(view, u1, u2, alpha)
     wi = np.moveaxis(2.0 * np.sum(view * wh, axis=0) * wh - view, 0, -1)
     return wi, _density(view, wh, alpha)
 
@@ -112,7 +112,7 @@ def _density(wo: Array, wh: Array, roughness: Array) -> Array:
     return density
 
 
-def _visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
+def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
     """Visible normal for two random numbers, components first: [Dupuy2023], Listing 3."""
     stretched = np.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
     length = np.sqrt(np.sum(stretched * stretched, axis=0))

@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import InputError, InterfaceError
 from mxeon.shaders.generation import Input, Shader
+from mxeon.shaders.hosts.surface import Prelude, prelude
 from mxeon.shaders.nodes import types_of
 
 # By branch: the closure type of the call that is repeated, and the one that takes its place. A BSDF
@@ -28,15 +30,24 @@ CLOSURES = {
     "transmission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_TRANSMISSION"),
     "emission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_EMISSION"),
 }
-OUTPUTS = ("response", "throughput")
+EMISSION = "CLOSURE_TYPE_EMISSION"  # of the call of an EDF, in every branch
+GRAPH = "graph"  # in place of a branch: the color that the shader gives to its uniform EDF
+OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
+TEXEL = "texelFetch(mxeon_{}, mxeon_pixel, 0)"
 FETCH = {
-    "float": "float {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).x;",
-    "boolean": "bool {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).x > 0.5;",
-    "color3": "vec3 {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).xyz;",
+    "float": "float {0} = {1}.x;",
+    "boolean": "bool {0} = {1}.x > 0.5;",
+    "color3": "vec3 {0} = {1}.xyz;",
 }
 FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
-FETCH["vector2"] = "vec2 {0} = texelFetch(mxeon_{0}, mxeon_pixel, 0).xy;"
-FETCH["integer"] = "int {0} = int(texelFetch(mxeon_{0}, mxeon_pixel, 0).x);"
+FETCH["vector2"] = "vec2 {0} = {1}.xy;"
+FETCH["integer"] = "int {0} = int({1}.x);"
+# More arguments than a stage may have textures share one, whose layers lie above each other.
+STACK = "mxeon_stack"
+MOST = 12  # textures of arguments; every device has 16, of which some are the environment's
+LAYER = (
+    f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
+)
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 ASKED = "throughput_asked"  # variable of an evaluation
@@ -161,23 +172,29 @@ def bsdf_call(
     Raises
     ------
     ValueError
-        If the shader calls no BSDF, or branch or output is unknown.
+        If the shader calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
     """
-    for rule, word, known in (("branch", branch, tuple(CLOSURES)), ("output", output, OUTPUTS)):
+    branches = (GRAPH, *CLOSURES)
+    for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
-    called, closure = CLOSURES[branch]
-    statements, result, names = _find_calls(shader.stages["pixel"], called, shader.element)
+    if branch == GRAPH:
+        return _graph_call(shader, inputs)
+    emitted = output == "radiance"
+    called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
+    text = shader.stages["pixel"]
+    start, statements, result, names = _find_calls(text, called, shader.element)
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
-    arguments[ASKED] = ("boolean", output == "throughput")
-    ports = {port.name: port for port in shader.inputs}
-    for name in BOOLEAN.findall(shader.stages["pixel"]):
-        if name in ports:
-            ports[name] = replace(ports[name], type="boolean")
-    for name in names:
-        arguments[name] = _argument(name, ports, inputs)
-    value = f"{ASKED} ? {result}.throughput : {result}.response"
+    if not emitted:
+        arguments[ASKED] = ("boolean", output == "throughput")
+    if before := prelude(text, start):
+        statements = before.statements + statements
+        arguments = _surface_arguments(shader, before, inputs) | arguments
+    else:
+        ports = _ports(shader)
+        arguments |= {name: _argument(name, ports, inputs) for name in names}
+    value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
     return Call(statements.replace(called, closure), value, arguments)
 
 
@@ -211,11 +228,15 @@ def bsdf_evaluation(
     dialect = DIALECTS[shader.target]
     call = bsdf_call(shader, wo, wi, inputs, branch, output)
     version, text = shader.stages["pixel"].split("\n", 1)
-    pixel = re.findall(r"\bout vec4 (\w+);", text)[0]
-    body = ["vec3 P = vec3(0.0);", call.statements, f"{pixel} = vec4({call.value}, 1.0);"]
+    # Subsurface scattering divides by what P changes from pixel to pixel: here it is that of a plane.
+    body = [
+        "vec3 P = vec3(gl_FragCoord.xy, 0.0);",
+        call.statements,
+        f"{_output(text)} = vec4({call.value}, 1.0);",
+    ]
     head = f"{version}\n{dialect.prelude}{RENAME}"
     main, texels = _main(dialect, call.arguments, body)
-    macros = "".join(f"#undef {name}\n" for name in ["main", *BOOLEAN.findall(text)])
+    macros = "".join(f"#undef {name}\n" for name in ["main", *_booleans(text)])
     return f"{head}{text}{macros}{main}", texels
 
 
@@ -243,8 +264,10 @@ def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
 
 
 def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
-    """Values, one row per element or one for all, laid out over a frame of `size`."""
+    """Values, a row or layers of them per element or one for all, laid out over a frame of `size`."""
     width, height = size
+    if values.ndim == 3:  # layers, one above the other
+        return np.concatenate([texels(layer, size) for layer in np.moveaxis(values, 1, 0)])
     rows = np.zeros((width * height, values.shape[1]), dtype=np.float32)
     rows[: len(values) if len(values) > 1 else None] = values
     return rows.reshape(height, width, -1)
@@ -258,8 +281,9 @@ def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
     }
 
 
-def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[str]]:
-    """Statements that evaluate the BSDFs for a closure type, their result and their arguments.
+@lru_cache(maxsize=16)  # the checks of a node share its shader
+def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
+    """Place and text of the statements that evaluate BSDFs for a closure type, result, arguments.
 
     The last call combines what the others before it return, or is the only one.
     """
@@ -269,13 +293,63 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[str, str, list[s
     block = match[0] if match else ""
     calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block)
     if not calls:
+        kind = "an EDF" if closure == EMISSION else "a BSDF"
         raise InputError(
-            f"element {element!r} must call a BSDF to be evaluated; its shader calls none"
+            f"element {element!r} must call {kind} to be evaluated; its shader calls none"
         )
     end, results = f", {calls[-1][1]});", [result for _, result in calls]
     names = [name for arguments, _ in calls for name in arguments.split(", ")]
     arguments = [name for name in dict.fromkeys(names) if name not in results]
-    return block[: block.index(end) + len(end)], results[-1], arguments
+    start = match.start() if match else 0
+    return start, block[: block.index(end) + len(end)], results[-1], arguments
+
+
+def _surface_arguments(shader: Shader, before: Prelude, inputs: Mapping[str, Any]) -> Arguments:
+    """Types and values of the inputs of a surface shader's function."""
+    ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
+    arguments: Arguments = {}
+    for name, kind in before.inputs.items():
+        default = ports[name].value if name in ports else _argument(name, {}, {})[1]
+        arguments[name] = kind, inputs.get(name, default)
+    return arguments
+
+
+def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
+    """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
+    text = shader.stages["pixel"]
+    color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
+    if not color:
+        raise InputError(
+            f"element {shader.element!r} must call a uniform EDF; its shader calls none"
+        )
+    before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
+    # Slang's own main begins with its stage's inputs and outputs.
+    statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
+    ports = _ports(shader)
+    words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
+    arguments = {name: _argument(name, ports, inputs) for name in words if name in ports}
+    return Call(statements, color[1], arguments)
+
+
+def _ports(shader: Shader) -> dict[str, Input]:
+    """Inputs of a shader by name, with the booleans that its text makes of integers."""
+    ports = {port.name: port for port in shader.inputs}
+    for name in _booleans(shader.stages["pixel"]):
+        if name in ports:
+            ports[name] = replace(ports[name], type="boolean")
+    return ports
+
+
+@lru_cache(maxsize=16)
+def _booleans(text: str) -> list[str]:
+    """Names of the inputs that a text for WGSL makes booleans of."""
+    return BOOLEAN.findall(text)
+
+
+@lru_cache(maxsize=16)
+def _output(text: str) -> str:
+    """Name of the output of a pixel stage."""
+    return str(re.findall(r"\bout vec4 (\w+);", text)[0])
 
 
 def _argument(
@@ -300,11 +374,29 @@ def _main(
     dialect: Dialect, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str]
 ) -> tuple[str, Columns]:
     """A main that reads the arguments and then executes `body`, and the arguments' texels."""
-    values = {f"mxeon_{name}": rows for name, rows in columns(arguments).items()}
-    fetches = [FETCH[kind].format(name) for name, (kind, _) in arguments.items()]
+    rows = columns(arguments)
+    if len(rows) <= MOST:
+        values = {f"mxeon_{name}": each for name, each in rows.items()}
+        texels = [TEXEL.format(name) for name in rows]
+    else:
+        values = {STACK: _stacked(rows)}
+        texels = [LAYER.format(index, len(rows)) for index in range(len(rows))]
+    fetches = [
+        FETCH[kind].format(name, texel)
+        for (name, (kind, _)), texel in zip(arguments.items(), texels, strict=True)
+    ]
     lines = ["ivec2 mxeon_pixel = ivec2(gl_FragCoord.xy);", *fetches, *body]
     samplers = [
         dialect.sampler.format(name=name, number=number) for number, name in enumerate(values)
     ]
     text = [*samplers, "void main()", "{", *("    " + line for line in lines), "}", ""]
     return "\n".join(text), values
+
+
+def _stacked(rows: Columns) -> NDArray[np.float32]:
+    """Columns of three values each as layers, (N, layers, 3)."""
+    count = max(map(len, rows.values()))
+    layers = np.zeros((count, len(rows), 3), np.float32)
+    for index, each in enumerate(rows.values()):
+        layers[:, index, : each.shape[1]] = each
+    return layers

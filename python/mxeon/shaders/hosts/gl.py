@@ -80,6 +80,7 @@ class Host(base.Host):
     @_current
     def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         """Picture of the sphere; see `mxeon.shaders.hosts.base.Host`."""
+        self.refuse_paths(scene)
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
         _set(program, raster.inputs(shader) | raster.light(scene))
         captured, size = points.outputs(shader), scene.size
@@ -87,6 +88,10 @@ class Host(base.Host):
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
         return raster.picture(self._draw(program, textures, (size, size)), size)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """What takes the place of lobes below the surface; see `mxeon.shaders.hosts.base.Host`."""
+        return raster.approximations(shader)
 
     @_current
     def evaluate(
@@ -203,7 +208,7 @@ class Host(base.Host):
         return {
             name: self._texture(values, name == "u_envRadiance")
             for name, values in texels.items()
-            if name in program
+            if program.get(name, None)
         }
 
     def _texture(self, texels: NDArray[Any], mipmaps: bool) -> moderngl.Texture:
@@ -245,12 +250,12 @@ def _buffers(
     return [
         (context.buffer(values), f"{values.shape[1]}f", name)
         for name, values in vertices.items()
-        if name in program
+        if program.get(name, None)
     ]
 
 
 def _set(program: moderngl.Program, values: Mapping[str, Any]) -> None:
     """Set the uniforms that the program has."""
     for name, value in values.items():
-        if name in program:
-            cast(moderngl.Uniform, program[name]).value = value
+        if member := program.get(name, None):
+            cast(moderngl.Uniform, member).value = value

@@ -123,6 +123,11 @@ class Host(base.Host):
         irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
+        if "fwidth(" in shader.stages["pixel"]:
+            raise NotRun(
+                "slang: subsurface scattering reads the change from pixel to pixel, and a kernel has "
+                "no pixels"
+            )
         call = fragment.bsdf_call(shader, wo, wi, inputs, branch, output)
         body = ["float3 P = float3(0.0);", call.statements]
         body.append(f"float3 mxeon_value = {call.value};")
@@ -205,7 +210,7 @@ class Host(base.Host):
         tinted = white
         if irradiance is not None:
             tinted = {"tex": self._texture(irradiance), "sampler": sampler}
-        values = {"u_envRadiance": white, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
+        values = {"u_envRadiance": tinted, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
         matrix = slangpy.float4x4(TURN.astype(np.float32))
         return {"pixelCB": {**values, **raster.EVALUATION, "u_envMatrix": matrix}}
 

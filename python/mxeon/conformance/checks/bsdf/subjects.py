@@ -16,12 +16,13 @@ from mxeon.models.pbrlib.node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
 # Kinds of probes; see `mxeon.conformance.checks.bsdf.probes`.
-CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
+CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK, HAIR = KINDS = (
     "closed pairs",
     "sheen pairs",
     "fitted pairs",
     "microfacet pairs",
     "Schlick pairs",
+    "hair pairs",
 )
 MICROFACET_KINDS = (MICROFACET, SCHLICK)
 COMBINED = "combined pairs"  # of a node that combines lobes
@@ -32,6 +33,7 @@ QUADRATURES = {  # largest error of a probe's integrals of the equations
     FITTED: 2e-4,
     MICROFACET: 6e-4,
     SCHLICK: 6e-4,
+    HAIR: 1e-4,
 }
 SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, fixed in a document
 COLORS = ("color", "tint", "color0", "color82", "color90")
@@ -234,7 +236,7 @@ def _wrong_side(row: PbrNode) -> Iterator[Candidate]:
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
     """A directional albedo with weight, (N, 3)."""
-    return batch.strength * albedo(batch.wo, _whole(batch))
+    return batch.strength * albedo(batch.wo, whole(batch))
 
 
 def _expected(row: PbrNode, value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:
@@ -244,10 +246,10 @@ def _expected(row: PbrNode, value: Callable[[Array, Array, Inputs], Array], batc
     occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
     factor = batch.strength * (1.0 if row.transmits else occlusion)
     lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
-    return np.asarray(np.pi * value(batch.wo, wi, _whole(batch)) * lit * factor)
+    return np.asarray(np.pi * value(batch.wo, wi, whole(batch)) * lit * factor)
 
 
-def _whole(batch: Batch) -> dict[str, Array]:
+def whole(batch: Batch) -> dict[str, Array]:
     """The inputs with a row for each pair."""
     count = len(batch.wo)
     return {

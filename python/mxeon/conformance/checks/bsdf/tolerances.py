@@ -3,12 +3,14 @@
 
 import math
 
+from mxeon.conformance.checks.bsdf.hair_tolerances import HAIR_ALBEDO, HAIR_FRAME, HAIR_VALUE
 from mxeon.conformance.checks.bsdf.measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.bsdf.subjects import (
     CLOSED,
     COMBINED,
     FILM,
     FITTED,
+    HAIR,
     KINDS,
     MICROFACET,
     MICROFACET_KINDS,
@@ -191,6 +193,7 @@ VALUES = {
     SCHLICK: MICROFACET_VALUE,
     COMBINED: COMBINED_VALUE,
     FILM: FILM_VALUE,
+    HAIR: HAIR_VALUE,
 }
 ALBEDOS = {
     CLOSED: CLOSED_ALBEDO,
@@ -200,6 +203,7 @@ ALBEDOS = {
     SCHLICK: MICROFACET_ALBEDO,
     COMBINED: COMBINED_ALBEDO,
     FILM: FILM_ALBEDO,
+    HAIR: HAIR_ALBEDO,
 }
 THROUGHPUTS = {**ALBEDOS, SCHLICK: SCHLICK_THROUGHPUT}
 FRAMES = {
@@ -208,6 +212,7 @@ FRAMES = {
     FITTED: FLAT_FRAME,
     MICROFACET: MICROFACET_FRAME,
     SCHLICK: MICROFACET_FRAME,
+    HAIR: HAIR_FRAME,
 }
 INTEGRALS = {
     kind: Tolerance(
@@ -236,3 +241,17 @@ LAYERS = {
     for kind in KINDS
 }
 LAYERS |= dict.fromkeys(MICROFACET_KINDS, WHITE_FURNACE)
+TRANSMITTED = {  # by kind of probe of transmission
+    "transmission pairs": MICROFACET_ALBEDO,
+    "Schlick transmission pairs": SCHLICK_THROUGHPUT,
+}
+CLEAR = {
+    kind: Tolerance(
+        rounded_up(MICROFACET_ALBEDO.value + passed.value),
+        "light",
+        absolute,
+        f"a reflected albedo within {MICROFACET_ALBEDO.value:.2g}, and light that passes within "
+        f"{passed.value:.2g}; rounded up",
+    )
+    for kind, passed in TRANSMITTED.items()
+}

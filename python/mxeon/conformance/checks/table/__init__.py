@@ -7,11 +7,14 @@ host; the check has to fail on it. Every tolerance is the expression that its de
 
 from mxeon.conformance.checks.table import (
     combinations,
+    emission,
     energy,
+    hair,
     layers,
     lobes,
     microfacets,
     thin_films,
+    transmission,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -23,5 +26,8 @@ CHECKS = (
     *energy.CHECKS,
     *microfacets.CHECKS,
     *combinations.CHECKS,
+    *emission.CHECKS,
+    *hair.CHECKS,
+    *transmission.CHECKS,
     *thin_films.CHECKS,
 )

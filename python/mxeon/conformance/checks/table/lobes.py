@@ -6,6 +6,7 @@ from typing import Any
 from mxeon.conformance import diagnosis, wiring
 from mxeon.conformance.checks import measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
+from mxeon.conformance.checks.bsdf.hair import HAIRS
 from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, KINDS
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -15,20 +16,23 @@ from mxeon.conformance.checks.controls import (
     take_response,
     with_inputs,
 )
+from mxeon.conformance.checks.emission.subjects import KINDS as EMISSION_KINDS
+from mxeon.conformance.checks.emission.subjects import MEDIUM
 from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.table.check import Check
-from mxeon.conformance.checks.table.names import COMBINATION, OTHERS
+from mxeon.conformance.checks.table.names import COMBINATION, EMITTER, MEDIUM_NAMES, OTHERS
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbrlib import NODES
+from mxeon.models.pbrlib.hair import HAIR_NODE
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
-OPAQUE = tuple(row.name for row in NODES if not row.layerable)
-BLACK = tuple(subject.model for subject in BSDFS if subject.black)
+OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name)
+BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS) if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
@@ -236,7 +240,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION),
+        (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION, *EMITTER, *MEDIUM_NAMES),
         measures.inputs,
         "every change is dropped",
         drop_changes,
@@ -250,6 +254,7 @@ CHECKS = (
             "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
             COMBINED: tolerances.count_of("inputs"),
+            **dict.fromkeys((*EMISSION_KINDS, MEDIUM), tolerances.count_of("inputs")),
         },
         diagnose=wiring.of_inputs,
     ),

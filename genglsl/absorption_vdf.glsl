@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node absorption_vdf: Beer's law over one meter, since a surface has no thickness.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+void absorption_vdf(ClosureData closureData, vec3 absorption, inout VDF vdf)
+{
+    if (closureData.closureType == CLOSURE_TYPE_TRANSMISSION)
+    {
+        vdf.response = vec3(0.0);
+        vdf.throughput = exp(-absorption);
+    }
+}

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All subjects that emit light or are media, and the probes that they take."""
+
+from typing import Any
+
+from mxeon.conformance.checks.emission.media import MEDIUM_NODES, MediumProbe
+from mxeon.conformance.checks.emission.probes import PROBES, NodeProbe
+from mxeon.conformance.checks.emission.subjects import COMBINED_EDFS, EDFS
+from mxeon.conformance.checks.emission.surfaces import (
+    ABSENT_NODES,
+    SURFACE_NODES,
+    AbsentProbe,
+    SurfaceEmissionProbe,
+)
+from mxeon.conformance.checks.probes import PairProbe
+
+EMISSION_SUBJECTS = (*EDFS, *COMBINED_EDFS, *MEDIUM_NODES, *SURFACE_NODES, *ABSENT_NODES)
+ALL_PROBES = {
+    **PROBES,
+    **{probe.kind: probe for probe in (MediumProbe, SurfaceEmissionProbe, AbsentProbe)},
+}
+
+
+def emission_probe_type(subject: Any, probe: type[Any]) -> type[NodeProbe] | None:
+    """Class of a subject's probes on a host that has probes of a class; None if it has none."""
+    return ALL_PROBES[subject.kind] if probe is PairProbe else None

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Images as shaders read them: bilinear, periodic, in float64."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.errors import NotRun
+from mxeon.shaders.hosts.textures import read_texture
+
+CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
+
+
+def looked_up(
+    node: Any, texcoord: NDArray[np.float64] | None, linear: Callable[[Any, Any], Any]
+) -> Any:
+    """Values of an image node: texel centers at half-integers, v = 0 at the bottom.
+
+    Parameters
+    ----------
+    node : MaterialX.Node
+        An `image`.
+    texcoord : ndarray, shape (N, 2), or None
+    linear : callable (element, values) -> values
+        Colors in the document's linear space.
+
+    Raises
+    ------
+    NotRun
+        If the image is read in another way.
+    """
+    if texcoord is None or node.getInput("texcoord") is not None:
+        raise NotRun("reference: images are read at the sphere's own coordinates only")
+    file = node.getInput("file")
+    if not file or not file.getValueString():
+        raise NotRun("reference: an image must name its file itself")
+    texels = read_texture(file.getValueString()).astype(np.float64)
+    channels = CHANNELS.get(node.getType(), 0)
+    if not 0 < channels <= texels.shape[-1]:
+        raise NotRun(
+            f"reference: {file.getValueString()}: must be read as float, or as color3 from an "
+            f"image of 3 channels; got {node.getType()} from {texels.shape[-1]}"
+        )
+    value = _bilinear(texels[..., :channels], texcoord)
+    return linear(file, value) if channels == 3 else value
+
+
+def _bilinear(texels: NDArray[np.float64], texcoord: NDArray[np.float64]) -> Any:
+    height, width = texels.shape[:2]
+    texel = texcoord * [width, height] - 0.5
+    corner = np.floor(texel).astype(int)
+    u, v = (texel - corner).T[..., None]
+    x, y = corner.T
+
+    def at(dx: int, dy: int) -> Any:
+        return texels[(y + dy) % height, (x + dx) % width]
+
+    lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
+    upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
+    return lower * (1.0 - v) + upper * v

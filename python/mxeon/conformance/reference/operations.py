@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes of the standard library that compute numbers, by category.
+
+A value is an array whose last axis holds its components; a number is () or (N, 1). What a function
+returns is repeated over the components of the node's type, so that a number becomes a color.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from operator import add, mul, pow, sub, truediv
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Values: TypeAlias = NDArray[np.float64]
+
+# Types of several components, and how many.
+WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
+
+
+def fitted(kind: str, value: Any) -> Any:
+    """Value with the components of a type: a number once for each, what is missing 0 or opaque."""
+    width = WIDTHS.get(kind, 1)
+    if width == 1 or value is None or isinstance(value, str):
+        return value
+    array = np.atleast_1d(np.asarray(value, np.float64))
+    have = array.shape[-1]
+    if have == 1:
+        return np.repeat(array, width, axis=-1)
+    if have < width:
+        rest = np.full((*array.shape[:-1], width - have), 1.0 if kind == "color4" else 0.0)
+        return np.concatenate([array, rest], axis=-1)
+    return array[..., :width]
+
+
+def _dot(in1: Values, in2: Values) -> Values:
+    return np.asarray((in1 * in2).sum(axis=-1, keepdims=True), np.float64)
+
+
+def _magnitude(value: Values) -> Values:
+    return np.sqrt(_dot(value, value))
+
+
+def _normalize(value: Values) -> Values:
+    return value / _magnitude(value)
+
+
+def _combine(*values: Any) -> Values:
+    parts = np.broadcast_arrays(*(np.atleast_1d(value) for value in values))
+    return np.concatenate(parts, axis=-1)
+
+
+def _extract(value: Values, index: Any) -> Values:
+    return np.take(value, [int(np.ravel(index)[0])], axis=-1)
+
+
+def _rotate2d(value: Values, amount: Values) -> Values:
+    """Vector turned clockwise by an angle in degrees, as MaterialX's row vectors are."""
+    angle = np.radians(amount)
+    x, y = value[..., :1], value[..., 1:]
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return _combine(cosine * x + sine * y, cosine * y - sine * x)
+
+
+def _rotate3d(value: Values, amount: Values, axis: Values) -> Values:
+    """Vector turned by an angle in degrees, by Rodrigues' formula for row vectors."""
+    angle, axis = np.radians(amount), _normalize(axis)
+    along = axis * _dot(axis, value) * (1.0 - np.cos(angle))
+    return np.asarray(value * np.cos(angle) + np.cross(value, axis) * np.sin(angle) + along)
+
+
+def _normalmap(
+    value: Values, scale: Values, normal: Values, tangent: Values, bitangent: Values
+) -> Values:
+    """Unit vector in world space of one in the surface's frame, written as a color."""
+    x, y, z = np.moveaxis(2.0 * value - 1.0, -1, 0)[..., np.newaxis]
+    scale = np.atleast_1d(scale)
+    turned = tangent * x * scale[..., :1] + bitangent * y * scale[..., -1:] + normal * z
+    black = _dot(value, value) == 0.0
+    return _normalize(np.where(black, normal, turned))
+
+
+def _when(compare: Callable[..., Any]) -> Callable[..., Any]:
+    """One of two values, by a comparison of two others."""
+
+    def choose(value1: Any, value2: Any, in1: Any, in2: Any) -> Any:
+        return np.where(compare(value1, value2), in1, in2)
+
+    return choose
+
+
+ONE, TWO = ("in",), ("in1", "in2")
+COMPARED = ("value1", "value2", "in1", "in2")
+
+# Category -> its inputs, and the function of them.
+OPERATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Any]]] = {
+    "constant": (("value",), lambda value: value),
+    "convert": (ONE, lambda value: np.asarray(value, np.float64)),
+    "dot": (ONE, lambda value: value),
+    "add": (TWO, add),
+    "subtract": (TWO, sub),
+    "multiply": (TWO, mul),
+    "divide": (TWO, truediv),
+    "modulo": (TWO, lambda a, b: a - b * np.floor(a / b)),
+    "power": (TWO, pow),
+    "safepower": (TWO, lambda a, b: np.sign(a) * np.abs(a) ** b),
+    "min": (TWO, np.minimum),
+    "max": (TWO, np.maximum),
+    "clamp": (("in", "low", "high"), lambda x, low, high: np.minimum(np.maximum(x, low), high)),
+    "invert": (("amount", "in"), sub),
+    "absval": (ONE, np.abs),
+    "sign": (ONE, np.sign),
+    "floor": (ONE, np.floor),
+    "ceil": (ONE, np.ceil),
+    "round": (ONE, lambda value: np.floor(value + 0.5)),
+    "sqrt": (ONE, np.sqrt),
+    "ln": (ONE, np.log),
+    "exp": (ONE, np.exp),
+    "sin": (ONE, np.sin),
+    "cos": (ONE, np.cos),
+    "tan": (ONE, np.tan),
+    "asin": (ONE, np.arcsin),
+    "acos": (ONE, np.arccos),
+    "atan2": (("iny", "inx"), np.arctan2),
+    "dotproduct": (TWO, _dot),
+    "crossproduct": (TWO, np.cross),
+    "magnitude": (ONE, _magnitude),
+    "normalize": (ONE, _normalize),
+    "rotate2d": (("in", "amount"), _rotate2d),
+    "rotate3d": (("in", "amount", "axis"), _rotate3d),
+    "normalmap": (("in", "scale", "normal", "tangent", "bitangent"), _normalmap),
+    "combine2": (TWO, _combine),
+    "combine3": (("in1", "in2", "in3"), _combine),
+    "combine4": (("in1", "in2", "in3", "in4"), _combine),
+    "extract": (("in", "index"), _extract),
+    "luminance": (("in", "lumacoeffs"), _dot),
+    "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
+    "ifgreater": (COMPARED, _when(np.greater)),
+    "ifgreatereq": (COMPARED, _when(np.greater_equal)),
+    "ifequal": (COMPARED, _when(np.equal)),
+}

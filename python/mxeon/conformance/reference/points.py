@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The points of a picture, or the pairs of an evaluation: directions, frames and light."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mxeon.conformance.reference.lobes import Lobe, Values, furnace, lit
+from mxeon.errors import NotRun, OutsideModel
+
+UNIT = 1e-3  # by how much the length of a normal may differ from 1
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Where a graph is evaluated, and by which light.
+
+    Attributes
+    ----------
+    wo : ndarray, shape (N, 3)
+        Unit vectors to the viewer, in world space.
+    wi : ndarray, shape (N, 3), or None
+        Unit vectors to a distant light; None in a uniform environment.
+    strength : float
+        Irradiance of the light, or radiance of the environment.
+    normal, tangent : ndarray, shape (N, 3)
+        Of the surface, orthogonal unit vectors in world space.
+    texcoord : ndarray, shape (N, 2), or None
+    """
+
+    wo: Values
+    wi: Values | None
+    strength: float
+    normal: Values
+    tangent: Values
+    texcoord: Values | None = None
+
+    def lobe(self, normal: Values, tangent: Values) -> Lobe:
+        """Lobe whose frame has a normal, turned to the viewer, and a tangent.
+
+        Raises
+        ------
+        OutsideModel
+            If a normal is no unit vector.
+        """
+        own = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
+        return self._own if own else self._turned(normal, tangent)
+
+    def geometry(self, name: str) -> Values:
+        """A property of the surface by its name in MaterialX.
+
+        Raises
+        ------
+        NotRun
+            If it is not known.
+        """
+        known = {
+            "Nworld": self.normal,
+            "Tworld": self.tangent,
+            "Bworld": np.cross(self.normal, self.tangent),
+            "UV0": self.texcoord,
+        }
+        if (value := known.get(name)) is None:
+            raise NotRun(f"reference: the surface has no {name} here")
+        return value
+
+    @cached_property
+    def facing(self) -> Values:
+        """Cosine between viewer and normal, at least 0, (N, 1)."""
+        return np.asarray(np.abs((self.wo * self.normal).sum(axis=1, keepdims=True)))
+
+    @cached_property
+    def _own(self) -> Lobe:
+        """Lobe in the frame of the surface."""
+        return self._turned(self.normal, self.tangent)
+
+    def _turned(self, normal: Values, tangent: Values) -> Lobe:
+        length = np.linalg.norm(normal, axis=-1)
+        if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:
+            raise OutsideModel(f"reference: normal must have the length 1; got {wrong[0]:g}")
+        side = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
+        z = side * normal
+        x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
+        axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
+        with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
+            axes = axes / np.linalg.norm(axes, axis=2, keepdims=True)
+        wo = _within(axes, self.wo)
+        if self.wi is None:
+            return furnace(wo, self.strength)
+        return lit(wo, _within(axes, self.wi), self.strength)
+
+
+def _within(axes: Values, directions: Values) -> Values:
+    """Directions in a frame, whose axes are the rows, as unit vectors (N, 3)."""
+    local = (axes @ directions[:, :, np.newaxis])[:, :, 0]
+    return np.asarray(local / np.linalg.norm(local, axis=1, keepdims=True), np.float64)

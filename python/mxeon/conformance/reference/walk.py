@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of a graph without recursion, each computed once and forgotten after its last use."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Hashable, Mapping
+from typing import Any, TypeVar
+
+Key = TypeVar("Key", bound=Hashable)
+
+
+def evaluated(
+    root: Key, parts: Mapping[Key, tuple[Key, ...]], function: Callable[[Key], Callable[..., Any]]
+) -> Any:
+    """Value of a key: neither a long chain nor a key with many uses does harm.
+
+    Parameters
+    ----------
+    root : hashable
+    parts : mapping of key to tuple of key
+        The keys whose values a key's function takes; see `mxeon.shaders.document.graphs.reachable`.
+    function : callable (key) -> callable
+    """
+    uses = Counter(part for inner in parts.values() for part in inner)
+    values: dict[Key, Any] = {}
+    waiting = [root]
+    while waiting:
+        key = waiting[-1]
+        if key in values:
+            waiting.pop()
+        elif missing := [part for part in parts[key] if part not in values]:
+            waiting.append(missing[0])
+        else:
+            values[key] = function(key)(*(values[part] for part in parts[key]))
+            for part in parts[key]:
+                uses[part] -= 1
+                if not uses[part]:
+                    del values[part]
+    return values[root]

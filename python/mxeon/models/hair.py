@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The hair model of [MaterialX2026], section `chiang_hair_bsdf`, after [Chiang2016] and [dEon2011].
+
+The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from mxeon.models import hair_formulas as formulas
+from mxeon.models.arguments import (
+    channel_count,
+    checked,
+    checked_directions,
+    checked_pairs,
+    checked_sphere,
+)
+from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.evaluation import evaluate_material
+from mxeon.models.hair_formulas import LOBES, TEXT, Form
+
+__all__ = [
+    "LOBES",
+    "chiang_hair_attenuation",
+    "chiang_hair_bcsdf",
+    "hair_azimuthal",
+    "hair_longitudinal",
+]
+
+BLOCK = 4096  # elements at a time: a lobe keeps many numbers for each
+TINTS, ROUGHNESSES = (
+    tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")
+)
+
+
+def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
+    """Curve-scattering distribution function of a hair fiber.
+
+        f = 1/pi (t_R A_R M_R N_R + t_TT A_TT M_TT N_TT + t_TRT (A_TRT M_TRT N_TRT + A_TRRT+ M_TRT / 2pi))
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Direction to the viewer, unit vector to 1e-6, fiber +x, normal +z, z >= 0.
+    wi : array_like, shape (..., 3)
+        Direction to the light, unit vector to 1e-6, on either side.
+    **inputs : array_like
+        Values of the node's ports, which have its defaults; form is one of `hair_formulas.Form`:
+        `tint_R`, `tint_TT`, `tint_TRT`, shape (..., C), in [0, 1]; `ior`, shape (...), in [0, 1e50];
+        `roughness_R`, `roughness_TT`, `roughness_TRT`, shape (..., 2), longitudinal variance in
+        square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle`, shape (...),
+        in [0, 1]; `absorption_coefficient`, shape (..., C), per radius of the fiber, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr, at least 0. As the text has it, it takes no cosine of the light: its integral over
+        all lights is 1/pi where nothing is absorbed and the cuticle has no tilt.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+    TypeError
+        If an input is not one of the node's.
+
+    Notes
+    -----
+    The text has roughness (0, 0), a pure mirror: no function has its value, and it is refused. F has
+    the index `ior`, as in [Chiang2016]; that the text means the effective index is another reading.
+    Accuracy: relative error below 1e-13 / min(sqrt(v), s) of the value, or 1e-300.
+
+    References
+    ----------
+    [MaterialX2026], Chiang Hair Scattering Equations and Chiang Hair Model; [Chiang2016].
+
+    Examples
+    --------
+    >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
+    array([0.137704, 0.137704, 0.137704])
+    """
+    form: Form = inputs.pop("form", TEXT)
+    values = _checked(inputs)
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
+    numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
+    colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
+
+    def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
+        lobes = _lobes(wo, wi, inputs, form)
+        tints = [inputs[name] for name in (*TINTS, TINTS[-1])]
+        total: Array = np.sum([t * lobe for t, lobe in zip(tints, lobes, strict=True)], axis=0)
+        return form.factor * total
+
+    return evaluate_material(formula, vectors | values, numbers, channel_count(colors), BLOCK)
+
+
+def chiang_hair_attenuation(
+    wo: ArrayLike, ior: ArrayLike, absorption_coefficient: ArrayLike
+) -> Array:
+    """Attenuation factors A_R, A_TT, A_TRT and A_TRRT+ of a view.
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        As in `chiang_hair_bcsdf`.
+    ior : array_like, shape (...)
+        Index of the fiber, dimensionless, in [0, 1e50].
+    absorption_coefficient : array_like, shape (..., C)
+        Per radius of the fiber, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., C, 4), float64
+        Dimensionless, in [0, 1]. Their sum is 1 where nothing is absorbed, and less elsewhere.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], Chiang Hair Model, Attenuation Factors.
+
+    Examples
+    --------
+    >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)
+    array([[0.046521, 0.909123, 0.042293, 0.002063]])
+    """
+    absorption = np.atleast_1d(checked("absorption_coefficient", absorption_coefficient))
+    vectors = {"wo": checked_directions("wo", wo), "absorption": absorption}
+    channels = absorption.shape[-1]
+
+    def formula(wo: Array, absorption: Array, ior: Array) -> Array:
+        view, effective = formulas.section(wo, ior)
+        factors = formulas.attenuations(view, effective, ior, absorption, TEXT)
+        return np.concatenate(list(np.moveaxis(factors, 0, 1)))
+
+    values = evaluate_material(formula, vectors, {"ior": checked("ior", ior)}, 4 * channels, BLOCK)
+    return values.reshape(*values.shape[:-1], channels, 4)
+
+
+def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLike) -> Array:
+    """Longitudinal scattering function M.
+
+        M = exp(-sin(theta_i) sin(theta_o) / v) I_0(cos(theta_i) cos(theta_o) / v) / (2 v sinh(1 / v))
+
+    Parameters
+    ----------
+    theta_i, theta_o : array_like
+        Inclinations from the plane across the fiber, in radian, in [-pi/2, pi/2].
+    variance : array_like
+        v, in square radian, in [1e-12, 1e12].
+
+    Returns
+    -------
+    ndarray, float64
+        Dimensionless, above 0 up to underflow. Its integral over theta_i times cos(theta_i) is 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], Chiang Hair Model, Longitudinal Scattering; [dEon2011], Eq. (7).
+
+    Examples
+    --------
+    >>> round(float(hair_longitudinal(0.3, -0.3, 0.01)), 6)
+    4.18169
+    """
+    theta_i, theta_o = (np.asarray(checked("theta", each), float) for each in (theta_i, theta_o))
+    v = np.asarray(checked("variance", variance), float)
+    inclined = np.sin(theta_i), np.cos(theta_i), np.sin(theta_o), np.cos(theta_o)
+    return formulas.longitudinal(*inclined, v)
+
+
+def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
+    """Azimuthal scattering function N, the logistic density trimmed to [-pi, pi].
+
+    Parameters
+    ----------
+    phi : array_like
+        Angle from that of the exit, in radian; wrapped into [-pi, pi].
+    scale : array_like
+        s, in radian, in [1e-12, 1e12].
+
+    Returns
+    -------
+    ndarray, float64
+        Per radian, at least 0. Its integral over [-pi, pi] is 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], Chiang Hair Model, Azimuthal Scattering; [Chiang2016], Appendix A, Eq. (12).
+
+    Examples
+    --------
+    >>> round(float(hair_azimuthal(0.5, 0.3)), 6)
+    0.325121
+    """
+    phi, s = np.asarray(checked("phi", phi), float), np.asarray(checked("scale", scale), float)
+    return formulas.azimuthal(phi, s)
+
+
+DEFAULTS: dict[str, ArrayLike] = {
+    **dict.fromkeys(TINTS, (1.0, 1.0, 1.0)),
+    "ior": 1.55,
+    "roughness_R": (0.1, 0.1),
+    "roughness_TT": (0.05, 0.05),
+    "roughness_TRT": (0.2, 0.2),
+    "cuticle_angle": 0.5,
+    "absorption_coefficient": (0.0, 0.0, 0.0),
+}
+
+
+def _checked(inputs: dict[str, ArrayLike]) -> dict[str, Array]:
+    """Values of all ports of the node, as arrays; those of tints and absorption (..., C)."""
+    unknown = set(inputs) - set(DEFAULTS)
+    if unknown:
+        known = ", ".join(DEFAULTS)
+        raise TypeError(f"inputs must be among {known}; got {', '.join(sorted(unknown))}")
+    values = {}
+    for name, value in {**DEFAULTS, **inputs}.items():
+        check = checked_pairs if name in ROUGHNESSES else checked
+        values[name] = np.asarray(check(name, value), np.float64)
+    for name in (*TINTS, "absorption_coefficient"):
+        values[name] = np.atleast_1d(values[name])
+    return values
+
+
+def _lobes(wo: Array, wi: Array, inputs: dict[str, Array], form: Form) -> list[Array]:
+    """A_p M_p N_p of the four lobes, each (C, ...)."""
+    ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
+    view, effective = formulas.section(wo, ior)
+    absorption = inputs["absorption_coefficient"]
+    factors = formulas.attenuations(view, effective, ior, absorption, form)
+    pairs = [inputs[name] for name in (*ROUGHNESSES, ROUGHNESSES[-1])]
+    return [
+        factor * formulas.distribution(view, wo, wi, (v, s), alpha, lobe, form)
+        for lobe, (factor, (v, s)) in enumerate(zip(factors, pairs, strict=True))
+    ]

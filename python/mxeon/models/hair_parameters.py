@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Roughnesses and absorption of hair from what an artist sets."""
+
+import numpy as np
+
+from mxeon.models.arguments import checked, checked_triples, lead_shape
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+
+# Absorption of the pigments in red, green and blue, per radius of the fiber.
+EUMELANIN = (0.419, 0.697, 1.37)
+PHEOMELANIN = (0.187, 0.4, 1.05)
+
+
+def chiang_hair_roughness(
+    longitudinal: ArrayLike,
+    azimuthal: ArrayLike,
+    scale_tt: ArrayLike = 0.5,
+    scale_trt: ArrayLike = 2.0,
+) -> tuple[Array, Array, Array]:
+    """Longitudinal variance and azimuthal scale of the lobes R, TT and TRT.
+
+        v = (0.726 l + 0.812 l^2 + 3.7 l^20)^2,  s = 0.265 a + 1.194 a^2 + 5.372 a^22;
+        R (v, s), TT (scale_tt^2 v, s), TRT (scale_trt^2 v, s)
+
+    Parameters
+    ----------
+    longitudinal, azimuthal : array_like, shape (...)
+        Roughnesses l and a, dimensionless, in [0, 1].
+    scale_tt, scale_trt : array_like, shape (...)
+        Dimensionless, in [0, 1e50].
+
+    Returns
+    -------
+    r, tt, trt : ndarray, shape (..., 2), float64
+        Variance v and logistic scale s of each lobe, before the factor sqrt(pi / 8) of the model.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range, or they do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], Hair Roughness Conversion Equations; [Chiang2016], the fits of both
+    roughnesses.
+
+    Examples
+    --------
+    >>> r, tt, trt = chiang_hair_roughness(0.1, 0.2)
+    >>> r.round(6), tt.round(6), trt.round(6)
+    (array([0.006516, 0.10076 ]), array([0.001629, 0.10076 ]), array([0.026063, 0.10076 ]))
+    """
+    values = {
+        "longitudinal": longitudinal,
+        "azimuthal": azimuthal,
+        "scale_tt": scale_tt,
+        "scale_trt": scale_trt,
+    }
+    numbers = {name: checked(name, value) for name, value in values.items()}
+    shape = lead_shape({}, numbers)
+    long, azim, *scales = (
+        np.broadcast_to(value, shape).astype(np.float64) for value in numbers.values()
+    )
+    v = np.square(0.726 * long + 0.812 * long**2 + 3.7 * long**20)
+    s = 0.265 * azim + 1.194 * azim**2 + 5.372 * azim**22
+    pairs = [np.stack([scale * scale * v, s], axis=-1) for scale in (np.ones(shape), *scales)]
+    return pairs[0], pairs[1], pairs[2]
+
+
+def deon_hair_absorption_from_melanin(
+    melanin_concentration: ArrayLike,
+    melanin_redness: ArrayLike,
+    eumelanin_color: ArrayLike,
+    pheomelanin_color: ArrayLike,
+) -> Array:
+    """Absorption coefficient of a mix of both melanins.
+
+        sigma_a = m ((1 - redness) (-log eumelanin) + redness (-log pheomelanin)),
+        m = -log(1 - concentration)
+
+    Parameters
+    ----------
+    melanin_concentration, melanin_redness : array_like, shape (...)
+        Dimensionless, in [0, 1) and in [0, 1].
+    eumelanin_color, pheomelanin_color : array_like, shape (..., 3)
+        Share of light that a fiber's radius of the pigment leaves, in (0, 1].
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Per radius of the fiber, in [0, inf).
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range, or they do not broadcast; names the first bad element.
+
+    Notes
+    -----
+    The paper has the sum of both pigments, each with its own amount. How a concentration in [0, 1] and
+    a redness make these amounts, the specification does not say: the equation is that of its
+    implementations.
+
+    References
+    ----------
+    [dEon2011], the absorption of the pigments; [MaterialX2026], deon_hair_absorption_from_melanin.
+
+    Examples
+    --------
+    >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
+    >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)
+    array([0.087168, 0.157794, 0.348095])
+    """
+    values = {
+        "melanin_concentration": melanin_concentration,
+        "melanin_redness": melanin_redness,
+    }
+    colors = {"eumelanin_color": eumelanin_color, "pheomelanin_color": pheomelanin_color}
+    numbers = {name: checked(name, value) for name, value in values.items()}
+    vectors = {name: _color(name, value) for name, value in colors.items()}
+    lead_shape(vectors, numbers)
+    concentration, redness = (
+        np.asarray(value, np.float64)[..., np.newaxis] for value in numbers.values()
+    )
+    eumelanin, pheomelanin = (-np.log(value, dtype=np.float64) for value in vectors.values())
+    mix = (1.0 - redness) * eumelanin + redness * pheomelanin
+    return np.asarray(-np.log1p(-concentration) * mix)
+
+
+def chiang_hair_absorption_from_color(
+    hair_color: ArrayLike, azimuthal_roughness: ArrayLike
+) -> Array:
+    """Absorption coefficient of hair that looks of a color after all its scattering.
+
+        sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
+
+    Parameters
+    ----------
+    hair_color : array_like, shape (..., 3)
+        Scattering color, in (0, 1].
+    azimuthal_roughness : array_like, shape (...)
+        b, dimensionless, in [0, 1].
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Per radius of the fiber, in [0, inf).
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range, or they do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [Chiang2016], the fit of the absorption; [MaterialX2026], chiang_hair_absorption_from_color.
+
+    Examples
+    --------
+    >>> chiang_hair_absorption_from_color([0.5, 0.2, 0.1], 0.2).round(6)
+    array([0.013569, 0.073156, 0.149739])
+    """
+    color = _color("hair_color", hair_color)
+    roughness = checked("azimuthal_roughness", azimuthal_roughness)
+    lead_shape({"hair_color": color}, {"azimuthal_roughness": roughness})
+    b = np.asarray(roughness, np.float64)[..., np.newaxis]
+    fit = 5.969 - b * (0.215 - b * (2.532 - b * (10.73 - b * (5.574 + b * 0.245))))
+    return np.asarray(np.square(np.log(color, dtype=np.float64) / fit))
+
+
+def _color(name: str, value: ArrayLike) -> Numbers:
+    """A color of the range that its name has."""
+    return checked_triples(name, checked(name, value))

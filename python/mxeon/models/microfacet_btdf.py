@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""BTDF of the microfacet nodes of pbrlib, in 1/sr and without the cosine.
+
+wo lies above the surface and wi below it. Indices of refraction are those below relative to those
+above: a view from inside a solid has the inverse of the node's index. alpha 0 is a delta function,
+which has no value; it counts as 0, and so does an index of 1, which bends nothing.
+
+Two forms differ by the square of the index. Radiance is scaled as light enters another medium; light
+that is counted in energy, or paths that are traced from the view, are not.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mxeon.models import ggx_formulas as ggx
+from mxeon.models.arguments import (
+    channel_count,
+    checked,
+    checked_directions,
+    checked_pairs,
+    checked_transmitted,
+)
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.evaluation import evaluate_material
+from mxeon.models.microfacet_lobe import DIELECTRIC
+from mxeon.models.refraction import Facet
+
+
+def dielectric_btdf(
+    wo: ArrayLike,
+    wi: ArrayLike,
+    tint: ArrayLike,
+    roughness: ArrayLike,
+    ior: ArrayLike,
+    radiance: bool = True,
+) -> Array:
+    """Transmission of `dielectric_bsdf`, scatter modes T and RT.
+
+        f = tint |wo . wh| |wi . wh| (1 - F) D G2 / (mu_o |mu_i| (wo . wh + ior wi . wh)^2)
+
+    Parameters
+    ----------
+    wo, wi : array_like, shape (..., 3)
+        Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x; wo has z >= 0,
+        wi has z <= 0.
+    tint : array_like, shape (..., C)
+        Color per channel, dimensionless, in [0, 1]; a number is one channel.
+    roughness : array_like, shape (..., 2)
+        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    ior : array_like, shape (...)
+        Index of refraction of the side of wi relative to that of wo, in [0, 1e50].
+    radiance : bool
+        Whether the value is of radiance from wi to wo, as the specification has it; else it is times
+        ior^2, the form that is integrated over wi to the transmitted share of the light from wo.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        BTDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    Notes
+    -----
+    `ior` 0 disables the Fresnel curve: F is 1, and nothing passes. The specification does not say that
+    the two directions lie on either side of the microfacet, [Walter2007] does; without that condition
+    light passes between directions that no facet joins.
+
+    References
+    ----------
+    [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
+
+    Examples
+    --------
+    >>> from mxeon.models.refraction import refraction_direction
+    >>> wo = [0.6, 0.0, 0.8]
+    >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
+    >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)
+    array([10.066984])
+    """
+    vectors = {"tint": np.atleast_1d(checked("tint", tint))}
+    return evaluate_btdf(DIELECTRIC.at, wo, wi, roughness, ior, vectors, {}, radiance=radiance)
+
+
+def evaluate_btdf(
+    at: Callable[..., Array],
+    wo: ArrayLike,
+    wi: ArrayLike,
+    roughness: ArrayLike,
+    ior: ArrayLike,
+    vectors: dict[str, Numbers],
+    numbers: dict[str, Numbers],
+    *,
+    radiance: bool = True,
+    anywhere: bool = False,
+) -> Array:
+    """Values of a BTDF, shape (..., C); `vectors` and `numbers` are checked inputs of the curve.
+
+    Parameters
+    ----------
+    at : callable
+        `at(cosine, ior=ior, **material)`, shape (C, ...): F at the cosine on the side of wo.
+    anywhere : bool
+        Whether directions count that lie on one side of the microfacet.
+    """
+    directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
+    pairs = {"roughness": checked_pairs("roughness", roughness)}
+
+    def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
+        facet = Facet.of(wo, wi, ior, anywhere)
+        F = at(facet.cosine_o, ior=ior, **material)
+        G2 = ggx.visibility(wo[2], -wi[2], ggx.mean_alpha(roughness))
+        lobe = ggx.ndf(facet.normal, roughness) * G2
+        if radiance:
+            lobe = lobe / np.where(ior > 0.0, ior, 1.0) ** 2
+        f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
+        return f * material["tint"] if "tint" in material else f
+
+    return evaluate_material(
+        value,
+        directions | pairs | vectors,
+        {"ior": checked("ior", ior), **numbers},
+        channel_count(vectors),
+    )

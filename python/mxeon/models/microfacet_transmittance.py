@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Share of the light that microfacets transmit, by quadrature over the normals that are seen.
+
+With the normals drawn as they are seen, the transmitted share of the light from wo is the mean of
+(1 - F) G2 / G1(wo). The specification has no compensation for what transmission loses between facets.
+"""
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+from mxeon.models import ggx_formulas as ggx
+from mxeon.models.arguments import channel_count, checked, checked_directions, checked_pairs
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.evaluation import evaluate_material
+from mxeon.models.microfacet_lobe import DIELECTRIC
+from mxeon.models.refraction import refracted
+from mxeon.models.sampling.visible_normals import visible_normal
+
+NODES, BLOCK = 48, 2**4  # nodes in height and in azimuth of the cap of normals; views per block
+
+
+def dielectric_transmittance_dir(
+    wo: ArrayLike,
+    tint: ArrayLike,
+    roughness: ArrayLike,
+    ior: ArrayLike,
+    shadow: bool = True,
+) -> Array:
+    """Transmitted share of the light from `wo`, by quadrature.
+
+        T(wo) = ior^2 integral of dielectric_btdf |mu_i| over the hemisphere of wi
+
+    Parameters
+    ----------
+    wo, tint, roughness, ior
+        As those of `mxeon.models.microfacet_btdf.dielectric_btdf`.
+    shadow : bool
+        Whether light is lost to other facets on the far side, as in the BTDF; without, it is the mean
+        of 1 - F over the normals that wo sees.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Dimensionless, in [0, 1] where alpha_x and alpha_y are the same.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    Notes
+    -----
+    Accuracy: absolute error below 2e-4 for `ior` >= 1, and below 5e-3 for less, where F has an infinite
+    slope at the critical angle. At alpha 0 it is that of a plane, tint (1 - F(mu_o)).
+    The albedo over all lights of one view, of the radiance, is this divided by ior^2.
+
+    References
+    ----------
+    [MaterialX2026], Directional Albedo and Energy Conservation; [Walter2007], Eq. (21).
+
+    Examples
+    --------
+    >>> dielectric_transmittance_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], [1.5, 0.75]).round(3)
+    array([[0.939],
+           [0.732]])
+    """
+    vectors = {"tint": np.atleast_1d(checked("tint", tint))}
+    numbers = {"ior": checked("ior", ior)}
+
+    return evaluate_transmittance(DIELECTRIC.at, wo, roughness, vectors, numbers, shadow)
+
+
+def evaluate_transmittance(
+    at: Callable[..., Array],
+    wo: ArrayLike,
+    roughness: ArrayLike,
+    vectors: dict[str, Numbers],
+    numbers: dict[str, Numbers],
+    shadow: bool,
+) -> Array:
+    """Transmittance, shape (..., C), of checked inputs; `numbers` has the index."""
+    directions = {"wo": checked_directions("wo", wo)}
+    pairs = {"roughness": checked_pairs("roughness", roughness)}
+
+    def value(wo: Array, roughness: Array, **material: Array) -> Array:
+        wo, roughness = wo + 0.0 * roughness[:1], roughness + 0.0 * wo[:1]
+        nodes, weight = _nodes(wo.ndim)
+        view = wo[:, np.newaxis]
+        wh = visible_normal(view, *nodes, roughness[:, np.newaxis])
+        cosine = np.clip(np.sum(view * wh, axis=0), 0.0, 1.0)
+        wi = refracted(view, wh, material["ior"])
+        spread = {k: v[:, np.newaxis] if k in vectors else v for k, v in material.items()}
+        passed = (1.0 - at(cosine, **spread)) * np.where(wi[2] < 0.0, 1.0, 0.0)
+        if shadow:
+            passed = passed * _shadow(wo, -wi[2], roughness)
+        T: Array = np.sum(passed * weight, axis=1)
+        return T * material["tint"] if "tint" in material else T
+
+    arguments = {**directions, **pairs, **vectors}
+    return evaluate_material(value, arguments, numbers, channel_count(vectors), BLOCK)
+
+
+def _shadow(wo: Array, mu_i: Array, roughness: Array) -> Array:
+    """G2 / G1(wo), whose limits at grazing are finite; 1 at alpha 0."""
+    length = ggx.stretched_length(wo, roughness)
+    visibility = ggx.visibility(wo[2], np.clip(mu_i, 0.0, 1.0), ggx.mean_alpha(roughness))
+    share: Array = 2.0 * mu_i * visibility * (wo[2] + length)
+    return share
+
+
+@lru_cache(maxsize=2)
+def _nodes(axes: int) -> tuple[tuple[Array, Array], Array]:
+    """Random numbers of the visible normals, and weights, along an axis before those of the views."""
+    x, w = np.polynomial.legendre.leggauss(NODES)
+    around = (np.arange(NODES) + 0.5) / NODES
+    height, turn = np.meshgrid(0.5 * (x + 1.0), around, indexing="ij")
+    weight = np.repeat(0.5 * w / NODES, NODES)
+    shape = (-1, *(1,) * (axes - 1))
+    return (height.reshape(shape), turn.reshape(shape)), weight.reshape(shape)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Geometry of refraction at a surface or a microfacet.
+
+An index of refraction is that of the far side relative to the side of the first direction.
+"""
+
+import numpy as np
+
+from mxeon.models.arguments import checked, checked_directions, checked_transmitted
+from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.evaluation import evaluate_material
+
+
+def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Array:
+    """Direction on the far side into which light along `wo` is refracted, and that refracts into it.
+
+        cos_t = sqrt(1 - (1 - cos_o^2) / ior^2),  wi = -wo / ior + (cos_o / ior - cos_t) normal
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Direction that leaves the surface, unit vector to 1e-6, normal +z, z >= 0.
+    normal : array_like, shape (..., 3)
+        Normal of the surface or microfacet, unit vector to 1e-6, z >= 0.
+    ior : array_like, shape (...)
+        Index of the far side relative to that of wo, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Unit vectors; (0, 0, 0) at total internal reflection, and where wo lies behind the normal.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], Reflection and Transmission; [Walter2007], Eq. (40).
+
+    Examples
+    --------
+    >>> refraction_direction([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [1.5, 0.5]).round(6)
+    array([[-0.4     , -0.      , -0.916515],
+           [ 0.      ,  0.      ,  0.      ]])
+    """
+    vectors = {"wo": checked_directions("wo", wo), "normal": checked_directions("normal", normal)}
+    return evaluate_material(refracted, vectors, {"ior": checked("ior", ior)}, 3)
+
+
+def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Array:
+    """Normal of the microfacet that refracts one direction into the other.
+
+        wh = +-(wo + ior wi) / |wo + ior wi|, on the side of wo
+
+    Parameters
+    ----------
+    wo, wi : array_like, shape (..., 3)
+        Directions that leave the surface, unit vectors to 1e-6, normal +z; wo has z >= 0, wi z <= 0.
+    ior : array_like, shape (...)
+        Index of the side of wi relative to that of wo, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Unit vectors; (0, 0, 0) where no microfacet refracts one into the other.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    Notes
+    -----
+    The sign of the specification's vector points into the side of the smaller index, which no term of
+    its BTDF tells apart. Where both directions lie on one side of the vector no facet joins them.
+
+    References
+    ----------
+    [MaterialX2026], Microfacet BTDF; [Walter2007], Eq. (16).
+
+    Examples
+    --------
+    >>> wi = refraction_direction([0.6, 0.0, 0.8], [0.0, 0.6, 0.8], 1.5)
+    >>> transmission_half_vector([0.6, 0.0, 0.8], wi, 1.5).round(6)
+    array([-0. ,  0.6,  0.8])
+    """
+    vectors = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
+    numbers = {"ior": checked("ior", ior)}
+    return evaluate_material(lambda wo, wi, ior: Facet.of(wo, wi, ior).normal, vectors, numbers, 3)
+
+
+def refracted(wo: Array, normal: Array, ior: Array) -> Array:
+    """`refraction_direction` on float64 arrays, components first."""
+    inverse = 1.0 / np.where(ior > 0.0, ior, 1.0)
+    cosine = np.sum(wo * normal, axis=0)
+    squared = 1.0 - inverse * inverse * (1.0 - cosine) * (1.0 + cosine)
+    passes = (squared > 0.0) & (cosine > 0.0) & (ior > 0.0)
+    scale = inverse * cosine - np.sqrt(np.maximum(squared, 0.0))
+    wi = scale * normal - inverse * wo
+    return np.where(passes, wi, 0.0)
+
+
+class Facet:
+    """The microfacet between directions on either side of it, on float64 arrays, components first.
+
+    Attributes
+    ----------
+    normal : ndarray, shape (3, ...)
+        Unit vector on the side of wo; 0 where there is no such facet.
+    cosine_o, cosine_i : ndarray
+        |wo . wh| and |wi . wh|; 0 where there is none.
+    jacobian : ndarray
+        |d wh / d wi|, the solid angle of normals for that of wi.
+    """
+
+    def __init__(self, normal: Array, cosine_o: Array, cosine_i: Array, jacobian: Array) -> None:
+        self.normal, self.cosine_o, self.cosine_i = normal, cosine_o, cosine_i
+        self.jacobian = jacobian
+
+    @classmethod
+    def of(cls, wo: Array, wi: Array, ior: Array, anywhere: bool = False) -> "Facet":
+        """The facet between wo and wi; `anywhere` keeps vectors with both directions on one side.
+
+        |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|: [Walter2007], Eq. (17).
+        """
+        total = wo + ior * wi
+        length = np.sqrt(np.sum(total * total, axis=0))
+        side_o, side_i = np.sum(wo * total, axis=0), np.sum(wi * total, axis=0)
+        real = (length > 0.0) & (anywhere | ((side_o * side_i < 0.0) & (side_o * total[2] > 0.0)))
+        scale = np.where(real, 1.0, 0.0) / np.where(length > 0.0, length, 1.0)
+        normal = total * (scale * np.where(total[2] < 0.0, -1.0, 1.0))
+        cosine_o, cosine_i = (np.minimum(np.abs(side) * scale, 1.0) for side in (side_o, side_i))
+        return cls(normal, cosine_o, cosine_i, (ior * scale) ** 2 * cosine_i)

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The hair model: norms of its lobes, its furnace, 50 digits, and Mitsuba's own implementation."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from mxeon.models.hair import (
+    chiang_hair_attenuation,
+    chiang_hair_bcsdf,
+    hair_azimuthal,
+    hair_longitudinal,
+)
+from mxeon.models.hair_defects import FORMS, READINGS, TILTED, materialx_longitudinal
+from mxeon.models.hair_formulas import TEXT, bessel_scaled, longitudinal
+
+ROUND = 1e-14  # 45 roundings of float64
+PICK = {"roughness_R": (0.5, 0.6), "roughness_TT": (0.3, 0.4), "roughness_TRT": (0.8, 0.9)}
+VIEWS = np.array([[0.0, 0.0, 1.0], [0.6, 0.3, 0.0], [-0.95, -0.2, 0.0]])
+VIEWS[:, 2] = np.sqrt(1.0 - (VIEWS[:, :2] ** 2).sum(axis=1))
+
+
+def sphere(nodes):
+    """Directions of all lights about the fiber +x, and their solid angles."""
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    phi = 2.0 * np.pi * (np.arange(2 * nodes) + 0.5) / (2 * nodes)
+    sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
+    cosine = np.sqrt(1.0 - sine * sine)
+    wi = np.stack([sine, cosine * np.cos(angle), cosine * np.sin(angle)], axis=-1)
+    return wi, np.tile(w, 2 * nodes) * np.pi / nodes
+
+
+def furnace(wo, **inputs):
+    """The integral of the values over all lights, (C,)."""
+    wi, weights = sphere(96)
+    return (weights[:, np.newaxis] * chiang_hair_bcsdf(wo, wi, **PICK | inputs)).sum(axis=0)
+
+
+def test_the_scaled_bessel_function_has_the_value_of_50_digits():
+    x = np.array([0.0, 1e-9, 0.5, 3.0, 12.0, 19.99, 20.0, 20.01, 100.0, 3000.0])
+    exact = [float(mp.besseli(0, mp.mpf(each)) * mp.exp(-mp.mpf(each))) for each in map(float, x)]
+    np.testing.assert_allclose(bessel_scaled(x), exact, rtol=ROUND)
+    assert bessel_scaled(np.array(1e300)) == pytest.approx(1.0 / np.sqrt(2e300 * np.pi), rel=ROUND)
+
+
+@pytest.mark.parametrize("v", [1e-3, 0.05, 1.0, 30.0])
+def test_the_longitudinal_function_has_the_value_of_50_digits(v):
+    for theta_i, theta_o in [(0.3, -0.2), (-1.2, 1.3), (0.0, 0.0), (1.5, 1.5)]:
+        a, b, u = mp.mpf(theta_i), mp.mpf(theta_o), mp.mpf(v)
+        value = mp.exp(-mp.sin(a) * mp.sin(b) / u) * mp.besseli(0, mp.cos(a) * mp.cos(b) / u)
+        value /= 2 * u * mp.sinh(1 / u)
+        assert hair_longitudinal(theta_i, theta_o, v) == pytest.approx(
+            float(value), rel=ROUND / min(v, 1.0)
+        )
+
+
+@pytest.mark.parametrize("v", [1e-3, 0.01, 0.3, 2.0, 100.0])
+def test_the_longitudinal_function_is_normalized(v):
+    x, w = np.polynomial.legendre.leggauss(400)
+    theta_i, theta_o = np.arcsin(x), np.array([[0.0], [0.5], [-1.2]])
+    norms = (w * hair_longitudinal(theta_i, theta_o, v)).sum(axis=1)
+    np.testing.assert_allclose(norms, 1.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("s", [0.01, 0.3, 2.0, 100.0])
+def test_the_azimuthal_function_is_normalized(s):
+    x, w = np.polynomial.legendre.leggauss(400)
+    phi = np.pi * x * x * x  # dense where a narrow lobe is
+    norm = (3.0 * np.pi * x * x * w * hair_azimuthal(phi, s)).sum()
+    assert norm == pytest.approx(1.0, abs=1e-6)
+    assert hair_azimuthal(0.4 + 4.0 * np.pi, s) == pytest.approx(float(hair_azimuthal(0.4, s)))
+
+
+@pytest.mark.parametrize("ior", [0.5, 1.0, 1.55, 3.0])
+def test_attenuations_sum_to_1_without_absorption_and_to_less_with_it(ior):
+    wo, _ = sphere(12)
+    wo = np.concatenate([wo[wo[:, 2] >= 0.0], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
+    clear, dark = (chiang_hair_attenuation(wo, ior, each) for each in (0.0, (0.1, 5.0)))
+    np.testing.assert_allclose(clear.sum(axis=-1), 1.0, rtol=ROUND)
+    assert (dark >= 0.0).all() and (dark.sum(axis=-1) <= 1.0 + ROUND).all()
+
+
+@pytest.mark.parametrize("wo", VIEWS)
+def test_a_white_furnace_returns_all_light_over_pi(wo):
+    np.testing.assert_allclose(furnace(wo), 1.0 / np.pi, atol=1e-9)
+    later = READINGS["no factor 1/pi, as in later versions of the text"]
+    np.testing.assert_allclose(furnace(wo, form=later), 1.0, atol=1e-9)
+
+
+def test_a_furnace_with_absorption_returns_the_attenuations():
+    wo, absorption = VIEWS[1], np.array([0.1, 0.5, 3.0])
+    factors = chiang_hair_attenuation(wo, 1.55, absorption)
+    value = furnace(wo, absorption_coefficient=absorption)
+    np.testing.assert_allclose(value, factors.sum(axis=-1) / np.pi, atol=1e-9)
+
+
+def test_only_a_tilt_of_the_viewer_keeps_the_furnace():
+    # By the text, two degrees of tilt cost a slanted view of rough hair 2 % of the light.
+    cuticle = 0.5 + 2.0 / 180.0
+    tilted = np.pi * furnace(VIEWS[2], cuticle_angle=cuticle)
+    np.testing.assert_allclose(tilted, 0.9775, atol=1e-3)
+    kept = FORMS[TILTED]
+    np.testing.assert_allclose(
+        np.pi * furnace(VIEWS[2], cuticle_angle=cuticle, form=kept), 1.0, atol=1e-9
+    )
+
+
+def test_the_sign_of_a_tilted_cosine_has_no_effect():
+    a = [np.array(each) for each in (0.6, 0.8, 0.28, 0.96, 0.01)]
+    assert longitudinal(*a) == longitudinal(a[0], -a[1], *a[2:])
+
+
+def test_the_ten_terms_of_materialx_are_off_by_2_percent():
+    # At a = 12 the series lacks its tenth power of x^2 and all beyond.
+    sine, cosine, v = np.array(0.0), np.array(1.0), np.array(1.0 / 11.9)
+    exact = longitudinal(sine, cosine, sine, cosine, v)
+    assert materialx_longitudinal(sine, cosine, sine, cosine, v) / exact < 0.982
+    v = np.array(1.0 / 12.1)  # half of 1 / (8 x) is missing
+    short = materialx_longitudinal(sine, cosine, sine, cosine, v)
+    assert short / longitudinal(sine, cosine, sine, cosine, v) == pytest.approx(0.9944, abs=1e-3)
+
+
+@pytest.mark.parametrize("form", [*FORMS.values(), *READINGS.values()])
+def test_each_form_has_other_values(form):
+    wi, _ = sphere(6)
+    inputs = {**PICK, "roughness_R": (0.05, 3.0), "cuticle_angle": 0.6}
+    values = [chiang_hair_bcsdf(VIEWS[1], wi, **inputs, form=each) for each in (TEXT, form)]
+    assert not np.allclose(*values, rtol=1e-5)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 3.0])
+def test_mitsuba_has_the_values_of_the_model(tilt):
+    """Its hair is that of [Chiang2016]: without the factor 1/pi, and with the viewer tilted."""
+    mi = pytest.importorskip("mitsuba")
+    mi.set_variant("scalar_rgb")
+    absorption, beta = (0.1, 0.2, 0.3), 0.6
+    v, s = (0.726 * beta + 0.812 * beta**2 + 3.7 * beta**20) ** 2, 0.265 * beta + 1.194 * beta**2
+    s += 5.372 * beta**22
+    bsdf = mi.load_dict(
+        {
+            "type": "hair",
+            "longitudinal_roughness": beta,
+            "azimuthal_roughness": beta,
+            "scale_tilt": tilt,
+            "int_ior": 1.55,
+            "ext_ior": 1.0,
+            "sigma_a": {"type": "rgb", "value": list(absorption)},
+        }
+    )
+    point = mi.SurfaceInteraction3f()
+    for wo, wi in zip(VIEWS[1:], [[0.2, -0.5, 0.4], [0.1, 0.3, -0.9]], strict=True):
+        wi = np.array(wi) / np.linalg.norm(wi)
+        point.wi = mi.Vector3f(*wo[[1, 0, 2]])  # its fiber is +y
+        value = np.array(bsdf.eval(mi.BSDFContext(), point, mi.Vector3f(*wi[[1, 0, 2]])))
+        expected = np.pi * chiang_hair_bcsdf(
+            wo,
+            wi,
+            roughness_R=(v, s),
+            roughness_TT=(v / 4.0, s),
+            roughness_TRT=(4.0 * v, s),
+            absorption_coefficient=absorption,
+            cuticle_angle=0.5 - tilt / 180.0,
+            form=FORMS[TILTED],
+        )
+        np.testing.assert_allclose(value, expected, rtol=2e-6)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        ({"roughness_R": (0.0, 0.1)}, r"^roughness_R must lie in \[1e-12, 1e12\]; got 0.0 at"),
+        ({"roughness_TT": 0.1}, r"^roughness_TT must have shape \(..., 2\); got shape \(\)"),
+        ({"tint_TRT": 1.5}, r"^tint_TRT must lie in \[0, 1\]; got 1.5"),
+        ({"cuticle_angle": -0.1}, r"^cuticle_angle must lie in \[0, 1\]; got -0.1"),
+        ({"absorption_coefficient": -1.0}, r"^absorption_coefficient must lie in \[0, 1e50\]"),
+    ],
+)
+def test_inputs_out_of_range_are_refused(inputs, message):
+    with pytest.raises(ValueError, match=message):
+        chiang_hair_bcsdf([0, 0, 1], [0, 0, -1], **inputs)
+
+
+def test_other_arguments_are_refused():
+    with pytest.raises(TypeError, match=r"^inputs must be among tint_R, .*; got weight$"):
+        chiang_hair_bcsdf([0, 0, 1], [0, 0, -1], weight=1.0)
+    with pytest.raises(ValueError, match="^wi must be unit vectors"):
+        chiang_hair_bcsdf([0, 0, 1], [0, 0, -2])
+    with pytest.raises(ValueError, match=r"^theta must lie in \[-pi/2, pi/2\]; got 2.0"):
+        hair_longitudinal(2.0, 0.0, 0.1)
+    with pytest.raises(ValueError, match=r"^variance must lie in \[1e-12, 1e12\]; got 0"):
+        hair_longitudinal(0.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match=r"^scale must lie in \[1e-12, 1e12\]; got 0"):
+        hair_azimuthal(0.0, 0.0)

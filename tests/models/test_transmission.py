@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Refraction and the microfacet BTDF: limits, invariants, agreement with quadrature and Mitsuba."""
+
+import numpy as np
+import pytest
+
+from mxeon.models import fresnel_dielectric, smith_g1, smith_g2
+from mxeon.models.microfacet_albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
+from mxeon.models.microfacet_btdf import dielectric_btdf, evaluate_btdf
+from mxeon.models.microfacet_lobe import DIELECTRIC
+from mxeon.models.microfacet_transmittance import dielectric_transmittance_dir
+from mxeon.models.refraction import Facet, refraction_direction, transmission_half_vector
+from mxeon.models.schlick_transmission import (
+    READINGS,
+    generalized_schlick_btdf,
+    generalized_schlick_transmittance_dir,
+    schlick_ior,
+)
+from tests.support import tolerances
+from tests.support.availability import available
+from tests.support.hemispheres import view
+
+INDICES = (0.7, 1.2, 1.5, 3.0)
+DOWN = np.array([1.0, 1.0, -1.0])
+COLORS = [0.04, 0.3, 0.9], [1.0, 0.5, 0.8], [1.0, 0.7, 0.4]
+GRID = 300
+
+
+def below():
+    """Directions below the horizon, and weights that integrate with |mu|."""
+    x, w = np.polynomial.legendre.leggauss(GRID)
+    mu, weight = 0.5 * (1.0 + x), 0.5 * w
+    phi = 2.0 * np.pi * (np.arange(GRID) + 0.5) / GRID
+    radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
+    wi = np.stack(
+        [radius * np.cos(phi), radius * np.sin(phi), -mu[:, np.newaxis] + 0.0 * phi], axis=-1
+    )
+    return wi, (weight * mu)[:, np.newaxis] * (2.0 * np.pi / GRID)
+
+
+def pairs(count=500, least=0.05):
+    """Random pairs of directions on either side of the surface."""
+    rng = np.random.default_rng(3)
+    wo, wi = (
+        np.stack(
+            [view(least + (1.0 - least) * u, 2.0 * np.pi * v) for u, v in rng.random((count, 2))]
+        )
+        for _ in range(2)
+    )
+    return wo, wi * DOWN
+
+
+@pytest.mark.parametrize("ior", INDICES)
+def test_refraction_obeys_snell_and_has_the_half_vector_as_its_normal(ior):
+    wo, _ = pairs()
+    normal = np.array([0.0, 0.0, 1.0])
+    wi = refraction_direction(wo, normal, ior)
+    passes = wi.any(axis=-1)
+    np.testing.assert_array_equal(passes, 1.0 - wo[:, 2] ** 2 < ior * ior)
+    np.testing.assert_allclose(ior * wi[passes, :2], -wo[passes, :2], atol=1e-15 * max(ior, 1.0))
+    np.testing.assert_allclose((wi[passes] ** 2).sum(axis=-1), 1.0, rtol=1e-14)
+    found = transmission_half_vector(wo[passes], wi[passes], ior)
+    np.testing.assert_allclose(found, np.broadcast_to(normal, found.shape), atol=1e-13)
+
+
+def test_no_index_bends_nothing_and_has_no_half_vector():
+    wo, wi = pairs()
+    np.testing.assert_allclose(refraction_direction(wo, [0.0, 0.0, 1.0], 1.0), -wo, atol=1e-15)
+    assert not transmission_half_vector(wo, wi, 1.0).any()
+    assert not dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.0).any()
+
+
+@pytest.mark.parametrize("ior", INDICES)
+@pytest.mark.parametrize("alpha", [(0.5, 0.5), (0.3, 0.6)])
+def test_the_density_of_refracted_directions_is_normalized(ior, alpha):
+    wi, weight = below()
+    wo = view(0.6, 1.0)
+    facet = Facet.of(np.broadcast_to(wo, wi.shape).T, wi.T, np.array(ior))
+    x, y, z = facet.normal
+    area = alpha[0] * alpha[1]
+    squared = (x / alpha[0]) ** 2 + (y / alpha[1]) ** 2 + z * z
+    D = np.where(
+        squared > 0.0, 1.0 / (np.pi * area * np.where(squared > 0.0, squared, 1.0) ** 2), 0.0
+    )
+    pdf = smith_g1(wo, alpha) * D * facet.cosine_o * facet.jacobian / wo[2]
+    total = np.sum(pdf.T * weight / np.abs(wi[..., 2]))
+    seen = dielectric_transmittance_dir(wo, 1.0, alpha, ior, shadow=False)[0]
+    if ior > 1.0:
+        assert total == pytest.approx(1.0, abs=tolerances.REFRACTED_GRID)
+    assert seen <= total + tolerances.TRANSMITTANCE_CRITICAL
+
+
+@pytest.mark.parametrize("ior", INDICES)
+@pytest.mark.parametrize("alpha", [(0.5, 0.5), (0.3, 0.6)])
+@pytest.mark.parametrize("mu", [0.95, 0.5])
+def test_the_transmittance_is_the_integral_of_the_btdf(ior, alpha, mu):
+    wi, weight = below()
+    wo = view(mu, 0.4)
+    values = dielectric_btdf(wo, wi, 1.0, alpha, ior, radiance=False)[..., 0]
+    expected = dielectric_transmittance_dir(wo, 1.0, alpha, ior)[0]
+    assert np.sum(values * weight) == pytest.approx(expected, abs=tolerances.REFRACTED_GRID)
+
+
+@pytest.mark.parametrize("ior", INDICES)
+def test_radiance_over_the_squared_index_is_reciprocal(ior):
+    wo, wi = pairs()
+    there = dielectric_btdf(wo, wi, 1.0, [0.3, 0.6], ior)  # f(wi, wo), into the side of index 1
+    back = dielectric_btdf(DOWN * wi, DOWN * wo, 1.0, [0.3, 0.6], 1.0 / ior) / ior**2
+    np.testing.assert_allclose(there, back, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("reading", READINGS)
+def test_readings_of_schlick_are_reciprocal(reading):
+    wo, wi = pairs()
+    inputs = *COLORS, [0.3, 0.6], 5.0, reading
+    there = generalized_schlick_btdf(wo, wi, *inputs)
+    back = generalized_schlick_btdf(DOWN * wi, DOWN * wo, *inputs, inside=True)
+    np.testing.assert_allclose(
+        there, back / schlick_ior(COLORS[0], reading) ** 2, rtol=1e-9, atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("ior", [1.5, 3.0])
+def test_a_smooth_plane_passes_what_it_does_not_reflect(ior):
+    wo = np.stack([view(mu) for mu in (0.1, 0.5, 1.0)])
+    T = dielectric_transmittance_dir(wo, 1.0, [0.0, 0.0], ior)[:, 0]
+    np.testing.assert_allclose(T, 1.0 - fresnel_dielectric(wo[:, 2], ior), rtol=1e-12)
+    for alpha in (1e-3, 1e-4):
+        R = dielectric_albedo_dir(wo, 1.0, [alpha, alpha], ior, compensate=False)[:, 0]
+        T = dielectric_transmittance_dir(wo, 1.0, [alpha, alpha], ior)[:, 0]
+        np.testing.assert_allclose(R + T, 1.0, atol=10.0 * alpha)
+
+
+def test_light_is_totally_reflected_inside_beyond_the_critical_angle():
+    critical = np.sqrt(1.0 - 1.0 / 1.5**2)
+    wo = np.stack([view(critical - 1e-3), view(critical + 1e-3)])
+    T = dielectric_transmittance_dir(wo, 1.0, [0.0, 0.0], 1.0 / 1.5)[:, 0]
+    assert T[0] == 0.0
+    assert T[1] > 0.2
+    assert not refraction_direction(wo[0], [0.0, 0.0, 1.0], 1.0 / 1.5).any()
+
+
+@pytest.mark.parametrize("ior", INDICES)
+def test_microfacets_neither_reflect_nor_transmit_more_than_all_light(ior):
+    mu, alpha = (each.ravel() for each in np.meshgrid([0.02, 0.2, 0.6, 1.0], [0.01, 0.1, 0.5, 1.0]))
+    wo = np.stack([view(each) for each in mu])
+    roughness = np.repeat(alpha[:, np.newaxis], 2, axis=1)
+    T = dielectric_transmittance_dir(wo, 1.0, roughness, ior)
+    for compensate in (False, True):
+        R = dielectric_albedo_dir(wo, 1.0, roughness, ior, compensate=compensate)
+        assert (R + T).max() <= 1.0 + tolerances.SLOPES_CRITICAL * (ior < 1.0) + 1e-5
+
+
+def test_light_may_pass_between_directions_that_no_facet_joins_by_the_letter():
+    wo, wi = (
+        view(0.3),
+        view(0.3) * DOWN,
+    )  # the light is bent back, by far more than an index of 1.5 can
+    inputs = {"tint": np.ones(1)}
+    letter = evaluate_btdf(DIELECTRIC.at, wo, wi, [0.5, 0.5], 1.5, inputs, {}, anywhere=True)
+    assert letter[0] > 0.0
+    assert dielectric_btdf(wo, wi, 1.0, [0.5, 0.5], 1.5)[0] == 0.0
+
+
+@pytest.mark.parametrize("reading", READINGS)
+def test_readings_pass_what_they_do_not_reflect_only_where_they_take_the_same_curve(reading):
+    wo = view(0.4)
+    T = generalized_schlick_transmittance_dir(wo, *COLORS, [0.0, 0.0], 5.0, reading)
+    R = generalized_schlick_albedo_dir(wo, *COLORS, [0.0, 0.0], 5.0)
+    kept = np.abs(R + T - 1.0).max() < tolerances.SLOPES
+    assert kept == (reading in ("text", "unclamped", "channel"))
+
+
+def test_one_index_for_all_channels_is_that_of_the_mean():
+    index = schlick_ior([0.04, 0.06, 0.08])
+    assert index[0] == pytest.approx((1.0 + np.sqrt(0.06)) / (1.0 - np.sqrt(0.06)))
+    np.testing.assert_allclose(schlick_ior([0.0, 1.0], "channel"), [1.1 / 0.9, 397.997], rtol=1e-5)
+
+
+@pytest.mark.parametrize("mode", ["Radiance", "Importance"])
+def test_mitsuba_agrees_but_for_the_masking_function(mode):
+    with available("mitsuba"):
+        mi = pytest.importorskip("mitsuba")
+        mi.set_variant("scalar_rgb")
+        bsdf = mi.load_dict(
+            {
+                "type": "roughdielectric",
+                "distribution": "ggx",
+                "alpha": 0.3,
+                "int_ior": 1.5,
+                "ext_ior": 1.0,
+            }
+        )
+        wo, wi = pairs(200)
+        ours = dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5, radiance=mode == "Radiance")[:, 0]
+        smith = smith_g1(wo, [0.3, 0.3]) * smith_g1(wi * DOWN, [0.3, 0.3])
+        ours *= -wi[:, 2] * smith / smith_g2(wo[:, 2], -wi[:, 2], 0.3)
+        theirs = [
+            _mitsuba(mi, bsdf, getattr(mi.TransportMode, mode), *pair)
+            for pair in zip(wo, wi, strict=True)
+        ]
+        assert np.count_nonzero(theirs) > 10
+        np.testing.assert_allclose(theirs, ours, rtol=tolerances.MITSUBA_BTDF, atol=1e-6)
+
+
+def _mitsuba(mi, bsdf, mode, wo, wi):
+    """Mitsuba's value times cosine of a pair."""
+    point = mi.SurfaceInteraction3f()
+    point.wi = mi.Vector3f(wo)
+    return bsdf.eval(mi.BSDFContext(mode), point, mi.Vector3f(wi))[0]
+
+
+MESSAGES = (
+    (
+        lambda: refraction_direction([0, 0, -1.0], [0, 0, 1.0], 1.5),
+        "wo must not point below the horizon",
+    ),
+    (
+        lambda: transmission_half_vector([0, 0, 1.0], [0, 0, 1.0], 1.5),
+        "wi must not point above the horizon",
+    ),
+    (
+        lambda: dielectric_btdf([0, 0, 1.0], [0, 0, -1.0], 1.0, [2.0, 0.5], 1.5),
+        "roughness must lie in [0, 1]; got 2.0",
+    ),
+    (
+        lambda: dielectric_transmittance_dir([0, 0, 1.0], 1.0, [0.5, 0.5], -1.0),
+        "ior must lie in [0, 1e50]; got -1.0",
+    ),
+    (lambda: schlick_ior(0.5, "mean"), "reading must be one of text, unclamped"),
+)
+
+
+@pytest.mark.parametrize(("call", "message"), MESSAGES)
+def test_bad_arguments_are_named(call, message):
+    with pytest.raises(ValueError) as error:
+        call()
+    assert str(error.value).startswith(message)

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The utility nodes that feed the lobes: their limits, their inverses and their domains."""
+
+import numpy as np
+import pytest
+
+from mxeon.models.artistic_ior import artistic_ior, artistic_parameters, normal_reflectance
+from mxeon.models.blackbody import blackbody, blackbody_xyz, planck_radiance
+from mxeon.models.fresnel import fresnel_conductor
+from mxeon.models.hair_parameters import (
+    EUMELANIN,
+    PHEOMELANIN,
+    chiang_hair_absorption_from_color,
+    chiang_hair_roughness,
+    deon_hair_absorption_from_melanin,
+)
+from mxeon.models.pbrlib.utilities import UTILITIES, node
+from mxeon.models.roughness import glossiness_anisotropy, roughness_anisotropy, roughness_dual
+
+RNG = np.random.default_rng(1)
+SHARES = RNG.random((2, 10_000))
+COLORS = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
+STEFAN_BOLTZMANN = 5.670374419e-8  # W / (m^2 K^4), CODATA 2018
+
+
+def test_anisotropy_stretches_along_the_tangent_and_keeps_the_geometric_mean():
+    x, y = roughness_anisotropy(*SHARES).T
+    inside = x < 1.0
+    assert (x >= y).all()
+    assert np.allclose((x * y)[inside], SHARES[0][inside] ** 4, rtol=1e-14, atol=0.0)
+    assert np.array_equal(roughness_anisotropy(SHARES[0], 0.0), SHARES[0][:, None] ** 2 * [1, 1])
+    assert np.array_equal(roughness_anisotropy(0.5, 1.0), roughness_anisotropy(0.5, 0.98))
+
+
+def test_glossiness_is_inverted_roughness_and_dual_is_two_squares():
+    assert np.array_equal(
+        glossiness_anisotropy(1.0 - SHARES[0], SHARES[1]),
+        roughness_anisotropy(1.0 - (1.0 - SHARES[0]), SHARES[1]),
+    )
+    assert np.array_equal(roughness_dual(SHARES.T), SHARES.T**2)
+
+
+def test_an_artistic_index_has_the_reflectivity_that_was_asked():
+    reflectivity, edge = SHARES[0] * 0.999999, SHARES[1]
+    ior, extinction = artistic_ior(reflectivity, edge)
+    back, edge_back = artistic_parameters(ior, extinction)
+    assert np.abs(back - reflectivity).max() < 1e-15
+    clear = (
+        reflectivity > 1e-3
+    )  # n says little about the edge color of a metal that reflects nothing
+    assert np.abs(edge_back - edge)[clear].max() < 1e-11
+    metals = fresnel_conductor(1.0, ior[:, None], extinction[:, None])[:, 0]
+    assert np.abs(metals - reflectivity).max() < 1e-12
+
+
+def test_an_artistic_index_has_the_form_of_the_paper():
+    r, g = SHARES[0] * 0.99, SHARES[1]
+    ior, extinction = artistic_ior(r, g)
+    square = (r * (ior + 1.0) ** 2 - (ior - 1.0) ** 2) / (1.0 - r)
+    assert np.abs(extinction**2 - square).max() < 1e-14 * 400.0**2 / 0.01
+    assert artistic_ior(0.5, 0.0)[1] == 0.0  # a dielectric
+
+
+def test_planck_radiance_integrates_to_the_stefan_boltzmann_law():
+    wavelengths = np.geomspace(50.0, 1e8, 20_001)
+    for kelvin in (800.0, 6504.0):
+        power = np.pi * np.trapezoid(planck_radiance(wavelengths, kelvin), wavelengths)
+        assert power == pytest.approx(STEFAN_BOLTZMANN * kelvin**4, rel=1e-6)
+
+
+def test_a_blackbody_has_luminance_1_and_colors_of_colour_science():
+    colour = pytest.importorskip("colour")
+    shape = colour.SpectralShape(360, 830, 1)
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
+    for kelvin in (800.0, 1667.0, 4000.0, 25000.0):
+        light = colour.sd_blackbody(kelvin, shape)
+        xyz = np.asarray(colour.sd_to_XYZ(light, observer, method="Integration"))
+        assert np.abs(blackbody_xyz(kelvin) - xyz / xyz[1]).max() < 5e-5  # 5 nm and 1 nm
+        assert blackbody(kelvin) @ [0.2126729, 0.7151522, 0.0721750] == pytest.approx(1, abs=1e-6)
+
+
+def test_a_cold_body_has_the_color_of_the_longest_wavelength_and_a_hot_one_has_an_end():
+    assert np.allclose(blackbody([1.0, 50.0]), blackbody(10.0), atol=1e-6)
+    assert np.allclose(blackbody(1e9), blackbody(1e8), atol=1e-3)
+    blue = blackbody([1900.0, 1901.0])[:, 2]
+    green = blackbody([963.0, 965.0])[:, 1]
+    assert blue[0] < 0.0 < blue[1] and green[0] < 0.0 < green[1]
+
+
+def test_hair_roughness_ends_at_specular_and_scales_the_variance_alone():
+    r, tt, trt = chiang_hair_roughness(*SHARES, 0.5, 2.0)
+    assert np.array_equal(chiang_hair_roughness(0.0, 0.0)[0], [0.0, 0.0])
+    assert np.array_equal(tt, r * [0.25, 1.0]) and np.array_equal(trt, r * [4.0, 1.0])
+    assert chiang_hair_roughness(1.0, 1.0)[0] == pytest.approx([5.238**2, 6.831])
+
+
+def test_hair_absorbs_by_its_pigments_and_white_hair_absorbs_nothing():
+    assert np.array_equal(deon_hair_absorption_from_melanin(0.0, 0.5, *COLORS), np.zeros(3))
+    one = 1.0 - np.exp(-1.0)  # one unit of pigment
+    for redness, pigment in ((0.0, EUMELANIN), (1.0, PHEOMELANIN)):
+        assert deon_hair_absorption_from_melanin(one, redness, *COLORS) == pytest.approx(pigment)
+    assert np.array_equal(chiang_hair_absorption_from_color(np.ones(3), 0.3), np.zeros(3))
+
+
+@pytest.mark.parametrize("row", UTILITIES, ids=lambda row: row.category)
+def test_a_row_takes_any_input_and_returns_each_output(row):
+    sizes = {"vector2": 2, "vector3": 3, "color3": 3}
+    for value in (-1.0, 0.0, 0.5, 1.0, 3.0, 1e6):
+        inputs = {name: np.full((4, *np.shape(each)), value) for name, each in row.inputs.items()}
+        outputs = row.values(inputs)
+        assert {name: each.shape for name, each in outputs.items()} == {
+            name: (4, sizes[kind]) for name, kind in row.outputs.items()
+        }
+        assert all(np.isfinite(each).all() and each.min() >= 0.0 for each in outputs.values())
+        for variant in row.variants:
+            assert {k: v.shape for k, v in variant.values(inputs).items()} == {
+                name: each.shape for name, each in outputs.items()
+            }
+
+
+def test_a_row_has_the_reflectivity_up_to_its_limit():
+    inputs = {"reflectivity": np.array([[0.5, 0.99, 1.0]]), "edge_color": np.full((1, 3), 0.5)}
+    outputs = node("artistic_ior").values(inputs)
+    reflectance = normal_reflectance(outputs["ior"], outputs["extinction"])
+    assert reflectance == pytest.approx(np.array([[0.5, 0.99, 0.99]]))
+
+
+@pytest.mark.parametrize(
+    "call, message",
+    (
+        (lambda: roughness_anisotropy(0.5, 1.5), r"anisotropy must lie in \[0, 1\]; got 1.5"),
+        (
+            lambda: roughness_anisotropy([0.5] * 2, [0.5] * 3),
+            "roughness, anisotropy must broadcast",
+        ),
+        (lambda: roughness_dual(0.5), r"roughness must have shape \(..., 2\); got shape \(\)"),
+        (lambda: glossiness_anisotropy(-1.0, 0.0), r"glossiness must lie in \[0, 1\]; got -1.0"),
+        (lambda: artistic_ior(1.0, 0.5), r"reflectivity must lie in \[0, 1\); got 1.0"),
+        (lambda: artistic_ior([0.5] * 2, [0.5] * 3), "reflectivity, edge_color must broadcast"),
+        (lambda: artistic_parameters(-1.0, 0.5), r"ior must lie in \[0, 1e50\]; got -1.0"),
+        (lambda: blackbody(0.0), r"temperature must lie in \[1, 1e9\]; got 0.0"),
+        (lambda: blackbody_xyz(np.nan), r"temperature must lie in \[1, 1e9\]; got nan"),
+        (lambda: planck_radiance(0.0, 1e3), r"wavelength must lie in \[1, 1e9\]; got 0.0"),
+        (lambda: chiang_hair_roughness(2.0, 0.5), r"longitudinal must lie in \[0, 1\]; got 2.0"),
+        (
+            lambda: deon_hair_absorption_from_melanin(1.0, 0.5, *COLORS),
+            r"melanin_concentration must lie in \[0, 1\); got 1.0",
+        ),
+        (
+            lambda: chiang_hair_absorption_from_color([0.0, 1.0, 1.0], 0.5),
+            r"hair_color must lie in \(0, 1\]; got 0.0 at index \(0,\)",
+        ),
+        (
+            lambda: chiang_hair_absorption_from_color(0.5, 0.5),
+            r"hair_color must have shape \(..., 3\); got shape \(\)",
+        ),
+        (
+            lambda: node("nothing"),
+            "category must be one of roughness_anisotropy, .*; got 'nothing'",
+        ),
+    ),
+)
+def test_what_leaves_its_range_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()

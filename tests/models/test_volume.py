@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Participating media: attenuation, and the phase function with its sampling.
+
+FALSE_ALARM is the probability that a test of this file fails although all is right.
+"""
+
+import numpy as np
+import pytest
+from scipy import special
+
+from mxeon.models import volume
+
+FALSE_ALARM = 1e-4
+ANISOTROPIES = (-0.999999, -0.9, -0.3, 0.0, 1e-9, 0.3, 0.9, 0.999999)
+VIEWS = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, -0.8], [0.48, 0.64, 0.6]])
+SAMPLES, BINS, SECTORS = 20_000, 12, 5
+ROUNDING = 1e-13
+MOMENT = 1e-10  # of the quadrature below
+
+
+def moments(g):
+    """Integrals over all directions of the phase function, and of it times the cosine.
+
+    Nodes are uniform in the logarithm of 1 - cos, or of 1 + cos for g < 0: dense at the peak.
+    """
+    x, w = np.polynomial.legendre.leggauss(400)
+    low = np.log((1.0 - abs(g)) ** 2 * 1e-12)
+    y = 0.5 * (np.log(2.0) - low) * (x + 1.0) + low
+    less, weight = np.exp(y), np.exp(y) * 0.5 * (np.log(2.0) - low) * w
+    values = volume._phase(less, np.float64(g))
+    sign = -1.0 if g < 0.0 else 1.0
+    total, loss = 2.0 * np.pi * weight @ values, 2.0 * np.pi * weight @ (less * values)
+    return total, sign * (1.0 - loss)
+
+
+@pytest.mark.parametrize("g", ANISOTROPIES)
+def test_the_phase_function_integrates_to_1_and_has_the_mean_cosine_g(g):
+    total, mean = moments(g)
+    assert abs(total - 1.0) <= MOMENT and abs(mean - g) <= MOMENT
+
+
+def test_the_phase_function_is_the_printed_one():
+    cosine, g = np.linspace(-1.0, 1.0, 21), np.linspace(-0.9, 0.9, 7)[:, np.newaxis]
+    printed = (1.0 - g * g) / (4.0 * np.pi * (1.0 + g * g - 2.0 * g * cosine) ** 1.5)
+    assert np.allclose(volume.hg_phase(cosine, g), printed, rtol=ROUNDING)
+    assert np.allclose(volume.hg_phase(cosine, -g), volume.hg_phase(-cosine, g), rtol=ROUNDING)
+
+
+def test_the_peak_does_not_cancel():
+    e = 1e-12
+    peak = (2.0 - e) * e / (4.0 * np.pi * e**3)
+    assert np.isclose(volume.hg_phase(1.0, 1.0 - e), peak, rtol=1e-3)  # e itself is rounded so
+    last = np.nextafter(1.0, 0.0)
+    assert np.isfinite(volume.hg_phase([-1.0, 0.0, 1.0], last)).all()
+    assert np.isfinite(volume.hg_phase([-1.0, 0.0, 1.0], -last)).all()
+
+
+def test_the_density_is_the_phase_function_of_the_deflection():
+    wo, wi = VIEWS[:, np.newaxis], VIEWS
+    cosine = -np.clip((wo * wi).sum(axis=-1), -1.0, 1.0)
+    assert np.allclose(volume.hg_pdf(wo, wi, 0.7), volume.hg_phase(cosine, 0.7), rtol=1e-12)
+
+
+@pytest.mark.parametrize("g", ANISOTROPIES)
+def test_samples_have_their_density(g):
+    u = np.random.default_rng(11).random((SAMPLES, 2))
+    for view in VIEWS:
+        wi, pdf = volume.hg_sample(view, u, g)
+        assert np.abs((wi**2).sum(axis=-1) - 1.0).max() < ROUNDING
+        if abs(g) < 0.99:  # a direction rounds at the peak
+            assert np.allclose(volume.hg_pdf(view, wi, g), pdf, rtol=1e-9)
+
+
+@pytest.mark.parametrize("g", [-0.9, 0.0, 0.3, 0.9])
+@pytest.mark.parametrize("view", VIEWS, ids=str)
+def test_samples_pass_the_chi_square_test_against_the_phase_function(g, view):
+    assert chi_square(g, g, view) > FALSE_ALARM / 16
+
+
+def test_the_chi_square_test_tells_anisotropies_apart():
+    assert chi_square(0.3, 0.35, VIEWS[2]) < FALSE_ALARM / 16
+
+
+def chi_square(g, drawn, view):
+    """Probability of a chi-square as large, of samples for `drawn` against the distribution of g."""
+    rng = np.random.default_rng([7, int(10 * g) + 10])
+    wi, _ = volume.hg_sample(view, rng.random((SAMPLES, 2)), drawn)
+    tangent = np.cross(view, [0.0, 1.0, 0.0])
+    tangent /= np.linalg.norm(tangent)
+    azimuth = np.arctan2(wi @ np.cross(view, tangent), wi @ tangent)
+    rank = distribution(-wi @ view, g)
+    cells = np.floor(rank * BINS).clip(0, BINS - 1) * SECTORS
+    cells += np.floor((azimuth / (2.0 * np.pi) + 0.5) * SECTORS).clip(0, SECTORS - 1)
+    counts = np.bincount(cells.astype(int), minlength=BINS * SECTORS)
+    mean = SAMPLES / (BINS * SECTORS)
+    return special.chdtrc(BINS * SECTORS - 1, np.sum((counts - mean) ** 2 / mean))
+
+
+def distribution(cosine, g):
+    """Probability of a smaller cosine: the integral of the printed phase function."""
+    if g == 0.0:
+        return 0.5 * (1.0 + cosine)
+    root = np.sqrt(1.0 + g * g - 2.0 * g * cosine)
+    return (1.0 - g * g) / (2.0 * g) * (1.0 / root - 1.0 / (1.0 + g))
+
+
+def test_light_through_two_lengths_passes_both():
+    sigma = [0.0, 0.5, 3.0], [0.0, 1.5, 0.25]
+    once = volume.transmittance(*sigma, 3.0)
+    assert np.allclose(once, volume.transmittance(*sigma, 1.0) * volume.transmittance(*sigma, 2.0))
+    assert once[0] == 1.0 and volume.transmittance(1e50, 1e50, 0.0) == 1.0
+    assert volume.single_scattering_albedo(0.0, 0.0) == 0.0
+    assert volume.single_scattering_albedo(0.0, 2.0) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: volume.extinction(-1.0, 0.0), "absorption must lie in [0, 1e50]; got -1.0"),
+        (
+            lambda: volume.transmittance(0.0, -1.0, 1.0),
+            "scattering must lie in [0, 1e50]; got -1.0",
+        ),
+        (
+            lambda: volume.single_scattering_albedo(np.ones(2), np.ones(3)),
+            "absorption, scattering must broadcast; got shapes (2,), (3,)",
+        ),
+        (lambda: volume.hg_phase(1.5, 0.0), "cos_theta must lie in [-1, 1]; got 1.5"),
+        (lambda: volume.hg_phase(0.0, 1.0), "g must lie in (-1, 1); got 1.0"),
+        (
+            lambda: volume.hg_sample([0.0, 0.0, 2.0], [0.5, 0.5], 0.0),
+            "wo must be unit vectors to 1e-06; got squared length 4.0",
+        ),
+        (
+            lambda: volume.hg_sample([0.0, 0.0, 1.0], [0.5, 1.0], 0.0),
+            "u must lie in [0, 1); got 1.0 at index (1,)",
+        ),
+        (
+            lambda: volume.hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, 0.5], 0.0),
+            "wi must be unit vectors to 1e-06; got squared length 0.25",
+        ),
+    ],
+)
+def test_bad_arguments_are_refused(call, message):
+    with pytest.raises(ValueError) as error:
+        call()
+    assert str(error.value) == message
