@@ -14,6 +14,7 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream.film_quantities import OF_FILMS
 from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
@@ -112,6 +113,9 @@ CAUSES = {
     ),
     "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
     "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
+    "genglsl_film_half": Cause(SPECULAR, 341, "0.5 * f"),
+    "genglsl_film_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "F0, 1.0"),
+    "genglsl_film_choices": Cause(SPECULAR, 318, "XYZ_TO_RGB"),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -262,6 +266,7 @@ OF_QUANTITIES = {
     **OF_PBRLIB,
     **OF_SUBSURFACE,
     **OF_TRANSMISSION,
+    **OF_FILMS,
 }
 
 

@@ -189,11 +189,11 @@ BSDF_ISSUES = (
         (("film_throughput", FILMS[2]),),
     ),
     Issue(
-        "pbrlib_thin_film",
+        "genglsl_film_choices",
         "gl",
-        _product(("film", "film_limit"), FILMS[:2]),
+        _product(("film", "film_limit"), FILMS[1:2]),
         HARDWARE,
-        _product(("film_environment",), FILMS[:2]),
+        (*_product(("film", "film_limit"), FILMS[:1]), ("film_environment", FILMS[1])),
     ),
 )
 EMISSION_ISSUES = (
