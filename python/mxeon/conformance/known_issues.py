@@ -31,6 +31,13 @@ DIELECTRIC, SCHLICK = (
     f"{node}_bsdf, scatter_mode R" for node in ("dielectric", "generalized_schlick")
 )
 MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
+SURFACES = tuple(
+    f"{node}, every lobe"
+    for node in ("standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface")
+)
+FILMS = tuple(
+    f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
+)
 
 
 @dataclass(frozen=True)
@@ -66,6 +73,27 @@ def _product(checks: Sequence[str], subjects: Sequence[str]) -> tuple[tuple[str,
     return tuple((check, subject) for check in checks for subject in subjects)
 
 
+HAIR = "chiang_hair_bsdf"
+HAIR_ISSUES = (
+    Issue(
+        "genglsl_hair_uniform_lobe",
+        "gl",
+        (("lobes", HAIR),),
+        HARDWARE,
+        _product(("value", "integral"), (HAIR,)),
+    ),
+    Issue(
+        "genglsl_hair_longitudinal",
+        "gl",
+        _product(("narrow_lobes", "tilted_lobes"), (HAIR,)),
+        HARDWARE,
+        _product(("value", "black", "integral", "finite"), (HAIR,)),
+    ),
+    Issue("genglsl_hair_roughness", "gl", (("wide_lobes", HAIR),), HARDWARE),
+    Issue("genglsl_hair_azimuth", "gl", (("straight_views", HAIR),), HARDWARE, (("lobes", HAIR),)),
+    Issue("genglsl_hair_grazing", "gl", (("finite", HAIR),), HARDWARE, (("value", HAIR),)),
+    Issue("genglsl_hair_environment", "gl", (("environment", HAIR),), HARDWARE),
+)
 BSDF_ISSUES = (
     Issue("genglsl_zeltner_normal", "gl", (("value", ZELTNER),), HARDWARE),
     Issue(
@@ -102,7 +130,12 @@ BSDF_ISSUES = (
         "gl",
         (("layering", DIELECTRIC), ("transmission", DIELECTRIC), ("transmission", SCHLICK)),
         HARDWARE,
-        (("layering", SCHLICK), ("layer", DIELECTRIC), ("layer", SCHLICK)),
+        (
+            ("layering", SCHLICK),
+            ("layer", DIELECTRIC),
+            ("layer", SCHLICK),
+            *_product(("lobes", "lobes_albedo", "lobes_furnace", "lobes_energy"), SURFACES),
+        ),
     ),
     Issue(
         "genglsl_ggx_fit",
@@ -118,9 +151,57 @@ BSDF_ISSUES = (
         HARDWARE,
         _product(("value", "environment", "integral", "shape"), MICROFACETS),
     ),
+    Issue(
+        "genglsl_film_half",
+        "gl",
+        _product(("film", "film_limit"), FILMS[2:]),
+        HARDWARE,
+        _product(("film_environment", "film_throughput"), FILMS[2:]),
+    ),
+    Issue(
+        "genglsl_film_throughput",
+        "gl",
+        (("film_throughput", FILMS[0]),),
+        HARDWARE,
+        (("film_throughput", FILMS[2]),),
+    ),
+    Issue(
+        "pbrlib_thin_film",
+        "gl",
+        _product(("film", "film_limit"), FILMS[:2]),
+        HARDWARE,
+        _product(("film_environment",), FILMS[:2]),
+    ),
+)
+EMISSION_ISSUES = (
+    Issue(
+        "genglsl_missing_nodes",
+        "gl",
+        _product(
+            ("implemented",),
+            (
+                "conical_edf",
+                "measured_edf",
+                "absorption_vdf",
+                "mix, VDF",
+                "add, VDF",
+                "multiply, VDF",
+            ),
+        ),
+        HARDWARE,
+    ),
+    Issue(
+        "genglsl_medium_scattering",
+        "gl",
+        _product(("transmittance", "inputs"), ("anisotropic_vdf",)),
+        HARDWARE,
+    ),
+    Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
 )
 ISSUES = (
     *BSDF_ISSUES,
+    *EMISSION_ISSUES,
+    *HAIR_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",

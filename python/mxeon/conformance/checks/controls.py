@@ -55,6 +55,10 @@ class Altered:
         """Albedos of the changed batch, changed."""
         return self.values(batch, self.probe.albedo(self.batch(batch), *irradiance))
 
+    def transmitted(self, batch: Batch, *radiance: Array) -> Array:
+        """Light through the surface of the changed batch, changed."""
+        return self.values(batch, self.probe.transmitted(self.batch(batch), *radiance))
+
     def throughput(self, batch: Batch, branch: str) -> Array:
         """Throughputs of the changed batch, changed."""
         return self.throughputs(batch, self.probe.throughput(self.batch(batch), branch))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mxeon.shaders.document.values import members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts.textures import irradiance, read_latlong, read_texture
+from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.scene import Scene, sphere
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
@@ -26,6 +27,20 @@ TRIANGLE = {  # attributes of its three vertices
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
 }
 
+# What generated GLSL does in place of a lobe below the surface.
+IN_PLACE = {
+    SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred along a circle of the "
+    "surface's curvature, and under an environment it is Lambert of its color",
+    TRANSMISSION: "transmission is rasterized: what is seen through the surface is the environment "
+    "in one refracted direction, and no light that the object itself bends or blocks",
+    VOLUME: "a volume is rasterized: it absorbs over a length of 1 and scatters nothing",
+}
+
+
+def approximations(shader: Shader) -> tuple[str, ...]:
+    """What generated GLSL does in place of a shader's lobes below the surface."""
+    return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
+
 
 def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
     """Texels by sampler: images of a shader's document and the environment, row 0 first in v."""
@@ -40,10 +55,9 @@ def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
 
 def environment(irradiance: NDArray[Any] | None) -> dict[str, NDArray[Any]]:
     """Texels of the environment of an evaluation; see `mxeon.shaders.hosts.base.Host.evaluate`."""
-    return {
-        "u_envRadiance": WHITE,
-        "u_envIrradiance": WHITE if irradiance is None else irradiance,
-    }
+    return dict.fromkeys(
+        ("u_envRadiance", "u_envIrradiance"), WHITE if irradiance is None else irradiance
+    )
 
 
 def inputs(shader: Shader) -> dict[str, Any]:

@@ -210,7 +210,7 @@ class Host(base.Host):
         tinted = white
         if irradiance is not None:
             tinted = {"tex": self._texture(irradiance), "sampler": sampler}
-        values = {"u_envRadiance": white, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
+        values = {"u_envRadiance": tinted, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
         matrix = slangpy.float4x4(TURN.astype(np.float32))
         return {"pixelCB": {**values, **raster.EVALUATION, "u_envMatrix": matrix}}
 

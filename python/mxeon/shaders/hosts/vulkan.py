@@ -107,7 +107,7 @@ class Host(base.Host):
     ) -> NDArray[Any]:
         """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
-        environment = {"u_envIrradiance": irradiance} if irradiance is not None else {}
+        environment = {} if irradiance is None else raster.environment(irradiance)
         return self._evaluate(pixel, arguments, environment)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:

@@ -14,6 +14,8 @@ from mxeon.conformance.checks.table import (
     lobes,
     microfacets,
     surfaces,
+    thin_films,
+    transmission,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -28,4 +30,6 @@ CHECKS = (
     *emission.CHECKS,
     *hair.CHECKS,
     *surfaces.CHECKS,
+    *transmission.CHECKS,
+    *thin_films.CHECKS,
 )
