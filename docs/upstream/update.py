@@ -101,6 +101,11 @@ CAUSES = {
             ("environment", 286, "mx_environment_radiance"),
         )
     },
+    "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
+    "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
+    "genosl_hair_constants": Cause(
+        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
+    ),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),

@@ -198,10 +198,28 @@ EMISSION_ISSUES = (
     ),
     Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
 )
+HAIR_ROUGHNESS = tuple(f"chiang_hair_roughness, roughness_{lobe}" for lobe in ("R", "TT", "TRT"))
+HAIR_UTILITIES = (
+    *HAIR_ROUGHNESS,
+    "deon_hair_absorption_from_melanin",
+    "chiang_hair_absorption_from_color",
+)
+UTILITY_ISSUES = (
+    Issue("genglsl_blackbody_cold", "gl", (("output", "blackbody"),), HARDWARE),
+    Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR_UTILITIES[3]),), HARDWARE),
+    Issue(
+        "genosl_hair_constants",
+        "cycles",
+        _product(("output",), HAIR_UTILITIES),
+        ("testrender",),
+        _product(("output_inputs",), HAIR_UTILITIES),
+    ),
+)
 ISSUES = (
     *BSDF_ISSUES,
     *EMISSION_ISSUES,
     *HAIR_ISSUES,
+    *UTILITY_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",

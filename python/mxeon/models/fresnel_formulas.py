@@ -39,8 +39,7 @@ def dielectric(mu: Array, ior: Array) -> Array:
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
     """F: [MaterialX2026], Conductor Fresnel Equations."""
-    Rp, Rs = polarized(mu, ior, extinction)
-    return np.minimum(0.5 * (Rs + Rp), 1.0)
+    return _mean(polarized(mu, ior, extinction))
 
 
 def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
@@ -49,7 +48,13 @@ def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
     w = a + i b = sqrt(n^2 - sin^2), n = ior + i extinction;  R_s = |n^2 - 1|^2 / |w + c|^4.
     No interface (n = 1) reflects nothing, at grazing too; n = 0 reflects all, along the normal too.
     """
-    return _conductor(mu, ior, extinction, _gap(ior, extinction))
+    return _polarized(mu, ior, extinction, _gap(ior, extinction))
+
+
+def _mean(reflectances: tuple[Array, Array]) -> Array:
+    """F of both polarizations."""
+    Rp, Rs = reflectances
+    return np.minimum(0.5 * (Rs + Rp), 1.0)
 
 
 def _gap(ior: Array, extinction: Array) -> Array:
@@ -58,8 +63,8 @@ def _gap(ior: Array, extinction: Array) -> Array:
     return gap
 
 
-def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
-    """`conductor` from |n^2 - 1|."""
+def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
+    """`polarized` from |n^2 - 1|."""
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
     length = np.hypot(real, 2.0 * ior * extinction)
@@ -118,7 +123,7 @@ def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) 
         X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2, strict=True
     ):
         mu = low + length * x
-        total += weight * length * mu * _conductor(mu, ior, extinction, gap)
+        total += weight * length * mu * _mean(_polarized(mu, ior, extinction, gap))
     return total
 
 

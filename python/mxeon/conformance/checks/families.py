@@ -16,6 +16,8 @@ from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.surfaces.probes import surface_probe_type
 from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.checks.values.probes import utility_probe_type
+from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 
 
 @dataclass(frozen=True)
@@ -46,9 +48,10 @@ FAMILIES = (
     Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
     Family(HAIRS, hair_probe_type),
     Family(EMISSION_SUBJECTS, emission_probe_type),
-    Family(SHADERS, surface_probe_type),
     Family(TRANSMITTING, transmission_probe_type),
     Family(FILMS, film_probe_type),
+    Family(UTILITY_SUBJECTS, utility_probe_type),
+    Family(SHADERS, surface_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(

@@ -16,6 +16,7 @@ from mxeon.conformance.checks.table import (
     surfaces,
     thin_films,
     transmission,
+    utilities,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -29,7 +30,8 @@ CHECKS = (
     *combinations.CHECKS,
     *emission.CHECKS,
     *hair.CHECKS,
-    *surfaces.CHECKS,
     *transmission.CHECKS,
     *thin_films.CHECKS,
+    *utilities.CHECKS,
+    *surfaces.CHECKS,
 )
