@@ -17,6 +17,7 @@ import numpy as np
 from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
+from docs.upstream.surface_quantities import OF_SURFACES
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
@@ -246,6 +247,7 @@ OF_QUANTITIES = {
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
     **OF_SUBSURFACE,
+    **OF_SURFACES,
 }
 
 
