@@ -18,6 +18,7 @@ from docs.upstream.film_quantities import OF_FILMS
 from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
+from docs.upstream.surface_quantities import OF_SURFACES
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
 from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
@@ -267,6 +268,7 @@ OF_QUANTITIES = {
     **OF_SUBSURFACE,
     **OF_TRANSMISSION,
     **OF_FILMS,
+    **OF_SURFACES,
 }
 
 
