@@ -79,7 +79,7 @@ vec3 microfacet_white_environment(MicrofacetLobe lobe, vec3 X, int distribution)
 vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, FresnelData fd, vec3 tint,
                              vec3 passed)
 {
-    // The facets let all light through, which counts once.
+    // Facets that let everything through: what passes is counted once, by `passed`.
     FresnelData clear = mx_init_fresnel_schlick(vec3(0.0), vec3(1.0), vec3(0.0), 5.0, 0.0, 1.0);
     clear.ior = fd.ior;
 

@@ -34,6 +34,11 @@ MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
 FILMS = tuple(
     f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
 )
+TRANSMITTING = tuple(
+    f"{node}_bsdf, scatter_mode {mode}"
+    for node in ("dielectric", "generalized_schlick")
+    for mode in ("T", "RT")
+)
 
 
 @dataclass(frozen=True)
@@ -112,6 +117,13 @@ BSDF_ISSUES = (
         _product(("combined_throughput",), ("multiply, in2 float", "multiply, in2 color3")),
         HARDWARE,
     ),
+    Issue(
+        "genglsl_subsurface_circle",
+        "gl",
+        (("value", "subsurface_bsdf"),),
+        HARDWARE,
+        _product(("integral", "energy"), ("subsurface_bsdf",)),
+    ),
     Issue("genglsl_burley_fit", "gl", (("environment", "burley_diffuse_bsdf"),), HARDWARE),
     Issue("genglsl_translucent_side", "gl", (("frame", "translucent_bsdf"),), HARDWARE),
     Issue(
@@ -119,7 +131,27 @@ BSDF_ISSUES = (
         "gl",
         (("finite", DIELECTRIC),),
         HARDWARE,
-        (("finite", "conductor_bsdf"),),
+        (
+            ("finite", "conductor_bsdf"),
+            *_product(("transmitted_finite",), TRANSMITTING[:2]),
+        ),
+    ),
+    Issue(
+        "genglsl_transmission_masking",
+        "gl",
+        (("transmitted", TRANSMITTING[1]), ("clear", TRANSMITTING[1])),
+        HARDWARE,
+        _product(("transmitted", "clear"), TRANSMITTING),
+    ),
+    Issue(
+        "genglsl_refraction_nan",
+        "gl",
+        (("transmitted_finite", TRANSMITTING[3]),),
+        HARDWARE,
+        (
+            *_product(("transmitted_finite",), TRANSMITTING),
+            *_product(("transmitted", "clear"), TRANSMITTING[2:]),
+        ),
     ),
     Issue(
         "genglsl_microfacet_throughput",
@@ -179,7 +211,7 @@ EMISSION_ISSUES = (
                 "multiply, VDF",
             ),
         ),
-        HARDWARE,
+        (*HARDWARE, "cycles"),
     ),
     Issue(
         "genglsl_medium_scattering",
@@ -189,10 +221,34 @@ EMISSION_ISSUES = (
     ),
     Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
 )
+HAIR_ROUGHNESS = tuple(f"chiang_hair_roughness, roughness_{lobe}" for lobe in ("R", "TT", "TRT"))
+HAIR_UTILITIES = (
+    *HAIR_ROUGHNESS,
+    "deon_hair_absorption_from_melanin",
+    "chiang_hair_absorption_from_color",
+)
+UTILITY_ISSUES = (
+    Issue(
+        "genglsl_blackbody_cold",
+        "gl",
+        (("output", "blackbody"),),
+        HARDWARE,
+        _product(("output_inputs", "output_finite"), ("blackbody",)),  # of Slang, see the page
+    ),
+    Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR_UTILITIES[3]),), HARDWARE),
+    Issue(
+        "genosl_hair_constants",
+        "cycles",
+        _product(("output",), HAIR_UTILITIES),
+        ("testrender",),
+        _product(("output_inputs",), HAIR_UTILITIES),
+    ),
+)
 ISSUES = (
     *BSDF_ISSUES,
     *EMISSION_ISSUES,
     *HAIR_ISSUES,
+    *UTILITY_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",

@@ -51,7 +51,7 @@ LAYER = (
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 ASKED = "throughput_asked"  # variable of an evaluation
-WIDTH = 1024  # pixels in a row of an evaluation
+WIDTH = 1024  # most pixels in a row of an evaluation
 
 Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
 Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values by name
@@ -179,7 +179,7 @@ def bsdf_call(
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
     if branch == GRAPH:
-        return _graph_call(shader, inputs)
+        return _graph_call(shader, wo, inputs)
     emitted = output == "radiance"
     called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
     text = shader.stages["pixel"]
@@ -258,9 +258,13 @@ def function_evaluation(
 
 
 def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
-    """Number of elements, that of the longest argument, and size of the frame for them."""
+    """Number of elements, that of the longest argument, and size of the frame for them.
+
+    Width and height are even: a change from pixel to pixel is that within a square of 2 x 2.
+    """
     count = max(map(len, arguments.values()))
-    return count, (WIDTH, -(-count // WIDTH))
+    height = 2 * -(-count // (2 * WIDTH))
+    return count, (2 * -(-count // (2 * height)), height)
 
 
 def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
@@ -314,7 +318,7 @@ def _surface_arguments(shader: Shader, before: Prelude, inputs: Mapping[str, Any
     return arguments
 
 
-def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
+def _graph_call(shader: Shader, wo: ArrayLike, inputs: Mapping[str, Any]) -> Call:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
     text = shader.stages["pixel"]
     color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
@@ -327,7 +331,8 @@ def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
     statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
     ports = _ports(shader)
     words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
-    arguments = {name: _argument(name, ports, inputs) for name in words if name in ports}
+    arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing
+    arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
     return Call(statements, color[1], arguments)
 
 

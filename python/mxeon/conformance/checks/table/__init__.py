@@ -13,8 +13,10 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    surfaces,
     thin_films,
     transmission,
+    utilities,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -30,4 +32,6 @@ CHECKS = (
     *hair.CHECKS,
     *transmission.CHECKS,
     *thin_films.CHECKS,
+    *utilities.CHECKS,
+    *surfaces.CHECKS,
 )

@@ -8,6 +8,7 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -24,7 +25,7 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.hosts.cycles import closures, tracing
+from mxeon.shaders.hosts.cycles import closures, graphs, tracing
 from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.hosts.process import Worker
 from mxeon.shaders.inner_lobes import inner_lobes
@@ -136,6 +137,23 @@ class Host(base.Host):
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
         """Paths that are too few or too short; see `mxeon.shaders.hosts.base.Host`."""
         return tracing.approximations(scene, inner_lobes(shader))
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's graph, the one branch that is none of closures; see `base.Host`."""
+        if branch != graphs.BRANCH:
+            raise self._unsupported("values for pairs of directions", "gl")
+        source, arguments = graphs.graph_function(shader, inputs)
+        return self.execute(_with_header(source), graphs.FUNCTION, *arguments)
 
     def blender_node(self, kind: str, inputs: dict[str, Any], scene: Scene) -> NDArray[Any]:
         """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
@@ -277,11 +295,15 @@ class Host(base.Host):
             raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
 
 
+def _with_header(text: str) -> str:
+    """A generated text with the path of its include."""
+    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+    return text.replace('"mx_funcs.h"', f'"{header.asString()}"')
+
+
 def _on_sphere(text: str) -> str:
     """A generated shader with the path of its include and the sphere's texture coordinates."""
-    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
-    text = text.replace('"mx_funcs.h"', f'"{header.asString()}"')
-    head, brace, body = text.rpartition("\n)\n{\n")
+    head, brace, body = _with_header(text).rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"
 
 
