@@ -18,6 +18,7 @@ from docs.upstream.film_quantities import OF_FILMS
 from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
+from docs.upstream.surface_quantities import OF_SURFACES
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
 from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
@@ -105,9 +106,6 @@ CAUSES = {
             ("environment", 286, "mx_environment_radiance"),
         )
     },
-    "genglsl_film_half": Cause(SPECULAR, 341, "0.5 * f"),
-    "genglsl_film_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "F0, 1.0"),
-    "genglsl_film_choices": Cause(SPECULAR, 318, "XYZ_TO_RGB"),
     "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
     "genslang_blackbody_constant": Cause(f"{PBRLIB}/mx_blackbody.glsl", 2, "const mat3"),
     "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
@@ -116,6 +114,9 @@ CAUSES = {
     ),
     "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
     "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
+    "genglsl_film_half": Cause(SPECULAR, 341, "0.5 * f"),
+    "genglsl_film_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "F0, 1.0"),
+    "genglsl_film_choices": Cause(SPECULAR, 318, "XYZ_TO_RGB"),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -265,8 +266,9 @@ OF_QUANTITIES = {
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
     **OF_SUBSURFACE,
-    **OF_FILMS,
     **OF_TRANSMISSION,
+    **OF_FILMS,
+    **OF_SURFACES,
 }
 
 

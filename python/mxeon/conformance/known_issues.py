@@ -31,6 +31,10 @@ DIELECTRIC, SCHLICK = (
     f"{node}_bsdf, scatter_mode R" for node in ("dielectric", "generalized_schlick")
 )
 MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
+SURFACES = tuple(
+    f"{node}, every lobe"
+    for node in ("standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface")
+)
 FILMS = tuple(
     f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
 )
@@ -158,7 +162,12 @@ BSDF_ISSUES = (
         "gl",
         (("layering", DIELECTRIC), ("transmission", DIELECTRIC), ("transmission", SCHLICK)),
         HARDWARE,
-        (("layering", SCHLICK), ("layer", DIELECTRIC), ("layer", SCHLICK)),
+        (
+            ("layering", SCHLICK),
+            ("layer", DIELECTRIC),
+            ("layer", SCHLICK),
+            *_product(("lobes", "lobes_albedo", "lobes_furnace", "lobes_energy"), SURFACES),
+        ),
     ),
     Issue(
         "genglsl_ggx_fit",
