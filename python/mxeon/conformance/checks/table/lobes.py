@@ -18,7 +18,7 @@ from mxeon.conformance.checks.controls import (
     with_inputs,
 )
 from mxeon.conformance.checks.emission.subjects import KINDS as EMISSION_KINDS
-from mxeon.conformance.checks.emission.subjects import MEDIUM
+from mxeon.conformance.checks.emission.subjects import MEDIUM, PICTURES
 from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.table.check import Check
@@ -256,7 +256,7 @@ CHECKS = (
             "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
             COMBINED: tolerances.count_of("inputs"),
-            **dict.fromkeys((*EMISSION_KINDS, MEDIUM), tolerances.count_of("inputs")),
+            **dict.fromkeys((*EMISSION_KINDS, MEDIUM, PICTURES), tolerances.count_of("inputs")),
         },
         diagnose=wiring.of_inputs,
     ),
