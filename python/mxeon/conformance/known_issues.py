@@ -108,7 +108,12 @@ BSDF_ISSUES = (
         "gl",
         (("layering", ZELTNER), ("transmission", ZELTNER), ("transmission", CONTY_KULLA)),
         HARDWARE,
-        (("layering", CONTY_KULLA), ("layer", CONTY_KULLA), ("layer", ZELTNER)),
+        (
+            ("layering", CONTY_KULLA),
+            ("layer", CONTY_KULLA),
+            ("layer", ZELTNER),
+            *_product(("lobes", "lobes_albedo"), SURFACES[:3]),
+        ),
     ),
     Issue(
         "genglsl_conty_kulla_fit",
