@@ -124,6 +124,10 @@ HAIR_REPAIRS = (
 REPAIRS = (
     *HAIR_REPAIRS,
     *(
+        _glsl("genglsl_film_half", SPECULAR, line, f"R23{pol} = 0.5 * f;", f"R23{pol} = f;")
+        for line, pol in ((341, "p"), (342, "s"))
+    ),
+    *(
         _glsl(
             "genglsl_multiply_throughput",
             f"mx_multiply_bsdf_{kind}.glsl",
@@ -212,6 +216,27 @@ REPAIRS = (
         273,
         "    vec3 t3 = cosTheta2 * a2plusb2 + vec3(sinTheta2 * sinTheta2);\n",
         "    vec3 t3 = max(cosTheta2 * a2plusb2 + vec3(sinTheta2 * sinTheta2), 1e-20);\n",
+    ),
+    _glsl(
+        "genglsl_transmission_masking",
+        "lib/mx_environment_fis.glsl",
+        59,
+        "    radiance /= G1V * float(envRadianceSamples);\n",
+        "    radiance /= (fd.refraction ? 1.0 : G1V) * float(envRadianceSamples);\n",
+    ),
+    _glsl(
+        "genglsl_refraction_nan",
+        SPECULAR,
+        517,
+        "    R = refract(R, N, 1.0 / ior);\n",
+        "    float cosine = -dot(R, N);\n    R = refract(R, N, 1.0 / ior);\n",
+    ),
+    _glsl(
+        "genglsl_refraction_nan",
+        SPECULAR,
+        519,
+        "    return refract(R, N1, ior);\n",
+        "    return ior * R - (ior * dot(R, N1) + cosine) * N1;\n",
     ),
 )
 

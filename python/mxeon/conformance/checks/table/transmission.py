@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance import wiring
+from mxeon.conformance.checks.batch import Array
 from mxeon.conformance.checks.bsdf import tolerances
 from mxeon.conformance.checks.bsdf import transmission_measures as measures
 from mxeon.conformance.checks.bsdf.transmission import TRANSMISSION_KINDS, TRANSMITTING
 from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
+from mxeon.conformance.checks.measures import Case
 from mxeon.conformance.checks.table.check import Check
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.checks.tolerances import SURROUNDINGS, count_of
@@ -17,7 +19,7 @@ from mxeon.conformance.diagnosis import NEAR, Diagnosis, not_finite
 
 MODELS = tuple(subject.model for subject in TRANSMITTING)
 BOTH = tuple(subject.model for subject in TRANSMITTING if subject.reflects)
-NO_FILTER = "the mean of 1 - F over the normals seen, divided by G_1 of the view"
+UNSHADOWED = "the mean of 1 - F over the normals seen, divided by G_1 of the view"
 
 
 def of_all(tolerance: Tolerance) -> dict[str, Tolerance]:
@@ -35,16 +37,24 @@ def infinite(probe: Any) -> Altered:
 
 
 def of_transmitted(probe: Any) -> Diagnosis:
-    """Whether the light is divided by G_1, as MaterialX does for reflection."""
+    """Whether the light is divided by G_1, as MaterialX does for reflection; and where it is no number."""
     cases = measures.transmitted_cases(probe)
     near, far = (
-        np.sqrt(np.mean([np.mean((case.measured - found(case)) ** 2) for case in cases]))
+        np.sqrt(np.mean(np.concatenate([_squares(case, found(case)) for case in cases])))
         for found in (
             lambda case: measures.over_masking(probe.subject, case.batch),
             lambda case: case.expected,
         )
     )
-    return Diagnosis(NO_FILTER if near < NEAR * far else "")
+    words = (UNSHADOWED if near < NEAR * far else "", not_finite(cases))
+    return Diagnosis("; ".join(filter(None, words)))
+
+
+def _squares(case: Case, expected: Array) -> Array:
+    """Squared errors of the values that are finite."""
+    known = np.isfinite(case.measured)
+    squares: Array = (case.measured - expected)[known] ** 2
+    return squares
 
 
 def of_inputs(probe: Any) -> Diagnosis:

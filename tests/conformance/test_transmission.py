@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Light through microfacets: verdicts on stock MaterialX and eonlib, and on shaders with a wrong line."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.bsdf import probes as bsdf_probes
+from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
+from mxeon.conformance.checks.bsdf.transmission_measures import through_sphere
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.probes import PairProbe, PictureProbe
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.models import refraction
+from mxeon.shaders.hosts import raster
+from tests.conformance.test_bsdfs import wrong_library
+from tests.support.hemispheres import view
+
+SUBJECTS = {subject.model: subject for subject in TRANSMITTING}
+ROWS = [check for check in CHECKS if check.models and set(check.models) <= set(SUBJECTS)]
+UNSHADOWED = "the mean of 1 - F over the normals seen, divided by G_1 of the view"
+NAN = "values that are not finite"
+STOCK = {
+    "dielectric_t": {"transmitted": UNSHADOWED, "transmitted_finite": NAN},
+    "schlick_rt": {"transmitted": UNSHADOWED, "clear": UNSHADOWED, "transmitted_finite": NAN},
+}
+DIELECTRIC = "mx_dielectric_bsdf.glsl"
+CALL = "mx_surface_transmission(N, V, X, safeAlpha, distribution, fd, safeTint)"
+OTHER = "mx_init_fresnel_dielectric({}, thinfilm_thickness, thinfilm_ior)"
+# By name: model, text, the text in its place, and key of the check.
+WRONG = {
+    "reflection in mode T": ("dielectric_t", "scatter_mode == 1)", "scatter_mode == 7)", "kept"),
+    "throughput of mode RT": (
+        "dielectric_rt", "1.0 - dirAlbedo * weight;", "scatter_mode == 2 ? vec3(1.0) : 1.0 - dirAlbedo;", "kept",
+    ),
+    "no Fresnel curve": ("dielectric_t", CALL, CALL.replace("fd,", OTHER.format("1.0") + ","), "critical"),
+    "index upside down": ("dielectric_t", CALL, CALL.replace("fd,", OTHER.format("1.0 / ior") + ","), "refraction"),
+    "no tint": ("dielectric_rt", CALL, CALL.replace("safeTint", "vec3(1.0)"), "transmitted_inputs"),
+    "tint squared": ("dielectric_rt", CALL, CALL.replace("safeTint", "safeTint * safeTint"), "critical"),
+    "retroreflective light": (
+        "dielectric_t", "retroreflective && (closureData.closureType != CLOSURE_TYPE_TRANSMISSION)",
+        "retroreflective", "transmitted_inputs",
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_pairs():
+    """Let probes have few views, and environments few directions: what is wrong here is wrong by far."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, count in {"PAIRS": 1 << 8, "FEW": 1 << 7, "ALBEDOS": 1 << 5}.items():
+            patch.setattr(bsdf_probes, name, count)
+        patch.setitem(raster.EVALUATION, "u_envRadianceSamples", 128)
+        yield
+
+
+def judged(host, model, library, *keys):
+    """Results of the checks of a node, or of those of these keys."""
+    subject = SUBJECTS[model]
+    probe = transmission_probe_type(subject, PairProbe)(host, subject, library)
+    return [
+        judge_check(row, probe)
+        for row in ROWS
+        if row.key in (keys or {each.key for each in ROWS})
+        and applies(row, subject, probe.kind, host.name)
+    ]
+
+
+@pytest.mark.parametrize("model", STOCK)
+def test_stock_materialx_has_its_known_departures_and_no_others(gl, model):
+    results = judged(gl, model, "stock")
+    failed = {each.check: each.diagnosis for each in results if each.verdict != PASSED}
+    assert failed.keys() == STOCK[model].keys()
+    assert all(words in failed[check] for check, words in STOCK[model].items())
+    assert all(each.control.caught for each in results)
+
+
+@pytest.mark.parametrize("model", STOCK)
+def test_eonlib_passes_all_that_it_does_not_reflect(gl, model):
+    assert {each.check: each.verdict for each in judged(gl, model, "eonlib")} == {
+        row.key: PASSED for row in ROWS if model in row.models
+    }
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_line_of_transmission_fails_a_check(gl, tmp_path, name):
+    model, text, other, key = WRONG[name]
+    [result] = judged(gl, model, wrong_library(tmp_path, DIELECTRIC, text, other), key)
+    assert result.verdict == FAILED and result.control.caught
+
+
+def test_every_check_of_transmission_has_a_shader_that_it_fails():
+    failing = {key for rows in STOCK.values() for key in rows}
+    assert failing | {key for *_, key in WRONG.values()} == {row.key for row in ROWS}
+
+
+def test_a_sphere_turns_a_view_twice_by_the_same_angle():
+    wo = np.stack([view(mu, 0.3) for mu in (0.1, 0.5, 0.9)])
+    inner = refraction.refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
+    out = through_sphere(wo, np.full(3, 1.5))
+    np.testing.assert_allclose((out**2).sum(axis=1), 1.0, rtol=1e-12)
+    np.testing.assert_allclose((inner * -wo).sum(axis=1), (inner * out).sum(axis=1), rtol=1e-12)
+
+
+def test_pictures_are_not_asked_of_transmission():
+    assert transmission_probe_type(TRANSMITTING[0], PictureProbe) is None
