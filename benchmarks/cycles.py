@@ -19,7 +19,7 @@ from mxeon.models.known_defects import eon_rho_cubed_albedo_dir
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import cycles
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
-from mxeon.shaders.scene import FURNACE, sphere
+from mxeon.shaders.scene import FURNACE, Paths, sphere
 
 SIZE = 128
 SAMPLES = (64, 512)
@@ -45,11 +45,7 @@ def shader(library):
 def render(host, generated, size, samples):
     """The picture of so many samples a pixel, rendered anew."""
     host.forget()
-    usual, cycles.ENVIRONMENT_SAMPLES = cycles.ENVIRONMENT_SAMPLES, samples
-    try:
-        return host.picture(generated, replace(FURNACE, size=size))
-    finally:
-        cycles.ENVIRONMENT_SAMPLES = usual
+    return host.picture(generated, replace(FURNACE, size=size, paths=Paths(samples)))
 
 
 def error(picture, library):

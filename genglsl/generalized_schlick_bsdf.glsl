@@ -3,6 +3,7 @@
 
 #include "microfacet_lobe.glsl"
 #include "ggx_cosine.glsl"
+#include "thin_film.glsl"
 
 // Average of the Fresnel curve over the visible facets; a color82 of 1 has no dip.
 vec3 generalized_schlick_average(MicrofacetLobe lobe, FresnelData fd, vec3 dip)
@@ -30,28 +31,38 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
                                              exponent, thinfilm_thickness, thinfilm_ior);
     vec3 dip = fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
 
-    // Averages are those without a film: a film's curve costs as much as all the rest, at each cosine.
-    vec3 F_ss = fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
+    // Averages of the Fresnel curve over the hemisphere, and over the visible facets.
+    vec3 F_ss, F_o;
+    if (fd.airy)
+    {
+        F_ss = thin_film_avg(fd);
+        F_o = thin_film_visible(lobe.mu_o, lobe.alpha, fd);
+    }
+    else
+    {
+        F_ss = fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip);
+        F_o = generalized_schlick_average(lobe, fd, dip);
+    }
     vec3 compensation = microfacet_compensation(lobe, F_ss);
     vec3 scale = compensation * weight;
-    vec3 single = lobe.albedo * generalized_schlick_average(lobe, fd, dip);
 
-    bsdf.throughput = max(1.0 - single * scale, 0.0);
+    bsdf.throughput = max(1.0 - lobe.albedo * F_o * scale, 0.0);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
-        vec3 F = mx_compute_fresnel(microfacet_cosine(lobe, closureData.L), fd);
+        float cosine = microfacet_cosine(lobe, closureData.L);
+        vec3 F = fd.airy ? thin_film_fresnel(cosine, fd) : mx_compute_fresnel(cosine, fd);
         bsdf.response = microfacet_value(lobe, closureData.L, X) * F * scale * closureData.occlusion;
     }
     else if (transmission && scatter_mode != 0)
     {
-        fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));
-        vec3 passed = max(1.0 - single * compensation, 0.0);
-        bsdf.response = microfacet_transmission(lobe, X, distribution, fd, vec3(1.0), passed) * weight;
+        vec3 ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));
+        vec3 passed = max(1.0 - lobe.albedo * F_o * compensation, 0.0);
+        bsdf.response = microfacet_transmission(lobe, X, distribution, ior, vec3(1.0), passed) * weight;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        bsdf.response = microfacet_environment(lobe, X, distribution, fd)
-                        * scale;
+        bsdf.response = fd.airy ? microfacet_white_environment(lobe, X, distribution) * F_o * scale
+                                : microfacet_environment(lobe, X, distribution, fd) * scale;
     }
 }

@@ -67,18 +67,20 @@ vec3 microfacet_environment(MicrofacetLobe lobe, vec3 X, int distribution, Fresn
     return radiance * (drawn / (lobe.mu_o + sqrt(alpha2 + (1.0 - alpha2) * mu2)));
 }
 
+// Light of an environment from facets that reflect everything. A film's curve stays outside this sum,
+// as an average over the same facets.
+vec3 microfacet_white_environment(MicrofacetLobe lobe, vec3 X, int distribution)
+{
+    FresnelData white = mx_init_fresnel_schlick(vec3(1.0), vec3(1.0), vec3(1.0), 5.0, 0.0, 1.0);
+    return microfacet_environment(lobe, X, distribution, white);
+}
+
 // Light through the surface: the share that passes, from where a solid sphere sends the view.
-vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, FresnelData fd, vec3 tint,
+vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, vec3 ior, vec3 tint,
                              vec3 passed)
 {
-    // A film colors what passes at each facet; without one, the light counts once.
     FresnelData clear = mx_init_fresnel_schlick(vec3(0.0), vec3(1.0), vec3(0.0), 5.0, 0.0, 1.0);
-    clear.ior = fd.ior;
-    if (fd.airy)
-    {
-        clear = fd;
-        passed = vec3(1.0);
-    }
+    clear.ior = ior;
 
     // MaterialX divides the sum by G_1, for a shadowing that it does not have.
     vec3 light = mx_surface_transmission(lobe.N, lobe.wo, X, lobe.roughness, distribution, clear, tint)
@@ -88,7 +90,7 @@ vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, Fres
     // smooth surface takes their place, at the cosine from which on that does not happen.
     if (!(dot(light, vec3(1.0)) >= 0.0))
     {
-        float mu = max(lobe.mu_o, min(0.005 + 2e-3 * clear.ior.x, 0.9));
+        float mu = max(lobe.mu_o, min(0.005 + 2e-3 * ior.x, 0.9));
         vec3 side = normalize(lobe.wo - lobe.mu_o * lobe.N);
         vec3 wo = mu > lobe.mu_o ? mu * lobe.N + sqrt(1.0 - mu * mu) * side : lobe.wo;
         light = mx_surface_transmission(lobe.N, wo, X, vec2(M_FLOAT_EPS), distribution, clear, tint);

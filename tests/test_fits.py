@@ -11,6 +11,7 @@ import pytest
 
 from fits import (
     arc_tangent,
+    blackbody,
     conty_kulla_albedo,
     eon_inversion,
     eon_sampling,
@@ -152,3 +153,17 @@ def test_the_average_of_a_dielectric_has_the_error_that_stands_beside_it():
     assert fresnel_average.dielectric_error(coefficients) <= 5.35e-5
     wrong = (coefficients[0] * 1.01, *coefficients[1:])
     assert fresnel_average.dielectric_error(wrong) > 5.35e-5
+
+
+def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
+    text = (data_folder() / "genglsl" / "blackbody.glsl").read_text(encoding="utf-8")
+    stated = re.findall(r"Largest absolute errors: (\S+) and (\S+)\.", text)
+    rows = {
+        name: [float(each) for each in re.findall(rf"#define BLACKBODY_{name}_\w\d (\S+)", text)]
+        for name in "XZ"
+    }
+    errors = blackbody.largest_errors(rows, 150)
+    for error, limit in zip(errors.values(), map(float, stated[0]), strict=True):
+        assert 0.9 * limit < error <= limit
+    lines = blackbody.defines(blackbody.FORM, rows["X"], "BLACKBODY_X")
+    assert all(line in text for line in lines)

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 TOOLS = {
     "lint": ("ruff", "check", "--no-cache"),
     "format": ("ruff", "format", "--check", "--no-cache"),
-    "types": ("mypy", "--no-incremental"),
+    "types": ("mypy",),  # which remembers the files that are as they were
 }
 
 

@@ -19,7 +19,110 @@ def _glsl(page: str, file: str, line: int, old: str, new: str) -> Repair:
     return Repair(page, PACKAGE, f"libraries/pbrlib/genglsl/{file}", line, old, new)
 
 
+HAIR = "mx_chiang_hair_bsdf.glsl"
+HAIR_REPAIRS = (
+    _glsl("genglsl_hair_uniform_lobe", HAIR, 263, "(1.0 / 2.0 * M_PI)", "(1.0 / (2.0 * M_PI))"),
+    _glsl(
+        "genglsl_hair_longitudinal",
+        HAIR,
+        71,
+        """    float n = 1.0;
+    float d = 1.0;
+    float f = 1.0;
+    float x2 = x * x;
+    for (int i = 0; i < 9 ; ++i)
+    {
+        d *= 4.0 * (f * f);
+        n *= x2;
+        v += n / d;
+        f += 1.0;
+    }
+""",
+        """    float term = 1.0;
+    for (int i = 1; i < 32; ++i)
+    {
+        term *= x * x / (4.0 * float(i * i));
+        v += term;
+    }
+""",
+    ),
+    _glsl(
+        "genglsl_hair_longitudinal",
+        HAIR,
+        88,
+        "x + 0.5 * (-log(2.0 * M_PI) + log(1.0 / x) + 1.0 / (8.0 * x));",
+        "x - 0.5 * log(2.0 * M_PI * x) + log(1.0 + (1.0 + (4.5 + 37.5 / (8.0 * x)) / (8.0 * x)) / (8.0 * x));",
+    ),
+    _glsl(
+        "genglsl_hair_longitudinal",
+        HAIR,
+        127,
+        "    float inv_v = 1.0 / v;\n",
+        "    float inv_v = 1.0 / v;\n    cosThetaI = abs(cosThetaI);\n"
+        "    vec2 d = vec2(cosThetaI - cosThetaO, sinThetaI + sinThetaO);\n",
+    ),
+    _glsl(
+        "genglsl_hair_longitudinal",
+        HAIR,
+        131,
+        "exp(mx_hair_log_I0(a) - b - inv_v + 0.6931 + log(0.5 * inv_v));",
+        "exp(mx_hair_log_I0(a) - a - 0.5 * dot(d, d) * inv_v) * inv_v;",
+    ),
+    *(
+        _glsl(
+            "genglsl_hair_roughness",
+            HAIR,
+            247 + number,
+            f"clamp(roughness_{lobe}, 0.001, 1.0);",
+            f"max(roughness_{lobe}, vec2(1e-8, 1e-4));",
+        )
+        for number, lobe in enumerate(("R", "TT", "TRT"))
+    ),
+    _glsl(
+        "genglsl_hair_azimuth",
+        HAIR,
+        218,
+        """        float sinGammaO = mx_hair_transform_sin_cos(cosGammaO);
+        if (dot(k1_p, Y) > 0.0)
+            sinGammaO = -sinGammaO;
+        float gammaO = asin(sinGammaO);
+""",
+        """        float sinGammaO = -dot(k1_p, Y);
+        float gammaO = mx_atan(sinGammaO, cosGammaO);
+""",
+    ),
+    _glsl(
+        "genglsl_hair_azimuth",
+        HAIR,
+        228,
+        "asin(sinGammaT);",
+        "mx_atan(sinGammaT, cosGammaT);",
+    ),
+    _glsl(
+        "genglsl_hair_grazing",
+        HAIR,
+        186,
+        "(vec3(1.0) - T * f);",
+        "max(vec3(1.0) - T * f, 1e-7);",
+    ),
+    _glsl(
+        "genglsl_hair_grazing",
+        HAIR,
+        216,
+        "vec3 k1_p = normalize(V - X * dot(V, X));",
+        "vec3 k1_p = cosThetaO > 0.0 ? normalize(V - X * dot(V, X)) : N;",
+    ),
+    _glsl(
+        "genglsl_hair_grazing",
+        HAIR,
+        224,
+        "float cosThetaT = mx_hair_transform_sin_cos(sinThetaT);",
+        "float cosThetaT = max(mx_hair_transform_sin_cos(sinThetaT), M_FLOAT_EPS);",
+    ),
+)
+
 REPAIRS = (
+    *HAIR_REPAIRS,
     *(
         _glsl(
             "genglsl_multiply_throughput",
@@ -29,6 +132,13 @@ REPAIRS = (
             f"result.throughput = 1.0 - {factor} * (1.0 - in1.throughput);",
         )
         for kind, factor in (("float", "weight"), ("color3", "tint"))
+    ),
+    _glsl(
+        "genglsl_medium_scattering",
+        "mx_anisotropic_vdf.glsl",
+        9,
+        "exp(-absorption)",
+        "exp(-(absorption + scattering))",
     ),
     _glsl(
         "genglsl_zeltner_normal",

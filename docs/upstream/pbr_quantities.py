@@ -9,9 +9,10 @@ import numpy as np
 from mxeon.conformance.checks.batch import Batch
 from mxeon.conformance.checks.bsdf.probes import MicrofacetProbe
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
-from mxeon.models import conductor_brdf
+from mxeon.models import conductor_brdf, hair_formulas
 from mxeon.models.burley import burley_albedo_dir
 from mxeon.models.fresnel import fresnel_schlick
+from mxeon.models.hair import chiang_hair_bcsdf
 from mxeon.models.microfacet_albedo import conductor_albedo_dir, ggx_albedo_dir_anisotropic
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document.policy import Policy
@@ -104,6 +105,34 @@ def _conductor_pair():
     return tuple(values)
 
 
+def hair_block():
+    """Light that white hair returns, by the text, and that of its lobes with a tilted cuticle."""
+    x, w = np.polynomial.legendre.leggauss(400)
+    view, tilt = 1.4, np.radians(2.0)
+    rows = [("light that a white fiber returns", _white_hair(), 1)]
+    for lobe, name in enumerate(("R", "TT", "TRT")):
+        theta = np.arcsin(x) + (2.0 - 3.0 * lobe) * tilt
+        for side in (1.0, -1.0):
+            inclined = np.sin(theta), np.cos(theta), side * np.sin(view), np.cos(view)
+            M = hair_formulas.longitudinal(*inclined, np.array(0.01))
+            title = (
+                f"light of {name}, variance 0.01, seen at {side * view} radian, tilted by 2 degrees"
+            )
+            rows.append((title, (w * M).sum(), 1))
+    return _table(rows, "{:.3f}")
+
+
+def _white_hair():
+    """Integral of the values of the default node over all lights, for a view along the normal."""
+    x, w = np.polynomial.legendre.leggauss(200)
+    phi = 2.0 * np.pi * (np.arange(800) + 0.5) / 800
+    sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
+    cosine = np.sqrt(1.0 - sine * sine)
+    wi = np.stack([sine, cosine * np.cos(angle), cosine * np.sin(angle)], axis=-1)
+    values = chiang_hair_bcsdf([0.0, 0.0, 1.0], wi)[:, 0]
+    return (np.tile(w, 800) * values).sum() * 2.0 * np.pi / 800
+
+
 def tables_block():
     """Defaults of the node definitions, and those that the text has."""
     library = load_library(STOCK)
@@ -159,6 +188,7 @@ OF_PBRLIB = {
     "genglsl_anisotropic_environment": anisotropic_environment_block,
     "pbrlib_anisotropic_masking": anisotropic_masking_block,
     "pbrlib_energy": energy_block,
+    "pbrlib_hair_energy": hair_block,
     "pbrlib_tables": tables_block,
     "struct_members": struct_block,
     "xml_less_than": less_than_block,

@@ -14,13 +14,15 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
+from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
 from mxeon.io.files import write_text
-from mxeon.models import albedo, formulas
+from mxeon.models import albedo, emission, formulas
 from mxeon.models import brdf as models
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import generate
@@ -86,6 +88,27 @@ CAUSES = {
     ),
     "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
     "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
+    "genglsl_missing_nodes": Cause(
+        f"{PBRLIB}/pbrlib_genglsl_impl.mtlx", 32, "IM_anisotropic_vdf_genglsl"
+    ),
+    "genglsl_medium_scattering": Cause(f"{PBRLIB}/mx_anisotropic_vdf.glsl", 9, "exp(-absorption)"),
+    "pbrlib_edf_sides": Cause(f"{PBRLIB}/mx_generalized_schlick_edf.glsl", 8, "forward_facing"),
+    **{
+        f"genglsl_hair_{page}": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", line, word)
+        for page, line, word in (
+            ("uniform_lobe", 263, "1.0 / 2.0 * M_PI"),
+            ("longitudinal", 88, "1.0 / (8.0 * x)"),
+            ("roughness", 247, "clamp(roughness_R"),
+            ("azimuth", 218, "sinGammaO"),
+            ("grazing", 186, "T * f"),
+            ("environment", 286, "mx_environment_radiance"),
+        )
+    },
+    "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
+    "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
+    "genosl_hair_constants": Cause(
+        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
+    ),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -202,6 +225,15 @@ def dropped_normal_block():
     )
 
 
+def edf_sides_block():
+    """Factor of generalized_schlick_edf at 60 degrees from the normal, on both sides."""
+    cosines = np.array([0.5, -0.5])
+    printed = 1.0 - (1.0 - cosines) ** 5
+    wo = np.stack([np.sqrt(0.75) + 0.0 * cosines, 0.0 * cosines, cosines], axis=-1)
+    right = emission.generalized_schlick_edf(wo, [1.0], [1.0], [0.0], 5.0)[:, 0]
+    return _quantities("factor at cosine 0.5 in front and -0.5 behind", printed, right)
+
+
 def _quantities(name, measured, expected):
     text = [" ".join(f"{each:.3f}" for each in values) for values in (measured, expected)]
     head = "| quantity | measured | expected |\n|---|---|---|\n"
@@ -210,11 +242,14 @@ def _quantities(name, measured, expected):
 
 OF_QUANTITIES = {
     "dropped_normal": dropped_normal_block,
+    "genglsl_light_scope": light_block,
     "openpbr_printed_pi": printed_pi_block,
+    "pbrlib_edf_sides": edf_sides_block,
     "pbrlib_printed_angles": printed_angles_block,
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
     **OF_TRANSMISSION,
+    **OF_SUBSURFACE,
 }
 
 

@@ -119,6 +119,12 @@ def test_generate_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_p
         (["render", PLASTER, "--output", "out.exr", "--scene", "dusk"], "scene must be one of"),
         (["render", PLASTER, "--output", "out.exr", "--environment", "sky.hdr"], "sky.hdr"),
         (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must lie in [1, 8192]"),
+        (["render", PLASTER, "--output", "out.exr", "--samples", "0"], "samples must lie in [1, "),
+        (["render", PLASTER, "--output", "out.exr", "--bounces", "-1"], "bounces must lie in [1, "),
+        (
+            ["render", PLASTER, "--output", "out.exr", "--samples", "4"],
+            "gl: this host takes no number",
+        ),
         (["invert", "0.5", "0.5", "--roughness", "1"], "required: B"),
         (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
         (["invert", "1", "0", "0", "--roughness", "nan"], "roughness must lie in [0, 1]"),

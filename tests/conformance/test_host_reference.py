@@ -148,12 +148,6 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
         ),
         (
             """<dielectric_bsdf name="lobe" type="BSDF">
-            <input name="thinfilm_thickness" type="float" value="300"/></dielectric_bsdf>""",
-            SMALL,
-            "no model for input 'thinfilm_thickness' of node 'dielectric_bsdf'",
-        ),
-        (
-            """<dielectric_bsdf name="lobe" type="BSDF">
             <input name="scatter_mode" type="string" value="RT"/></dielectric_bsdf>""",
             SMALL,
             "no model for this mode of node 'dielectric_bsdf'",
@@ -174,7 +168,6 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
     ],
     ids=[
         "subsurface",
-        "thin film",
         "transmission",
         "noise",
         "color space",

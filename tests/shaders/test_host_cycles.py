@@ -8,6 +8,7 @@ from dataclasses import replace
 from threading import Timer
 from types import SimpleNamespace
 
+import MaterialX as mx
 import numpy as np
 import pytest
 
@@ -18,7 +19,7 @@ from mxeon.shaders.generation import ApproximationWarning, generate
 from mxeon.shaders.hosts import cycles
 from mxeon.shaders.hosts.cycles import process as cycles_process
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text, node_text
-from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, sphere
+from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Paths, sphere
 from tests.support.availability import available
 from tests.support.documents import lobe, material
 from tests.support.tolerances import (
@@ -26,6 +27,7 @@ from tests.support.tolerances import (
     CYCLES_FURNACE_MEAN,
     CYCLES_NORMAL,
     CYCLES_RIM,
+    CYCLES_SUBSURFACE,
     CYCLES_TEXCOORD,
     TWIN_VALUE,
 )
@@ -55,7 +57,10 @@ def osl(text, **options):
 
 def emit(statement):
     """A shader in the form of a generated one."""
-    return SimpleNamespace(stages={"pixel": EMIT.format(statement)})
+    document = mx.createDocument()
+    document.addNode("surface", "emit", "surfaceshader")
+    stages = {"pixel": EMIT.format(statement)}
+    return SimpleNamespace(stages=stages, document=document, element="emit")
 
 
 def lit(scene):
@@ -290,3 +295,20 @@ def test_nothing_of_an_earlier_picture_stays_in_the_scene(host):
     host.picture(shader, LIGHTS[1])
     host.forget()
     assert np.array_equal(host.picture(shader, SMALL), alone)
+
+
+def test_subsurface_keeps_its_color(host):
+    color = np.array([0.2, 0.5, 0.8])
+    text = material(
+        '<subsurface_bsdf name="lobe" type="BSDF"><input name="color" type="color3" '
+        f'value="{", ".join(map(str, color))}"/><input name="radius" type="color3" '
+        'value="0.01, 0.01, 0.01"/></subsurface_bsdf>'
+    )
+    scene = replace(FURNACE, size=16, paths=Paths(samples=64))
+    means = []
+    for library in ("eonlib", "stock"):
+        profile = "cycles" if library == "eonlib" else None
+        pixels = host.picture(osl(text, library=library, profile=profile), scene)
+        means.append(pixels[sphere(16).mask].mean(axis=0))
+    assert np.abs(means[0] - color).max() < CYCLES_SUBSURFACE
+    assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE  # stock loses it: every color is white

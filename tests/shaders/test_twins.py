@@ -15,10 +15,10 @@ from mxeon.shaders.library import data_folder
 from tests.support.cases import directions_32
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
 
-STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling")
+STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling", "hair_parameters")
 WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "osl": "glsl"}
 MODELS = ("lambert", "oren_nayar", "qon", "fon", "eon")
-SAMPLERS = ("uniform", "cosine", "ltc0", "ltc", "cltc")
+SAMPLERS = ("uniform", "cosine", "ltc0", "ltc", "cltc", "hair")
 VALUES = (
     models.lambert_brdf,
     models.oren_nayar_brdf,
@@ -81,7 +81,7 @@ def test_osl_twin_with_four_words_replaced_is_the_glsl_twin(stem):
 def test_twins_keep_constants_in_macros_and_functions_under_names_of_models_and_samplers(stem):
     outside = [line for line in code(stem).splitlines() if line and line[0] not in " {}"]
     function = rf"(float|vec3) ({'|'.join(MODELS + SAMPLERS)})_\w+\(.*\)"
-    allowed = re.compile(rf"#define EON_\w+ .*|#include \"\w+.glsl\"|{function}")
+    allowed = re.compile(rf"#define (EON|HAIR)_\w+ .*|#include \"\w+.glsl\"|{function}")
     assert [line for line in outside if not allowed.fullmatch(line)] == []
 
 

@@ -104,6 +104,11 @@ CYCLES_EON_RELATIVE = checks.ray_error(CYCLES_RIM)
 # Mean of the 3212 pixels of a picture in an environment.
 CYCLES_FURNACE_MEAN = checks.mean_noise(3212)
 
+# Mean of the 208 pixels of a small sphere of subsurface under a uniform sky, 64 samples each. With 16
+# times the pixels the color is missed by up to 0.011, since Cycles inverts albedos by a fit of its own;
+# a pixel's deviation is 0.05 there, so the mean's is 0.0035, and twice that is added.
+CYCLES_SUBSURFACE = 0.018
+
 # --- sampling twins, float32 against float64 ---------------------------------------------------
 
 # A component of a direction has 16 roundings or fewer on its way, 1e-6. Stretching a random number

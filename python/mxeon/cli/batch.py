@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from mxeon.shaders.document.policy import Policy
     from mxeon.shaders.generation import Shader
     from mxeon.shaders.hosts.base import Host
+    from mxeon.shaders.scene import Paths
 
 
 class WorkerCrashed(NotRun):
@@ -130,6 +131,7 @@ def picture(
     element: str | None,
     library: str,
     policy: Policy,
+    paths: Paths,
 ) -> tuple[Any, dict[str, str]]:
     """A picture of a document's one material, and its provenance.
 
@@ -142,6 +144,7 @@ def picture(
     size : int
         Width and height in pixels.
     policy : Policy
+    paths : Paths
 
     Returns
     -------
@@ -149,17 +152,26 @@ def picture(
         Linear radiance.
     dict of str to str
         Versions and options that made it, as metadata for the file.
+
+    Warns
+    -----
+    LobeWarning
+        If the material has a lobe that the picture cannot show right.
     """
     from mxeon.conformance import reference
     from mxeon.shaders import scene as scenes
     from mxeon.shaders.hosts import open_host
+    from mxeon.shaders.hosts.base import LobeWarning
 
     setting = scenes.scene(scene)
     if environment:
         setting = scenes.Scene("environment", environment=Path(environment))
     with open_host(host, reference.ROW) as engine:
         shader = _one_shader(file, engine, element, library, policy)
-        image = engine.picture(shader, replace(setting, size=size))
+        setting = replace(setting, size=size, paths=paths)
+        image = engine.picture(shader, setting)
+        for reason in engine.approximations(shader, setting):
+            warnings.warn(LobeWarning(shader.element, reason), stacklevel=2)
         identity = engine.identity()
     return image, {
         "version": mxeon.__version__,

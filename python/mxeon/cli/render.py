@@ -9,6 +9,7 @@ from mxeon.cli.batch import picture, run_batch
 from mxeon.cli.output import warn
 from mxeon.errors import PASSED
 from mxeon.shaders.hosts import HOSTS
+from mxeon.shaders.scene import Paths
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -29,6 +30,12 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument(
         "--size", type=int, default=512, help="width and height in pixels; %(default)s"
     )
+    command.add_argument(
+        "--samples", type=int, metavar="N", help="paths of a pixel, on a host that traces paths"
+    )
+    command.add_argument(
+        "--bounces", type=int, metavar="N", help="times that such a path may be scattered"
+    )
     arguments.add_library(command)
     arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True)
@@ -40,7 +47,8 @@ def run(options: argparse.Namespace) -> int:
 
     names = ("host", "scene", "environment", "size", "element", "library")
     known = {name: getattr(options, name) for name in names}
-    work = partial(picture, policy=arguments.policy(options), **known)
+    paths = Paths(options.samples, options.bounces)
+    work = partial(picture, policy=arguments.policy(options), paths=paths, **known)
     [result] = run_batch(work, [options.file], options.workers, options.timeout)
     for warning in result.warnings:
         warn(warning)

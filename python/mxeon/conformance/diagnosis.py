@@ -123,6 +123,13 @@ def _of_emission(probe: Any, cases: Sequence[Case]) -> Diagnosis:
     return _explained(probe, cases, probe.subject.value_candidates, (), tolerance)
 
 
+def of_cases(
+    probe: Any, cases: Sequence[Case], candidates: Sequence[Candidate], tolerance: Tolerance
+) -> Diagnosis:
+    """The explanation of cases by candidates, the own one first."""
+    return _explained(probe, cases, candidates, (), tolerance)
+
+
 def _of_rest(probe: Any, cases: Sequence[Case]) -> Diagnosis:
     """The explanation of throughputs, by albedos or by none."""
     *albedos, nothing = probe.subject.albedo_candidates

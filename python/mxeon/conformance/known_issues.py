@@ -36,6 +36,9 @@ TRANSMITTING = tuple(
     for node in ("dielectric", "generalized_schlick")
     for mode in ("T", "RT")
 )
+FILMS = tuple(
+    f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
+)
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,27 @@ def _product(checks: Sequence[str], subjects: Sequence[str]) -> tuple[tuple[str,
     return tuple((check, subject) for check in checks for subject in subjects)
 
 
+HAIR = "chiang_hair_bsdf"
+HAIR_ISSUES = (
+    Issue(
+        "genglsl_hair_uniform_lobe",
+        "gl",
+        (("lobes", HAIR),),
+        HARDWARE,
+        _product(("value", "integral"), (HAIR,)),
+    ),
+    Issue(
+        "genglsl_hair_longitudinal",
+        "gl",
+        _product(("narrow_lobes", "tilted_lobes"), (HAIR,)),
+        HARDWARE,
+        _product(("value", "black", "integral", "finite"), (HAIR,)),
+    ),
+    Issue("genglsl_hair_roughness", "gl", (("wide_lobes", HAIR),), HARDWARE),
+    Issue("genglsl_hair_azimuth", "gl", (("straight_views", HAIR),), HARDWARE, (("lobes", HAIR),)),
+    Issue("genglsl_hair_grazing", "gl", (("finite", HAIR),), HARDWARE, (("value", HAIR),)),
+    Issue("genglsl_hair_environment", "gl", (("environment", HAIR),), HARDWARE),
+)
 BSDF_ISSUES = (
     Issue("genglsl_zeltner_normal", "gl", (("value", ZELTNER),), HARDWARE),
     Issue(
@@ -143,9 +167,75 @@ BSDF_ISSUES = (
         HARDWARE,
         _product(("value", "environment", "integral", "shape"), MICROFACETS),
     ),
+    Issue(
+        "genglsl_film_half",
+        "gl",
+        _product(("film", "film_limit"), FILMS[2:]),
+        HARDWARE,
+        _product(("film_environment", "film_throughput"), FILMS[2:]),
+    ),
+    Issue(
+        "genglsl_film_throughput",
+        "gl",
+        (("film_throughput", FILMS[0]),),
+        HARDWARE,
+        (("film_throughput", FILMS[2]),),
+    ),
+    Issue(
+        "pbrlib_thin_film",
+        "gl",
+        _product(("film", "film_limit"), FILMS[:2]),
+        HARDWARE,
+        _product(("film_environment",), FILMS[:2]),
+    ),
+)
+EMISSION_ISSUES = (
+    Issue(
+        "genglsl_missing_nodes",
+        "gl",
+        _product(
+            ("implemented",),
+            (
+                "conical_edf",
+                "measured_edf",
+                "absorption_vdf",
+                "mix, VDF",
+                "add, VDF",
+                "multiply, VDF",
+            ),
+        ),
+        HARDWARE,
+    ),
+    Issue(
+        "genglsl_medium_scattering",
+        "gl",
+        _product(("transmittance", "inputs"), ("anisotropic_vdf",)),
+        HARDWARE,
+    ),
+    Issue("genglsl_emission_opacity", "gl", (("opacity", "surface, an EDF alone"),), HARDWARE),
+)
+HAIR_ROUGHNESS = tuple(f"chiang_hair_roughness, roughness_{lobe}" for lobe in ("R", "TT", "TRT"))
+HAIR_UTILITIES = (
+    *HAIR_ROUGHNESS,
+    "deon_hair_absorption_from_melanin",
+    "chiang_hair_absorption_from_color",
+)
+UTILITY_ISSUES = (
+    Issue("genglsl_blackbody_cold", "gl", (("output", "blackbody"),), HARDWARE),
+    Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR_UTILITIES[3]),), HARDWARE),
+    Issue(
+        "genosl_hair_constants",
+        "cycles",
+        _product(("output",), HAIR_UTILITIES),
+        ("testrender",),
+        _product(("output_inputs",), HAIR_UTILITIES),
+    ),
 )
 ISSUES = (
     *BSDF_ISSUES,
+    *EMISSION_ISSUES,
+    *HAIR_ISSUES,
+    *UTILITY_ISSUES,
     Issue(
         "genglsl_clamped_dot",
         "gl",

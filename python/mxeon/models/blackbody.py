@@ -12,6 +12,19 @@ PLANCK, LIGHT, BOLTZMANN = 6.62607015e-34, 299792458.0, 1.380649e-23  # J s, m/s
 FIRST = 2.0 * PLANCK * LIGHT**2  # W m^2 / sr
 SECOND = PLANCK * LIGHT / BOLTZMANN  # m K
 NANOMETER = 1e-9  # m
+LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # Y of linear Rec. 709
+
+# Cubic fits of the black bodies' chromaticity, 1667 K to 25000 K: x in 1000 K / T below and above 4000 K,
+# and y in x below 2222 K, below 4000 K and above, coefficients from the highest power.
+KANG_X = (
+    (-0.2661239, -0.2343589, 0.8776956, 0.179910),
+    (-3.0258469, 2.1070379, 0.2226347, 0.240390),
+)
+KANG_Y = (
+    (-1.1063814, -1.34811020, 2.18555832, -0.20219683),
+    (-0.9549476, -1.37418593, 2.09137015, -0.16748867),
+    (3.0817580, -5.87338670, 3.75112997, -0.37001483),
+)
 
 
 def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
@@ -125,3 +138,43 @@ def blackbody(temperature: ArrayLike) -> Array:
            [1.043, 0.984, 1.036]])
     """
     return np.asarray(blackbody_xyz(temperature) @ XYZ_TO_REC709.T)
+
+
+def kang_xyz(temperature: ArrayLike) -> Array:
+    """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
+
+    Parameters
+    ----------
+    temperature : array_like, shape (...)
+        In kelvin, in [1, 1e9].
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+
+    Raises
+    ------
+    ValueError
+        If `temperature` leaves its range; names the first bad element.
+
+    Notes
+    -----
+    The fits are of 1667 K to 25000 K, where x and y are within 6e-4. Below, as GLSL takes them, they
+    turn back: at 800 K the color is paler than at 1667 K.
+
+    References
+    ----------
+    [Kang2002].
+
+    Examples
+    --------
+    >>> kang_xyz([1000.0, 6504.0]).round(4)
+    array([[1.3733, 1.    , 0.0917],
+           [0.9686, 1.    , 1.1216]])
+    """
+    kelvin = np.asarray(checked("temperature", temperature), np.float64)
+    warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)
+    x = np.where(kelvin < 4000.0, warm, hot)
+    cold, warm, hot = (np.polyval(fit, x) for fit in KANG_Y)
+    y = np.where(kelvin < 2222.0, cold, np.where(kelvin < 4000.0, warm, hot))
+    return np.asarray(np.stack([x / y, np.ones_like(x), (1.0 - x - y) / y], axis=-1))

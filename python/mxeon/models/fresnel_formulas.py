@@ -39,8 +39,7 @@ def dielectric(mu: Array, ior: Array) -> Array:
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
     """F: [MaterialX2026], Conductor Fresnel Equations."""
-    Rp, Rs = polarized(mu, ior, extinction)
-    return np.minimum(0.5 * (Rs + Rp), 1.0)
+    return _mean(polarized(mu, ior, extinction))
 
 
 def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
@@ -49,6 +48,23 @@ def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
     w = a + i b = sqrt(n^2 - sin^2), n = ior + i extinction;  R_s = |n^2 - 1|^2 / |w + c|^4.
     No interface (n = 1) reflects nothing, at grazing too; n = 0 reflects all, along the normal too.
     """
+    return _polarized(mu, ior, extinction, _gap(ior, extinction))
+
+
+def _mean(reflectances: tuple[Array, Array]) -> Array:
+    """F of both polarizations."""
+    Rp, Rs = reflectances
+    return np.minimum(0.5 * (Rs + Rp), 1.0)
+
+
+def _gap(ior: Array, extinction: Array) -> Array:
+    """|n^2 - 1|, which does not depend on the direction."""
+    gap: Array = np.hypot(ior - 1.0, extinction) * np.hypot(ior + 1.0, extinction)
+    return gap
+
+
+def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
+    """`polarized` from |n^2 - 1|."""
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
     length = np.hypot(real, 2.0 * ior * extinction)
@@ -56,7 +72,6 @@ def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
     larger = np.sqrt(0.5 * (length + np.abs(real)))
     smaller = ior * extinction / np.where(larger > 0.0, larger, 1.0)
     a, b = np.where(real >= 0.0, larger, smaller), np.where(real >= 0.0, smaller, larger)
-    gap = np.hypot(ior - 1.0, extinction) * np.hypot(ior + 1.0, extinction)
     total = (a + mu) ** 2 + b * b
     Rs = np.minimum((gap / np.where(total > 0.0, total, 1.0)) ** 2, 1.0)
     minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
@@ -91,20 +106,25 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     """
     n2 = (ior + 1j * extinction) ** 2
     split = np.clip(np.sqrt(1.0 - n2).real, 0.0, 1.0)
-    below, above = bool((split > 0.0).any()), bool((split < 1.0).any())
-    total = np.zeros(np.broadcast_shapes(ior.shape, extinction.shape))
+    total = np.zeros(split.shape)
+    terms = np.broadcast_arrays(ior, extinction, _gap(ior, extinction))
+    for low, length in ((np.zeros(split.shape), split), (split, 1.0 - split)):
+        rows = length > 0.0
+        total[rows] += _part(low[rows], length[rows], *(array[rows] for array in terms))
+    return np.minimum(2.0 * total, 1.0)
+
+
+def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) -> Array:
+    """Integral of c F over [low, low + length] of the cosine c, of materials (N,)."""
+    total = np.zeros(len(low))
     t = STEP * np.arange(-STEPS, STEPS + 1)
     X = np.exp(np.pi * np.sinh(t))
     for x, weight in zip(
         X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2, strict=True
     ):
-        if below:
-            mu = split * x
-            total += weight * split * mu * conductor(mu, ior, extinction)
-        if above:
-            mu = split + (1.0 - split) * x
-            total += weight * (1.0 - split) * mu * conductor(mu, ior, extinction)
-    return np.minimum(2.0 * total, 1.0)
+        mu = low + length * x
+        total += weight * length * mu * _mean(_polarized(mu, ior, extinction, gap))
+    return total
 
 
 def schlick_avg(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:

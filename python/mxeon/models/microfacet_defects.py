@@ -150,7 +150,7 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
     return albedo
 
 
-def _fitted_half(pair: Pair) -> Array:
+def fitted_half(pair: Pair) -> Array:
     """Compensation of MaterialX 1.39.5: F at the half vector, and the fit for E_ss."""
     alpha = np.maximum(ggx.mean_alpha(pair.roughness), 1e-6)
     E = fitted_albedo(np.clip(pair.wo[2], 1e-6, 1.0), alpha, 1.0, 1.0)
@@ -190,7 +190,7 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect(
         "compensation_fitted",
         "compensation with F at the half vector and MaterialX's fit of E_ss",
-        Lobe(_fitted_half),
+        Lobe(fitted_half),
     ),
     MicrofacetDefect(
         "smith_separable", "masking and shadowing uncorrelated", Lobe(visibility=_separable)
@@ -209,7 +209,7 @@ FITTED_DEFECTS = tuple(
     MicrofacetDefect(
         f"{each.name}_fitted",
         f"{each.title}, and MaterialX's compensation",
-        replace(each.lobe, factor=_fitted_half),
+        replace(each.lobe, factor=fitted_half),
     )
     for each in MICROFACET_DEFECTS
     if each.lobe.factor is compensation

@@ -17,7 +17,7 @@ from mxeon.models.arrays import Array
 from mxeon.models.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
 from mxeon.models.microfacet_lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve
 
-AVERAGE_NODES = 16  # of Gauss-Legendre in the cosine
+AVERAGE_NODES = 12  # of Gauss-Legendre in the cosine
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,8 @@ class Form:
         in all of XYZ, so that a film that vanishes leaves the channels alone.
     share : float
         Factor of the Schlick substrate's reflectance in each polarization; by the text 1.
+    least : float
+        Reflectance from which on color0 is turned into the index of a Schlick substrate.
     clamped : bool
         Whether values outside [0, 1] are clamped, as the text does.
     """
@@ -43,6 +45,7 @@ class Form:
     orders: int | None = None
     mixed: bool = False
     share: float = 1.0
+    least: float = 0.0
     clamped: bool = True
 
 
@@ -54,7 +57,7 @@ CIE_RGB = (
 )
 TEXT = Form()
 PRINTED = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())), 2, True)
-MATERIALX = Form(CIE_RGB, 2, True, 0.5)
+MATERIALX = Form(CIE_RGB, 2, True, 0.5, 0.01)
 
 
 def film_curve(category: str, form: Form = TEXT) -> Curve:
@@ -103,7 +106,7 @@ def _airy(
     opd = film.path_difference(mu, thickness, film_ior)
     xyz = sum(
         film.tristimulus(film.Interface(*interface), opd, form.orders)
-        for interface in SUBSTRATES[category](mu, film_ior, form.share, **inputs)
+        for interface in SUBSTRATES[category](mu, film_ior, form, **inputs)
     )
     rgb = _to_rgb(0.5 * np.asarray(xyz), form)
     return np.clip(rgb, 0.0, 1.0) if form.clamped else rgb
@@ -120,12 +123,12 @@ def _to_rgb(xyz: Array, form: Form) -> Array:
     return rgb
 
 
-def _dielectric(mu: Array, film_ior: Array, _: float, ior: Array) -> tuple[film.Interface, ...]:
+def _dielectric(mu: Array, film_ior: Array, _: Form, ior: Array) -> tuple[film.Interface, ...]:
     return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], np.zeros(1))
 
 
 def _conductor(
-    mu: Array, film_ior: Array, _: float, ior: Array, extinction: Array
+    mu: Array, film_ior: Array, _: Form, ior: Array, extinction: Array
 ) -> tuple[film.Interface, ...]:
     return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior, extinction)
 
@@ -133,15 +136,17 @@ def _conductor(
 def _schlick(
     mu: Array,
     film_ior: Array,
-    share: float,
+    form: Form,
     color0: Array,
     color82: Array,
     color90: Array,
     exponent: Array,
 ) -> tuple[film.Interface, ...]:
     mu_t = film.refracted(mu, film_ior)
-    F = share * fresnel.schlick(mu_t, color0, color82, color90, exponent)
-    return film.over_schlick(mu[np.newaxis], film_ior[np.newaxis], F, color0)
+    F = form.share * fresnel.schlick(mu_t, color0, color82, color90, exponent)
+    return film.over_schlick(
+        mu[np.newaxis], film_ior[np.newaxis], F, np.maximum(color0, form.least)
+    )
 
 
 CURVES = {

@@ -23,9 +23,9 @@ NORMAL = 1.0685e-7
 METERS = 1e-9  # in a nanometer
 
 # All orders are summed one by one where THIN_SPREAD <= 2 pi OPD sigma: what follows DAMPED_ORDERS of
-# them is below exp(-(17 * 0.35)^2) = 5e-16. Thinner films are integrated over wavenumbers, by the
+# them is below exp(-(30 * 0.2)^2) = 3e-16. Thinner films are integrated over wavenumbers, by the
 # trapezoidal rule over 6.5 standard deviations, 2^-48 of a Gaussian's height, in steps of a fifth of one.
-THIN_SPREAD, DAMPED_ORDERS = 0.35, 17
+THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
 
 

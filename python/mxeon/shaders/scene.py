@@ -16,6 +16,40 @@ from mxeon.errors import InputError
 from mxeon.io.images import Floats
 
 LARGEST = 8192  # the width that every OpenGL 4 device draws; an image of it takes some gigabytes
+MOST_SAMPLES = 65536  # a day of one core for a picture of 512 x 512 pixels
+MOST_BOUNCES = 1024  # the most that Cycles takes
+
+
+@dataclass(frozen=True)
+class Paths:
+    """The paths of light that a host traces for a picture.
+
+    Attributes
+    ----------
+    samples : int or None
+        Paths of a pixel, in [1, MOST_SAMPLES]; None for what the host finds enough.
+    bounces : int or None
+        Times that a path may be scattered, in [1, MOST_BOUNCES]; None likewise.
+
+    Raises
+    ------
+    ValueError
+        If a number leaves its range.
+
+    Examples
+    --------
+    >>> Paths(samples=64).bounces is None
+    True
+    """
+
+    samples: int | None = None
+    bounces: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, most in (("samples", MOST_SAMPLES), ("bounces", MOST_BOUNCES)):
+            number = getattr(self, name)
+            if number is not None and not 1 <= number <= most:
+                raise InputError(f"{name} must lie in [1, {most}]; got {number}")
 
 
 @dataclass(frozen=True)
@@ -33,6 +67,8 @@ class Scene:
         Radiance of a uniform environment, or a latitude-longitude image.
     size : int
         Width and height in pixels, in [1, LARGEST].
+    paths : Paths
+        For cycles and cycles-native; other hosts refuse any but the default.
 
     Raises
     ------
@@ -44,6 +80,7 @@ class Scene:
     light: tuple[float, float, float] | None = None
     environment: float | Path | None = None
     size: int = 256
+    paths: Paths = Paths()
 
     def __post_init__(self) -> None:
         if not 1 <= self.size <= LARGEST:

@@ -108,6 +108,14 @@ def offset(probe: Any) -> Altered:
     return Altered(probe, values=lambda batch, values: values + 1e-3)
 
 
+def no_number(probe: Any) -> Altered:
+    """A control whose first value is not a number."""
+    return Altered(
+        probe,
+        values=lambda batch, values: np.where(np.arange(len(values))[:, None], values, np.nan),
+    )
+
+
 def rougher(probe: Any) -> Altered:
     """A control whose roughness is a tenth larger."""
     return Altered(

@@ -10,9 +10,14 @@ from mxeon.conformance.checks.bsdf.hair import HAIRS, HairSubject
 from mxeon.conformance.checks.bsdf.hair_probes import HairProbe
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
+from mxeon.conformance.checks.bsdf.thin_films import FILMS, film_probe_type
 from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.surfaces.probes import surface_probe_type
+from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.checks.values.probes import utility_probe_type
+from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,9 @@ FAMILIES = (
     Family(HAIRS, hair_probe_type),
     Family(EMISSION_SUBJECTS, emission_probe_type),
     Family(TRANSMITTING, transmission_probe_type),
+    Family(FILMS, film_probe_type),
+    Family(UTILITY_SUBJECTS, utility_probe_type),
+    Family(SHADERS, surface_probe_type),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(

@@ -102,6 +102,11 @@ def judge_document(
         results.append(result)
         pictures += images
     notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
+    notes += [
+        (text, f"{file.name}: {shader.element}")
+        for shader in shaders
+        for text in _picture_notes(shader, host)
+    ]
     others = (CodeWarning, DocumentWarning)
     notes += [(str(message), file.name) for message in messages if isinstance(message, others)]
     return tuple(results), tuple(pictures), tuple(notes)
@@ -136,6 +141,13 @@ def _judge_material(
         _picture(file, shader, host, library, case)
         for case in zip(scenes, images, references, strict=True)
     )
+
+
+def _picture_notes(shader: Shader, host: Host) -> tuple[str, ...]:
+    """Why a host's pictures of a material cannot be right, each reason once."""
+    scenes = host_row(host.name).scenes
+    reasons = (text for scene in scenes for text in host.approximations(shader, scene))
+    return tuple(dict.fromkeys(reasons))
 
 
 def _picture(

@@ -39,7 +39,10 @@ class Host(base.Host):
         ------
         NotRun
             If the material has lobes that the models do not cover, or the light is an image.
+        ValueError
+            If the scene asks for paths.
         """
+        self.refuse_paths(scene)
         points = sphere(scene.size)
         normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
         wo = np.broadcast_to(VIEW, normal.shape)

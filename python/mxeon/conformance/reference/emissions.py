@@ -1,32 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Light that surfaces emit towards the viewer, by category of the node."""
+"""Light that surfaces emit towards the viewer, as operations of a graph."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from mxeon.conformance.reference.points import Points
-from mxeon.models.fresnel import fresnel_schlick
+from mxeon.errors import OutsideModel
+from mxeon.models.pbrlib.emissions import BASE, Emission
+from mxeon.models.pbrlib.emissions import EMISSIONS as ROWS
+
+COLORS = ("color", "color0", "color90", "base")
 
 
-def _uniform(points: Points, color: Any) -> Any:
-    return color
+def _radiance(row: Emission, points: Points, *values: Any) -> Any:
+    wo = points.view
+    inputs = {
+        name: np.broadcast_to(value, wo.shape)
+        if name in COLORS
+        else np.broadcast_to(np.ravel(value), len(wo))
+        for name, value in zip(_ports(row), values, strict=True)
+    }
+    try:
+        return row.value(wo, inputs)
+    except ValueError as error:
+        raise OutsideModel(f"reference: node {row.category!r}: {error}") from None
 
 
-def _schlick(points: Points, color0: Any, color90: Any, exponent: Any, base: Any) -> Any:
-    """Emission below a layer that lets a Schlick curve of it through."""
-    mu = np.minimum(points.facing[:, 0], 1.0)
-    each = (len(mu), 3)
-    f0, f82, f90 = (np.broadcast_to(color, each) for color in (color0, np.ones(3), color90))
-    power = np.broadcast_to(np.ravel(exponent), len(mu))
-    return base * fresnel_schlick(mu, f0, f82, f90, power)
+def _ports(row: Emission) -> tuple[str, ...]:
+    return tuple("base" if name == BASE else name for name in row.inputs)
 
 
-# Category -> its inputs, and the function of the points and them.
-EMISSIONS: dict[str, tuple[tuple[str, ...], Callable[..., Any]]] = {
-    "uniform_edf": (("color",), _uniform),
-    "generalized_schlick_edf": (("color0", "color90", "exponent", "base"), _schlick),
-}
+def emissions(points: Points) -> dict[str, tuple[tuple[str, ...], Callable[..., Any]]]:
+    """Category -> its inputs, and the radiance at points by them."""
+    return {row.category: (_ports(row), partial(_radiance, row, points)) for row in ROWS}

@@ -17,7 +17,7 @@ from typing import Any, TypeAlias
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.reference.emissions import EMISSIONS
+from mxeon.conformance.reference.emissions import emissions
 from mxeon.conformance.reference.images import looked_up
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
@@ -139,12 +139,8 @@ class Graph:
     @cached_property
     def _operations(self) -> dict[str, tuple[tuple[str, ...], Callable[..., Any]]]:
         """Nodes that compute numbers or colors, some of them by the points."""
-        emissions = {
-            category: (ports, partial(emission, self._points))
-            for category, (ports, emission) in EMISSIONS.items()
-        }
         surface = {"surface": SURFACES[self._emits], "surfacematerial": (("surfaceshader",), _same)}
-        return {**OPERATIONS, **UTILITIES, **emissions, **surface}
+        return {**OPERATIONS, **UTILITIES, **emissions(self._points), **surface}
 
     def _inside(self, path: Path, node: Any, output: str = "") -> Path | None:
         """Path of what an output of a node has in its nodegraph; None if that is none."""
@@ -224,7 +220,8 @@ class Graph:
     def _given(self, path: Path, name: str) -> Any:
         """Value that was handed in, (N, 1) if it is one number for each point."""
         number = self._port(path, name).getType() in NUMBERS
-        return np.reshape(self._inputs[name], (-1, 1)) if number else self._inputs[name]
+        value = np.asarray(self._inputs[name])
+        return np.reshape(value, (-1, 1)) if number else value
 
     def _connected(self, around: Path, port: Any) -> Path:
         """Path of what an input or output within another path is connected to."""

@@ -25,6 +25,7 @@ LOBES = {
     for category in (*DIFFUSE_NODES, *(row.category for row in NODES))
 }
 
+FILM = ("thinfilm_thickness", "thinfilm_ior")  # of microfacets, where the thickness is not 0
 NOTHING = Bsdf(np.zeros(3), np.ones(3))  # a lobe that is not there
 
 # Nodes that combine lobes: category -> inputs, and the function of them.
@@ -63,7 +64,8 @@ def node_lobe(node: Any, inputs: Mapping[str, Any], points: Points, layered: boo
         return Bsdf(np.zeros(3), np.full(3, 1.0 if layerable else 0.0))
     row = _row(node, inputs)
     _assert_known(node, row, inputs)
-    arguments = {port: _shaped(node, port, inputs[port]) for port in row.inputs}
+    film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
+    arguments = {port: _shaped(node, port, inputs[port]) for port in (*row.inputs, *film)}
     if row.name == "qon":
         # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
@@ -103,7 +105,7 @@ def _row(node: Any, inputs: Mapping[str, Any]) -> PbrNode:
 def _assert_known(node: Any, row: PbrNode, inputs: Mapping[str, Any]) -> None:
     """Raise NotRun if an input that the model does not have differs from its default."""
     for port, value in inputs.items():
-        if port in ("weight", "normal", "tangent", FLAG, *row.inputs, *row.fixed):
+        if port in ("weight", "normal", "tangent", FLAG, *FILM, *row.inputs, *row.fixed):
             continue
         if not np.array_equal(value, plain(definition(node).getActiveInput(port).getValue())):
             raise NotRun(
@@ -116,6 +118,8 @@ def _shaped(node: Any, port: str, value: Any) -> NDArray[np.float64]:
     if definition(node).getActiveInput(port).getType() in ("float", "boolean"):
         return np.reshape(np.asarray(value, np.float64), -1)
     array = np.atleast_2d(np.asarray(value, np.float64))
+    if port == "roughness":  # OpenPBR stretches a lobe beyond 1, and shaders take 1
+        array = np.clip(array, 0.0, 1.0)
     return np.broadcast_to(
         array, (len(array), COMPONENTS[definition(node).getActiveInput(port).getType()])
     )

@@ -68,9 +68,9 @@ class Points:
         return value
 
     @cached_property
-    def facing(self) -> Values:
-        """Cosine between viewer and normal, at least 0, (N, 1)."""
-        return np.asarray(np.abs((self.wo * self.normal).sum(axis=1, keepdims=True)))
+    def view(self) -> Values:
+        """Unit vectors to the viewer in the frame of the surface, (N, 3)."""
+        return _within(self._axes(self.normal, self.tangent), self.wo)
 
     @cached_property
     def _own(self) -> Lobe:
@@ -82,15 +82,18 @@ class Points:
         if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:
             raise OutsideModel(f"reference: normal must have the length 1; got {wrong[0]:g}")
         side = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
-        z = side * normal
-        x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
-        axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
-        with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
-            axes = axes / np.linalg.norm(axes, axis=2, keepdims=True)
+        axes = self._axes(side * normal, tangent)
         wo = _within(axes, self.wo)
         if self.wi is None:
             return furnace(wo, self.strength)
         return lit(wo, _within(axes, self.wi), self.strength)
+
+    def _axes(self, z: Values, tangent: Values) -> Values:
+        """Axes of a frame, orthogonal unit vectors, as rows (N, 3, 3)."""
+        x = tangent - (tangent * z).sum(axis=-1, keepdims=True) * z
+        axes = np.stack(np.broadcast_arrays(x, np.cross(z, x), z), axis=1)
+        with np.errstate(invalid="ignore"):  # a tangent along the normal shows in the values
+            return np.asarray(axes / np.linalg.norm(axes, axis=2, keepdims=True))
 
 
 def _within(axes: Values, directions: Values) -> Values:

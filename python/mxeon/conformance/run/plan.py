@@ -241,7 +241,8 @@ def _on_host(
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
         kind = probe_type_of(each, probe)
-        if kind and not _is_renderers(row.target, library) and _is_judged(each, library):
+        closure = getattr(each, "closure", True) and _is_renderers(row.target, library)
+        if kind and not closure and _is_judged(each, library):
             yield from _checks_of(each, kind.kind, host, library)
     if row.surfaces:
         for surface in SURFACES:

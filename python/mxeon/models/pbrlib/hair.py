@@ -6,9 +6,16 @@ from collections.abc import Callable
 import numpy as np
 
 from mxeon.models.arrays import Array
-from mxeon.models.hair import DEFAULTS, TINTS, chiang_hair_attenuation, chiang_hair_bcsdf
+from mxeon.models.hair import (
+    DEFAULTS,
+    ROUGHNESSES,
+    TINTS,
+    chiang_hair_attenuation,
+    chiang_hair_bcsdf,
+)
 from mxeon.models.hair_defects import FORMS, READINGS
 from mxeon.models.hair_formulas import TEXT, Form
+from mxeon.models.microfacet_albedo import dielectric_albedo_dir
 from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
 
 
@@ -34,6 +41,15 @@ def _whole(wo: Array, inputs: Inputs) -> Array:
     return np.pi * _albedo(wo, inputs)
 
 
+def _ggx(wo: Array, inputs: Inputs) -> Array:
+    """Albedo of a GGX lobe of the mean roughness and tint: the environment of MaterialX's GLSL."""
+    alpha = np.mean([inputs[name] for name in ROUGHNESSES], axis=0)
+    alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
+    tint = np.mean([inputs[name] for name in TINTS], axis=0)
+    albedo = dielectric_albedo_dir(wo, 1.0, np.repeat(alpha, 2, axis=-1), inputs["ior"])
+    return np.asarray(tint * albedo)
+
+
 HAIR_NODE = PbrNode(
     "hair",
     "Chiang hair",
@@ -45,6 +61,7 @@ HAIR_NODE = PbrNode(
     variants=(
         *(Variant(title, _value(form)) for title, form in FORMS.items()),
         *(Variant(title, _value(form), permitted=True) for title, form in READINGS.items()),
+        Variant("a GGX lobe of the mean roughness and tint, without absorption", albedo=_ggx),
         Variant("no factor 1/pi, as in later versions of the text", albedo=_whole, permitted=True),
     ),
 )

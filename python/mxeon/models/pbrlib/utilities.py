@@ -13,7 +13,8 @@ import numpy as np
 
 from mxeon.models.arrays import Array
 from mxeon.models.artistic_ior import artistic_ior
-from mxeon.models.blackbody import blackbody
+from mxeon.models.blackbody import LUMINANCE, blackbody, kang_xyz
+from mxeon.models.colorimetry import XYZ_TO_REC709
 from mxeon.models.hair_parameters import (
     EUMELANIN,
     PHEOMELANIN,
@@ -27,6 +28,7 @@ from mxeon.models.roughness import glossiness_anisotropy, roughness_anisotropy, 
 LARGEST_REFLECTIVITY = 0.99  # of artistic_ior; its n is infinite at 1
 LEAST_HAIR = 1e-3  # roughnesses and colors of hair: below, a lobe has no width
 LARGEST_MELANIN = 1.0 - 1e-4  # concentration; at 1 the absorption is infinite
+LEAST_PIGMENT = 1e-30  # color of a pigment, whose logarithm is finite
 TEMPERATURES = (800.0, 25000.0)  # K, from about where a body glows to the end of the fits in use
 
 Values = Callable[[Inputs], dict[str, Array]]
@@ -88,6 +90,22 @@ def _glossiness(inputs: Inputs) -> dict[str, Array]:
     }
 
 
+def _without_square(inputs: Inputs) -> dict[str, Array]:
+    """alpha that is not squared."""
+    names = {"roughness", "glossiness"} & set(inputs)
+    roots = {name: np.sqrt(_share(inputs, name)) for name in names}
+    if "glossiness" in roots:
+        roots["glossiness"] = 1.0 - np.sqrt(1.0 - _share(inputs, "glossiness"))
+    own = (
+        _dual
+        if "anisotropy" not in inputs
+        else _glossiness
+        if "glossiness" in roots
+        else _anisotropy
+    )
+    return own({**inputs, **roots})
+
+
 def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
     """alpha of [Burley2012], whose aspect is sqrt(1 - 0.9 anisotropy)."""
     alpha = np.square(_roughness(inputs))
@@ -121,9 +139,26 @@ def _artistic(inputs: Inputs) -> dict[str, Array]:
     return {"ior": ior, "extinction": extinction}
 
 
-def _blackbody(inputs: Inputs) -> dict[str, Array]:
-    """The color inside Rec. 709: its negative channels are 0."""
+def _exchanged_edge(inputs: Inputs) -> dict[str, Array]:
+    """n and k with the ends of n exchanged."""
+    return _artistic({**inputs, "edge_color": 1.0 - _share(inputs, "edge_color")})
+
+
+def _clipped(inputs: Inputs) -> dict[str, Array]:
+    """The color of luminance 1 whose negative channels are then 0."""
     return {"out": np.maximum(blackbody(_share(inputs, "temperature", *TEMPERATURES)), 0.0)}
+
+
+def _blackbody(inputs: Inputs) -> dict[str, Array]:
+    """The color inside Rec. 709, whose negative channels are 0, with luminance 1."""
+    color = _clipped(inputs)["out"]
+    return {"out": color / (color @ LUMINANCE)[..., np.newaxis]}
+
+
+def _kang(inputs: Inputs) -> dict[str, Array]:
+    """The color by the cubic fits of [Kang2002], clipped."""
+    color = kang_xyz(_share(inputs, "temperature", *TEMPERATURES)) @ XYZ_TO_REC709.T
+    return {"out": np.maximum(color, 0.0)}
 
 
 def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
@@ -133,10 +168,28 @@ def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
     return dict(zip(("roughness_R", "roughness_TT", "roughness_TRT"), pairs, strict=True))
 
 
+def _unsquared_scales(inputs: Inputs) -> dict[str, Array]:
+    """Roughnesses whose variances are scaled by numbers that are not squared."""
+    scales = ("scale_TT", "scale_TRT")
+    return _hair_roughness({**inputs, **{name: np.sqrt(np.abs(inputs[name])) for name in scales}})
+
+
+def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
+    """Roughnesses with a standard deviation in place of the variance."""
+    pairs = _hair_roughness(inputs)
+    return {
+        name: np.stack([np.sqrt(pair[..., 0]), pair[..., 1]], -1) for name, pair in pairs.items()
+    }
+
+
+def _exchanged_melanins(inputs: Inputs) -> dict[str, Array]:
+    """Absorption with the shares of both melanins exchanged."""
+    return _melanin({**inputs, "melanin_redness": 1.0 - _share(inputs, "melanin_redness")})
+
+
 def _melanin(inputs: Inputs) -> dict[str, Array]:
     colors = [
-        _share(inputs, name, float(np.finfo(np.float32).tiny))
-        for name in ("eumelanin_color", "pheomelanin_color")
+        _share(inputs, name, LEAST_PIGMENT) for name in ("eumelanin_color", "pheomelanin_color")
     ]
     concentration = _share(inputs, "melanin_concentration", 0.0, LARGEST_MELANIN)
     redness = _share(inputs, "melanin_redness")
@@ -163,6 +216,7 @@ def constant(category: str, value: float) -> UtilityVariant:
 ASPECTS = (
     UtilityVariant("Burley's aspect of 2012", _burley_aspect, permitted=True),
     UtilityVariant("OpenPBR's aspect", _openpbr_aspect, permitted=True),
+    UtilityVariant("a roughness that is not squared", _without_square),
 )
 UTILITIES = (
     UtilityNode(
@@ -172,7 +226,9 @@ UTILITIES = (
         _anisotropy,
         ASPECTS,
     ),
-    UtilityNode("roughness_dual", {"roughness": (0.0, 0.0)}, {"out": "vector2"}, _dual),
+    UtilityNode(
+        "roughness_dual", {"roughness": (0.0, 0.0)}, {"out": "vector2"}, _dual, ASPECTS[2:]
+    ),
     UtilityNode(
         "glossiness_anisotropy",
         {"glossiness": 1.0, "anisotropy": 0.0},
@@ -185,14 +241,28 @@ UTILITIES = (
         {"reflectivity": (0.944, 0.776, 0.373), "edge_color": (0.998, 0.981, 0.751)},
         {"ior": "color3", "extinction": "color3"},
         _artistic,
+        (UtilityVariant("the ends of n exchanged", _exchanged_edge),),
     ),
-    UtilityNode("blackbody", {"temperature": 5000.0}, {"out": "color3"}, _blackbody),
+    UtilityNode(
+        "blackbody",
+        {"temperature": 5000.0},
+        {"out": "color3"},
+        _blackbody,
+        (
+            UtilityVariant("luminance 1 before negative channels are clipped", _clipped, True),
+            UtilityVariant("Kang's cubic, drawn on below 1667 K", _kang),
+        ),
+    ),
     UtilityNode(
         "chiang_hair_roughness",
         {"longitudinal": 0.1, "azimuthal": 0.2, "scale_TT": 0.5, "scale_TRT": 2.0},
         {name: "vector2" for name in ("roughness_R", "roughness_TT", "roughness_TRT")},
         _hair_roughness,
-        (constant("chiang_hair_roughness", 0.0),),
+        (
+            constant("chiang_hair_roughness", 0.0),
+            UtilityVariant("scales that are not squared", _unsquared_scales),
+            UtilityVariant("a deviation in place of the variance", _unsquared_variance),
+        ),
     ),
     UtilityNode(
         "deon_hair_absorption_from_melanin",
@@ -204,7 +274,10 @@ UTILITIES = (
         },
         {"absorption": "vector3"},
         _melanin,
-        (constant("deon_hair_absorption_from_melanin", 1.0),),
+        (
+            constant("deon_hair_absorption_from_melanin", 1.0),
+            UtilityVariant("the shares of both melanins exchanged", _exchanged_melanins),
+        ),
     ),
     UtilityNode(
         "chiang_hair_absorption_from_color",

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import Unsupported
+from mxeon.errors import InputError, Unsupported
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.scene import Scene
+from mxeon.shaders.scene import Paths, Scene
 
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
@@ -26,6 +26,13 @@ TURN = np.diag([-1.0, 1.0, -1.0, 1.0])
 
 class RendererWarning(UserWarning):
     """A renderer's own warning, which may explain what it renders."""
+
+
+class LobeWarning(UserWarning):
+    """A picture that cannot be right, since its material has light below the surface."""
+
+    def __init__(self, element: str, reason: str) -> None:
+        super().__init__(f"{element}: {reason}")
 
 
 @dataclass(frozen=True)
@@ -101,8 +108,14 @@ class Host(ABC):
             If the host's compiler refuses the shader.
         NotRun
             If the host cannot show the scene, or fails.
+        ValueError
+            If the scene asks for paths and the host traces none.
         """
         raise self._unsupported("pictures of a sphere", "gl")
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """Why the `picture` of a shader cannot be right, in words; empty where it can."""
+        return ()
 
     def evaluate(
         self,
@@ -269,6 +282,19 @@ class Host(ABC):
 
     def __exit__(self, *error: object) -> None:
         self.close()
+
+    def refuse_paths(self, scene: Scene) -> None:
+        """Raise InputError if a scene asks for paths: where none are traced, or their number is fixed.
+
+        Raises
+        ------
+        ValueError
+            If the samples or the bounces of the scene are set.
+        """
+        if scene.paths != Paths():
+            raise InputError(
+                f"{self.name}: this host takes no number of samples or bounces; cycles does"
+            )
 
     def _unsupported(self, verb: str, other: str) -> Unsupported:
         return Unsupported(f"{self.name}: this host has no {verb}; {other} has")

@@ -179,7 +179,7 @@ def bsdf_call(
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
     if branch == GRAPH:
-        return _graph_call(shader, inputs)
+        return _graph_call(shader, wo, inputs)
     emitted = output == "radiance"
     called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
     text = shader.stages["pixel"]
@@ -314,7 +314,7 @@ def _surface_arguments(shader: Shader, before: Prelude, inputs: Mapping[str, Any
     return arguments
 
 
-def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
+def _graph_call(shader: Shader, wo: ArrayLike, inputs: Mapping[str, Any]) -> Call:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
     text = shader.stages["pixel"]
     color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
@@ -327,7 +327,8 @@ def _graph_call(shader: Shader, inputs: Mapping[str, Any]) -> Call:
     statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
     ports = _ports(shader)
     words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
-    arguments = {name: _argument(name, ports, inputs) for name in words if name in ports}
+    arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing
+    arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
     return Call(statements, color[1], arguments)
 
 

@@ -80,6 +80,7 @@ class Host(base.Host):
     @_current
     def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         """Picture of the sphere; see `mxeon.shaders.hosts.base.Host`."""
+        self.refuse_paths(scene)
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
         _set(program, raster.inputs(shader) | raster.light(scene))
         captured, size = points.outputs(shader), scene.size
@@ -87,6 +88,10 @@ class Host(base.Host):
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
         return raster.picture(self._draw(program, textures, (size, size)), size)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """What takes the place of lobes below the surface; see `mxeon.shaders.hosts.base.Host`."""
+        return raster.approximations(shader)
 
     @_current
     def evaluate(

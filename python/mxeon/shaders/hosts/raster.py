@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mxeon.shaders.document.values import members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts.textures import irradiance, read_latlong, read_texture
+from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.scene import Scene, sphere
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
@@ -25,6 +26,20 @@ TRIANGLE = {  # attributes of its three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
 }
+
+# What generated GLSL does in place of a lobe below the surface.
+IN_PLACE = {
+    SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred along a circle of the "
+    "surface's curvature, and under an environment it is Lambert of its color",
+    TRANSMISSION: "transmission is rasterized: what is seen through the surface is the environment "
+    "in one refracted direction, and no light that the object itself bends or blocks",
+    VOLUME: "a volume is rasterized: it absorbs over a length of 1 and scatters nothing",
+}
+
+
+def approximations(shader: Shader) -> tuple[str, ...]:
+    """What generated GLSL does in place of a shader's lobes below the surface."""
+    return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
 
 
 def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:

@@ -100,6 +100,7 @@ class Host(base.Host):
 
     def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         """Picture of the sphere; see `mxeon.shaders.hosts.base.Host`."""
+        self.refuse_paths(scene)
         captured, size = points.outputs(shader), scene.size
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         uniforms = UNIFORMS | _inputs(shader) | raster.light(scene)
@@ -107,6 +108,10 @@ class Host(base.Host):
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
         return raster.picture(self._draw(stages, uniforms, textures, (size, size)), size)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """What takes the place of lobes below the surface; see `mxeon.shaders.hosts.base.Host`."""
+        return raster.approximations(shader)
 
     def evaluate(
         self,

@@ -34,6 +34,8 @@ class Region:
     variances, scales : (float, float)
     tints : mapping of str to tuple
         Which lobe is in which channel.
+    tilt : float
+        Largest distance of `cuticle_angle` from 1/2.
     form : str
         Title of the form of the model that shaders have in its place there; "" if there is none.
     """
@@ -42,14 +44,16 @@ class Region:
     variances: tuple[float, float]
     scales: tuple[float, float]
     tints: dict[str, Any]
+    tilt: float = 0.05
     form: str = ""
 
 
 # By the key of the check.
 REGIONS = {
-    "lobes": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBES, UNIFORM),
-    "narrow_lobes": Region(SLANTED, (1e-3, 0.1), (0.2, 1.0), APART, BESSEL),
-    "wide_lobes": Region(SLANTED, (1.0, 100.0), (1.0, 10.0), APART, CLAMPED),
+    "lobes": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBES, form=UNIFORM),
+    "narrow_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.0, form=BESSEL),
+    "tilted_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.5, form=BESSEL),
+    "wide_lobes": Region(SLANTED, (1.0, 100.0), (1.0, 10.0), APART, form=CLAMPED),
     "straight_views": Region((0.0, STRAIGHT), (0.2, 1.0), (0.05, 0.2), APART),
 }
 
@@ -121,6 +125,7 @@ class HairProbe(BsdfProbe):
         cosine = np.sqrt(1.0 - sine * sine)
         wo = rounded([sine, cosine * np.sin(azimuth), cosine * np.cos(azimuth)])
         inputs = self.subject.random_inputs(rng, FEW)
+        inputs["cuticle_angle"] = 0.5 + 2.0 * row.tilt * (inputs["cuticle_angle"] - 0.5)
         for name in ROUGHNESSES:
             inputs[name] = rounded(
                 low * (high / low) ** rng.random(FEW) for low, high in (row.variances, row.scales)

@@ -26,6 +26,7 @@ CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK, HAIR = KINDS = (
 )
 MICROFACET_KINDS = (MICROFACET, SCHLICK)
 COMBINED = "combined pairs"  # of a node that combines lobes
+FILM = "film pairs"  # of microfacets under a thin film
 QUADRATURES = {  # largest error of a probe's integrals of the equations
     CLOSED: 1e-8,
     SHEEN: 1e-8,
@@ -47,6 +48,8 @@ RANGES: dict[str, tuple[float, float]] = {  # of an input's random values
     "ior": (0.5, 3.0),
     "extinction": (0.2, 6.0),
     "exponent": (1.0, 8.0),
+    "thinfilm_thickness": (0.0, 1000.0),
+    "thinfilm_ior": (1.0, 2.5),
 }
 CHANGES: dict[str, Changes] = {
     "weight": ({}, {"weight": 0.5}),

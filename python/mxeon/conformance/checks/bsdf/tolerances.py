@@ -8,6 +8,7 @@ from mxeon.conformance.checks.bsdf.measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.bsdf.subjects import (
     CLOSED,
     COMBINED,
+    FILM,
     FITTED,
     HAIR,
     KINDS,
@@ -148,6 +149,40 @@ COMBINED_ALBEDO = Tolerance(
     scaled,
     "two albedos, and a throughput between them",
 )
+# Largest errors of the shader's thin film, for cosines from 0.1 on: fits/thin_film.py measures each.
+FILM_ORDERS = 1.9e-2  # four orders and a geometric series, relative to the largest channel
+FILM_AVERAGE = 1.3e-2  # F_ss in five cosines
+FILM_VISIBLE = 2.3e-2  # mean over the visible facets in nine of them
+FILM_HEIGHTS = (
+    1.3e-3  # sum of the sensitivities' heights, which the text gives in five digits, over 1
+)
+FILM_VALUE = Tolerance(
+    rounded_up((ESS_FIT + FILM_AVERAGE * (1.0 - LEAST_ESS)) / LEAST_ESS + FILM_ORDERS),
+    SCALED,
+    scaled,
+    "the sum of four orders, 1.9e-2 of the film's reflectance, and the fit of E_ss, 5e-4, and F_ss in "
+    "five cosines, 1.3e-2, as they enter the compensation where E_ss is least, 0.31; rounded up",
+)
+FILM_ALBEDO = Tolerance(
+    rounded_up(MICROFACET_ALBEDO.value + FILM_VISIBLE + FILM_AVERAGE * (1.0 - LEAST_ESS)),
+    "albedo",
+    absolute,
+    "the fits of a lobe without a film, the mean over nine visible facets, 2.3e-2, and F_ss in five "
+    "cosines, 1.3e-2, times the light that is lost, at most 0.69; rounded up",
+)
+FILM_LIMIT = Tolerance(
+    rounded_up(FILM_HEIGHTS + MICROFACET_VALUE.value),
+    SCALED,
+    scaled,
+    "the sensitivities, whose heights add up to 1 within 1.3e-3, and the fits of the compensation of a "
+    "lobe without a film; rounded up",
+)
+FILM_ENERGY = Tolerance(
+    MICROFACET_VALUE.value,
+    SCALED,
+    scaled,
+    "the fits of the compensation, of which a mirror has another share than a film",
+)
 
 # By kind of probe.
 VALUES = {
@@ -158,6 +193,7 @@ VALUES = {
     SCHLICK: MICROFACET_VALUE,
     COMBINED: COMBINED_VALUE,
     HAIR: HAIR_VALUE,
+    FILM: FILM_VALUE,
 }
 ALBEDOS = {
     CLOSED: CLOSED_ALBEDO,
@@ -167,6 +203,7 @@ ALBEDOS = {
     SCHLICK: MICROFACET_ALBEDO,
     COMBINED: COMBINED_ALBEDO,
     HAIR: HAIR_ALBEDO,
+    FILM: FILM_ALBEDO,
 }
 THROUGHPUTS = {**ALBEDOS, SCHLICK: SCHLICK_THROUGHPUT}
 FRAMES = {

@@ -13,7 +13,10 @@ from mxeon.conformance.checks.table import (
     layers,
     lobes,
     microfacets,
+    surfaces,
+    thin_films,
     transmission,
+    utilities,
 )
 from mxeon.conformance.checks.table.check import Check
 
@@ -28,4 +31,7 @@ CHECKS = (
     *emission.CHECKS,
     *hair.CHECKS,
     *transmission.CHECKS,
+    *thin_films.CHECKS,
+    *utilities.CHECKS,
+    *surfaces.CHECKS,
 )

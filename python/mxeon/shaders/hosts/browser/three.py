@@ -65,6 +65,7 @@ class Host(base.Host):
         self, title: str, color: Sequence[float], roughness: float, scene: Scene
     ) -> NDArray[Any]:
         """Picture of the unit sphere with one of NODES on it; see `mxeon.shaders.hosts.base.Host`."""
+        self.refuse_paths(scene)
         backend, category = NODES[title]
         job = {
             "backend": backend,

@@ -8,6 +8,8 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,17 +25,17 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts import base
 from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.hosts.cycles import closures
+from mxeon.shaders.hosts.cycles import closures, graphs, tracing
 from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.hosts.process import Worker
+from mxeon.shaders.inner_lobes import inner_lobes
 from mxeon.shaders.library import data_folder
-from mxeon.shaders.scene import Scene, sphere
-
-# Samples per pixel under an environment, 1 being enough under a distant light.
-ENVIRONMENT_SAMPLES = 256
+from mxeon.shaders.scene import FRONT, Scene, sphere
 
 # Pictures that are kept: the checks of a node ask for some of them again.
 PICTURES = 64
+
+EMITTER = Scene("emitter")  # without light, for what shines by itself
 
 # Cycles has no surface coordinates on a point cloud: a block that opens like this gives the globals
 # `u` and `v`, which a generated shader reads, the values of `mxeon.shaders.scene.sphere`.
@@ -124,12 +126,34 @@ class Host(base.Host):
         Notes
         -----
         Accuracy: float32 rounding under a distant light. Under an environment a pixel is a mean of
-        ENVIRONMENT_SAMPLES samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
+        `tracing.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
         the rim, and 2e-5 in the mean over the sphere.
         """
         if isinstance(scene.environment, (str, Path)):
             raise NotRun("cycles: environment must be uniform; got an image")
-        return self._picture(scene, text=_on_sphere(shader.stages["pixel"]))
+        text = _on_sphere(shader.stages["pixel"])
+        return self._picture(scene, inner_lobes(shader), text=text)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """Paths that are too few or too short; see `mxeon.shaders.hosts.base.Host`."""
+        return tracing.approximations(scene, inner_lobes(shader))
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's graph, the one branch that is none of closures; see `base.Host`."""
+        if branch != graphs.BRANCH:
+            raise self._unsupported("values for pairs of directions", "gl")
+        source, arguments = graphs.graph_function(shader, inputs)
+        return self.execute(_with_header(source), graphs.FUNCTION, *arguments)
 
     def blender_node(self, kind: str, inputs: dict[str, Any], scene: Scene) -> NDArray[Any]:
         """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
@@ -153,7 +177,7 @@ class Host(base.Host):
         NotRun
             If the process fails.
         """
-        return self._picture(scene, kind=kind, inputs=tuple(inputs.items()))
+        return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
 
     def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of a function of the OSL sources; see `execute`.
@@ -190,7 +214,7 @@ class Host(base.Host):
                 function=function,
                 names=", ".join(names),
             )
-            frame = dict(size=size, samples=1, radius=2.0, light=None, environment=None)
+            frame = tracing.request(EMITTER, ()) | {"size": size, "radius": 2.0}
             pixels = self._render(Path(folder), text, **frame)
         return pixels.reshape(-1, 3)[:count]
 
@@ -205,7 +229,7 @@ class Host(base.Host):
         return {name: self._reason(name) for name in closures.CALLS}
 
     def _reason(self, closure: str) -> str:
-        frame = dict(size=4, samples=1, radius=1.0, light=(0.0, 0.0, 1.0), environment=None)
+        frame = tracing.request(replace(FRONT, size=4), ())
         try:
             with self._folder() as folder:
                 self._render(Path(folder), closures.text(closure), **frame)
@@ -220,17 +244,19 @@ class Host(base.Host):
     def _rendered(
         self,
         scene: Scene,
+        lobes: tuple[str, ...],
         text: str = "",
         kind: str = "",
         inputs: tuple[tuple[str, Any], ...] = (),
     ) -> NDArray[Any]:
         """Picture of the sphere with an OSL shader or a node of Blender's on it; read-only."""
+        frame = tracing.request(scene, lobes)
         with self._folder() as folder:
             if text:
-                pixels = self._render(Path(folder), text, **_frame(scene))
+                pixels = self._render(Path(folder), text, **frame)
             else:
                 native = {"kind": kind, "inputs": dict(inputs)}
-                pixels = self._request(Path(folder), native=native, **_frame(scene))
+                pixels = self._request(Path(folder), native=native, **frame)
         image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
         image.flags.writeable = False  # shared by all callers
         return image
@@ -269,22 +295,15 @@ class Host(base.Host):
             raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
 
 
-def _frame(scene: Scene) -> dict[str, Any]:
-    """Parts of a scene that the worker needs."""
-    return {
-        "size": scene.size,
-        "samples": 1 if scene.environment is None else ENVIRONMENT_SAMPLES,
-        "radius": 1.0,
-        "light": scene.light,
-        "environment": scene.environment,
-    }
+def _with_header(text: str) -> str:
+    """A generated text with the path of its include."""
+    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+    return text.replace('"mx_funcs.h"', f'"{header.asString()}"')
 
 
 def _on_sphere(text: str) -> str:
     """A generated shader with the path of its include and the sphere's texture coordinates."""
-    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
-    text = text.replace('"mx_funcs.h"', f'"{header.asString()}"')
-    head, brace, body = text.rpartition("\n)\n{\n")
+    head, brace, body = _with_header(text).rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"
 
 

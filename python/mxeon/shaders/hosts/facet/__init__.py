@@ -82,6 +82,7 @@ class FacetHost(base.Host):
         self, title: str, color: Sequence[float], roughness: float, scene: Scene
     ) -> NDArray[Any]:
         """Picture of the polyhedron with one of the renderer's nodes on it."""
+        self.refuse_paths(scene)
         return self._picture(title, tuple(map(float, color)), float(roughness), scene)
 
     def close(self) -> None:

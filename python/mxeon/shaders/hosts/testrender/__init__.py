@@ -72,6 +72,7 @@ class Host(base.Host):
         ndarray, shape (size * size, 3), float64
             pi f cos(theta_i), or radiance.
         """
+        self.refuse_paths(scene)
         for name, text in {shader.name: shader.stages["pixel"], **HELPERS}.items():
             self._compile(name, text)
         for name, text in planes.files(shader.name, scene).items():

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Roughness and absorption of hair from what an artist sets.
+
+// Roughnesses and colors below are taken for this one: a lobe without a width divides by 0.
+#define HAIR_LEAST 1e-3
+
+// Share of light that the largest concentration of melanin leaves.
+#define HAIR_LEAST_SHARE 1e-4
+
+// The least share that a pigment leaves, whose logarithm is finite.
+#define HAIR_LEAST_COLOR 1e-30
+
+// [MaterialX2026], Hair Roughness Conversion Equations: the longitudinal variance v.
+float hair_variance(float longitudinal)
+{
+    float l = clamp(longitudinal, HAIR_LEAST, 1.0);
+    float root = l * (0.726 + 0.812 * l) + 3.7 * pow(l, 20.0);
+    return root * root;
+}
+
+// The same: the azimuthal logistic scale s.
+float hair_scale(float azimuthal)
+{
+    float a = clamp(azimuthal, HAIR_LEAST, 1.0);
+    return a * (0.265 + 1.194 * a) + 5.372 * pow(a, 22.0);
+}
+
+// Absorption of a mix of both melanins: [dEon2011], with amounts as implementations take them.
+vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelanin, vec3 pheomelanin)
+{
+    float melanin = -log(max(1.0 - max(concentration, 0.0), HAIR_LEAST_SHARE));
+    float red = clamp(redness, 0.0, 1.0);
+    vec3 brown = -log(clamp(eumelanin, vec3(HAIR_LEAST_COLOR), vec3(1.0)));
+    vec3 blond = -log(clamp(pheomelanin, vec3(HAIR_LEAST_COLOR), vec3(1.0)));
+    return melanin * ((1.0 - red) * brown + red * blond);
+}
+
+// Absorption of hair of an apparent albedo: [Chiang2016], the fit of the absorption.
+vec3 hair_absorption_of_color(vec3 scattering, float azimuthal)
+{
+    float b = clamp(azimuthal, 0.0, 1.0);
+    float fit = 5.969 - b * (0.215 - b * (2.532 - b * (10.73 - b * (5.574 + b * 0.245))));
+    vec3 root = log(clamp(scattering, vec3(HAIR_LEAST), vec3(1.0))) / fit;
+    return root * root;
+}

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Airy reflectance of a thin film in linear Rec. 709: [MaterialX2026], Thin-Film Iridescence Model.
+//
+// Each color channel has its own substrate, and its own sum over CIE XYZ. Reflected amplitudes are
+// complex numbers as vec2, so that no phase is taken from an arctangent.
+
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
+
+// mu and sigma^2 of the sensitivities of X, X, Y and Z, in 1/m and 1/m^2.
+#define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
+#define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
+
+// Their heights v sqrt(2 pi sigma^2) / 1.0685e-7 times the matrix from XYZ under white E to Rec. 709,
+// `XYZ_TO_REC709_E` of mxeon.models.colorimetry: a film that vanishes has to leave white alone.
+#define THIN_FILM_RED vec4(2.663585, 0.4841083, -1.666494, -0.480666)
+#define THIN_FILM_GREEN vec4(-0.84281, -0.1531813, 1.956197, 0.03981614)
+#define THIN_FILM_BLUE vec4(0.05384126, 0.009785686, -0.2146441, 1.152291)
+
+// Gauss's rule for the average over a hemisphere, 2 F(mu) mu dmu, in five cosines.
+#define THIN_FILM_MU1 0.09853509
+#define THIN_FILM_W1 0.03149583
+#define THIN_FILM_MU2 0.30453573
+#define THIN_FILM_W2 0.14781774
+#define THIN_FILM_MU3 0.56202519
+#define THIN_FILM_W3 0.29277397
+#define THIN_FILM_MU4 0.80198658
+#define THIN_FILM_W4 0.33434928
+#define THIN_FILM_MU5 0.96019014
+#define THIN_FILM_W5 0.19356318
+
+// Gauss's rule on [0, 1] in three nodes, the one in the middle at 1/2.
+#define THIN_FILM_U 0.11270167
+#define THIN_FILM_W (5.0 / 18.0)
+#define THIN_FILM_WM (8.0 / 18.0)
+
+// Two quotients of 0 by 0 are kept finite: of a vanishing root, and of full reflection at grazing.
+#define THIN_FILM_LEAST 1e-12
+
+// Waves of a path difference: 2 pi mu opd, and exp(-k (2 pi sigma opd)^2) by k.
+struct ThinFilmWaves
+{
+    vec4 angle;
+    vec4 k1;
+    vec4 k4;
+    vec4 k9;
+    vec4 k16;
+    vec4 k25;
+    vec4 k11;
+};
+
+ThinFilmWaves thin_film_waves(float opd)
+{
+    float phase = 2.0 * M_PI * opd;
+    ThinFilmWaves waves;
+    waves.angle = THIN_FILM_POSITIONS * phase;
+    waves.k1 = exp(-THIN_FILM_VARIANCES * (phase * phase));
+    vec4 k2 = waves.k1 * waves.k1;
+    waves.k4 = k2 * k2;
+    waves.k9 = waves.k4 * waves.k4 * waves.k1;
+    waves.k16 = waves.k4 * waves.k4 * waves.k4 * waves.k4;
+    waves.k25 = waves.k16 * waves.k9;
+    waves.k11 = waves.k9 * k2;
+    return waves;
+}
+
+// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z. Four are summed; what follows is a
+// geometric series from the fifth on, with the ratio of the sixth to it.
+vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
+{
+    vec4 c = mx_cos(waves.angle);
+    vec4 s = mx_sin(waves.angle);
+    vec4 x = z.x * c - z.y * s;
+    vec4 y = z.x * s + z.y * c;
+    vec4 x2 = x * x - y * y;
+    vec4 y2 = 2.0 * x * y;
+    vec4 x4 = x2 * x2 - y2 * y2;
+    vec4 y4 = 2.0 * x2 * y2;
+    vec4 total = waves.k1 * x + waves.k4 * x2 + waves.k9 * (x2 * x - y2 * y) + waves.k16 * x4;
+    vec4 rest = 1.0 - waves.k11 * x;
+    vec4 lost = waves.k11 * y;
+    vec4 x5 = x4 * x - y4 * y;
+    vec4 y5 = x4 * y + y4 * x;
+    return total + waves.k25 * (x5 * rest - y5 * lost) / max(rest * rest + lost * lost, THIN_FILM_LEAST);
+}
+
+// Reflectance of one polarization: amplitude r12 of the upper interface, and re + i im of the lower one.
+vec3 thin_film_polarized(float r12, vec3 re, vec3 im, ThinFilmWaves waves)
+{
+    float R12 = r12 * r12;
+    float T12 = 1.0 - R12;
+    vec3 R23 = re * re + im * im;
+    vec3 left = max(1.0 - R12 * R23, THIN_FILM_LEAST);
+    vec3 orders = vec3(dot(THIN_FILM_RED, thin_film_orders(-r12 * vec2(re.x, im.x), waves)),
+                       dot(THIN_FILM_GREEN, thin_film_orders(-r12 * vec2(re.y, im.y), waves)),
+                       dot(THIN_FILM_BLUE, thin_film_orders(-r12 * vec2(re.z, im.z), waves)));
+    return R12 + T12 * (T12 * R23 - 2.0 * (1.0 - R23) * orders) / left;
+}
+
+// Root U + i V of (ior + i extinction)^2 - n^2 sin^2, of which the smaller part does not cancel.
+void thin_film_root(float n2_sin2, vec3 ior, vec3 extinction, out vec3 U, out vec3 V)
+{
+    vec3 A = ior * ior - extinction * extinction - n2_sin2;
+    vec3 Q = ior * extinction;
+    vec3 larger = sqrt(0.5 * (sqrt(A * A + 4.0 * Q * Q) + abs(A)));
+    vec3 smaller = Q / max(larger, THIN_FILM_LEAST);
+    vec3 dense = step(vec3(0.0), A);
+    U = mix(smaller, larger, dense);
+    V = mix(larger, smaller, dense);
+}
+
+// (a - b) / (a + b) of complex vectors, a in x + i y, b in u + i v.
+void thin_film_amplitude(vec3 x, vec3 y, vec3 u, vec3 v, out vec3 re, out vec3 im)
+{
+    vec3 below = max((x + u) * (x + u) + (y + v) * (y + v), THIN_FILM_LEAST);
+    re = (x * x + y * y - u * u - v * v) / below;
+    im = 2.0 * (y * u - x * v) / below;
+}
+
+// F_airy at a cosine. A film thinner than vacuum counts as vacuum; a negative curve has no amplitude.
+vec3 thin_film_fresnel(float mu, FresnelData fd)
+{
+    float n = max(fd.tf_ior, 1.0);
+    float sin2 = (1.0 - mu) * (1.0 + mu);
+    float mu_t = sqrt(max(1.0 - sin2 / (n * n), 0.0));
+    ThinFilmWaves waves = thin_film_waves(2.0e-9 * n * mu_t * fd.tf_thickness);
+    float gap = (n - 1.0) * (n + 1.0);  // 0 without a film, at grazing too
+    float s = mu + n * mu_t;
+    float p = n * mu + mu_t;
+    float r_s = -gap / max(s * s, THIN_FILM_LEAST);
+    float r_p = gap * (mu * mu - sin2 / (n * n)) / max(p * p, THIN_FILM_LEAST);
+    vec3 re_p, im_p, re_s, im_s;
+    if (fd.model == FRESNEL_MODEL_SCHLICK)
+    {
+        re_p = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0))
+               * (2.0 * step(vec3((n - 1.0) / (n + 1.0)), sqrt(fd.F0)) - 1.0);  // index above n
+        re_s = -re_p;
+        im_p = vec3(0.0);
+        im_s = vec3(0.0);
+    }
+    else
+    {
+        vec3 U, V;
+        thin_film_root(sin2, fd.ior, fd.extinction, U, V);
+        thin_film_amplitude(vec3(n * mu_t), vec3(0.0), U, V, re_s, im_s);
+        vec3 real = (fd.ior * fd.ior - fd.extinction * fd.extinction) * mu_t;
+        thin_film_amplitude(real, 2.0 * fd.ior * fd.extinction * mu_t, n * U, n * V, re_p, im_p);
+    }
+    vec3 F = thin_film_polarized(r_p, re_p, im_p, waves) + thin_film_polarized(r_s, re_s, im_s, waves);
+    return clamp(0.5 * F, 0.0, 1.0);
+}
+
+// F_ss, the cosine-weighted average over the hemisphere.
+vec3 thin_film_avg(FresnelData fd)
+{
+    return THIN_FILM_W1 * thin_film_fresnel(THIN_FILM_MU1, fd) + THIN_FILM_W2 * thin_film_fresnel(THIN_FILM_MU2, fd)
+           + THIN_FILM_W3 * thin_film_fresnel(THIN_FILM_MU3, fd) + THIN_FILM_W4 * thin_film_fresnel(THIN_FILM_MU4, fd)
+           + THIN_FILM_W5 * thin_film_fresnel(THIN_FILM_MU5, fd);
+}
+
+// Average over the visible facets of a lobe whose roughness is alpha in both directions: three heights
+// by three azimuths on one side of the plane of view, each weighted by its masking.
+vec3 thin_film_visible(float mu_o, float alpha, FresnelData fd)
+{
+    vec3 wo = vec3(sqrt(max(1.0 - mu_o * mu_o, 0.0)), 0.0, mu_o);
+    vec3 total = vec3(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < 9; i++)
+    {
+        int row = i / 3;
+        float u = row == 0 ? THIN_FILM_U : (row == 1 ? 0.5 : 1.0 - THIN_FILM_U);
+        float azimuth = (float(i - 3 * row) + 0.5) / 6.0;  // in units of 2 pi
+        vec3 H = mx_ggx_importance_sample_VNDF(vec2(azimuth, u), wo, vec2(alpha));
+        float c = clamp(dot(wo, H), 0.0, 1.0);
+        float mu_i = max(2.0 * c * H.z - mu_o, 0.0);
+        float weight = (row == 1 ? THIN_FILM_WM : THIN_FILM_W) * mx_ggx_smith_G2(mu_i, mu_o, alpha);
+        total += weight * thin_film_fresnel(c, fd);
+        weights += weight;
+    }
+    return total / weights;
+}

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements of surface shaders as a whole."""
+
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+
+BRANCHES = ("direct", "environment", "transmission")
+
+
+def value(probe: Any, metric: Metric) -> Measurement:
+    """Values against the sum of the lobes by the layer equation."""
+    pairs = zip(probe.batches, probe.expected, strict=True)
+    return worst_of(metric, (Case(batch, probe.direct(batch), each) for batch, each in pairs))
+
+
+def energy(probe: Any, metric: Metric) -> Measurement:
+    """Albedos above 1 over random materials with every lobe."""
+    albedo = probe.albedo(probe.materials)
+    return worst_of(metric, [Case(probe.materials, np.maximum(albedo, 1.0), np.ones((1, 3)))])
+
+
+def furnace(probe: Any, metric: Metric) -> Measurement:
+    """Albedo against 1 of a material that loses no light."""
+    albedo = probe.albedo(probe.white)
+    return worst_of(metric, [Case(probe.white, albedo, np.ones((1, 3)))])
+
+
+def reach(probe: Any, _: Metric) -> Measurement:
+    """Number of inputs that change something where the page says nothing, or the reverse."""
+    wrong = misplaced(probe)
+    return Measurement(len(wrong), {name: [0.0] for name in wrong})
+
+
+def misplaced(probe: Any) -> list[str]:
+    """The inputs of `reach`."""
+    silent = set(probe.subject.table.silent)
+    return sorted(silent.symmetric_difference(without_effect(probe)))
+
+
+def without_effect(probe: Any) -> list[str]:
+    """Inputs that change no value in any branch."""
+    names = probe.subject.inputs
+    heard = np.zeros(len(names), bool)
+    for branch in BRANCHES:
+        values = probe.response(probe.changed, branch).reshape(len(names), 2, -1)
+        heard |= (values[:, 0] != values[:, 1]).any(axis=1)
+    return [name for name, each in zip(names, heard, strict=True) if not each]

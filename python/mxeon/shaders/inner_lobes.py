@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lobes of a material that send light below its surface, which one look at the surface cannot show.
+
+A document's graph is walked from its material. A side of a mix with the constant weight 0 or 1 that
+has no effect is left out, and so is a lobe of weight 0; a weight that is computed counts as any.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import MaterialX as mx
+
+from mxeon.shaders.document.graphs import reachable
+from mxeon.shaders.generation import Shader
+
+Path: TypeAlias = tuple[str, ...]  # name paths of the nodes around a node, and its own
+
+SUBSURFACE, TRANSMISSION, VOLUME = "subsurface", "transmission", "volume"
+KINDS = {
+    "subsurface_bsdf": SUBSURFACE,
+    "absorption_vdf": VOLUME,
+    "anisotropic_vdf": VOLUME,
+}
+# The arithmetic by which MaterialX's surface shaders make weights of switches.
+ARITHMETIC: dict[str, tuple[tuple[str, ...], Callable[..., float]]] = {
+    "convert": (("in",), lambda value: value),
+    "ifgreater": (("value1", "value2", "in1", "in2"), lambda a, b, one, two: one if a > b else two),
+    "switch": (("in1", "in2", "which"), lambda one, two, which: two if which >= 1.0 else one),
+}
+# What hands light on from node to node.
+CLOSURES = ("BSDF", "VDF", "surfaceshader", "volumeshader", "material")
+
+
+def inner_lobes(shader: Shader) -> tuple[str, ...]:
+    """Kinds of a shader's lobes below the surface.
+
+    Returns
+    -------
+    tuple of str
+        Of "subsurface", "transmission" and "volume", in this order.
+
+    Examples
+    --------
+    >>> from mxeon.shaders.generation import generate
+    >>> from mxeon.shaders.nodes import SURFACE, document_text
+    >>> text = document_text('<subsurface_bsdf name="lobe" type="BSDF"/>' + SURFACE)
+    >>> inner_lobes(generate(text, "glsl")[0])
+    ('subsurface',)
+    """
+    element = shader.document.getDescendant(shader.element)
+    root = element.getConnectedNode() if element.isA(mx.Output) else element
+    walk = _Walk()
+    reachable([walk.path((), root)], walk.parts)
+    return tuple(kind for kind in (SUBSURFACE, TRANSMISSION, VOLUME) if kind in walk.kinds)
+
+
+class _Walk:
+    """The nodes of a graph by their paths, and the kinds of lobes among those that were seen."""
+
+    def __init__(self) -> None:
+        self._nodes: dict[Path, Any] = {}
+        self.kinds: set[str] = set()
+
+    def path(self, around: Path, node: Any) -> Path:
+        """Path of a node within another one."""
+        path = (*around, node.getNamePath())
+        self._nodes[path] = node
+        return path
+
+    def parts(self, path: Path) -> tuple[Path, ...]:
+        """Paths of the nodes from which a node's light comes."""
+        node = self._nodes[path]
+        kind = KINDS.get(node.getCategory())
+        if _text(node, "scatter_mode") in ("T", "RT"):
+            kind = TRANSMISSION
+        if kind and self._constant(path, "weight") != 0.0:
+            self.kinds.add(kind)
+        inside = node.getImplementation()
+        if inside and inside.isA(mx.NodeGraph):
+            outputs = (output.getConnectedNode() for output in inside.getOutputs())
+            return tuple(self.path(path, output) for output in outputs if output)
+        sources = (self._source(path, name) for name in self._effective(path, node))
+        return tuple(source for source in sources if source)
+
+    def _effective(self, path: Path, node: Any) -> tuple[str, ...]:
+        """Names of the inputs that hand on light."""
+        category = node.getCategory()
+        if category == "mix":
+            weight = self._constant(path, "mix")
+            return {0.0: ("bg",), 1.0: ("fg",)}.get(weight, ("bg", "fg"))  # type: ignore[arg-type]
+        if category == "multiply" and self._constant(path, "in2") == 0.0:
+            return ()
+        return tuple(port.getName() for port in node.getInputs() if port.getType() in CLOSURES)
+
+    def _resolved(self, path: Path, name: str) -> tuple[Path, Any]:
+        """The input that a node's input stands for, and the path of its node."""
+        while port := _port(self._nodes[path], name):
+            if not port.hasInterfaceName() or len(path) < 2:
+                break
+            path, name = path[:-1], port.getInterfaceName()
+        return path, port
+
+    def _source(self, path: Path, name: str) -> Path | None:
+        """Path of the node connected to an input, or None."""
+        path, port = self._resolved(path, name)
+        node = port.getConnectedNode() if port else None
+        if not node:
+            return None
+        graph, parent = node.getParent(), self._nodes[path].getParent()
+        if graph.getNamePath() == parent.getNamePath():
+            return self.path(path[:-1], node)
+        return self.path(self.path((), graph), node)
+
+    def _constant(self, path: Path, name: str) -> float | None:
+        """Number that an input has; None where there is none, or one that cannot be told here."""
+        if source := self._source(path, name):
+            ports, function = ARITHMETIC.get(self._nodes[source].getCategory(), ((), None))
+            numbers = [self._constant(source, port) for port in ports]
+            return function(*numbers) if function and None not in numbers else None
+        _, port = self._resolved(path, name)
+        value = port.getValue() if port else None
+        return float(value) if isinstance(value, (bool, int, float)) else None
+
+
+def _port(node: Any, name: str) -> Any:
+    """Input of a node, or else of its nodedef, or None."""
+    definition = node.getNodeDef()
+    return node.getInput(name) or (definition and definition.getActiveInput(name)) or None
+
+
+def _text(node: Any, name: str) -> str:
+    """Text of an input, or of its default."""
+    port = _port(node, name)
+    return str(port.getValueString()) if port else ""

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes that emit light, and media: verdicts on MaterialX, on eonlib, and on wrong shaders."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.emission.family import ALL_PROBES, EMISSION_SUBJECTS
+from mxeon.conformance.checks.emission.subjects import CONE, EDFS, LEAST_FALLOFF
+from mxeon.conformance.checks.emission.tolerances import QUADRATURE, cone_roundings
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
+from mxeon.conformance.run.plan import make_plan
+from mxeon.shaders.library import data_folder
+from tests.conformance.test_bsdfs import wrong_library
+
+SUBJECTS = {subject.title: subject for subject in EMISSION_SUBJECTS}
+ROWS = {check.key: check for check in CHECKS}
+ABSENT = ("conical_edf", "absorption_vdf", "measured_edf", "mix, VDF", "add, VDF", "multiply, VDF")
+REPAIRED = ("conical_edf", "absorption_vdf")
+STOCK = {
+    **{title: {"implemented": f"glsl has no implementation of {title}"} for title in ABSENT},
+    "anisotropic_vdf": {
+        "inputs": "without effect: scattering",
+        "transmittance": "nearest known model: absorption alone (rms ",
+    },
+    "surface, an EDF alone": {"opacity": "the opacity is ignored"},
+}
+COLOR, HALF = "result = color;", "color * 0.31830989"
+UNIFORM, SCHLICK = "mx_uniform_edf.glsl", "mx_generalized_schlick_edf.glsl"
+MIX, MEDIUM = "mx_mix_edf.glsl", "mx_anisotropic_vdf.glsl"
+CURVE = "result = base * f;"
+
+# By name: subject, file, text, the text in its place, key of the check, words of the diagnosis.
+WRONG = {
+    "exitance": (
+        "uniform_edf", UNIFORM, COLOR, f"result = {HALF};", "radiance",
+        "nearest known model: the color as an exitance, over pi (rms ",
+    ),
+    "power": (
+        "uniform_edf", UNIFORM, COLOR, f"result = {HALF};", "exitance",
+        "nearest known model: the color as an exitance, over pi (rms ",
+    ),
+    "exponent": (
+        "generalized_schlick_edf", SCHLICK, ", exponent)", ", 5.0)", "inputs",
+        "without effect: exponent",
+    ),
+    "curve": (
+        "generalized_schlick_edf", SCHLICK, CURVE, "result = base;", "radiance",
+        "nearest known model: the base without its curve (rms ",
+    ),
+    "back of a curve": (
+        "generalized_schlick_edf", SCHLICK, "closureData.V), M_FLOAT_EPS",
+        "closureData.V) * 0.5, M_FLOAT_EPS", "back", "",
+    ),
+    "share": ("mix, EDF", MIX, "mix(bg, fg, ", "mix(fg, bg, ", "radiance", ""),
+    "medium": (
+        "anisotropic_vdf", MEDIUM, "exp(-absorption)", "vec3(1.0)", "transmittance",
+        "nearest known model: no medium at all (rms ",
+    ),
+}  # fmt: skip
+
+
+def judged(host, title, library, *keys):
+    """Results of the checks of a subject, or of those of these keys, by key."""
+    subject = SUBJECTS[title]
+    probe = ALL_PROBES[subject.kind](host, subject, library)
+    rows = [row for row in CHECKS if applies(row, subject, probe.kind, host.name)]
+    return {row.key: judge_check(row, probe) for row in rows if row.key in (keys or ROWS)}
+
+
+@pytest.mark.parametrize("title", SUBJECTS)
+def test_stock_materialx_has_its_known_departures_and_no_others(gl, title):
+    results, words = judged(gl, title, "stock"), STOCK.get(title, {})
+    rest = NOT_RUN if title in ABSENT else PASSED
+    assert {key: result.verdict for key, result in results.items()} == {
+        key: FAILED if key in words else rest for key in results
+    }
+    assert all(words.get(key, "") in result.diagnosis for key, result in results.items())
+    assert all(result.control.caught for result in results.values() if result.control)
+
+
+@pytest.mark.parametrize("title", [each.title for each in EMISSION_SUBJECTS if not each.libraries])
+def test_eonlib_has_every_emission_and_medium_that_it_is_asked_for(gl, title):
+    results = judged(gl, title, "eonlib")
+    assert len(results) >= 3
+    assert {result.verdict for result in results.values()} == {PASSED}
+    assert all(result.control.caught for result in results.values())
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_line_fails_a_check_and_is_named(gl, tmp_path, name):
+    title, file, text, other, key, words = WRONG[name]
+    [result] = judged(gl, title, wrong_library(tmp_path, file, text, other), key).values()
+    assert result.verdict == FAILED and result.control.caught
+    assert words in result.diagnosis
+
+
+def test_a_cone_of_the_wrong_angles_is_named(gl, tmp_path):
+    result = cone(gl, tmp_path, "u = angle", "u = min(2.0 * angle, 360.0)", "radiance")
+    assert result.verdict == FAILED
+    assert "a cone whose angles count from its axis (rms " in result.diagnosis
+
+
+def test_a_cone_that_ignores_its_normal_fails_the_inputs(gl, tmp_path):
+    result = cone(gl, tmp_path, "dot(N, ", "dot(closureData.N, ", "inputs")
+    assert result.verdict == FAILED and result.diagnosis == "without effect: normal"
+
+
+def cone(gl, folder, text, other, key):
+    """Result of a check of eonlib's cone with one text in place of another."""
+    source = (data_folder() / "genglsl" / "conical_edf.glsl").read_text(encoding="utf-8")
+    assert text in source
+    (folder / "conical_edf.glsl").write_text(source.replace(text, other), encoding="utf-8")
+    (folder / "implementations.mtlx").write_text(
+        '<?xml version="1.0"?>\n<materialx version="1.39">\n'
+        '  <implementation name="IM_conical_edf_genglsl" nodedef="ND_conical_edf" '
+        'file="conical_edf.glsl" function="conical_edf" target="genglsl" />\n</materialx>\n',
+        encoding="utf-8",
+    )
+    return judged(gl, "conical_edf", str(folder), key)[key]
+
+
+def test_an_emission_from_one_side_alone_is_permitted(gl, tmp_path):
+    side = "result = (dot(closureData.N, closureData.V) < 0.0) ? vec3(0.0) : color;"
+    library = wrong_library(tmp_path, UNIFORM, COLOR, side)
+    results = judged(gl, "uniform_edf", library, "radiance", "back")
+    assert results["radiance"].verdict == PASSED and results["back"].verdict == DIFFERS
+    assert "emission from the front alone (rms 0)" in results["back"].diagnosis
+
+
+def test_every_check_of_emission_has_a_shader_that_it_fails():
+    failing = {key for rows in STOCK.values() for key in rows} | {row[4] for row in WRONG.values()}
+    models = {subject.model for subject in EMISSION_SUBJECTS}
+    assert failing == {row.key for row in CHECKS if models & {*row.models}}
+
+
+@pytest.mark.parametrize("subject", EDFS, ids=lambda each: each.title)
+def test_the_quadrature_of_the_equations_is_as_exact_as_its_tolerance_says(subject):
+    probe = ALL_PROBES[subject.kind](None, subject, "stock")
+    batch, weights = probe.integrated
+    values = subject.expected(batch).reshape(*weights.shape, 3)
+    exitance = subject.exitance(batch.where(np.arange(len(weights)) * weights.shape[1])) / np.pi
+    total = (weights[..., np.newaxis] * values).sum(axis=1)
+    assert np.abs(total - exitance).max() <= QUADRATURE
+
+
+def test_the_falloffs_that_are_asked_are_as_wide_as_the_tolerance_says():
+    probe = ALL_PROBES[CONE](None, SUBJECTS["conical_edf"], "stock")
+    assert 700.0 < cone_roundings() < 720.0
+    for batch in (*probe.batches, probe.backs):
+        inner, outer = (batch.inputs[f"{name}_angle"] for name in ("inner", "outer"))
+        soft = outer > inner
+        assert (outer - inner)[soft].min() >= LEAST_FALLOFF - 1e-4 and not soft.all()
+        assert min(inner.min(), outer.min()) >= 0.0 and max(inner.max(), outer.max()) <= 360.0
+
+
+def test_nodes_that_no_library_repairs_are_judged_with_stock_alone():
+    for library, expected in (("stock", True), ("eonlib", False)):
+        tasks = make_plan((), ("gl",), (library,), nodes=("all",)).tasks
+        titles = {task.subject for task in tasks}
+        assert ("measured_edf" in titles) is expected and "uniform_edf" in titles
+    assert "uniform_edf" not in {task.subject for task in make_plan((), ("gl",), ("stock",)).tasks}

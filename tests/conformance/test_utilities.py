@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The utility nodes of pbrlib: verdicts on stock MaterialX and eonlib, and on shaders with one wrong line."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.batch import Batch
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.checks.values import probes
+from mxeon.conformance.checks.values.measures import UNITS
+from mxeon.conformance.checks.values.probes import UtilityOslProbe, UtilityProbe
+from mxeon.conformance.checks.values.subjects import BASE, RANGES, UTILITY_SUBJECTS
+from mxeon.conformance.checks.values.tolerances import BLACKBODY, BLACKBODY_FIT
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.errors import Unsupported
+from mxeon.models.blackbody import XYZ_TO_REC709, blackbody_xyz, kang_xyz
+from mxeon.models.pbrlib.utilities import UTILITIES
+from mxeon.shaders.hosts import open_host
+from mxeon.shaders.library import data_folder, standard_folders
+from mxeon.shaders.nodes import document_text
+from tests.support.availability import available
+
+SUBJECTS = {subject.title: subject for subject in UTILITY_SUBJECTS}
+ROWS = {check.key: check for check in CHECKS}
+KEYS = ("output", "round_trip", "output_inputs", "output_finite")
+ROUGHNESS, ALBEDO = "chiang_hair_roughness", "deon_hair_absorption_from_melanin"
+COLOR, HAIR = "chiang_hair_absorption_from_color", "mx_chiang_hair_bsdf.glsl"
+
+# What fails with stock MaterialX, and words of the diagnosis; all else passes.
+STOCK_GLSL = {
+    ("output", "blackbody"): "Kang's cubic, drawn on below 1667 K",
+    ("output_finite", ALBEDO): "outputs are not finite",
+}
+IN_OSL = ("artistic_ior, extinction", "blackbody", f"{ROUGHNESS}, roughness_TRT", ALBEDO, COLOR)
+STOCK_OSL = {("output", title): "whatever the inputs are (rms 0)" for title in IN_OSL[2:]}
+
+# By name: title, file, text, the text in its place, key of the check, verdict, words of the diagnosis.
+ANISOTROPY, DUAL = "roughness_anisotropy", "roughness_dual"
+ARTISTIC, TRT = "artistic_ior", f"{ROUGHNESS}, roughness_TRT"
+WRONG = {
+    "Burley's aspect": (
+        ANISOTROPY,
+        "sqrt(1.0 - clamp(anisotropy, 0.0, 0.98))",
+        "sqrt(1.0 - 0.9 * anisotropy)",
+        "output",
+        DIFFERS,
+        "Burley's aspect of 2012",
+    ),
+    "OpenPBR's aspect": (
+        ANISOTROPY,
+        "        result.x = min(roughness_sqr / aspect, 1.0);\n        result.y = roughness_sqr * aspect;",
+        "        aspect = 1.0 - anisotropy;\n"
+        "        result.x = roughness_sqr * sqrt(2.0 / (1.0 + aspect * aspect));\n"
+        "        result.y = aspect * result.x;",
+        "output",
+        DIFFERS,
+        "OpenPBR's aspect",
+    ),
+    "turned": (
+        ANISOTROPY,
+        "result.y = roughness_sqr * aspect",
+        "result.y = roughness_sqr / aspect",
+        "output",
+        FAILED,
+        "",
+    ),
+    "no square": (
+        DUAL,
+        "roughness.x * roughness.x, M_FLOAT_EPS, 1.0);\n    result.y = clamp(roughness.y * roughness.y",
+        "roughness.x, M_FLOAT_EPS, 1.0);\n    result.y = clamp(roughness.y",
+        "output",
+        FAILED,
+        "a roughness that is not squared",
+    ),
+    "exchanged ends": (
+        f"{ARTISTIC}, ior",
+        "mix(n_max, n_min, edge_color)",
+        "mix(n_min, n_max, edge_color)",
+        "output",
+        FAILED,
+        "the ends of n exchanged",
+    ),
+    "no light back": (
+        f"{ARTISTIC}, ior",
+        "(np1*np1 * r - nm1*nm1)",
+        "(np1*np1 * r)",
+        "round_trip",
+        FAILED,
+        "",
+    ),
+    "extinction without a root": (
+        f"{ARTISTIC}, extinction",
+        "sqrt(k2)",
+        "k2",
+        "output",
+        FAILED,
+        "",
+    ),
+    "roughness of no lobe": (
+        TRT,
+        "v * scale_TRT * scale_TRT",
+        "v * 4.0",
+        "output_inputs",
+        FAILED,
+        "without effect: scale_TRT",
+    ),
+    "scales without squares": (
+        TRT,
+        "v * scale_TRT * scale_TRT",
+        "v * scale_TRT",
+        "output",
+        FAILED,
+        "scales that are not squared",
+    ),
+    "deviation": (
+        TRT,
+        "v = v * v;",
+        "",
+        "output",
+        FAILED,
+        "a deviation in place of the variance",
+    ),
+    "exchanged melanins": (
+        ALBEDO,
+        "eumelanin * -log(eumelanin_color) + pheomelanin * -log(pheomelanin_color)",
+        "pheomelanin * -log(eumelanin_color) + eumelanin * -log(pheomelanin_color)",
+        "output",
+        FAILED,
+        "the shares of both melanins exchanged",
+    ),
+    "wrong digit": (COLOR, "5.574 * b4", "5.547 * b4", "output", FAILED, ""),
+    "black hair": (
+        COLOR,
+        "min(max(color, 0.001), vec3(1.0))",
+        "color",
+        "output_finite",
+        FAILED,
+        "with color 0 or below",
+    ),
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_inputs():
+    """Let probes have few inputs: what is wrong here is wrong for most."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(probes, "COUNT", 1 << 9)
+        patch.setattr(probes, "FEW", 1 << 7)
+        yield
+
+
+@pytest.fixture(scope="module")
+def cycles():
+    with available("cycles"):
+        host = open_host("cycles")
+        host.identity()
+    yield host
+    host.close()
+
+
+def judged(probe_type, host, library, keys=KEYS, titles=SUBJECTS):
+    """Results of the checks of some subjects."""
+    found = [probe_type(host, SUBJECTS[title], library) for title in titles]
+    return [
+        judge_check(ROWS[key], probe)
+        for probe in found
+        for key in keys
+        if applies(ROWS[key], probe.subject, probe.kind, host.name)
+    ]
+
+
+def assert_known(results, known):
+    """Check that these rows fail, by these words, that all others pass, and that controls fail."""
+    assert {(each.check, each.subject) for each in results if each.verdict != PASSED} == set(known)
+    assert all(known.get((each.check, each.subject), "") in each.diagnosis for each in results)
+    assert all(each.control.caught for each in results)
+
+
+def test_stock_glsl_has_its_known_departures_and_no_others(gl):
+    assert_known(judged(UtilityProbe, gl, "stock"), STOCK_GLSL)
+
+
+def test_stock_osl_has_constants_for_hair(cycles):
+    assert_known(judged(UtilityOslProbe, cycles, "stock", ("output",), IN_OSL), STOCK_OSL)
+
+
+def test_no_input_has_an_effect_in_the_constants_of_osl(cycles):
+    [result] = judged(UtilityOslProbe, cycles, "stock", ("output_inputs",), (COLOR,))
+    assert result.verdict == FAILED and result.error == 2.0
+
+
+def test_eonlib_has_every_node_in_glsl(gl):
+    assert_known(judged(UtilityProbe, gl, "eonlib"), {})
+
+
+def test_eonlib_has_the_nodes_of_hair_in_osl(cycles):
+    assert_known(judged(UtilityOslProbe, cycles, "eonlib", ("output",), IN_OSL[2:]), {})
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_line_of_a_utility_node_fails_a_check_and_is_named(gl, tmp_path, name):
+    title, text, other, key, verdict, words = WRONG[name]
+    library = wrong_library(tmp_path, SUBJECTS[title].node, text, other)
+    [result] = judged(UtilityProbe, gl, library, (key,), (title,))
+    assert result.verdict == verdict and result.control.caught
+    assert words in result.diagnosis
+
+
+def test_every_check_of_the_utility_nodes_has_a_shader_that_it_fails():
+    failing = {key for _, _, _, key, *_ in WRONG.values()}
+    assert failing == set(KEYS) == {row.key for row in CHECKS if "artistic_ior" in row.models}
+
+
+def wrong_library(folder, node, text, other):
+    """A library of one utility node of stock MaterialX, with one text in place of another."""
+    (pbrlib,) = [
+        path for each in standard_folders() if (path := each / "pbrlib" / "genglsl").is_dir()
+    ]
+    rows = (pbrlib / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8").splitlines()
+    (row,) = [row for row in rows if f'nodedef="ND_{node}"' in row]
+    file = row.split('file="')[1].split('"')[0]
+    source = (pbrlib / file).read_text(encoding="utf-8")
+    assert text in source
+    source = source.replace('#include "lib/', '#include "libraries/pbrlib/genglsl/lib/')
+    (folder / file).write_text(source.replace(text, other), encoding="utf-8")
+    document = f'<?xml version="1.0"?>\n<materialx version="1.39">\n{row}\n</materialx>\n'
+    (folder / "implementations.mtlx").write_text(document, encoding="utf-8")
+    return str(folder)
+
+
+# --- subjects and hosts -------------------------------------------------------------------------
+
+
+def test_subjects_have_the_ports_of_the_definitions():
+    text = "".join(
+        path.read_text(encoding="utf-8")
+        for each in standard_folders()
+        if (path := each / "pbrlib" / "pbrlib_defs.mtlx").is_file()
+    )
+    for row in UTILITIES:
+        definition = text.split(f'<nodedef name="ND_{row.category}"')[1].split("</nodedef>")[0]
+        assert [f'<input name="{name}"' in definition for name in row.inputs] == [True] * len(
+            row.inputs
+        )
+        assert definition.count("<input ") == len(row.inputs)
+        for name, kind in row.outputs.items():
+            assert f'<output name="{name}" type="{kind}"' in definition
+        for value in row.inputs.values():
+            assert f'value="{", ".join(map(str, np.ravel(value)))}"' in definition
+
+
+@pytest.mark.parametrize("title", SUBJECTS)
+def test_random_inputs_are_float32_numbers_in_their_ranges(title):
+    rng = np.random.default_rng(1)
+    for draw in (SUBJECTS[title].random_inputs, SUBJECTS[title].special_inputs):
+        for name, values in draw(rng, 64).items():
+            low, high = np.float32(RANGES.get(name, (0.0, 1.0)))
+            assert np.array_equal(values, values.astype(np.float32))
+            assert low <= values.min() and values.max() <= high, name
+
+
+def test_changes_are_of_one_input_and_of_those_that_the_output_depends_on():
+    assert SUBJECTS[TRT].inputs == ("longitudinal", "azimuthal", "scale_TRT")
+    before, after = SUBJECTS[TRT].changes["scale_TRT"]
+    assert {name for name in before if before[name] != after[name]} == {"scale_TRT"}
+    assert set(BASE) <= set(RANGES)
+
+
+def test_units_of_an_artistic_index_are_0_to_1():
+    subject = SUBJECTS["artistic_ior, ior"]
+    inputs = subject.random_inputs(np.random.default_rng(1), 1000)
+    batch = Batch(np.zeros((1000, 3)), np.zeros((1000, 3)), inputs)
+    for title, unit in UNITS.items():
+        values = unit(SUBJECTS[title].expected(batch), batch)
+        assert (values.min() >= 0.0 and 0.5 < values.max() <= 1.0) or title.endswith("extinction")
+
+
+def test_a_shader_without_a_uniform_edf_has_no_graph(gl):
+    text = document_text('<surface_unlit name="shading" type="surfaceshader"/>')
+    wo = np.array([[0.0, 0.0, 1.0]])
+    with pytest.raises(ValueError, match="element 'look' must call a uniform EDF"):
+        gl.evaluate(gl.compile(text)[0], wo, wo, {}, "graph")
+
+
+def test_a_shader_without_a_uniform_edf_has_no_graph_in_osl(cycles):
+    text = document_text('<surface_unlit name="shading" type="surfaceshader"/>')
+    wo = np.array([[0.0, 0.0, 1.0]])
+    shader = cycles.compile(text, library="stock")[0]
+    with pytest.raises(ValueError, match="element 'look' must call a uniform EDF"):
+        cycles.evaluate(shader, wo, wo, {}, "graph")
+    with pytest.raises(Unsupported, match="no values for pairs of directions; gl has"):
+        cycles.evaluate(shader, wo, wo, {}, "direct")
+
+
+# --- figures of the page on the black body ------------------------------------------------------
+
+
+def test_the_page_on_cold_bodies_has_the_figures_of_the_fits():
+    page = (data_folder() / "docs/upstream/genglsl_blackbody_cold.md").read_text(encoding="utf-8")
+    for kelvin in (800.0, 1000.0, 1200.0, 1400.0, 1667.0, 5000.0):
+        row = next(line for line in page.splitlines() if line.startswith(f"| {kelvin:.0f} K |"))
+        assert row == _figures(kelvin)
+    warm = np.linspace(1667.0, 25000.0, 2000)
+    fit, planck = kang_xyz(warm), blackbody_xyz(warm)
+    largest = [np.linalg.norm(each(fit) - each(planck), axis=-1).max() for each in (_xy, _uv)]
+    red = np.abs((fit - planck) @ XYZ_TO_REC709[0]).max()
+    assert largest < [5.7e-4, 4.0e-4] and 0.98 * 5.5e-3 < red < 5.5e-3
+    assert BLACKBODY.value >= BLACKBODY_FIT
+
+
+def _figures(kelvin):
+    """The row of a temperature."""
+    fit, planck = kang_xyz(kelvin), blackbody_xyz(kelvin)
+    cells = [", ".join(f"{x:.3f}" for x in _xy(each)) for each in (fit, planck)]
+    cells += [f"{np.linalg.norm(each(fit) - each(planck)):.3f}" for each in (_xy, _uv)]
+    cells += [", ".join(f"{x:.2f}" for x in XYZ_TO_REC709 @ each) for each in (fit, planck)]
+    return f"| {kelvin:.0f} K | {' | '.join(cells)} |"
+
+
+def _xy(xyz):
+    return xyz[..., :2] / xyz.sum(axis=-1, keepdims=True)
+
+
+def _uv(xyz):
+    """u' and v' of the CIE diagram of 1976."""
+    total = xyz @ [1.0, 15.0, 3.0]
+    return np.stack([4.0 * xyz[..., 0], 9.0 * xyz[..., 1]], axis=-1) / total[..., np.newaxis]

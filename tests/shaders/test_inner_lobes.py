@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lobes below the surface: which materials have them, and what is said of their pictures."""
+
+from dataclasses import replace
+
+import pytest
+
+from mxeon.conformance.checks.image import judge_document
+from mxeon.conformance.reference import Host as Reference
+from mxeon.errors import InputError
+from mxeon.shaders.generation import generate
+from mxeon.shaders.hosts import open_host
+from mxeon.shaders.hosts.base import LobeWarning
+from mxeon.shaders.hosts.cycles import tracing
+from mxeon.shaders.inner_lobes import inner_lobes
+from mxeon.shaders.nodes import document_text
+from mxeon.shaders.scene import FURNACE, MOST_SAMPLES, SIDE, Paths
+from tests.support.availability import available
+from tests.support.documents import material
+
+LOBE = '<subsurface_bsdf name="{}" type="BSDF">{}</subsurface_bsdf>'
+OPAQUE = '<burley_diffuse_bsdf name="opaque" type="BSDF"/>'
+GLASS = (
+    '<dielectric_bsdf name="lobe" type="BSDF">'
+    '<input name="scatter_mode" type="string" value="{}"/></dielectric_bsdf>'
+)
+LOOK = (
+    '<surfacematerial name="look" type="material"><input name="surfaceshader" type="surfaceshader" '
+    'nodename="shading"/></surfacematerial>'
+)
+
+
+def number(name, value, kind="float"):
+    return f'<input name="{name}" type="{kind}" value="{value}"/>'
+
+
+def mixed(weight):
+    sides = "".join(
+        f'<input name="{side}" type="BSDF" nodename="{node}"/>'
+        for side, node in (("fg", "inner"), ("bg", "opaque"))
+    )
+    mix = f'<mix name="lobe" type="BSDF">{sides}{weight}</mix>'
+    return material(LOBE.format("inner", "") + OPAQUE + mix)
+
+
+def surface(category, *inputs):
+    shader = f'<{category} name="shading" type="surfaceshader">{"".join(inputs)}</{category}>'
+    return document_text(shader + LOOK)
+
+
+@pytest.mark.parametrize(
+    "text, kinds",
+    [
+        (material(LOBE.format("lobe", "")), ("subsurface",)),
+        (material(LOBE.format("lobe", number("weight", 0.0))), ()),
+        (material(OPAQUE.replace("opaque", "lobe")), ()),
+        (material(GLASS.format("R")), ()),
+        (material(GLASS.format("RT")), ("transmission",)),
+        (mixed(number("mix", 0.5)), ("subsurface",)),
+        (mixed(number("mix", 0.0)), ()),
+        (surface("open_pbr_surface"), ()),
+        (surface("open_pbr_surface", number("subsurface_weight", 0.5)), ("subsurface",)),
+        (
+            surface("open_pbr_surface", number("transmission_weight", 0.5)),
+            ("transmission", "volume"),
+        ),
+        (
+            surface(
+                "open_pbr_surface",
+                number("subsurface_weight", 1.0),
+                number("geometry_thin_walled", "true", "boolean"),
+            ),
+            (),
+        ),
+        (surface("standard_surface", number("subsurface", 0.1)), ("subsurface",)),
+        (surface("UsdPreviewSurface"), ()),
+        (surface("UsdPreviewSurface", number("opacity", 0.5)), ("transmission",)),
+    ],
+)
+def test_the_lobes_below_the_surface_are_those_that_have_an_effect(text, kinds):
+    assert inner_lobes(generate(text, "glsl")[0]) == kinds
+
+
+def test_a_weight_that_a_graph_computes_counts_as_any():
+    number_node = '<multiply name="half" type="float">' + number("in1", 0.0) + "</multiply>"
+    weight = '<input name="mix" type="float" nodename="half"/>'
+    text = mixed(weight).replace(OPAQUE, OPAQUE + number_node)
+    assert inner_lobes(generate(text, "glsl")[0]) == ("subsurface",)
+
+
+@pytest.mark.parametrize("scene, samples", [(SIDE, 1), (FURNACE, tracing.ENVIRONMENT_SAMPLES)])
+def test_without_such_lobes_cycles_samples_as_before(scene, samples):
+    request = tracing.request(scene, ())
+    assert (request["samples"], request["bounces"], request["mesh"]) == (samples, 1, False)
+    assert not tracing.approximations(replace(scene, paths=Paths(1, 1)), ())
+
+
+@pytest.mark.parametrize(
+    "lobes, paths, words",
+    [
+        (("subsurface",), Paths(), ""),
+        (("subsurface",), Paths(1), "needs at least 16 samples of a pixel; with 1"),
+        (("subsurface",), Paths(tracing.FEWEST_SAMPLES, 1), ""),
+        (("transmission",), Paths(None, 1), "needs 8 bounces; with 1"),
+        (("transmission", "volume"), Paths(64, 8), ""),
+    ],
+)
+def test_paths_that_are_too_few_are_named(lobes, paths, words):
+    reasons = tracing.approximations(replace(SIDE, paths=paths), lobes)
+    assert len(reasons) == bool(words) and words in "".join(reasons)
+
+
+def test_a_rasterized_picture_says_what_it_has_in_place_of_a_lobe(tmp_path):
+    file = tmp_path / "wax.mtlx"
+    file.write_text(material(LOBE.format("lobe", "")))
+    with available("gl"), open_host("gl") as host, Reference() as judge:
+        _, _, notes = judge_document(file, host, judge, "eonlib")
+        shader = host.compile(file)[0]
+        [reason] = host.approximations(shader, SIDE)
+    assert notes == ((reason, "wax.mtlx: look"),) and "subsurface_bsdf is rasterized" in reason
+    assert str(LobeWarning("look", reason)) == f"look: {reason}"
+
+
+@pytest.mark.parametrize("paths", [{"samples": 0}, {"bounces": 0}, {"samples": MOST_SAMPLES + 1}])
+def test_paths_out_of_range_are_refused(paths):
+    [(name, value)] = paths.items()
+    with pytest.raises(InputError, match=rf"^{name} must lie in \[1, \d+\]; got {value}$"):
+        Paths(**paths)
+
+
+def test_a_host_without_paths_refuses_them():
+    with pytest.raises(InputError, match="^reference: this host takes no number of samples"):
+        Reference().refuse_paths(replace(SIDE, paths=Paths(bounces=2)))
