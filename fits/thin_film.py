@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of `genglsl/thin_film.glsl` against all orders and whole averages: python -m fits.thin_film.
 
-The shader sums four orders and a geometric series after them, averages over the hemisphere in five
+The shader sums six orders and a geometric series after them, averages over the hemisphere in six
 cosines and over the visible facets in nine. Nothing is fitted; this measures what each costs, over random
 films of up to 1000 nm on each kind of substrate.
 """
@@ -40,15 +40,15 @@ def films(rng, count):
     }
 
 
-def four_orders(r, phase, opd, _):
+def six_orders(r, phase, opd, _):
     """The shader's sum of orders, in the place of `thin_film_formulas._all_orders`."""
     total = np.zeros((3, *np.broadcast_shapes(r.shape, phase.shape, opd.shape)))
     for k, v, mu, var in film.GAUSSIANS:
         weight = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
         z = r * np.exp(1j * (2.0 * np.pi * mu * opd + phase))
         decay = var * (2.0 * np.pi * opd) ** 2
-        orders = sum((z**m).real * np.exp(-decay * m * m) for m in range(1, 5))
-        rest = np.exp(-25.0 * decay) * (z**5 / (1.0 - np.exp(-11.0 * decay) * z)).real
+        orders = sum((z**m).real * np.exp(-decay * m * m) for m in range(1, 7))
+        rest = np.exp(-49.0 * decay) * (z**7 / (1.0 - np.exp(-15.0 * decay) * z)).real
         total[k] += weight * (orders + rest)
     return total
 
@@ -57,7 +57,7 @@ def orders_error(category, material, mu):
     """Largest error of the sum, relative to the largest channel."""
     curve = film_curve(category)
     exact = curve.at(mu, **material)
-    all_orders, film._all_orders = film._all_orders, four_orders
+    all_orders, film._all_orders = film._all_orders, six_orders
     try:
         short = curve.at(mu, **material)
     finally:
@@ -66,8 +66,8 @@ def orders_error(category, material, mu):
 
 
 def average_error(category, material):
-    """Largest error of F_ss in five cosines."""
-    x, w = _gauss(5)
+    """Largest error of F_ss in six cosines."""
+    x, w = _gauss(6)
     curve = film_curve(category)
     average = sum(
         weight * curve.at(np.asarray(mu), **material) for mu, weight in zip(x, w, strict=True)

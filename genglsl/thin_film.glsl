@@ -16,17 +16,19 @@
 #define THIN_FILM_GREEN vec4(-0.84281, -0.1531813, 1.956197, 0.03981614)
 #define THIN_FILM_BLUE vec4(0.05384126, 0.009785686, -0.2146441, 1.152291)
 
-// Gauss's rule for the average over a hemisphere, 2 F(mu) mu dmu, in five cosines.
-#define THIN_FILM_MU1 0.09853509
-#define THIN_FILM_W1 0.03149583
-#define THIN_FILM_MU2 0.30453573
-#define THIN_FILM_W2 0.14781774
-#define THIN_FILM_MU3 0.56202519
-#define THIN_FILM_W3 0.29277397
-#define THIN_FILM_MU4 0.80198658
-#define THIN_FILM_W4 0.33434928
-#define THIN_FILM_MU5 0.96019014
-#define THIN_FILM_W5 0.19356318
+// Gauss's rule for the average over a hemisphere, 2 F(mu) mu dmu, in six cosines.
+#define THIN_FILM_MU1 0.07305433
+#define THIN_FILM_W1 0.01747660
+#define THIN_FILM_MU2 0.23076614
+#define THIN_FILM_W2 0.08791033
+#define THIN_FILM_MU3 0.44132848
+#define THIN_FILM_W3 0.19732230
+#define THIN_FILM_MU4 0.66301531
+#define THIN_FILM_W4 0.28158511
+#define THIN_FILM_MU5 0.85192140
+#define THIN_FILM_W5 0.27108499
+#define THIN_FILM_MU6 0.97068357
+#define THIN_FILM_W6 0.14462066
 
 // Gauss's rule on [0, 1] in three nodes, the one in the middle at 1/2.
 #define THIN_FILM_U 0.11270167
@@ -45,7 +47,9 @@ struct ThinFilmWaves
     vec4 k9;
     vec4 k16;
     vec4 k25;
-    vec4 k11;
+    vec4 k36;
+    vec4 k49;
+    vec4 k15;
 };
 
 ThinFilmWaves thin_film_waves(float opd)
@@ -55,16 +59,19 @@ ThinFilmWaves thin_film_waves(float opd)
     waves.angle = THIN_FILM_POSITIONS * phase;
     waves.k1 = exp(-THIN_FILM_VARIANCES * (phase * phase));
     vec4 k2 = waves.k1 * waves.k1;
+    vec4 k8 = k2 * k2 * k2 * k2;
     waves.k4 = k2 * k2;
-    waves.k9 = waves.k4 * waves.k4 * waves.k1;
-    waves.k16 = waves.k4 * waves.k4 * waves.k4 * waves.k4;
+    waves.k9 = k8 * waves.k1;
+    waves.k16 = k8 * k8;
     waves.k25 = waves.k16 * waves.k9;
-    waves.k11 = waves.k9 * k2;
+    waves.k36 = waves.k16 * waves.k16 * waves.k4;
+    waves.k49 = waves.k25 * k8 * waves.k16;
+    waves.k15 = k8 * waves.k4 * k2 * waves.k1;
     return waves;
 }
 
-// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z. Four are summed; what follows is a
-// geometric series from the fifth on, with the ratio of the sixth to it.
+// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z. Six are summed; what follows is a
+// geometric series from the seventh on, with the ratio of the eighth to it.
 vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
 {
     vec4 c = mx_cos(waves.angle);
@@ -73,14 +80,17 @@ vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
     vec4 y = z.x * s + z.y * c;
     vec4 x2 = x * x - y * y;
     vec4 y2 = 2.0 * x * y;
+    vec4 x3 = x2 * x - y2 * y;
+    vec4 y3 = x2 * y + y2 * x;
     vec4 x4 = x2 * x2 - y2 * y2;
     vec4 y4 = 2.0 * x2 * y2;
-    vec4 total = waves.k1 * x + waves.k4 * x2 + waves.k9 * (x2 * x - y2 * y) + waves.k16 * x4;
-    vec4 rest = 1.0 - waves.k11 * x;
-    vec4 lost = waves.k11 * y;
-    vec4 x5 = x4 * x - y4 * y;
-    vec4 y5 = x4 * y + y4 * x;
-    return total + waves.k25 * (x5 * rest - y5 * lost) / max(rest * rest + lost * lost, THIN_FILM_LEAST);
+    vec4 x7 = x4 * x3 - y4 * y3;
+    vec4 y7 = x4 * y3 + y4 * x3;
+    vec4 total = waves.k1 * x + waves.k4 * x2 + waves.k9 * x3 + waves.k16 * x4
+                 + waves.k25 * (x4 * x - y4 * y) + waves.k36 * (x3 * x3 - y3 * y3);
+    vec4 rest = 1.0 - waves.k15 * x;
+    vec4 lost = waves.k15 * y;
+    return total + waves.k49 * (x7 * rest - y7 * lost) / max(rest * rest + lost * lost, THIN_FILM_LEAST);
 }
 
 // Reflectance of one polarization: amplitude r12 of the upper interface, and re + i im of the lower one.
@@ -152,9 +162,12 @@ vec3 thin_film_fresnel(float mu, FresnelData fd)
 // F_ss, the cosine-weighted average over the hemisphere.
 vec3 thin_film_avg(FresnelData fd)
 {
-    return THIN_FILM_W1 * thin_film_fresnel(THIN_FILM_MU1, fd) + THIN_FILM_W2 * thin_film_fresnel(THIN_FILM_MU2, fd)
-           + THIN_FILM_W3 * thin_film_fresnel(THIN_FILM_MU3, fd) + THIN_FILM_W4 * thin_film_fresnel(THIN_FILM_MU4, fd)
-           + THIN_FILM_W5 * thin_film_fresnel(THIN_FILM_MU5, fd);
+    return THIN_FILM_W1 * thin_film_fresnel(THIN_FILM_MU1, fd)
+           + THIN_FILM_W2 * thin_film_fresnel(THIN_FILM_MU2, fd)
+           + THIN_FILM_W3 * thin_film_fresnel(THIN_FILM_MU3, fd)
+           + THIN_FILM_W4 * thin_film_fresnel(THIN_FILM_MU4, fd)
+           + THIN_FILM_W5 * thin_film_fresnel(THIN_FILM_MU5, fd)
+           + THIN_FILM_W6 * thin_film_fresnel(THIN_FILM_MU6, fd);
 }
 
 // Average over the visible facets of a lobe whose roughness is alpha in both directions: three heights

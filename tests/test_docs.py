@@ -133,17 +133,23 @@ def test_every_link_of_the_site_leads_somewhere(pages):
     assert found == []
 
 
-@pytest.mark.parametrize("link", ["nowhere.md", "index.md#nowhere", "/absolute.md"])
-def test_a_dead_link_fails_the_build(link, tmp_path):
+@pytest.fixture(scope="module")
+def home(tmp_path_factory):
+    """Folder of a site of one page that builds."""
+    folder = tmp_path_factory.mktemp("home")
     settings = yaml.safe_load((ROOT / "mkdocs.yml").read_text(encoding="utf-8"))
     settings |= {"docs_dir": "docs", "nav": ["index.md"], "plugins": ["search"], "hooks": []}
-    (tmp_path / "docs").mkdir()
-    (tmp_path / "mkdocs.yml").write_text(yaml.safe_dump(settings))
-    page = tmp_path / "docs" / "index.md"
-    page.write_text("# Home\n")
-    assert build(tmp_path / "mkdocs.yml", tmp_path / "site").returncode == 0
-    page.write_text(f"# Home\n[dead]({link})\n")
-    assert build(tmp_path / "mkdocs.yml", tmp_path / "site").returncode != 0
+    (folder / "docs").mkdir()
+    (folder / "mkdocs.yml").write_text(yaml.safe_dump(settings))
+    (folder / "docs" / "index.md").write_text("# Home\n")
+    assert build(folder / "mkdocs.yml", folder / "site").returncode == 0
+    return folder
+
+
+@pytest.mark.parametrize("link", ["nowhere.md", "index.md#nowhere", "/absolute.md"])
+def test_a_dead_link_fails_the_build(link, home):
+    (home / "docs" / "index.md").write_text(f"# Home\n[dead]({link})\n")
+    assert build(home / "mkdocs.yml", home / "site").returncode != 0
 
 
 @pytest.mark.parametrize("module", [models, albedo, inversion, sampling], ids=lambda m: m.__name__)

@@ -124,6 +124,10 @@ HAIR_REPAIRS = (
 REPAIRS = (
     *HAIR_REPAIRS,
     *(
+        _glsl("genglsl_film_half", SPECULAR, line, f"R23{pol} = 0.5 * f;", f"R23{pol} = f;")
+        for line, pol in ((341, "p"), (342, "s"))
+    ),
+    *(
         _glsl(
             "genglsl_multiply_throughput",
             f"mx_multiply_bsdf_{kind}.glsl",

@@ -5,12 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from docs.upstream.random_walk import distances
+from mxeon.models.subsurface import subsurface_albedo
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 from mxeon.shaders.scene import FURNACE, Paths, sphere
 
 HEAD = "| quantity | measured | expected |\n|---|---|---|\n"
+WALKS, PATHS = ((0.2, -0.5), (0.5, 0.0), (0.8, 0.0), (0.95, 0.0), (0.5, 0.5)), 20_000
 COLOR, SHORT = (0.2, 0.5, 0.8), (0.01, 0.01, 0.01)
 
 
@@ -30,6 +33,16 @@ def cycles_color_block():
     return _table([(name, mean, COLOR)], "{:.1f}")
 
 
+def profile_block():
+    """Mean distances of random walks, and that of the profile."""
+    rows = []
+    for color, anisotropy in WALKS:
+        albedo = float(subsurface_albedo(color, anisotropy))
+        mean = distances(albedo, anisotropy, PATHS).mean()
+        rows.append((f"walk, and profile, of color {color}, anisotropy {anisotropy}", mean, 2.5))
+    return _table(rows, "{:.1f}")
+
+
 def _table(rows, form):
     lines = [
         f"| {name} | {' '.join(map(form.format, np.atleast_1d(measured)))} | "
@@ -39,4 +52,7 @@ def _table(rows, form):
     return HEAD + "".join(lines)
 
 
-OF_SUBSURFACE = {"cycles_subsurface_color": cycles_color_block}
+OF_SUBSURFACE = {
+    "cycles_subsurface_color": cycles_color_block,
+    "pbrlib_diffusion_profile": profile_block,
+}

@@ -14,10 +14,13 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream.film_quantities import OF_FILMS
 from docs.upstream.light_quantities import light_block
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
+from docs.upstream.surface_quantities import OF_SURFACES
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
+from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 from mxeon.conformance.known_issues import ISSUES, RENDERERS, STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
@@ -79,6 +82,7 @@ CAUSES = {
         f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 28, "sheen_dir_albedo_analytic"
     ),
     "genglsl_burley_fit": Cause(MICROFACET, 150, "burley_diffuse_dir_albedo"),
+    "genglsl_subsurface_circle": Cause(MICROFACET, 170, "mx_integrate_burley_diffusion"),
     "genglsl_translucent_side": Cause(f"{PBRLIB}/mx_translucent_bsdf.glsl", 16, "N = -N"),
     "genglsl_ior_zero": Cause(SPECULAR, 229, "g2 < 0.0"),
     "genglsl_microfacet_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "dirAlbedo"),
@@ -86,8 +90,6 @@ CAUSES = {
     "genglsl_microfacet_compensation": Cause(
         f"{PBRLIB}/mx_dielectric_bsdf.glsl", 47, "energy_compensation"
     ),
-    "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
-    "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
     "genglsl_missing_nodes": Cause(
         f"{PBRLIB}/pbrlib_genglsl_impl.mtlx", 32, "IM_anisotropic_vdf_genglsl"
     ),
@@ -105,10 +107,16 @@ CAUSES = {
         )
     },
     "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
+    "genslang_blackbody_constant": Cause(f"{PBRLIB}/mx_blackbody.glsl", 2, "const mat3"),
     "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
     "genosl_hair_constants": Cause(
         "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
     ),
+    "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
+    "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
+    "genglsl_film_half": Cause(SPECULAR, 341, "0.5 * f"),
+    "genglsl_film_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "F0, 1.0"),
+    "genglsl_film_choices": Cause(SPECULAR, 318, "XYZ_TO_RGB"),
     "genglsl_anisotropic_environment": Cause(
         f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
     ),
@@ -225,6 +233,14 @@ def dropped_normal_block():
     )
 
 
+def slang_constant_block():
+    """Matrices outside of functions in the Slang of a black body that are no static constants."""
+    [subject] = [each for each in UTILITY_SUBJECTS if each.node == "blackbody"]
+    [shader] = generate(subject.document(), "slang", library=STOCK)
+    found = re.findall(r"^const float3x3 \w+ =", shader.stages["pixel"], re.MULTILINE)
+    return _quantities("constants outside of functions without static", [float(len(found))], [0.0])
+
+
 def edf_sides_block():
     """Factor of generalized_schlick_edf at 60 degrees from the normal, on both sides."""
     cosines = np.array([0.5, -0.5])
@@ -243,13 +259,16 @@ def _quantities(name, measured, expected):
 OF_QUANTITIES = {
     "dropped_normal": dropped_normal_block,
     "genglsl_light_scope": light_block,
+    "genslang_blackbody_constant": slang_constant_block,
     "openpbr_printed_pi": printed_pi_block,
     "pbrlib_edf_sides": edf_sides_block,
     "pbrlib_printed_angles": printed_angles_block,
     "pbrlib_printed_b": printed_b_block,
     **OF_PBRLIB,
-    **OF_TRANSMISSION,
     **OF_SUBSURFACE,
+    **OF_TRANSMISSION,
+    **OF_FILMS,
+    **OF_SURFACES,
 }
 
 

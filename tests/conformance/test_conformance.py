@@ -253,6 +253,7 @@ def test_a_named_node_is_judged_alone():
     }
     every = plan.make_plan([], ["gl"], ["eonlib"], nodes=["all"]).tasks
     assert set(every) >= set(plan.make_plan([], ["gl"], ["eonlib"]).tasks)
+    every = plan.make_plan([], ["gl"], ["stock"], nodes=["all"]).tasks
     assert {task.subject for task in every} >= {subject.title for subject in PBR_SUBJECTS}
 
 

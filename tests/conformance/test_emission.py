@@ -4,10 +4,23 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.emission.family import ALL_PROBES, EMISSION_SUBJECTS
+from mxeon.conformance.checks.batch import RIM, Batch
+from mxeon.conformance.checks.emission.family import (
+    ALL_PROBES,
+    EMISSION_SUBJECTS,
+    emission_probe_type,
+)
+from mxeon.conformance.checks.emission.pictures import MATERIALS
 from mxeon.conformance.checks.emission.subjects import CONE, EDFS, LEAST_FALLOFF
-from mxeon.conformance.checks.emission.tolerances import QUADRATURE, cone_roundings
+from mxeon.conformance.checks.emission.tolerances import (
+    POWER_RADIANCE,
+    QUADRATURE,
+    TRANSMITTANCE,
+    cone_roundings,
+    on_engine,
+)
 from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.probes import PictureProbe
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.plan import make_plan
@@ -161,3 +174,65 @@ def test_nodes_that_no_library_repairs_are_judged_with_stock_alone():
         titles = {task.subject for task in tasks}
         assert ("measured_edf" in titles) is expected and "uniform_edf" in titles
     assert "uniform_edf" not in {task.subject for task in make_plan((), ("gl",), ("stock",)).tasks}
+
+
+# --- other hosts --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("title", "library"),
+    [("generalized_schlick_edf", "stock"), ("conical_edf", "eonlib"), ("add, EDF", "stock")],
+)
+def test_emission_is_exact_in_osl(hosts, title, library):
+    host, subject = hosts("cycles"), SUBJECTS[title]
+    probe = emission_probe_type(subject, PictureProbe)(host, subject, library)
+    result = judge_check(ROWS["radiance"], probe)
+    assert result.verdict == PASSED and result.control.caught, result.diagnosis
+
+
+def test_osl_applies_the_opacity_of_emission_and_lacks_the_same_nodes(hosts):
+    host = hosts("cycles")
+    for title, key, verdict in (
+        ("surface, an EDF alone", "opacity", PASSED),
+        ("conical_edf", "implemented", FAILED),
+        ("anisotropic_vdf", "transmittance", NOT_RUN),
+    ):
+        probe = emission_probe_type(SUBJECTS[title], PictureProbe)(host, SUBJECTS[title], "stock")
+        assert judge_check(ROWS[key], probe).verdict == verdict
+
+
+def test_a_cone_is_exact_whatever_the_cosine_of_the_engine(hosts):
+    result = judged(hosts("webgl"), "conical_edf", "eonlib", "radiance")["radiance"]
+    assert result.verdict == PASSED and result.error < 1e-6
+
+
+def test_the_engines_own_functions_enter_the_tolerances():
+    class Engine:
+        def __init__(self, share):
+            self.share = share
+
+        def execute(self, source, function, x, y):
+            exact = x**y if "power" in function else np.exp(-x)
+            return np.repeat((exact * (1.0 + self.share))[:, np.newaxis], 3, axis=1)
+
+    for title, tolerance in (
+        ("generalized_schlick_edf", POWER_RADIANCE),
+        ("anisotropic_vdf", TRANSMITTANCE),
+    ):
+        subject = SUBJECTS[title]
+        exact, off = (
+            on_engine(tolerance, ALL_PROBES[subject.kind](Engine(share), subject, "stock")).value
+            for share in (0.0, 1e-4)
+        )
+        assert exact == tolerance.value and 1e-4 <= off <= 4e-4
+
+
+def test_the_slopes_of_the_pictures_are_those_of_their_tolerance():
+    mu = np.linspace(RIM, 1.0, 1000)
+    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
+    for subject in EDFS:
+        for material in MATERIALS:
+            inputs = {name: material[name] for name in subject.row.inputs}
+            values = subject.expected(Batch(wo, wo, inputs))
+            values /= np.maximum(1.0, values.max(axis=-1, keepdims=True))
+            assert (np.abs(np.diff(values, axis=0)) / np.diff(mu)[:, np.newaxis]).max() <= 5.0

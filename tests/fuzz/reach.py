@@ -31,6 +31,7 @@ XI = "http://www.w3.org/2001/XInclude"
 ElementTree.register_namespace("xi", XI)
 EVERY = Path(__file__).with_name("every.mtlx")
 POISON = "poison"
+GAP = "gap00000gap"  # stands in a written document for hostile text
 # What ends a string or a line, and what means something outside a string.
 BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
 MEANING = tuple(
@@ -142,20 +143,36 @@ def unjudged(root, found, targets=TARGETS):
         kind = element.tag, place.attribute, element.get("type")
         ways[kind] |= each
         alike[kind] = place
-    return [
-        (kind[0], place.attribute, text)
-        for kind, place in alike.items()
-        for text in (*BREAKING, *(() if ways[kind] == {"quoted"} else MEANING))
-        if not _judged(root, place, text, targets)
-    ]
+    wrong = []
+    for kind, place in alike.items():
+        written = _written(root, place)
+        texts = (*BREAKING, *(() if ways[kind] == {"quoted"} else MEANING))
+        wrong += [
+            (kind[0], place.attribute, text)
+            for text in texts
+            if not _judged(
+                elements[place.number], place, written.replace(GAP, _escaped(text)), targets
+            )
+        ]
+    return wrong
 
 
-def _judged(root, place, text, targets):
-    """Whether hostile text is refused in a line that names its place, or comes out nowhere."""
+def _written(root, place):
+    """Text of a document with a GAP at the end of an attribute."""
     root = deepcopy(root)
     element = list(root.iter())[place.number]
-    element.set(place.attribute, element.get(place.attribute, "") + text)
-    document = ElementTree.tostring(root, encoding="unicode")
+    element.set(place.attribute, element.get(place.attribute, "") + GAP)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _escaped(text):
+    """Text as it stands in an attribute."""
+    line = ElementTree.tostring(ElementTree.Element("x", a=text), encoding="unicode")
+    return line.removeprefix('<x a="').removesuffix('" />')
+
+
+def _judged(element, place, document, targets):
+    """Whether hostile text is refused in a line that names its place, or comes out nowhere."""
     for target in targets:
         try:
             sources = _sources(document, target)

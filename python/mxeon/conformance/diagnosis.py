@@ -12,7 +12,7 @@ from mxeon.conformance.checks.batch import FEW, Array, Batch, Candidate
 from mxeon.conformance.checks.bsdf.measures import layering_cases, transmission_cases
 from mxeon.conformance.checks.emission.measures import back_cases, transmittance_cases
 from mxeon.conformance.checks.emission.subjects import MEDIUM
-from mxeon.conformance.checks.emission.tolerances import RADIANCES, TRANSMITTANCE
+from mxeon.conformance.checks.emission.tolerances import FRONTS, TRANSMITTANCE
 from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.tolerance import Tolerance
@@ -119,7 +119,7 @@ def of_medium(probe: Any) -> Diagnosis:
 
 def _of_emission(probe: Any, cases: Sequence[Case]) -> Diagnosis:
     """The explanation of radiances and transmittances."""
-    tolerance = {**RADIANCES, MEDIUM: TRANSMITTANCE}[probe.kind]
+    tolerance = {**FRONTS, MEDIUM: TRANSMITTANCE}[probe.kind]
     return _explained(probe, cases, probe.subject.value_candidates, (), tolerance)
 
 

@@ -31,13 +31,17 @@ DIELECTRIC, SCHLICK = (
     f"{node}_bsdf, scatter_mode R" for node in ("dielectric", "generalized_schlick")
 )
 MICROFACETS = (DIELECTRIC, "conductor_bsdf", SCHLICK)
+SURFACES = tuple(
+    f"{node}, every lobe"
+    for node in ("standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface")
+)
+FILMS = tuple(
+    f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
+)
 TRANSMITTING = tuple(
     f"{node}_bsdf, scatter_mode {mode}"
     for node in ("dielectric", "generalized_schlick")
     for mode in ("T", "RT")
-)
-FILMS = tuple(
-    f"{node}_bsdf, thin film" for node in ("dielectric", "conductor", "generalized_schlick")
 )
 
 
@@ -117,6 +121,13 @@ BSDF_ISSUES = (
         _product(("combined_throughput",), ("multiply, in2 float", "multiply, in2 color3")),
         HARDWARE,
     ),
+    Issue(
+        "genglsl_subsurface_circle",
+        "gl",
+        (("value", "subsurface_bsdf"),),
+        HARDWARE,
+        _product(("integral", "energy"), ("subsurface_bsdf",)),
+    ),
     Issue("genglsl_burley_fit", "gl", (("environment", "burley_diffuse_bsdf"),), HARDWARE),
     Issue("genglsl_translucent_side", "gl", (("frame", "translucent_bsdf"),), HARDWARE),
     Issue(
@@ -151,7 +162,12 @@ BSDF_ISSUES = (
         "gl",
         (("layering", DIELECTRIC), ("transmission", DIELECTRIC), ("transmission", SCHLICK)),
         HARDWARE,
-        (("layering", SCHLICK), ("layer", DIELECTRIC), ("layer", SCHLICK)),
+        (
+            ("layering", SCHLICK),
+            ("layer", DIELECTRIC),
+            ("layer", SCHLICK),
+            *_product(("lobes", "lobes_albedo", "lobes_furnace", "lobes_energy"), SURFACES),
+        ),
     ),
     Issue(
         "genglsl_ggx_fit",
@@ -182,11 +198,11 @@ BSDF_ISSUES = (
         (("film_throughput", FILMS[2]),),
     ),
     Issue(
-        "pbrlib_thin_film",
+        "genglsl_film_choices",
         "gl",
-        _product(("film", "film_limit"), FILMS[:2]),
+        _product(("film", "film_limit"), FILMS[1:2]),
         HARDWARE,
-        _product(("film_environment",), FILMS[:2]),
+        (*_product(("film", "film_limit"), FILMS[:1]), ("film_environment", FILMS[1])),
     ),
 )
 EMISSION_ISSUES = (
@@ -204,7 +220,7 @@ EMISSION_ISSUES = (
                 "multiply, VDF",
             ),
         ),
-        HARDWARE,
+        (*HARDWARE, "cycles"),
     ),
     Issue(
         "genglsl_medium_scattering",
@@ -221,7 +237,13 @@ HAIR_UTILITIES = (
     "chiang_hair_absorption_from_color",
 )
 UTILITY_ISSUES = (
-    Issue("genglsl_blackbody_cold", "gl", (("output", "blackbody"),), HARDWARE),
+    Issue(
+        "genglsl_blackbody_cold",
+        "gl",
+        (("output", "blackbody"),),
+        HARDWARE,
+        _product(("output_inputs", "output_finite"), ("blackbody",)),  # of Slang, see the page
+    ),
     Issue("genglsl_black_pigment", "gl", (("output_finite", HAIR_UTILITIES[3]),), HARDWARE),
     Issue(
         "genosl_hair_constants",

@@ -102,7 +102,8 @@ def of_frame(probe: Any) -> Diagnosis:
             text = "the node's normal is ignored: the surface's takes its place"
         else:
             text = not_finite([case]) or region([case.batch], [wrong])
-            text = text or without_effect(probe, "tangent") or UNKNOWN
+            text = text or without_effect(probe, "tangent")
+            text = text or without_effect(probe, "curve_direction") or UNKNOWN
         return Diagnosis(f"branch {branch}: {text}")
     return Diagnosis(UNKNOWN)
 

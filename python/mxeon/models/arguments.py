@@ -76,6 +76,10 @@ RANGES = {
     "phi": (-_LARGEST, _LARGEST, "(-inf, inf)"),
     "reflectance": (0.0, 1.0, "[0, 1]"),
     "transmittance": (0.0, 1.0, "[0, 1]"),
+    "single_scatter": (0.0, 1.0, "[0, 1]"),
+    "scatter_anisotropy": (-1.0, 1.0, "[-1, 1]"),
+    "separation": (float(np.nextafter(0.0, 1.0)), _LARGEST, "(0, inf)"),
+    "radius": (float(np.nextafter(0.0, 1.0)), _LARGEST, "(0, inf)"),
     "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
 }
 

@@ -39,7 +39,7 @@ def dielectric(mu: Array, ior: Array) -> Array:
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
     """F: [MaterialX2026], Conductor Fresnel Equations."""
-    return _mean(polarized(mu, ior, extinction))
+    return _conductor(mu, ior, extinction, _gap(ior, extinction))
 
 
 def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
@@ -51,16 +51,16 @@ def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
     return _polarized(mu, ior, extinction, _gap(ior, extinction))
 
 
-def _mean(reflectances: tuple[Array, Array]) -> Array:
-    """F of both polarizations."""
-    Rp, Rs = reflectances
-    return np.minimum(0.5 * (Rs + Rp), 1.0)
-
-
 def _gap(ior: Array, extinction: Array) -> Array:
     """|n^2 - 1|, which does not depend on the direction."""
     gap: Array = np.hypot(ior - 1.0, extinction) * np.hypot(ior + 1.0, extinction)
     return gap
+
+
+def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
+    """`conductor` from |n^2 - 1|."""
+    Rp, Rs = _polarized(mu, ior, extinction, gap)
+    return np.minimum(0.5 * (Rs + Rp), 1.0)
 
 
 def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
@@ -123,7 +123,7 @@ def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) 
         X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2, strict=True
     ):
         mu = low + length * x
-        total += weight * length * mu * _mean(_polarized(mu, ior, extinction, gap))
+        total += weight * length * mu * _conductor(mu, ior, extinction, gap)
     return total
 
 

@@ -64,6 +64,13 @@ BSDF_INPUTS: dict[str, dict[str, str]] = {
         **_MICROFACET,
         "scatter_mode": "string",
     },
+    "subsurface_bsdf": {
+        "weight": "float",
+        "color": "color3",
+        "radius": "color3",
+        "anisotropy": "float",
+        "normal": "vector3",
+    },
     "translucent_bsdf": {"weight": "float", "color": "color3", "normal": "vector3"},
     "sheen_bsdf": {
         "weight": "float",

@@ -9,7 +9,9 @@ from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
 from mxeon.conformance.checks.bsdf.hair import HAIRS, HairSubject
 from mxeon.conformance.checks.bsdf.hair_probes import HairProbe
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
+from mxeon.conformance.checks.bsdf.probes import BsdfProbe
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
+from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES, SubsurfaceSubject
 from mxeon.conformance.checks.bsdf.thin_films import FILMS, film_probe_type
 from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
@@ -44,11 +46,17 @@ def hair_probe_type(_: HairSubject, probe: type[Any]) -> type[HairProbe] | None:
     return HairProbe if probe is PairProbe else None
 
 
+def subsurface_probe_type(_: SubsurfaceSubject, probe: type[Any]) -> type[BsdfProbe] | None:
+    """Class of the probes of subsurface scattering, which needs a host that evaluates any pairs."""
+    return BsdfProbe if probe is PairProbe else None
+
+
 FAMILIES = (
     Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
     Family(HAIRS, hair_probe_type),
     Family(EMISSION_SUBJECTS, emission_probe_type),
     Family(TRANSMITTING, transmission_probe_type),
+    Family(SUBSURFACES, subsurface_probe_type),
     Family(FILMS, film_probe_type),
     Family(UTILITY_SUBJECTS, utility_probe_type),
     Family(SHADERS, surface_probe_type),

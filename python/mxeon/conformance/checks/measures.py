@@ -222,9 +222,11 @@ def inputs(probe: Any, _: Metric) -> Measurement:
 def dead_inputs(probe: Any) -> list[str]:
     """The inputs of `inputs`."""
     batch = probe.few[0]
+    plain = probe.direct(batch)  # most changes are of the batch as it is
     dead = []
-    for name, pair in probe.subject.changes.items():
-        one, other = (probe.direct(batch.altered(**change)) for change in pair)
+    for name, (before, after) in probe.subject.changes.items():
+        one = probe.direct(batch.altered(**before)) if before else plain
+        other = probe.direct(batch.altered(**after))
         if np.array_equal(one, other, equal_nan=True):
             dead.append(name)
     return dead

@@ -51,7 +51,7 @@ LAYER = (
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 ASKED = "throughput_asked"  # variable of an evaluation
-WIDTH = 1024  # pixels in a row of an evaluation
+WIDTH = 1024  # most pixels in a row of an evaluation
 
 Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
 Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values by name
@@ -258,9 +258,13 @@ def function_evaluation(
 
 
 def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
-    """Number of elements, that of the longest argument, and size of the frame for them."""
+    """Number of elements, that of the longest argument, and size of the frame for them.
+
+    Width and height are even: a change from pixel to pixel is that within a square of 2 x 2.
+    """
     count = max(map(len, arguments.values()))
-    return count, (WIDTH, -(-count // WIDTH))
+    height = 2 * -(-count // (2 * WIDTH))
+    return count, (2 * -(-count // (2 * height)), height)
 
 
 def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:

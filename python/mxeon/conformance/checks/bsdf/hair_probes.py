@@ -3,59 +3,20 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.checks.bsdf.hair import HairSubject
+from mxeon.conformance.checks.bsdf.hair_regions import REGIONS
 from mxeon.conformance.checks.bsdf.probes import FEW, NODES, PAIRS, BsdfProbe
 from mxeon.conformance.checks.bsdf.subjects import HAIR
 from mxeon.conformance.checks.special import LEAST_TURNED, special_directions
-from mxeon.models.hair import ROUGHNESSES, TINTS
-from mxeon.models.hair_defects import BESSEL, CLAMPED, UNIFORM
+from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.hair_formulas import SCALE, section
 
-LOBES = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
-APART: dict[str, Any] = {**LOBES, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
-STRAIGHT = 0.05  # azimuth, in radian, up to which a view counts as along the normal
-SLANTED = (0.3, 1.2)  # azimuths of other views
 WIDE = (0.05, 0.3)  # least variance and scale of values that are integrated
-
-
-@dataclass(frozen=True)
-class Region:
-    """Views and roughnesses of which a check asks.
-
-    Attributes
-    ----------
-    azimuths : (float, float)
-        Of the views from the normal, in radian.
-    variances, scales : (float, float)
-    tints : mapping of str to tuple
-        Which lobe is in which channel.
-    tilt : float
-        Largest distance of `cuticle_angle` from 1/2.
-    form : str
-        Title of the form of the model that shaders have in its place there; "" if there is none.
-    """
-
-    azimuths: tuple[float, float]
-    variances: tuple[float, float]
-    scales: tuple[float, float]
-    tints: dict[str, Any]
-    tilt: float = 0.05
-    form: str = ""
-
-
-# By the key of the check.
-REGIONS = {
-    "lobes": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBES, form=UNIFORM),
-    "narrow_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.0, form=BESSEL),
-    "tilted_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.5, form=BESSEL),
-    "wide_lobes": Region(SLANTED, (1.0, 100.0), (1.0, 10.0), APART, form=CLAMPED),
-    "straight_views": Region((0.0, STRAIGHT), (0.2, 1.0), (0.05, 0.2), APART),
-}
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@
 import math
 
 from mxeon.conformance.checks.bsdf.hair import LEAST_SCALE, LEAST_VARIANCE
-from mxeon.conformance.checks.bsdf.hair_probes import REGIONS
+from mxeon.conformance.checks.bsdf.hair_regions import REGIONS
 from mxeon.conformance.checks.measures import absolute, scaled
 from mxeon.conformance.checks.special import LEAST_TURNED
 from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance, rounded_up

@@ -66,7 +66,7 @@ class FilmProbe(MicrofacetProbe):
     """A microfacet node under a thin film on a host that evaluates any pairs."""
 
     kind: ClassVar[str] = FILM
-    diagnosed: ClassVar[int] = 1 << 6
+    diagnosed: ClassVar[int] = 1 << 5
     least_cosine: ClassVar[float] = LEAST_FACET
 
     @cached_property

@@ -4,15 +4,16 @@
 from typing import Any
 
 from mxeon.conformance.checks.emission.media import MEDIUM_NODES, MediumProbe
+from mxeon.conformance.checks.emission.pictures import EmissionPictureProbe
 from mxeon.conformance.checks.emission.probes import PROBES, NodeProbe
-from mxeon.conformance.checks.emission.subjects import COMBINED_EDFS, EDFS
+from mxeon.conformance.checks.emission.subjects import COMBINED_EDFS, EDFS, KINDS
 from mxeon.conformance.checks.emission.surfaces import (
     ABSENT_NODES,
     SURFACE_NODES,
     AbsentProbe,
     SurfaceEmissionProbe,
 )
-from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.probes import PairProbe, PictureProbe
 
 EMISSION_SUBJECTS = (*EDFS, *COMBINED_EDFS, *MEDIUM_NODES, *SURFACE_NODES, *ABSENT_NODES)
 ALL_PROBES = {
@@ -23,4 +24,6 @@ ALL_PROBES = {
 
 def emission_probe_type(subject: Any, probe: type[Any]) -> type[NodeProbe] | None:
     """Class of a subject's probes on a host that has probes of a class; None if it has none."""
-    return ALL_PROBES[subject.kind] if probe is PairProbe else None
+    if probe is PictureProbe and subject.kind in KINDS:
+        return EmissionPictureProbe
+    return ALL_PROBES[subject.kind] if probe in (PairProbe, PictureProbe) else None

@@ -24,6 +24,7 @@ from mxeon.shaders.nodes import document_text, input_text, node_text
 # Kinds of probes; see `mxeon.conformance.checks.emission.probes`.
 CLOSED, POWER, CONE = KINDS = ("emission views", "power views", "cone views")
 MEDIUM = "media"
+PICTURES = "emission pictures"
 SURFACES = "emitting surfaces"
 ABSENT = "absent nodes"  # of a node that no target of the standard library has
 
@@ -70,6 +71,11 @@ class EmissionSubject:
 
     flag = None
     libraries: tuple[str, ...] = field(default=(), init=False)
+
+    @property
+    def closure(self) -> bool:
+        """Whether eonlib leaves it to the closures of a renderer, in OSL."""
+        return self.row.name != "conical"
 
     @property
     def title(self) -> str:
@@ -124,13 +130,21 @@ class EmissionSubject:
         """XML of the node and of those that it takes, with a value of each input."""
         values = {name: self._default(name) for name in self.row.inputs} | dict(inputs or {})
         ports = {name: "" for name in ("emission", *self.sources)}
+        axis = ""
         for path, value in values.items():
             node, _, name = path.rpartition("/")
-            if name != "normal":  # which MaterialX takes from the geometry
+            if name == "normal":  # of which MaterialX ignores a value
+                axis = node_text(
+                    "constant", "vector3", "axis", input_text("value", "vector3", value)
+                )
+                ports["emission"] += '    <input name="normal" type="vector3" nodename="axis" />\n'
+            else:
                 ports[node or "emission"] += input_text(name, self._kind(path), value)
         nodes = (node_text("uniform_edf", "EDF", name, ports[name]) for name in self.sources)
-        return "".join(nodes) + node_text(
-            self.node, "EDF", "emission", ports["emission"] + self.ports
+        return (
+            axis
+            + "".join(nodes)
+            + node_text(self.node, "EDF", "emission", ports["emission"] + self.ports)
         )
 
     def _default(self, path: str) -> Any:

@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import SEED
+from mxeon.conformance.checks.batch import RIM, SEED
 from mxeon.conformance.checks.emission.subjects import (
     CLOSED,
     CONE,
     EXPONENTS,
     LEAST_FALLOFF,
     MEDIUM,
+    PICTURES,
     POWER,
 )
 from mxeon.conformance.checks.measures import scaled
@@ -69,6 +70,13 @@ CONE_RADIANCE = Tolerance(
     "them, times the slope of a smoothstep over 20 degrees, 3/2 over its width in cosine, and eight of "
     "the step; rounded up",
 )
+PICTURE_RADIANCE = Tolerance(
+    rounded_up(5 * 6 * ROUNDING / RIM + 8 * ROUNDING),
+    UNIT,
+    scaled,
+    "three roundings of 2^-23 in the position of a pixel's point, over the smallest cosine judged, 0.05, "
+    "times the largest slope of the materials' radiance, 5; and eight roundings beside; rounded up",
+)
 TRANSMITTANCE = Tolerance(
     rounded_up(12 * ROUNDING),
     "transmittance",
@@ -93,6 +101,7 @@ EXITANCES = {
     )
     for kind, tolerance in RADIANCES.items()
 }
+FRONTS = {**RADIANCES, PICTURES: PICTURE_RADIANCE}
 
 
 def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:

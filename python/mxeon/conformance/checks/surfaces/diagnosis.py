@@ -38,7 +38,9 @@ def of_lobes(probe: Any) -> Diagnosis:
 
 
 def _error(probe: Any, pairs: Batch, names: tuple[str, ...]) -> float:
-    return float(scaled(*probe.without(pairs, names)).max())
+    """Largest error of pairs whose materials lack a lobe."""
+    plain = pairs.altered(**{name: np.zeros_like(pairs.inputs[name]) for name in names})
+    return float(scaled(probe.direct(plain), probe.expected_of(plain)).max())
 
 
 def of_sum(probe: Any) -> Diagnosis:

@@ -17,7 +17,7 @@ SHEEN_ROUGH = (0.15, 1.0)
 CHANGED_COLOR = (0.9, 0.1, 0.6)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Inputs:
     """Inputs of a surface shader that its lobes may depend on.
 

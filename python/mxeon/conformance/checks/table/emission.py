@@ -5,12 +5,13 @@ from dataclasses import replace
 from typing import Any
 
 from mxeon.conformance import diagnosis
-from mxeon.conformance.checks.controls import offset, scale, shifted, with_inputs
+from mxeon.conformance.checks.controls import gray, offset, scale, shifted, with_inputs
 from mxeon.conformance.checks.emission import measures, tolerances
 from mxeon.conformance.checks.emission.subjects import (
     ABSENT,
     KINDS,
     MEDIUM,
+    PICTURES,
     SURFACES,
     UNIMPLEMENTED,
 )
@@ -50,7 +51,7 @@ CHECKS = (
         measures.implemented,
         "a node is asked for that nothing implements",
         unimplemented,
-        dict.fromkeys((*KINDS, MEDIUM, ABSENT), count_of("nodes")),
+        dict.fromkeys((*KINDS, PICTURES, MEDIUM, ABSENT), count_of("nodes")),
         diagnose=of_missing,
     ),
     Check(
@@ -58,9 +59,9 @@ CHECKS = (
         "The radiance is that of the node's equation for every view from the front.",
         EMITTER,
         value,
-        "each view has the inputs of another",
-        shifted,
-        tolerances.RADIANCES,
+        "every channel gets the mean color",
+        gray,
+        tolerances.FRONTS,
         diagnose=diagnosis.of_radiance,
         adapt=tolerances.on_engine,
     ),

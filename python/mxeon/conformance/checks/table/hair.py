@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mxeon.conformance import diagnosis
-from mxeon.conformance.checks.bsdf.hair_probes import REGIONS
+from mxeon.conformance.checks.bsdf.hair_regions import REGIONS
 from mxeon.conformance.checks.bsdf.hair_tolerances import HAIR_REGIONS
 from mxeon.conformance.checks.bsdf.subjects import HAIR
 from mxeon.conformance.checks.controls import Altered, with_inputs

@@ -8,6 +8,7 @@ from mxeon.conformance.checks import measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
 from mxeon.conformance.checks.bsdf.hair import HAIRS
 from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, KINDS
+from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
@@ -17,22 +18,23 @@ from mxeon.conformance.checks.controls import (
     with_inputs,
 )
 from mxeon.conformance.checks.emission.subjects import KINDS as EMISSION_KINDS
-from mxeon.conformance.checks.emission.subjects import MEDIUM
+from mxeon.conformance.checks.emission.subjects import MEDIUM, PICTURES
 from mxeon.conformance.checks.engine import on_engine
 from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.table.check import Check
-from mxeon.conformance.checks.table.names import COMBINATION, EMITTER, MEDIUM_NAMES, OTHERS
+from mxeon.conformance.checks.table.names import COMBINATION, EMITTER, FRAMED, MEDIUM_NAMES, OTHERS
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.models.pbrlib import NODES
 from mxeon.models.pbrlib.hair import HAIR_NODE
+from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
-OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name)
-BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS) if subject.black)
+OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name, SUBSURFACE_NODE.name)
+BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS, *SUBSURFACES) if subject.black)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
@@ -167,7 +169,7 @@ CHECKS = (
     Check(
         "frame",
         "The value depends on the directions in the surface's frame, turned to the viewer.",
-        (*ANY, *OTHERS),
+        (*ANY, *FRAMED),
         measures.frame,
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
@@ -254,7 +256,7 @@ CHECKS = (
             "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
             COMBINED: tolerances.count_of("inputs"),
-            **dict.fromkeys((*EMISSION_KINDS, MEDIUM), tolerances.count_of("inputs")),
+            **dict.fromkeys((*EMISSION_KINDS, MEDIUM, PICTURES), tolerances.count_of("inputs")),
         },
         diagnose=wiring.of_inputs,
     ),

@@ -6,8 +6,11 @@ from mxeon.models.pbrlib.combinations import COMBINATIONS
 from mxeon.models.pbrlib.emissions import COMBINED_EMISSIONS, EMISSIONS
 from mxeon.models.pbrlib.hair import HAIR_NODE
 from mxeon.models.pbrlib.media import MEDIA
+from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE
 
-OTHERS = (*(row.name for row in NODES), "burley_lambert", HAIR_NODE.name)
+FRAMED = (*(row.name for row in NODES), "burley_lambert", HAIR_NODE.name)
+# The checked frames turn from pixel to pixel: to subsurface scattering that is a curved surface.
+OTHERS = (*FRAMED, SUBSURFACE_NODE.name)
 COMBINATION = tuple(row.name for row in COMBINATIONS)
 EMITTER = tuple(row.name for row in (*EMISSIONS, *COMBINED_EMISSIONS))
 MEDIUM_NAMES = tuple(row.name for row in MEDIA)

@@ -13,6 +13,7 @@ import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,7 @@ window.answer = async (job) => {{
 }};
 </script>"""
 SHARED = {"Access-Control-Allow-Origin": "*"}
+PICTURES = 64  # that are kept: the checks of a node ask for some of them again
 LIMIT = 60.0  # seconds that a picture may take, the renderer's start included
 TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json"}
 
@@ -122,6 +124,17 @@ class Browser:
         self._page: Any = None
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
+        self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
+
+    def picture(self, job: Mapping[str, Any], size: int) -> NDArray[np.float32]:
+        """Picture of the page's answer to a job, (size, size, 3), row 0 at the top; read-only.
+
+        Raises
+        ------
+        NotRun
+            As `ask`.
+        """
+        return self._picture(json.dumps(job), size)
 
     def ask(self, job: Mapping[str, Any]) -> dict[str, Any]:
         """The page's answer to a job, with the version of the browser.
@@ -139,6 +152,10 @@ class Browser:
     def close(self) -> None:
         """End the browser; the next request starts another."""
         self._thread.submit(self._stop).result()
+
+    def _drawn(self, job: str, size: int) -> NDArray[np.float32]:
+        """Picture of the answer to a job in JSON."""
+        return pixels(self.ask(json.loads(job)), size)
 
     def _answer(self, job: dict[str, Any]) -> dict[str, Any]:
         try:

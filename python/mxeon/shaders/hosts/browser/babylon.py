@@ -84,7 +84,7 @@ class Host(base.Host):
             "irradiance": math.pi,
             "environment": scene.environment,
         }
-        return browser.pixels(self._browser.ask(job), scene.size)
+        return self._browser.picture(job, scene.size)
 
     def close(self) -> None:
         """End the browser."""

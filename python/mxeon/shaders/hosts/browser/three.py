@@ -77,7 +77,7 @@ class Host(base.Host):
             "environment": scene.environment,
             "document": document(category, color, roughness) if category else None,
         }
-        return browser.pixels(self._browser.ask(job), scene.size)
+        return self._browser.picture(job, scene.size)
 
     def close(self) -> None:
         """End the browser."""

@@ -12,6 +12,8 @@ CALLS = {
     "generalized_schlick_bsdf": f"{_SURFACE}, color(1.0), color(0.0), 0.5, 0.5, color(0.04), "
     'color(1.0), 5.0, "ggx"',
     "sheen_bsdf": "N, color(0.5), 0.5",
+    "chiang_hair_bsdf": f"{_SURFACE}, color(1.0), color(1.0), color(1.0), 1.55, 0.1, 0.05, 0.2, 0.1, 0.05, "
+    "0.2, 0.5, vector(0.0)",
     "subsurface_bssrdf": "N, color(0.5), color(0.1), 0.0",
     "layer": "sheen_bsdf(N, color(0.5), 0.5), oren_nayar_diffuse_bsdf(N, color(0.5), 0.5)",
 }

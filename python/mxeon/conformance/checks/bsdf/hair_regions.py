@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Views and roughnesses of hair of which a check asks apart, where shaders differ from the model."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mxeon.models.hair import TINTS
+from mxeon.models.hair_defects import BESSEL, CLAMPED, UNIFORM
+
+LOBES = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
+APART: dict[str, Any] = {**LOBES, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
+STRAIGHT = 0.05  # azimuth, in radian, up to which a view counts as along the normal
+SLANTED = (0.3, 1.2)  # azimuths of other views
+
+
+@dataclass(frozen=True)
+class Region:
+    """Views and roughnesses of which a check asks.
+
+    Attributes
+    ----------
+    azimuths : (float, float)
+        Of the views from the normal, in radian.
+    variances, scales : (float, float)
+    tints : mapping of str to tuple
+        Which lobe is in which channel.
+    tilt : float
+        Largest distance of `cuticle_angle` from 1/2.
+    form : str
+        Title of the form of the model that shaders have in its place there; "" if there is none.
+    """
+
+    azimuths: tuple[float, float]
+    variances: tuple[float, float]
+    scales: tuple[float, float]
+    tints: dict[str, Any]
+    tilt: float = 0.05
+    form: str = ""
+
+
+# By the key of the check.
+REGIONS = {
+    "lobes": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBES, form=UNIFORM),
+    "narrow_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.0, form=BESSEL),
+    "tilted_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.5, form=BESSEL),
+    "wide_lobes": Region(SLANTED, (1.0, 100.0), (1.0, 10.0), APART, form=CLAMPED),
+    "straight_views": Region((0.0, STRAIGHT), (0.2, 1.0), (0.05, 0.2), APART),
+}

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The subject `subsurface_bsdf`, as a host that evaluates pairs of directions shows it: on a plane."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mxeon.conformance.checks.batch import Array, Batch, Candidate
+from mxeon.conformance.checks.bsdf.subjects import BsdfSubject, whole
+from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE, circle_blur
+
+LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
+LONGEST = 2.0  # mean free path of random pairs
+UNSEEN = ("radius", "anisotropy")  # inputs that change nothing on a plane
+
+
+@dataclass(frozen=True)
+class SubsurfaceSubject(BsdfSubject):
+    """The node of subsurface scattering. Its radius and its anisotropy are not seen on a plane."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs that a plane shows."""
+        return tuple(name for name in super().inputs if name not in UNSEEN)
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """Lambert, and what MaterialX has in its place."""
+        blurred = Candidate("MaterialX's blur along a circle of radius 100", _blurred)
+        return (*super().value_candidates, blurred)
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random colors and mean free paths, float32 numbers."""
+        radius = (LONGEST * rng.random((count, 3))).astype(np.float32).astype(np.float64)
+        return {"color": self._random(rng, count, "color"), "radius": radius}
+
+
+def _blurred(batch: Batch) -> Array:
+    """What MaterialX has on a plane: light below the horizon and in shadow.
+
+    It has none where a cosine is rounded above 1, of which the arc cosine is not a number.
+    """
+    mu = batch.wi[:, 2]
+    shadow = 1.0 - np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+    lit = 1.0 - shadow * np.clip(mu, LEAST_COSINE, 1.0)[:, np.newaxis]
+    inputs = whole(batch)
+    light = np.where(mu[:, np.newaxis] > 1.0, 0.0, circle_blur(mu, inputs["radius"]))
+    return np.asarray(batch.strength * inputs["color"] * light * lit)
+
+
+SUBSURFACES = (SubsurfaceSubject(SUBSURFACE_NODE),)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reflectance of a thin film wavelength by wavelength, and its color under the CIE 1931 observer.
+
+It is what the specification approximates by Gaussians and a few orders: the amplitudes of both
+interfaces and the phase of one passage give the sum of all reflections in closed form.
+"""
+
+import numpy as np
+
+from mxeon.models.arguments import checked
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.colorimetry import matching_functions
+
+STEP = 1.0  # nm
+VISIBLE = np.arange(360.0, 830.0 + STEP, STEP)
+
+
+def film_spectrum(
+    wavelength: ArrayLike,
+    mu: ArrayLike,
+    thickness: ArrayLike,
+    film_ior: ArrayLike,
+    ior: ArrayLike,
+    extinction: ArrayLike,
+) -> Array:
+    """Reflectance of a thin film on a substrate for unpolarized light of one wavelength.
+
+    Parameters
+    ----------
+    wavelength : array_like, shape (...)
+        In nm, above 0.
+    mu, thickness, film_ior, ior, extinction : array_like, shape (...)
+        As those of `mxeon.models.thin_film.film_dielectric` and `film_conductor`, without channels.
+
+    Returns
+    -------
+    ndarray, shape (...), float64
+        Dimensionless, in [0, 1].
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    References
+    ----------
+    [Belcour2017], Section 3.
+
+    Examples
+    --------
+    >>> film_spectrum([450.0, 550.0, 650.0], 1.0, 100.0, 1.38, 1.5, 0.0).round(4)
+    array([0.0173, 0.0141, 0.0156])
+    """
+    mu = np.asarray(checked("mu", mu), np.float64)
+    n2 = np.asarray(checked("thinfilm_ior", film_ior), np.float64)
+    n3 = checked("ior", ior) + 1j * checked("extinction", extinction)
+    sin2 = (1.0 - mu) * (1.0 + mu)
+    c2 = np.sqrt(1.0 - sin2 / n2**2)
+    w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine in the substrate
+    path = 4.0 * np.pi * n2 * c2 * checked("thinfilm_thickness", thickness)
+    turn = np.exp(1j * path / np.asarray(wavelength))
+    s = _amplitude(mu, n2 * c2), _amplitude(n2 * c2, w3)
+    p = _amplitude(n2 * mu, c2), _amplitude(n3**2 * c2, n2 * w3)
+    both = [(upper + lower * turn) / (1.0 + upper * lower * turn) for upper, lower in (s, p)]
+    return np.asarray(0.5 * sum(np.abs(each) ** 2 for each in both))
+
+
+def film_spectrum_xyz(
+    mu: ArrayLike,
+    thickness: ArrayLike,
+    film_ior: ArrayLike,
+    ior: ArrayLike,
+    extinction: ArrayLike,
+    light: ArrayLike = 1.0,
+) -> Array:
+    """Color of a thin film in CIE XYZ, by a sum over wavelengths in steps of 1 nm.
+
+    Parameters
+    ----------
+    mu, thickness, film_ior, ior, extinction : array_like, shape (...)
+        As those of `film_spectrum`.
+    light : array_like, shape (471,) or ()
+        Spectral power at 360 nm to 830 nm; the default is of equal energy.
+
+    Returns
+    -------
+    ndarray, shape (..., 3), float64
+        Relative to the white of the light.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Examples
+    --------
+    >>> film_spectrum_xyz(1.0, 400.0, 1.33, 1.5, 0.0).round(4)
+    array([0.0246, 0.0326, 0.0161])
+    """
+    material = [np.asarray(each)[..., np.newaxis] for each in (mu, thickness, film_ior)]
+    substrate = [np.asarray(each)[..., np.newaxis] for each in (ior, extinction)]
+    R = film_spectrum(VISIBLE, *material, *substrate)
+    weights = matching_functions(VISIBLE) * np.reshape(light, (-1, 1))
+    return np.asarray(R @ (weights / weights.sum(axis=0)))
+
+
+def _amplitude(above: Numbers, below: Numbers) -> Numbers:
+    """(a - b) / (a + b): reflected amplitude by the admittances of both sides; no step reflects none."""
+    total = above + below
+    return np.asarray((above - below) / np.where(total == 0.0, 1.0, total))

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The hair node: verdicts on stock MaterialX, on eonlib, and on shaders with one wrong line."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.bsdf import hair_probes, probes
+from mxeon.conformance.checks.bsdf.hair import HAIRS
+from mxeon.conformance.checks.bsdf.hair_probes import HairProbe, aimed
+from mxeon.conformance.checks.bsdf.hair_tolerances import LARGEST
+from mxeon.conformance.checks.bsdf.subjects import HAIR, QUADRATURES
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.models.hair import ROUGHNESSES, TINTS
+from mxeon.shaders.library import data_folder
+
+(SUBJECT,) = HAIRS
+ROWS = {row.key: row for row in CHECKS if applies(row, SUBJECT, HAIR, "gl")}
+SMALL = {"PAIRS": 1 << 9, "FEW": 1 << 8, "NODES": 32}
+
+# What fails with stock MaterialX, and words of each diagnosis; every other check passes.
+STOCK = {
+    "value": "values that are not finite",
+    "environment": "a GGX lobe of the mean roughness and tint, without absorption has the distance",
+    "black": "values that are not finite",
+    "finite": "values that are not finite",
+    "integral": "",
+    "lobes": "nearest known model: N of TRRT+ pi/2 in place of 1/(2 pi) (rms ",
+    "narrow_lobes": "nearest known model: I_0 by ten terms, and half a term of its logarithm (rms ",
+    "tilted_lobes": "values that are not finite with a tilted cuticle",
+    "wide_lobes": "nearest known model: every roughness in [0.001, 1] (rms ",
+    "straight_views": "",
+}
+
+# By name: text of eonlib's shader, the text in its place, key of the check and words of the diagnosis.
+TURNED = "chiang_hair_turn(inclined_i, chiang_hair_turn(alpha, alpha))"
+WRONG = {
+    "the viewer tilted": (
+        "M = chiang_hair_longitudinal(tilted, inclined_o, r.x)",
+        "M = chiang_hair_longitudinal(chiang_hair_turn(inclined_o, chiang_hair_turn(tilted,"
+        " inclined_i * vec2(1.0, -1.0)) / dot(inclined_i, inclined_i)), inclined_i, r.x)",
+        "tilted_lobes",
+        "nearest known model: the viewer's inclination tilted in place of the light's (rms ",
+    ),
+    "no tilt": (TURNED, "inclined_i", "lobes", ""),
+    "uniform lobe": (
+        "M * 0.5 * M_PI_INV", "M * 0.5 * M_PI", "lobes",
+        "nearest known model: N of TRRT+ pi/2 in place of 1/(2 pi) (rms ",
+    ),
+    "narrow lobes": ("1e-8, 1e-4)", "0.01, 0.001)", "narrow_lobes", ""),
+    "wide lobes": (
+        "max(roughness[p], vec2(1e-8, 1e-4))", "clamp(roughness[p], 0.001, 1.0)", "wide_lobes",
+        "nearest known model: every roughness in [0.001, 1] (rms ",
+    ),
+    "sine by a cosine": (
+        "vec2(wo.z, -wo.y) / c", "vec2(wo.z / c, -sign(wo.y) * sqrt(1.0 - wo.z * wo.z / (c * c)))",
+        "straight_views", "",
+    ),
+    "exit on the other side": ("vec2(wo.z, -wo.y)", "wo.zy", "value", ""),
+    "too bright": (
+        "total * closureData", "4.0 * total * closureData", "energy",
+        "fault: every value is 4 times the right one (rms ",
+    ),
+    "no absorption": ("exp(-absorption", "exp(-0.0 * absorption", "inputs", "without effect: absorption"),
+    "occlusion": (
+        "closureData.occlusion", "1.0", "value", "fault: the occlusion is ignored",
+    ),
+    "light of its own": ("* closureData.occlusion *", "* closureData.occlusion + 0.001 *", "black", ""),
+    "light passes": ("throughput = vec3(0.0)", "throughput = vec3(0.5)", "throughput", "throughput 0.5"),
+    "another direction": (
+        "X = normalize(X - dot(X, N) * N);", "X = normalize(cross(vec3(0.0, 1.0, 0.0), N));", "frame",
+        "branch direct: curve_direction is ignored",
+    ),
+    "horizon": ("max(1.0 - F * T, 1e-7)", "(1.0 - F * T)", "finite", "values that are not finite"),
+    "environment": (
+        "back * mx_environment_irradiance(-N)", "vec3(0.0)", "environment", "no known model is near",
+    ),
+    "too dark": ("total * closureData", "0.9 * total * closureData", "integral", ""),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_pairs():
+    """Let the probe have few pairs: what is wrong here is wrong for many."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (probes, hair_probes):
+            for name, count in SMALL.items():
+                patch.setattr(module, name, count)
+        yield
+
+
+def judged(host, library, keys=tuple(ROWS)):
+    """Results of checks of the node by their keys."""
+    probe = HairProbe(host, SUBJECT, library)
+    return {key: judge_check(ROWS[key], probe) for key in keys}
+
+
+def test_stock_materialx_has_its_known_departures_and_no_others(gl):
+    results = judged(gl, "stock")
+    assert {key for key, each in results.items() if each.verdict != PASSED} == set(STOCK)
+    assert all(STOCK.get(key, "") in each.diagnosis for key, each in results.items())
+    assert all(each.control.caught for each in results.values())
+
+
+def test_eonlib_passes(gl):
+    results = judged(gl, "eonlib")
+    assert {key: each.diagnosis for key, each in results.items() if each.verdict != PASSED} == {}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_line_fails_a_check_and_is_named(gl, tmp_path, name):
+    text, other, key, words = WRONG[name]
+    (result,) = judged(gl, wrong_library(tmp_path, text, other), [key]).values()
+    assert result.verdict == FAILED and result.control.caught
+    assert words in result.diagnosis
+
+
+def test_every_check_has_a_shader_that_it_fails():
+    assert {key for _, _, key, _ in WRONG.values()} == set(ROWS)
+
+
+def wrong_library(folder, text, other):
+    """A library of eonlib's hair alone, with one text in place of another."""
+    source = (data_folder() / "genglsl" / "chiang_hair_bsdf.glsl").read_text(encoding="utf-8")
+    assert text in source
+    (folder / "wrong.glsl").write_text(source.replace(text, other), encoding="utf-8")
+    (folder / "wrong.mtlx").write_text(
+        '<?xml version="1.0"?>\n<materialx version="1.39">\n'
+        '<implementation name="IM_chiang_hair_bsdf_genglsl" nodedef="ND_chiang_hair_bsdf"\n'
+        'file="wrong.glsl" function="chiang_hair_bsdf" target="genglsl" />\n</materialx>\n',
+        encoding="utf-8",
+    )
+    return str(folder)
+
+
+def test_pairs_are_aimed_into_the_lobes_of_both_sides():
+    random, aimed, special = HairProbe(None, SUBJECT, "stock").batches
+    for batch in (random, aimed, special):
+        assert (batch.wi[:, 2] < 0.0).any() and (batch.wi[:, 2] > 0.0).any()
+        assert np.abs(np.linalg.norm(batch.wi, axis=1) - 1.0).max() < 1e-6
+    values = [SUBJECT.expected(batch).max(axis=1) for batch in (random, aimed)]
+    assert np.median(values[1]) > 10.0 * np.median(values[0])
+    assert max(each.max() for each in values) < LARGEST
+
+
+def test_a_light_aimed_without_spread_is_where_a_lobe_is_largest():
+    wo = np.array([[0.28, 0.0, 0.96]])
+    inputs = {name: np.array([[1e-12, 1e-9]]) for name in ROUGHNESSES}
+    inputs |= {"ior": np.array([1.5]), "cuticle_angle": np.array([0.5])}
+    lights = [aimed(np.random.default_rng(seed), wo, inputs)[0] for seed in range(8)]
+    exits = {tuple(np.round(light, 5) + 0.0) for light in lights}
+    assert exits == {(-0.28, 0.0, 0.96), (-0.28, 0.0, -0.96)}
+
+
+def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(monkeypatch):
+    for module in (probes, hair_probes):
+        monkeypatch.setattr(module, "NODES", 48)
+    probe = HairProbe(None, SUBJECT, "stock")
+    batch, weights = probe.integrated
+    values = SUBJECT.expected(batch).reshape(*weights.shape, 3)
+    albedo = (weights[..., np.newaxis] * values).sum(axis=1)
+    assert np.abs(albedo - probe.integrals).max() <= QUADRATURES[HAIR]
+
+
+def test_inputs_are_those_of_the_node_and_float32_numbers():
+    inputs = SUBJECT.random_inputs(np.random.default_rng(1), 1 << 8)
+    assert set(inputs) == set(SUBJECT.inputs) - {"normal", "curve_direction"}
+    assert set(SUBJECT.changes) == set(SUBJECT.inputs)
+    assert all(np.array_equal(each, each.astype(np.float32)) for each in inputs.values())
+    assert SUBJECT.black == dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
+    assert not SUBJECT.passed(HairProbe(None, SUBJECT, "stock").few[0]).any()

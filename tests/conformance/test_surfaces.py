@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surface shaders as a whole: what eonlib keeps, what stock MaterialX does not, and dead inputs."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.families import COMMON_SUBJECTS
+from mxeon.conformance.checks.surfaces.inputs import drawn
+from mxeon.conformance.checks.surfaces.probes import WHOLE, SurfaceProbe
+from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.run.plan import make_plan, node_names
+from mxeon.shaders.library import load_library
+
+ROWS = {check.key: check for check in CHECKS if WHOLE in check.tolerances}
+STOCK = {  # what fails there, beside the rest, which passes
+    "standard_surface": {"lobes", "lobes_albedo", "lobes_furnace"},
+    "open_pbr_surface": {"lobes", "lobes_albedo", "lobes_furnace"},
+    "gltf_pbr": {"lobes", "lobes_albedo", "lobes_energy"},
+    "UsdPreviewSurface": {"lobes", "lobes_albedo", "lobes_energy"},
+}
+
+
+def judged(host, shader, library):
+    """Results of all checks of a surface shader."""
+    probe = SurfaceProbe(host, shader, library)
+    assert all(applies(row, shader, WHOLE, host.name) for row in ROWS.values())
+    return {key: with_page(judge_check(row, probe)) for key, row in ROWS.items()}
+
+
+@pytest.mark.parametrize("shader", SHADERS, ids=lambda shader: shader.node)
+def test_eonlib_sums_the_lobes_of_a_surface_shader(gl, shader):
+    results = judged(gl, shader, "eonlib")
+    assert {result.verdict for result in results.values()} == {PASSED}
+    assert all(result.control.caught for result in results.values())
+
+
+@pytest.mark.parametrize("shader", SHADERS, ids=lambda shader: shader.node)
+def test_stock_has_its_known_departures_and_no_others(gl, shader):
+    results = judged(gl, shader, "stock")
+    failed = {key for key, result in results.items() if result.verdict == FAILED}
+    assert failed == STOCK[shader.node]
+    assert all("genglsl_microfacet_throughput" in results[key].diagnosis for key in failed)
+
+
+def test_a_wrong_lobe_is_named():
+    class Coated:
+        """A host whose coat is left out."""
+
+        def __init__(self, probe):
+            self.probe = probe
+
+        def __getattr__(self, name):
+            return getattr(self.probe, name)
+
+        def direct(self, batch):
+            return self.probe.expected_of(batch.altered(coat=np.zeros(len(batch.wo))))
+
+    probe = Coated(SurfaceProbe(None, SHADERS[0], "eonlib"))
+    assert ROWS["lobes"].diagnose(probe).text == "the layer equation holds without the coat"
+
+
+@pytest.mark.parametrize("shader", SHADERS, ids=lambda shader: shader.node)
+def test_every_input_of_a_shader_is_asked_for_or_of_no_lobe(shader):
+    definitions = load_library("stock").getMatchingNodeDefs(shader.node)
+    ports = [{port.getName() for port in each.getActiveInputs()} for each in definitions]
+    names = max(ports, key=len)
+    assert set(shader.inputs) <= names
+    words = ("emiss", "opacity", "alpha", "occlusion")
+    assert all(any(word in name for word in words) for name in names - set(shader.inputs))
+
+
+def test_they_are_judged_where_they_are_named():
+    assert not set(SHADERS) & set(COMMON_SUBJECTS)
+    assert {shader.node for shader in SHADERS} <= set(node_names())
+    plan = make_plan([], ["gl"], ["stock"], nodes=["gltf_pbr"])
+    assert {"lobes", "reach"} <= {task.check for task in plan.tasks}
+
+
+def test_drawn_values_are_float32_numbers_in_their_ranges():
+    values = drawn(np.random.default_rng(1), 64, SHADERS[0].table.judged)
+    assert values["base_color"].shape == (64, 3) and values["coat"].shape == (64,)
+    assert all((each == each.astype(np.float32)).all() for each in values.values())
+    assert values["coat_IOR"].min() == np.float32(1.1)

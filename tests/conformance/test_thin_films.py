@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Thin films: verdicts on stock MaterialX and eonlib, and on shaders with one wrong line."""
+
+import shutil
+from dataclasses import replace
+
+import pytest
+
+from fits import thin_film as fit
+from mxeon.conformance.checks.bsdf import thin_films
+from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
+from mxeon.conformance.checks.bsdf.thin_films import FILMS, FilmProbe
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.table.thin_films import CHECKS
+from mxeon.conformance.diagnosis import Diagnosis
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.shaders.library import data_folder
+
+SUBJECTS = {subject.node: subject for subject in FILMS}
+ROWS = {check.key: check for check in CHECKS}
+CHOICES = "MaterialX's matrix, orders and mixed channels"
+HALF = "half of the substrate's reflectance, and MaterialX's choices"
+FITTED = "the bare lobe's fit, and the film in the compensation"
+SMALL = {"PAIRS": 1 << 6, "ALBEDOS": 12}
+
+# What fails or differs with stock MaterialX, with words of the diagnosis; all else passes.
+STOCK = {
+    "dielectric_bsdf": {
+        "film": (DIFFERS, f"{CHOICES}, and its compensation"),
+        "film_throughput": (FAILED, f"{CHOICES}: {FITTED}"),
+    },
+    "conductor_bsdf": {
+        "film": (DIFFERS, f"{CHOICES}, and its compensation"),
+        "film_limit": (DIFFERS, CHOICES),
+        "film_environment": (DIFFERS, f"{CHOICES}, in light from all sides"),
+    },
+    "generalized_schlick_bsdf": {
+        "film": (FAILED, f"{HALF}, and its compensation"),
+        "film_limit": (FAILED, HALF),
+        "film_environment": (FAILED, f"{HALF}, in light from all sides"),
+        "film_throughput": (FAILED, f"{HALF}: {FITTED}"),
+    },
+}
+FILM = "thin_film.glsl"
+# By name: node, text of the film, the text in its place, key of the check.
+WRONG = {
+    "phase": ("conductor_bsdf", "-r12 * vec2(re.x, im.x)", "-r12 * vec2(re.x, -im.x)", "film"),
+    "one order too few": (
+        "conductor_bsdf", "waves.k4 * x2 + ", "", "film",
+    ),
+    "no limit": ("dielectric_bsdf", "waves.k1 * x + ", "0.9 * waves.k1 * x + ", "film_limit"),
+    "too much light": (
+        "conductor_bsdf", "clamp(0.5 * F, 0.0, 1.0)", "1.1 + 0.0 * F", "film_energy",
+    ),
+    "one facet": ("conductor_bsdf", "i < 9", "i < 1", "film_environment"),
+    "half of the film": (
+        "generalized_schlick_bsdf", "return total / weights", "return 0.5 * total / weights",
+        "film_throughput",
+    ),
+    "not a number": (
+        "dielectric_bsdf", "clamp(0.5 * F, 0.0, 1.0)", "F / step(1.0, fd.tf_ior)", "film_finite",
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_pairs():
+    """Let probes have few pairs: what is wrong here is wrong for most."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, count in SMALL.items():
+            patch.setattr(thin_films, name, count)
+        yield
+
+
+@pytest.mark.parametrize("node", SUBJECTS)
+def test_stock_materialx_has_its_known_films_and_no_others(gl, node):
+    for result in judged(gl, node, "stock"):
+        verdict, words = STOCK[node].get(result.check, (PASSED, ""))
+        if (node, result.check) != ("dielectric_bsdf", "film_limit"):  # next to its tolerance
+            assert result.verdict == verdict, result.check
+        assert words in result.diagnosis and result.control.caught
+
+
+@pytest.mark.parametrize("node", SUBJECTS)
+def test_the_films_of_eonlib_pass(gl, node):
+    for result in judged(gl, node, "eonlib"):
+        assert result.verdict == PASSED and result.control.caught, result.diagnosis
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_line_of_a_film_fails_a_check(gl, tmp_path, name):
+    node, text, other, key = WRONG[name]
+    row = replace(ROWS[key], diagnose=lambda probe: Diagnosis("wrong"))  # which takes long
+    probe = FilmProbe(gl, SUBJECTS[node], wrong_library(tmp_path, text, other))
+    result = judge_check(row, probe)
+    assert result.verdict == FAILED and result.control.caught
+
+
+def test_every_check_of_a_film_has_a_shader_that_it_fails():
+    assert {key for *_, key in WRONG.values()} == {*ROWS}
+
+
+def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
+    monkeypatch.setattr(fit, "COUNT", 1 << 9)  # of 2^12, of which the tolerances are the largest
+    monkeypatch.setattr(fit, "VIEWS", 1 << 5)
+    errors = zip(*fit.errors().values(), strict=True)
+    stated = (
+        bsdf_tolerances.FILM_ORDERS,
+        bsdf_tolerances.FILM_AVERAGE,
+        bsdf_tolerances.FILM_VISIBLE,
+    )
+    for measured, most in zip(errors, stated, strict=True):
+        assert 0.2 * most < max(measured) <= most
+
+
+def wrong_library(folder, text, other):
+    """A copy of the library with one text of the film in place of another."""
+    for name in ("libraries", "genglsl", "profiles"):
+        shutil.copytree(data_folder() / name, folder / name)
+    file = folder / "genglsl" / FILM
+    source = file.read_text(encoding="utf-8")
+    assert text in source
+    file.write_text(source.replace(text, other), encoding="utf-8")
+    return str(folder / "profiles" / "specular")
+
+
+def judged(host, node, library):
+    """Results of the checks of a film."""
+    probe = FilmProbe(host, SUBJECTS[node], library)
+    rows = [row for row in CHECKS if applies(row, probe.subject, probe.kind, host.name)]
+    return [judge_check(row, probe) for row in rows]

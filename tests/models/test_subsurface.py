@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subsurface scattering: the albedo inversion against transport, and the diffusion profile."""
+
+import numpy as np
+import pytest
+
+from docs.upstream.random_walk import distances
+from mxeon.models.subsurface import (
+    GAIN,
+    LINEAR,
+    LOSS,
+    SQUARED,
+    diffusion_cdf,
+    diffusion_profile,
+    diffusion_sample,
+    subsurface_albedo,
+    subsurface_coefficients,
+    subsurface_reflectance,
+)
+from tests.support.tolerances import (
+    SUBSURFACE_FIT,
+    SUBSURFACE_PEAK,
+    SUBSURFACE_ROUNDED,
+    SUBSURFACE_SIMILARITY,
+)
+
+COLORS = np.linspace(0.0, 1.0, 1001)
+PATHS = 20_000
+DEVIATIONS = 5.0  # standard errors: one false alarm in 190,000 runs of the nine walks
+
+
+def test_the_inversion_solves_van_de_hulsts_fit():
+    """LOSS s^2 - (1 + LOSS + GAIN rho) s + 1 - rho = 0, divided by 2 LOSS."""
+    half = 1.0 / (2.0 * LOSS)
+    exact = ((1.0 + LOSS) * half, GAIN * half)
+    square = (exact[0] ** 2 - 2.0 * half, 2.0 * exact[0] * exact[1] + 2.0 * half, exact[1] ** 2)
+    np.testing.assert_allclose(LINEAR, exact, atol=5e-6)
+    np.testing.assert_allclose(SQUARED, square, rtol=1e-6)
+
+
+@pytest.mark.parametrize("anisotropy", [-1.0, -0.5, 0.0, 0.5, 0.9])
+def test_albedo_and_reflectance_are_inverse(anisotropy):
+    albedo = subsurface_albedo(COLORS, anisotropy)
+    assert ((albedo > 0.0) & (albedo < 1.0)).all()
+    back = subsurface_reflectance(albedo, anisotropy)
+    assert np.abs(back - COLORS).max() < SUBSURFACE_ROUNDED
+
+
+def test_the_albedo_rises_with_the_color_up_to_its_peak():
+    near = 1.0 - np.geomspace(1e-3, 1e-7, 1001)
+    rises = np.diff(subsurface_albedo(near)) > 0.0
+    assert rises[near[1:] < 1.0 - SUBSURFACE_PEAK].all() and not rises[-1]
+    assert (np.diff(subsurface_albedo(COLORS)) > 0.0).all()
+
+
+def reflectance_of_h(albedo):
+    """Reflectance of an isotropic half space under a uniform sky, by Chandrasekhar's H function."""
+    x, w = np.polynomial.legendre.leggauss(64)
+    mu, weights = (0.5 * (x + 1.0)) ** 2, 0.5 * (x + 1.0) * w
+    h = np.ones(len(mu))
+    for _ in range(400):
+        integral = (mu * weights * h / (mu + mu[:, np.newaxis])).sum(axis=1)
+        h = 1.0 / (np.sqrt(1.0 - albedo) + 0.5 * albedo * integral)
+    return 1.0 - 2.0 * np.sqrt(1.0 - albedo) * (h * mu * weights).sum()
+
+
+def test_an_isotropic_half_space_has_the_color():
+    colors = np.linspace(0.02, 0.98, 25)
+    exact = np.array([reflectance_of_h(each) for each in subsurface_albedo(colors)])
+    assert np.abs(exact - colors).max() < SUBSURFACE_FIT
+
+
+@pytest.mark.parametrize("anisotropy", [-0.5, 0.0, 0.5])
+@pytest.mark.parametrize("color", [0.2, 0.5, 0.8])
+def test_a_random_walk_has_the_color(color, anisotropy):
+    walk = distances(float(subsurface_albedo(color, anisotropy)), anisotropy, PATHS)
+    noise = DEVIATIONS * np.sqrt(color * (1.0 - color) / PATHS)
+    assert abs(len(walk) / PATHS - color) < SUBSURFACE_SIMILARITY + noise
+
+
+def test_without_the_similarity_relation_the_color_is_missed():
+    walk = distances(float(subsurface_albedo(0.5)), 0.5, PATHS)
+    assert 0.5 - len(walk) / PATHS > 0.05
+
+
+def test_an_inverted_similarity_relation_is_missed_further():
+    isotropic, g = float(subsurface_albedo(0.5)), 0.5
+    inverted = isotropic * (1.0 - g) / (1.0 - isotropic * g)
+    assert 0.5 - len(distances(inverted, g, PATHS)) / PATHS > 0.15
+
+
+def test_coefficients_are_over_the_mean_free_path():
+    scattering, absorption = subsurface_coefficients(COLORS, 0.25, 0.3)
+    np.testing.assert_allclose(scattering + absorption, 4.0, rtol=1e-15)
+    np.testing.assert_allclose(scattering * 0.25, subsurface_albedo(COLORS, 0.3), rtol=1e-15)
+
+
+@pytest.mark.parametrize("radius", [0.01, 1.0, 30.0])
+def test_the_profile_integrates_to_1_over_the_plane(radius):
+    x, w = np.polynomial.laguerre.laggauss(40)
+    r = 3.0 * radius * x  # the slower exponential is the weight of the quadrature
+    ring = 2.0 * np.pi * r * diffusion_profile(r, radius) * np.exp(x) * 3.0 * radius
+    assert (w * ring).sum() == pytest.approx(1.0, abs=1e-9)
+    assert (w * ring * r).sum() == pytest.approx(2.5 * radius, rel=1e-9)
+
+
+def test_the_cdf_is_the_integral_of_the_profile():
+    r, step = np.linspace(0.1, 10.0, 50), 1e-5
+    slope = (diffusion_cdf(r + step, 0.7) - diffusion_cdf(r - step, 0.7)) / (2.0 * step)
+    np.testing.assert_allclose(slope, 2.0 * np.pi * r * diffusion_profile(r, 0.7), atol=1e-9)
+    assert diffusion_cdf(1e3, 1.0) == 1.0 and diffusion_cdf(1e-9, 1.0) < 1e-9
+
+
+def test_samples_have_the_cdf():
+    u = np.linspace(1e-6, 1.0 - 1e-9, 1001)
+    np.testing.assert_allclose(diffusion_cdf(diffusion_sample(u, 0.3), 0.3), u, atol=1e-14)
+    assert diffusion_sample(0.0, 0.3) < 1e-15
+
+
+@pytest.mark.parametrize(
+    "call, rule",
+    [
+        (lambda: subsurface_albedo(1.1), r"rho must lie in \[0, 1\]; got 1.1"),
+        (
+            lambda: subsurface_albedo(0.5, -1.5),
+            r"scatter_anisotropy must lie in \[-1, 1\]; got -1.5",
+        ),
+        (lambda: subsurface_reflectance(-0.1), r"single_scatter must lie in \[0, 1\]; got -0.1"),
+        (lambda: subsurface_coefficients(0.5, 0.0), r"radius must lie in \(0, inf\); got 0.0"),
+        (lambda: diffusion_profile([1.0, 0.0], 1.0), r"separation must lie in \(0, inf\)"),
+        (lambda: diffusion_sample(1.0, 1.0), r"u must lie in \[0, 1\); got 1.0"),
+    ],
+)
+def test_arguments_out_of_range_are_refused(call, rule):
+    with pytest.raises(ValueError, match=f"^{rule}"):
+        call()

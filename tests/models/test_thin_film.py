@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Thin films: limits, the transfer-matrix method, and what the specification's approximation costs."""
+
+import colour
+import numpy as np
+import pytest
+import tmm
+
+from docs.upstream import film_quantities
+from mxeon.models import thin_film_formulas as formulas
+from mxeon.models.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
+from mxeon.models.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
+from mxeon.models.microfacet_film import PolynomialCurve, film_albedo_dir, film_brdf
+from mxeon.models.pbrlib.thin_films import FILM_NODES
+from mxeon.models.thin_film import (
+    MATERIALX,
+    TEXT,
+    Form,
+    film_conductor,
+    film_dielectric,
+    film_schlick,
+)
+from mxeon.models.thin_film_curve import film_curve, without_clamp
+from mxeon.models.thin_film_spectrum import film_spectrum, film_spectrum_xyz
+from tests.models.test_pbrlib import directions, inputs
+
+MU = np.linspace(0.05, 1.0, 40)
+GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
+WHITE, HALF = np.ones(3), np.full(3, 0.5)
+HEIGHTS = 1.3e-3  # by which the heights of the sensitivities add up to more than 1
+ORDERS = 1e-8  # of the sum of all orders, for cosines above 0.05
+TRANSFER = 1e-12  # of two ways to the same amplitudes
+XYZ_ALL, XYZ_TWO = (0.012, 0.017), (0.016, 0.07)  # of dielectrics and metals: the page's figures
+CURVE = 1e-4  # of a polynomial of degree 48
+
+
+def bare(thickness):
+    """Reflectances under a film of one thickness and without it, of the three substrates."""
+    return (
+        (film_dielectric(MU, thickness, 1.4, 1.8), fresnel_dielectric(MU, 1.8)[:, np.newaxis]),
+        (film_conductor(MU, thickness, 1.4, *GOLD), fresnel_conductor(MU, *GOLD)),
+        (
+            film_schlick(MU, thickness, 1.4, HALF, WHITE, WHITE, 5.0),
+            fresnel_schlick(MU, HALF, WHITE, WHITE, 5.0),
+        ),
+    )
+
+
+def test_a_film_of_thickness_0_is_the_plain_curve():
+    for coated, plain in bare(0.0):
+        np.testing.assert_allclose(coated, np.broadcast_to(plain, coated.shape), rtol=1e-14)
+
+
+def test_a_film_is_continuous_where_its_thickness_vanishes_but_over_schlick():
+    dielectric, conductor, schlick = bare(1e-6)
+    for coated, plain in (dielectric, conductor):
+        np.testing.assert_allclose(coated, np.broadcast_to(plain, coated.shape), atol=HEIGHTS)
+    assert np.abs(schlick[0] - schlick[1]).max() > 0.1
+
+
+def test_a_film_of_index_1_vanishes():
+    ones = (
+        film_conductor(MU, 400.0, 1.0, *GOLD),
+        film_schlick(MU, 400.0, 1.0, HALF, WHITE, WHITE, 5),
+    )
+    np.testing.assert_allclose(ones[0], fresnel_conductor(MU, *GOLD), rtol=1e-13)
+    np.testing.assert_allclose(ones[1], fresnel_schlick(MU, HALF, WHITE, WHITE, 5.0), rtol=1e-13)
+
+
+def test_a_film_of_the_index_of_its_substrate_is_that_substrate():
+    coated = film_dielectric(MU, 400.0, 1.7, 1.7)
+    plain = fresnel_dielectric(MU, 1.7)[:, np.newaxis]
+    np.testing.assert_allclose(coated, np.broadcast_to(plain, coated.shape), rtol=1e-12)
+
+
+def test_a_substrate_that_reflects_everything_does_so_under_a_film():
+    np.testing.assert_allclose(film_dielectric(MU, 400.0, 1.5, 0.0), 1.0, rtol=1e-12)
+
+
+def test_wavelengths_agree_with_the_transfer_matrix_method():
+    for mu in (1.0, 0.6, 0.1):
+        for index, extinction in ((1.5, 0.0), (1.1, 0.0), (0.2, 3.4), (2.9, 3.1)):
+            stack = [1.0, 1.4, index + 1j * extinction], [np.inf, 350.0, np.inf]
+            both = [tmm.coh_tmm(pol, *stack, np.arccos(mu), 550.0)["R"] for pol in "sp"]
+            ours = film_spectrum(550.0, mu, 350.0, 1.4, index, extinction)
+            np.testing.assert_allclose(ours, np.mean(both), rtol=TRANSFER)
+
+
+def test_the_airy_terms_of_one_wavelength_are_the_transfer_matrix():
+    # With all orders and no damping: the geometric series in place of the sensitivities.
+    for index, extinction in ((1.5, 0.0), (1.1, 0.0), (0.2, 3.4), (2.9, 3.1)):
+        arrays = [np.full_like(MU, value) for value in (1.4, index, extinction)]
+        opd, total = formulas.path_difference(MU, 350.0, arrays[0]), 0.0
+        for first, second, phase in formulas.over_index(MU, *arrays):
+            passed = 1.0 - first
+            dc = first + passed**2 * second / (1.0 - first * second)
+            x = 2.0 * np.pi * opd / 550e-9 + phase
+            series = formulas._series(np.sqrt(first * second), x)
+            total = total + 0.5 * (dc + 2.0 * (dc - first - passed) * series)
+        expected = film_spectrum(550.0, MU, 350.0, 1.4, index, extinction)
+        np.testing.assert_allclose(total, expected, atol=1e-12)
+
+
+def test_the_sum_of_all_orders_is_that_of_many():
+    for thickness in (1.0, 30.0, 300.0, 2000.0):
+        arrays = [np.full_like(MU, value) for value in (1.4, 0.2, 3.4)]
+        opd = formulas.path_difference(MU, thickness, arrays[0])
+        for each in formulas.over_index(MU, *arrays):
+            many = formulas.tristimulus(each, opd, 400)
+            np.testing.assert_allclose(formulas.tristimulus(each, opd), many, atol=ORDERS)
+
+
+@pytest.mark.parametrize(("orders", "most"), [(None, XYZ_ALL), (2, XYZ_TWO)])
+def test_the_text_is_this_near_to_a_sum_over_wavelengths(orders, most):
+    measured = film_quantities.errors(orders)
+    assert np.all(np.array(measured) <= most)
+    assert np.all(np.array(measured) > 0.8 * np.array(most))
+
+
+def test_the_text_takes_phases_of_the_right_sign():
+    mu, thickness, *rest = film_quantities.grid()
+    exact = film_spectrum_xyz(mu, thickness, *rest)
+    arrays = mu, *(np.array(each) for each in rest)
+    opd = formulas.path_difference(mu, thickness, rest[0])
+    flipped = [each._replace(phase=-each.phase) for each in formulas.over_index(*arrays)]
+    xyz = 0.5 * sum(formulas.tristimulus(each, opd) for each in flipped)
+    assert np.abs(np.moveaxis(xyz, 0, -1) - exact).max() > 0.1
+
+
+def test_the_reflectance_lies_in_0_to_1_and_leaves_it_before_the_clamp():
+    rng = np.random.default_rng(1)
+    films = 1000.0 * rng.random(500), 1.0 + rng.random(500), 0.2 + 2.0 * rng.random((500, 3))
+    metal = rng.random(500), *films, 4.0 * rng.random((500, 3))
+    clamped, free = (film_conductor(*metal, form) for form in (TEXT, without_clamp(TEXT)))
+    assert clamped.min() >= 0.0 and clamped.max() <= 1.0
+    assert free.min() < -0.05 and free.max() > 1.05
+    np.testing.assert_array_equal(clamped, np.clip(free, 0.0, 1.0))
+
+
+def test_tristimulus_values_stay_in_0_to_1_with_all_orders():
+    xyz = film_quantities.text_xyz(None)
+    assert xyz.min() >= -HEIGHTS and xyz.max() <= 1.0 + HEIGHTS
+
+
+def test_the_matrix_is_the_printed_one_after_a_bradford_adaptation():
+    d65 = np.linalg.solve(XYZ_TO_REC709, np.ones(3))
+    adaptation = colour.adaptation.matrix_chromatic_adaptation_VonKries(np.ones(3), d65, "Bradford")
+    np.testing.assert_allclose(XYZ_TO_REC709_E, XYZ_TO_REC709 @ adaptation, atol=5e-8)
+    np.testing.assert_allclose(XYZ_TO_REC709_E.sum(axis=1), 1.0, atol=3e-7)
+
+
+def test_half_of_a_schlick_substrate_darkens_a_white_metal():
+    white = film_schlick(1.0, 300.0, 1.0001, WHITE, WHITE, WHITE, 5.0, Form(share=0.5))
+    np.testing.assert_allclose(white, 0.5, atol=1e-3)
+    stock = film_schlick(0.5, 300.0, 1.5, WHITE, WHITE, WHITE, 5.0, MATERIALX)
+    assert stock.max() < 0.65
+
+
+@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
+def test_an_albedo_takes_a_polynomial_that_is_its_curve(row):
+    values = {name: value[:1] for name, value in filmed(row).items() if name != "roughness"}
+    columns = {name: value.T if value.ndim == 2 else value for name, value in values.items()}
+    spread = {k: v[:, None, None] if v.ndim == 2 else v for k, v in columns.items()}
+    smooth = PolynomialCurve(row.category, TEXT)(MU[:, None, None], **spread)[:, :, 0, 0]
+    np.testing.assert_allclose(smooth, film_curve(row.category).at(MU, **columns), atol=CURVE)
+
+
+@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
+def test_a_row_with_a_film_of_thickness_0_is_the_row_without(row):
+    wo, wi, values = directions(), directions()[::-1], filmed(row)
+    none = {**values, "thinfilm_thickness": np.zeros(len(wo))}
+    plain = next(each for each in row.variants if each.title == "no film")
+    np.testing.assert_allclose(row.value(wo, wi, none), plain.value(wo, wi, values), rtol=1e-13)
+    assert not np.allclose(row.value(wo, wi, values), plain.value(wo, wi, values), rtol=1e-2)
+
+
+@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
+def test_each_variant_of_a_film_is_another_function(row):
+    wo, wi, values = directions(), directions()[::-1], filmed(row)
+    own, albedo = row.value(wo, wi, values), row.albedo(wo, values)
+    for variant in row.variants:
+        if variant.value:
+            assert not np.allclose(variant.value(wo, wi, values), own, rtol=1e-6), variant.title
+        if variant.albedo:
+            other = variant.albedo(wo, values)
+            assert other.shape == albedo.shape and not np.allclose(other, albedo, rtol=1e-6)
+
+
+def test_bad_films_are_refused():
+    with pytest.raises(ValueError, match=r"^thinfilm_ior must lie in \[1, 1e50\]; got 0.9"):
+        film_dielectric(1.0, 100.0, 0.9, 1.5)
+    wo, material = [0.0, 0.0, 1.0], {"tint": WHITE, "ior": 1.5, "roughness": [0.3, 0.3]}
+    film = {"thinfilm_thickness": -1.0, "thinfilm_ior": 1.5}
+    with pytest.raises(ValueError, match="^thinfilm_thickness must lie in"):
+        film_brdf("dielectric_bsdf", wo, wo, material | film)
+    with pytest.raises(ValueError, match="^thinfilm_thickness must lie in"):
+        film_albedo_dir("dielectric_bsdf", wo, material | film)
+
+
+def filmed(row):
+    """Random inputs of a row, with a film that is not next to nothing."""
+    values = inputs(row)
+    values["roughness"] = np.repeat(values["roughness"][:, np.newaxis], 2, axis=1)
+    values["thinfilm_thickness"] = 500.0 * values["thinfilm_thickness"]
+    values["thinfilm_ior"] = 1.0 + values["thinfilm_ior"]
+    return values
