@@ -270,11 +270,11 @@ def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
 def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
     """Values, a row or layers of them per element or one for all, laid out over a frame of `size`."""
     width, height = size
-    if values.ndim == 3:  # layers, one above the other
-        return np.concatenate([texels(layer, size) for layer in np.moveaxis(values, 1, 0)])
-    rows = np.zeros((width * height, values.shape[1]), dtype=np.float32)
-    rows[: len(values) if len(values) > 1 else None] = values
-    return rows.reshape(height, width, -1)
+    layers = values[:, np.newaxis] if values.ndim == 2 else values  # one above the other
+    count, number, components = layers.shape
+    rows = np.zeros((number, width * height, components), dtype=np.float32)
+    rows[:, : count if count > 1 else None] = np.moveaxis(layers, 1, 0)
+    return rows.reshape(number * height, width, components)
 
 
 def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
