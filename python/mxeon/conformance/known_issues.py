@@ -202,7 +202,7 @@ BSDF_ISSUES = (
         "gl",
         (("film_throughput", FILMS[0]),),
         HARDWARE,
-        (("film_throughput", FILMS[2]),),
+        (("film_throughput", FILMS[2]), *_product(("lobes_energy",), SURFACES[:3])),
     ),
     Issue(
         "genglsl_film_choices",

@@ -28,8 +28,7 @@ class Inputs:
     judged : mapping of str to range
         Those whose values have a reference.
     others : mapping of str to range
-        Those of other lobes, which are asked for energy. Thin films are not among them: what a film
-        lets through is judged at the lobes that have one.
+        Those of other lobes and of thin films, which are asked for energy.
     seen : mapping of str to value
         A material in which every lobe takes part.
     changed : mapping of str to value
@@ -118,7 +117,7 @@ _STANDARD_FILM: dict[str, Range] = {
 }
 STANDARD = Inputs(
     _STANDARD,
-    _STANDARD_OTHERS,
+    {**_STANDARD_OTHERS, **_STANDARD_FILM},
     seen={
         "metalness": 0.4,
         "specular_anisotropy": 0.5,
@@ -194,7 +193,7 @@ _OPEN_FILM: dict[str, Range] = {
 }
 OPEN_PBR = Inputs(
     _OPEN,
-    _OPEN_OTHERS,
+    {**_OPEN_OTHERS, **_OPEN_FILM},
     seen={
         "base_metalness": 0.4,
         "specular_roughness_anisotropy": 0.5,
@@ -263,7 +262,7 @@ _GLTF_FILM: dict[str, Range] = {
 }
 GLTF = Inputs(
     _GLTF,
-    _GLTF_OTHERS,
+    {**_GLTF_OTHERS, **_GLTF_FILM},
     seen={
         "metallic": 0.4,
         "roughness": 0.5,
