@@ -125,8 +125,7 @@ def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) 
     for start in range(0, len(t), count):
         x, weight = (values[start : start + count, np.newaxis] for values in rule)
         mu = low + length * x
-        total += weight * length * mu * _conductor(mu, ior, extinction, gap)
-        part = weight * length * mu * _mean(_polarized(mu, ior, extinction, gap))
+        part = weight * length * mu * _conductor(mu, ior, extinction, gap)
         total += np.sum(part, axis=0)
     return total
 
