@@ -17,7 +17,7 @@ from mxeon.shaders.hosts.fragment import NORMAL, TANGENT
 
 PAIRS = 256  # of directions, each with a material of its own
 VIEWS = 64  # whose albedo is asked
-MATERIALS = 1 << 10  # whose energy is
+MATERIALS = 1 << 11  # whose energy is
 CHANGED = 8  # pairs that a change of an input has to show in
 SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them

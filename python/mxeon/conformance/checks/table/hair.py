@@ -16,7 +16,7 @@ from mxeon.models.hair_defects import FORMS, TILTED
 from mxeon.models.pbrlib.hair import HAIR_NODE
 
 CLAIMS = {
-    "lobes": "R, TT, and TRT with all beyond, each apart, are those of the equations.",
+    "each_lobe": "R, TT, and TRT with all beyond, each apart, are those of the equations.",
     "narrow_lobes": "R and TT are right where they are narrow.",
     "tilted_lobes": "R and TT are right for every tilt of the cuticle.",
     "wide_lobes": "R and TT are right where they are wider than a roughness of 1.",
