@@ -4,12 +4,13 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.bsdf import hair_probes, probes
-from mxeon.conformance.checks.bsdf.hair import HAIRS
-from mxeon.conformance.checks.bsdf.hair_probes import HairProbe, aimed
-from mxeon.conformance.checks.bsdf.hair_tolerances import LARGEST
+from mxeon.conformance.checks.bsdf import probes
 from mxeon.conformance.checks.bsdf.subjects import HAIR, QUADRATURES
 from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.hair import probes as hair_probes
+from mxeon.conformance.checks.hair.probes import HairProbe, aimed
+from mxeon.conformance.checks.hair.subjects import HAIRS
+from mxeon.conformance.checks.hair.tolerances import LARGEST
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.models.hair import ROUGHNESSES, TINTS

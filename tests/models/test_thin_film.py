@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Thin films: limits, the transfer-matrix method, and what the specification's approximation costs."""
 
-import colour
 import numpy as np
 import pytest
 import tmm
@@ -23,6 +22,9 @@ from mxeon.models.thin_film import (
 from mxeon.models.thin_film_curve import film_curve, without_clamp
 from mxeon.models.thin_film_spectrum import film_spectrum, film_spectrum_xyz
 from tests.models.test_pbrlib import directions, inputs
+
+with np.printoptions():  # it changes how arrays print, in every doctest of the process
+    import colour
 
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
@@ -184,6 +186,18 @@ def test_each_variant_of_a_film_is_another_function(row):
         if variant.albedo:
             other = variant.albedo(wo, values)
             assert other.shape == albedo.shape and not np.allclose(other, albedo, rtol=1e-6)
+
+
+@pytest.mark.parametrize("row", FILM_NODES, ids=lambda row: row.name)
+def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
+    wo, wi, values = directions(), directions()[::-1], filmed(row)
+    same = {name: np.repeat(value[:1], len(wo), axis=0) for name, value in values.items()}
+    one = {name: value[:1] for name, value in values.items()}
+    each = [row.value(wo[[k]], wi[[k]], one)[0] for k in range(len(wo))]
+    np.testing.assert_allclose(row.value(wo, wi, same), each, rtol=1e-12)
+    assert row.albedo(wo, same).shape == wo.shape
+    twice = {name: np.repeat(value[:1], 2, axis=0) for name, value in values.items()}
+    assert film_brdf(row.category, wo[0], wi[0], twice).shape == (2, 3)
 
 
 def test_bad_films_are_refused():

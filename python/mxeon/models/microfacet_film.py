@@ -68,7 +68,7 @@ def film_brdf(
     >>> film_brdf("dielectric_bsdf", *w, inputs | soap).round(4)
     array([0.    , 0.0394, 0.0542])
     """
-    vectors, numbers = _material(category, inputs)
+    vectors, numbers = _material(category, inputs, wo)
     curve = film_curve(category, form)
     return evaluate_lobe(lobe or Lobe(), curve, wo, wi, inputs["roughness"], vectors, numbers)
 
@@ -115,20 +115,29 @@ def film_albedo_dir(
     >>> film_albedo_dir("dielectric_bsdf", [0.6, 0.0, 0.8], inputs | soap).round(4)
     array([0.0046, 0.0263, 0.0328])
     """
-    vectors, numbers = _material(category, inputs)
+    vectors, numbers = _material(category, inputs, wo)
     curve = Curve(PolynomialCurve(category, form), film_curve(category, form).average)
     return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate)
 
 
 def _material(
-    category: str, inputs: Mapping[str, ArrayLike]
+    category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike
 ) -> tuple[dict[str, Numbers], dict[str, Numbers]]:
     """Checked inputs with channels and without."""
     colors, numbers = INPUTS[category]
     return (
-        {name: np.atleast_1d(checked(name, inputs[name])) for name in colors},
-        {name: checked(name, inputs[name]) for name in (*numbers, *FILM)},
+        {name: _short(np.atleast_1d(checked(name, inputs[name])), 1, wo) for name in colors},
+        {name: _short(checked(name, inputs[name]), 0, wo) for name in (*numbers, *FILM)},
     )
+
+
+def _short(values: Numbers, channels: int, wo: ArrayLike) -> Numbers:
+    """Values as one row if there is one for each of many `wo`, and all are the same.
+
+    F_ss of a film is an integral, which would be taken for each point of a picture.
+    """
+    many = np.ndim(wo) == 2 and values.ndim == channels + 1 and len(values) == len(np.asarray(wo))
+    return values[:1] if many and bool((values == values[:1]).all()) else values
 
 
 class PolynomialCurve:

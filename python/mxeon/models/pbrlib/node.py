@@ -36,7 +36,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class PbrNode:
-    """A mode of a BSDF node, by [MaterialXPBR2026].
+    """A mode of a BSDF node, by [MaterialX2026].
 
     Attributes
     ----------

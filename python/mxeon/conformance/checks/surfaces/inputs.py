@@ -15,6 +15,8 @@ COLOR = "color"
 SHARE, ROUGH, INDEX = (0.0, 1.0), (0.1, 1.0), (1.1, 2.5)
 SHEEN_ROUGH = (0.15, 1.0)
 CHANGED_COLOR = (0.9, 0.1, 0.6)
+# The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
+FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +33,7 @@ class Inputs:
     seen : mapping of str to value
         A material in which every lobe takes part.
     changed : mapping of str to value
-        For each input a value that this material does not have.
+        For each input but FREE_PATHS a value that this material does not have.
     silent : tuple of str
         Inputs of `changed` that change no value of rasterized targets; docs/upstream/
         surface_inputs.md says why.
@@ -71,6 +73,7 @@ def _changed(ranges: Mapping[str, Range], **others: Any) -> dict[str, Any]:
         if isinstance(limits, str)
         else limits[0] + 0.7 * (limits[1] - limits[0])
         for name, limits in ranges.items()
+        if name not in FREE_PATHS
     }
     return {**changes, **others}
 

@@ -13,7 +13,7 @@ from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.surfaces.subjects import WHOLE, SurfaceShader
 from mxeon.conformance.reference import Host as Reference
 from mxeon.shaders.generation import Shader, generate
-from mxeon.shaders.hosts.fragment import NORMAL, TANGENT
+from mxeon.shaders.hosts.calls import NORMAL, TANGENT
 
 PAIRS = 256  # of directions, each with a material of its own
 VIEWS = 64  # whose albedo is asked

@@ -5,14 +5,14 @@ from collections.abc import Callable
 from typing import Any
 
 from mxeon.conformance import diagnosis
-from mxeon.conformance.checks.bsdf.hair_regions import REGIONS
-from mxeon.conformance.checks.bsdf.hair_tolerances import HAIR_REGIONS
 from mxeon.conformance.checks.bsdf.subjects import HAIR
 from mxeon.conformance.checks.controls import Altered, with_inputs
+from mxeon.conformance.checks.hair.regions import REGIONS
+from mxeon.conformance.checks.hair.tolerances import HAIR_REGIONS
 from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
 from mxeon.conformance.checks.table.check import Check
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.models.hair_defects import FORMS, TILTED
+from mxeon.models.hair.defects import FORMS, TILTED
 from mxeon.models.pbrlib.hair import HAIR_NODE
 
 CLAIMS = {

@@ -13,7 +13,7 @@ from mxeon.conformance.checks.probes import PairProbe, PictureProbe
 from mxeon.conformance.checks.values.subjects import OSL_VALUES, VALUES, UtilitySubject
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts.base import Host
-from mxeon.shaders.hosts.fragment import GRAPH
+from mxeon.shaders.hosts.calls import GRAPH
 
 COUNT = 1 << 12
 FEW = 1 << 9

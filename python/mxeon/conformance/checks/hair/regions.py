@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.models.hair import TINTS
-from mxeon.models.hair_defects import BESSEL, CLAMPED, UNIFORM
+from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
 
 LOBES = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
 APART: dict[str, Any] = {**LOBES, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
