@@ -29,6 +29,7 @@ from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.hosts.base import Host, Identity
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep_checks
+from tests.support.sharing import shared
 
 EON, QON, NODE = SUBJECTS
 EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
@@ -69,8 +70,8 @@ def local(normal, direction):
 
 
 @pytest.fixture(scope="module")
-def run():
-    return check(EXAMPLES, ["gl"])
+def run(tmp_path_factory):
+    return shared(tmp_path_factory, "eonlib", lambda: check(EXAMPLES, ["gl"]))
 
 
 def judged(host, subject=EON):
@@ -327,8 +328,8 @@ def test_the_shader_functions_are_checked_once_and_belong_to_eonlib():
 
 
 @pytest.fixture(scope="module")
-def stock():
-    return check(EXAMPLES[:1], ["gl"], ["stock"])
+def stock(tmp_path_factory):
+    return shared(tmp_path_factory, "stock", lambda: check(EXAMPLES[:1], ["gl"], ["stock"]))
 
 
 @pytest.mark.parametrize(

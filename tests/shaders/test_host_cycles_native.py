@@ -12,6 +12,7 @@ from mxeon.shaders.hosts import open_host
 from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
+from tests.support.sharing import shared
 
 NATIVE = nodes.NATIVE["cycles-native"]
 EXAMPLE = examples_folder() / "plaster.mtlx"
@@ -25,10 +26,11 @@ CAUSES = (
 
 
 @pytest.fixture(scope="module")
-def results():
+def results(tmp_path_factory):
     with available("cycles-native"):
         open_host("cycles-native").close()
-    run = check([EXAMPLE], ["cycles-native"], ["eonlib", "stock"])
+    libraries = ["eonlib", "stock"]
+    run = shared(tmp_path_factory, "native", lambda: check([EXAMPLE], ["cycles-native"], libraries))
     return [each for each in run.results if each.host == "cycles-native"]
 
 

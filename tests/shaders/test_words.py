@@ -12,6 +12,7 @@ from mxeon.shaders.document import words
 from mxeon.shaders.document.reading import read_document
 from tests.fuzz import reach
 from tests.support.documents import connected, lobe, material
+from tests.support.sharing import shared
 
 SOME = ("glsl", "osl", "mdl")  # one of each family of generators
 CLASSES = (*SOME, "msl", "slang")  # essl, vulkan and wgsl inherit from glsl's generator
@@ -35,10 +36,11 @@ def furnished(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def materials(furnished):
+def materials(furnished, tmp_path_factory):
     """The document of materials, and which of its places reach source."""
     root = reach.documents()["materials"]
-    return root, reach.reached(root, reach.present(root), CLASSES)
+    groups = reach.present(root)
+    return root, shared(tmp_path_factory, "reach", lambda: reach.reached(root, groups, CLASSES))
 
 
 def named(root, places):

@@ -5,11 +5,13 @@ A host that evaluates takes any pairs, a host that only makes pictures takes the
 both answer in the same form, so a check is written once.
 """
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,11 +36,13 @@ from mxeon.conformance.checks.special import (
     turned_directions,
     turned_frames,
 )
-from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.plane import LIGHTS, plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
+
+if TYPE_CHECKING:
+    from mxeon.shaders.generation import Shader
 
 # Colors and roughnesses of the pictures that stand for a node on hosts that only make pictures.
 PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
@@ -239,6 +243,8 @@ class PlaneProbe(PictureProbe):
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents
 def _compile(host: Host, text: str, library: str) -> Shader:
+    from mxeon.shaders.generation import ApproximationWarning  # which loads MaterialX
+
     with warnings.catch_warnings():  # approximations are not judged: see _mask
         warnings.simplefilter("ignore", ApproximationWarning)
         return host.compile(text, library=library)[0]

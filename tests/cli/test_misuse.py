@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Misuse of the command: one line, a status of its own, and nothing written."""
+
+import json
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from mxeon.cli import generate, main
+from mxeon.cli.batch import BatchResult, WorkerCrashed
+from mxeon.errors import MISUSE, NOT_RUN, PASSED
+from tests.support.command import CLAY, PLASTER, one_line, run
+from tests.support.documents import material
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["generate", "nowhere.mtlx", "--target", "glsl"], "must be a readable file"),
+        (["generate", CLAY, "--target", "hlsl"], "target must be one of glsl"),
+        (["generate", CLAY, "--target", "glsl", "--element", "loam"], "element must be one of"),
+        (["generate", CLAY, "--target", "glsl", "--library", "mine"], "library must be one of"),
+        (["generate", CLAY, "--target", "osl", "--profile", "arnold"], "profile must be one of"),
+        (["generate", CLAY], "required: --target"),
+    ],
+    ids=["file", "target", "element", "library", "profile", "no target"],
+)
+def test_generate_refuses_in_one_line_and_writes_nothing(arguments, words, tmp_path):
+    ended = run(*arguments, "--outputPath", tmp_path / "out")
+    assert ended.returncode == MISUSE and words in one_line(ended.stderr)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["check", PLASTER, "--host", "abacus"], "host must be one of gl"),
+        (["check", PLASTER, "--library", "mine"], "library must be one of eonlib, diffuse, stock"),
+        (["check", "nowhere.mtlx", "--host", "msl"], "must be a readable file"),
+        (["render", CLAY, "--output", "out.exr"], "--element must name one of"),
+        (["render", PLASTER, "--output", "out.gif"], "output must end in .exr or .png"),
+        (["render", PLASTER, "--output", "out.exr", "--scene", "dusk"], "scene must be one of"),
+        (["render", PLASTER, "--output", "out.exr", "--environment", "sky.hdr"], "sky.hdr"),
+        (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must lie in [1, 8192]"),
+        (["render", PLASTER, "--output", "out.exr", "--samples", "0"], "samples must lie in [1, "),
+        (["render", PLASTER, "--output", "out.exr", "--bounces", "-1"], "bounces must lie in [1, "),
+        (
+            ["render", PLASTER, "--output", "out.exr", "--samples", "4"],
+            "gl: this host takes no number",
+        ),
+        (["invert", "0.5", "0.5", "--roughness", "1"], "required: B"),
+        (["invert", "1.2", "0", "0", "--roughness", "1"], "color must lie in [0, 1]"),
+        (["invert", "1", "0", "0", "--roughness", "nan"], "roughness must lie in [0, 1]"),
+        (["generate", CLAY, "--target", "osl", "--outputPath", "\0"], "no null character"),
+        (["frobnicate"], "invalid choice"),
+        ([], "required"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_misuse_is_one_line(arguments, words, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    try:
+        status = main(arguments)
+    except SystemExit as ended:
+        status = ended.code
+    assert status == MISUSE and words in one_line(capfd.readouterr().err)
+    assert not list(tmp_path.iterdir())
+
+
+def test_two_documents_of_one_name_do_not_overwrite_each_other(tmp_path, capsys):
+    files = [tmp_path / "a.mtlx", tmp_path / "b" / "a.mtlx"]
+    files[1].parent.mkdir()
+    for file, color in zip(files, ("0.1, 0.1, 0.1", "0.9, 0.9, 0.9"), strict=True):
+        lobe = f'<input name="color" type="color3" value="{color}"/></eon_diffuse_bsdf>'
+        file.write_text(material(f'<eon_diffuse_bsdf name="lobe" type="BSDF">{lobe}'))
+    out = tmp_path / "out"
+    arguments = ["generate", *map(str, files), "--target", "osl", "--outputPath", str(out)]
+    assert main(arguments) == MISUSE
+    assert "must not overwrite" in one_line(capsys.readouterr().err)
+    assert "color(0.1" in (out / "a.look.osl").read_text()
+
+
+def test_a_file_that_is_no_image_is_one_line(tmp_path):
+    (tmp_path / "sky.exr").write_text("no image")
+    output = tmp_path / "out.exr"
+    ended = run("render", PLASTER, "--environment", tmp_path / "sky.exr", "--output", output)
+    assert ended.returncode == MISUSE and not output.exists()
+    assert "must be an image that OpenImageIO reads" in one_line(ended.stderr)
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(tmp_path):
+    (tmp_path / "file").write_text("")
+    folder = tmp_path / "file" / "out"
+    ended = run("generate", PLASTER, "--target", "osl", "--outputPath", folder)
+    assert ended.returncode == MISUSE and "must be accessible" in one_line(ended.stderr)
+
+
+def test_a_closed_output_is_no_obstacle(tmp_path):
+    command = f'exec "{sys.executable}" -m mxeon generate "{PLASTER}" --target osl --outputPath out'
+    for closed in (">&-", "<&- >&- 2>&-"):
+        ended = subprocess.run(["sh", "-c", f"{command} {closed}"], cwd=tmp_path, check=False)
+        assert ended.returncode == PASSED and list((tmp_path / "out").glob("*.osl"))
+        shutil.rmtree(tmp_path / "out")
+
+
+def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
+    bad = tmp_path / "bad.mtlx"
+    bad.write_text("<materialx")
+    status = main(
+        ["generate", str(bad), PLASTER, "--target", "osl", "--outputPath", str(tmp_path), "--json"]
+    )
+    printed = capsys.readouterr()
+    found = json.loads(printed.out)
+    assert status == MISUSE and len(found["errors"]) == 1
+    assert found["files"] and str(bad) in printed.err
+
+
+def test_a_document_that_ends_its_process_did_not_run(tmp_path, monkeypatch, capsys):
+    error = WorkerCrashed("a: worker process crashed (SIGSEGV)")
+    monkeypatch.setattr(generate, "run_batch", lambda *_: iter([BatchResult(None, error=error)]))
+    arguments = ["generate", CLAY, "--target", "osl", "--outputPath", str(tmp_path)]
+    assert main(arguments) == NOT_RUN
+    assert one_line(capsys.readouterr().err) == f"mxeon: {error}"

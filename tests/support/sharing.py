@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What takes long, made by one of pytest's processes for all of them."""
+
+import os
+import pickle
+
+from filelock import FileLock
+
+
+def shared(factory, name, make):
+    """The value of `make`; where several processes test, that of the first of them to ask.
+
+    Parameters
+    ----------
+    factory : TempPathFactory
+        Of the session.
+    name : str
+        Of the value, in this session.
+    make : callable () -> object
+        Its value can be pickled.
+    """
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return make()
+    path = factory.getbasetemp().parent / f"{name}.pickle"  # a folder of this session alone
+    with FileLock(f"{path}.lock"):
+        if not path.exists():
+            path.write_bytes(pickle.dumps(make()))
+        return pickle.loads(path.read_bytes())
