@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
 from mxeon.models.albedo import eon_albedo_dir
-from mxeon.models.known_defects import eon_rho_cubed_albedo_dir
+from mxeon.models.known_defect_albedos import eon_rho_cubed_albedo_dir
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import cycles
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text

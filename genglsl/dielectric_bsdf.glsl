@@ -49,7 +49,7 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     else if (transmission && scatter_mode != 0)
     {
         vec3 passed = max(1.0 - lobe.albedo * F_o * compensation, 0.0);
-        bsdf.response = microfacet_transmission(lobe, X, distribution, fd, max(tint, 0.0), passed) * weight;
+        bsdf.response = microfacet_transmission(lobe, X, distribution, fd.ior, max(tint, 0.0), passed) * weight;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {

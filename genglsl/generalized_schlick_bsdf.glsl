@@ -56,9 +56,9 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     }
     else if (transmission && scatter_mode != 0)
     {
-        fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));
+        vec3 ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));
         vec3 passed = max(1.0 - lobe.albedo * F_o * compensation, 0.0);
-        bsdf.response = microfacet_transmission(lobe, X, distribution, fd, vec3(1.0), passed) * weight;
+        bsdf.response = microfacet_transmission(lobe, X, distribution, ior, vec3(1.0), passed) * weight;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {

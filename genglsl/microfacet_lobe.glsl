@@ -76,12 +76,11 @@ vec3 microfacet_white_environment(MicrofacetLobe lobe, vec3 X, int distribution)
 }
 
 // Light through the surface: the share that passes, from where a solid sphere sends the view.
-vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, FresnelData fd, vec3 tint,
+vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, vec3 ior, vec3 tint,
                              vec3 passed)
 {
-    // Facets that let everything through: what passes is counted once, by `passed`.
     FresnelData clear = mx_init_fresnel_schlick(vec3(0.0), vec3(1.0), vec3(0.0), 5.0, 0.0, 1.0);
-    clear.ior = fd.ior;
+    clear.ior = ior;
 
     // MaterialX divides the sum by G_1, for a shadowing that it does not have.
     vec3 light = mx_surface_transmission(lobe.N, lobe.wo, X, lobe.roughness, distribution, clear, tint)
@@ -91,7 +90,7 @@ vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, Fres
     // smooth surface takes their place, at the cosine from which on that does not happen.
     if (!(dot(light, vec3(1.0)) >= 0.0))
     {
-        float mu = max(lobe.mu_o, min(0.005 + 2e-3 * clear.ior.x, 0.9));
+        float mu = max(lobe.mu_o, min(0.005 + 2e-3 * ior.x, 0.9));
         vec3 side = normalize(lobe.wo - lobe.mu_o * lobe.N);
         vec3 wo = mu > lobe.mu_o ? mu * lobe.N + sqrt(1.0 - mu * mu) * side : lobe.wo;
         light = mx_surface_transmission(lobe.N, wo, X, vec2(M_FLOAT_EPS), distribution, clear, tint);

@@ -29,7 +29,10 @@ ROWS = (
     ("inputs", "anisotropic_vdf"),
     ("finite", DIELECTRIC),
     ("finite", "conductor_bsdf"),
-    *((check, HAIR) for check in ("value", "black", "finite", "integral", "lobes", "narrow_lobes")),
+    *(
+        (check, HAIR)
+        for check in ("value", "black", "finite", "integral", "each_lobe", "narrow_lobes")
+    ),
     *((check, HAIR) for check in ("tilted_lobes", "wide_lobes", "straight_views")),
     ("transmitted", TRANSMITTING[1]),
     ("refraction", TRANSMITTING[1]),

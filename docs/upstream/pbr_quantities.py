@@ -9,10 +9,11 @@ import numpy as np
 from mxeon.conformance.checks.batch import Batch
 from mxeon.conformance.checks.bsdf.probes import MicrofacetProbe
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
-from mxeon.models import conductor_brdf, hair_formulas
+from mxeon.models import conductor_brdf
 from mxeon.models.burley import burley_albedo_dir
 from mxeon.models.fresnel import fresnel_schlick
 from mxeon.models.hair import chiang_hair_bcsdf
+from mxeon.models.hair.formulas import longitudinal
 from mxeon.models.microfacet_albedo import conductor_albedo_dir, ggx_albedo_dir_anisotropic
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document.policy import Policy
@@ -114,7 +115,7 @@ def hair_block():
         theta = np.arcsin(x) + (2.0 - 3.0 * lobe) * tilt
         for side in (1.0, -1.0):
             inclined = np.sin(theta), np.cos(theta), side * np.sin(view), np.cos(view)
-            M = hair_formulas.longitudinal(*inclined, np.array(0.01))
+            M = longitudinal(*inclined, np.array(0.01))
             title = (
                 f"light of {name}, variance 0.01, seen at {side * view} radian, tilted by 2 degrees"
             )

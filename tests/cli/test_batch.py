@@ -13,6 +13,7 @@ from mxeon.cli.batch import BatchResult, Source, WorkerCrashed, picture, run_bat
 from mxeon.errors import DocumentError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.library import examples_folder
+from mxeon.shaders.scene import Paths
 from tests.support.documents import lobe, material
 from tests.support.faults import misbehave
 
@@ -75,7 +76,7 @@ def test_bad_options_are_refused(workers, timeout, words):
 def test_a_picture_says_what_made_it(tmp_path):
     (tmp_path / "look.mtlx").write_text(material(lobe()))
     image, said = picture(
-        str(tmp_path / "look.mtlx"), "reference", "side", None, 4, None, "eonlib", DEFAULT
+        str(tmp_path / "look.mtlx"), "reference", "side", None, 4, None, "eonlib", DEFAULT, Paths()
     )
     assert image.shape == (4, 4, 3)
     assert (said["element"], said["scene"], said["library"]) == ("look", "side", "eonlib")
@@ -85,7 +86,7 @@ def test_the_host_of_a_picture_closes_whatever_happens(tmp_path, monkeypatch):
     closed = []
     monkeypatch.setattr("mxeon.conformance.reference.Host.close", lambda host: closed.append(host))
     with pytest.raises(ValueError, match="--element must name one of"):
-        picture(CLAY, "reference", "side", None, 4, None, "eonlib", DEFAULT)
+        picture(CLAY, "reference", "side", None, 4, None, "eonlib", DEFAULT, Paths())
     assert len(closed) == 1
 
 

@@ -12,7 +12,8 @@ from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.evaluate import judge_check
 from mxeon.conformance.checks.facet_probes import PROBES
-from mxeon.conformance.checks.probes import NativeProbe, PairProbe, PictureProbe, PlaneProbe
+from mxeon.conformance.checks.native_probes import NativeProbe
+from mxeon.conformance.checks.probes import PairProbe, PictureProbe, PlaneProbe
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import sources
 from mxeon.conformance.checks.tolerances import BSDF_RAY, VALUES

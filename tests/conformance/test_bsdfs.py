@@ -117,7 +117,7 @@ WRONG = {
         "dielectric", DIELECTRIC, "(ior, thinfilm_thickness, ", "(ior, 0.0, ", "inputs",
         "without effect: thinfilm_thickness, thinfilm_ior",
     ),
-    "averaged throughput": (
+    "albedo of 1 in place of its fit": (
         "schlick", SCHLICK, "dirAlbedo = mx_ggx_dir_albedo", "dirAlbedo = 1.0 + 0.0 * mx_ggx_dir_albedo",
         "layering", "",
     ),

@@ -4,12 +4,13 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.bsdf import hair_probes, probes
-from mxeon.conformance.checks.bsdf.hair import HAIRS
-from mxeon.conformance.checks.bsdf.hair_probes import HairProbe, aimed
-from mxeon.conformance.checks.bsdf.hair_tolerances import LARGEST
+from mxeon.conformance.checks.bsdf import probes
 from mxeon.conformance.checks.bsdf.subjects import HAIR, QUADRATURES
 from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.hair import probes as hair_probes
+from mxeon.conformance.checks.hair.probes import HairProbe, aimed
+from mxeon.conformance.checks.hair.subjects import HAIRS
+from mxeon.conformance.checks.hair.tolerances import LARGEST
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.models.hair import ROUGHNESSES, TINTS
@@ -26,7 +27,7 @@ STOCK = {
     "black": "values that are not finite",
     "finite": "values that are not finite",
     "integral": "",
-    "lobes": "nearest known model: N of TRRT+ pi/2 in place of 1/(2 pi) (rms ",
+    "each_lobe": "nearest known model: N of TRRT+ pi/2 in place of 1/(2 pi) (rms ",
     "narrow_lobes": "nearest known model: I_0 by ten terms, and half a term of its logarithm (rms ",
     "tilted_lobes": "values that are not finite with a tilted cuticle",
     "wide_lobes": "nearest known model: every roughness in [0.001, 1] (rms ",
@@ -43,9 +44,9 @@ WRONG = {
         "tilted_lobes",
         "nearest known model: the viewer's inclination tilted in place of the light's (rms ",
     ),
-    "no tilt": (TURNED, "inclined_i", "lobes", ""),
+    "no tilt": (TURNED, "inclined_i", "each_lobe", ""),
     "uniform lobe": (
-        "M * 0.5 * M_PI_INV", "M * 0.5 * M_PI", "lobes",
+        "M * 0.5 * M_PI_INV", "M * 0.5 * M_PI", "each_lobe",
         "nearest known model: N of TRRT+ pi/2 in place of 1/(2 pi) (rms ",
     ),
     "narrow lobes": ("1e-8, 1e-4)", "0.01, 0.001)", "narrow_lobes", ""),

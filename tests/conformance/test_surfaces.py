@@ -7,8 +7,8 @@ import pytest
 from mxeon.conformance.checks.evaluate import applies, judge_check
 from mxeon.conformance.checks.families import COMMON_SUBJECTS
 from mxeon.conformance.checks.surfaces.inputs import FREE_PATHS, drawn
-from mxeon.conformance.checks.surfaces.probes import WHOLE, SurfaceProbe
-from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.checks.surfaces.probes import SurfaceProbe
+from mxeon.conformance.checks.surfaces.subjects import SHADERS, WHOLE
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.results import FAILED, PASSED

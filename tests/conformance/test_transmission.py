@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.checks.bsdf import probes as bsdf_probes
-from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING, transmission_probe_type
+from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING
 from mxeon.conformance.checks.bsdf.transmission_measures import through_sphere
+from mxeon.conformance.checks.bsdf.transmission_probes import transmission_probe_type
 from mxeon.conformance.checks.evaluate import applies, judge_check
 from mxeon.conformance.checks.probes import PairProbe, PictureProbe
 from mxeon.conformance.checks.table import CHECKS

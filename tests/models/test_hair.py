@@ -11,8 +11,8 @@ from mxeon.models.hair import (
     hair_azimuthal,
     hair_longitudinal,
 )
-from mxeon.models.hair_defects import FORMS, READINGS, TILTED, materialx_longitudinal
-from mxeon.models.hair_formulas import TEXT, bessel_scaled, longitudinal
+from mxeon.models.hair.defects import FORMS, READINGS, TILTED, materialx_longitudinal
+from mxeon.models.hair.formulas import TEXT, bessel_scaled, longitudinal
 
 ROUND = 1e-14  # 45 roundings of float64
 PICK = {"roughness_R": (0.5, 0.6), "roughness_TT": (0.3, 0.4), "roughness_TRT": (0.8, 0.9)}

@@ -6,11 +6,8 @@ import pytest
 
 from mxeon.models.brdf import lambert_brdf, qon_brdf
 from mxeon.models.burley import burley_brdf
-from mxeon.models.known_defects import (
-    burley_cosine_brdf,
-    qon_degrees_albedo_dir,
-    qon_degrees_brdf,
-)
+from mxeon.models.known_defect_albedos import qon_degrees_albedo_dir
+from mxeon.models.known_defects import burley_cosine_brdf, qon_degrees_brdf
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.models.table import OTHERS, model
 from tests.support import tolerances

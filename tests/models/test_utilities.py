@@ -7,7 +7,7 @@ import pytest
 from mxeon.models.artistic_ior import artistic_ior, artistic_parameters, normal_reflectance
 from mxeon.models.blackbody import blackbody, blackbody_xyz, planck_radiance
 from mxeon.models.fresnel import fresnel_conductor
-from mxeon.models.hair_parameters import (
+from mxeon.models.hair.parameters import (
     EUMELANIN,
     PHEOMELANIN,
     chiang_hair_absorption_from_color,

@@ -9,6 +9,15 @@ import pytest
 from scipy import special
 
 from mxeon.models import volume
+from mxeon.models.pbrlib.media import (
+    AMOUNT,
+    COMBINED_MEDIA,
+    FACTOR,
+    FIRST,
+    MEDIA,
+    METER,
+    SECOND,
+)
 
 FALSE_ALARM = 1e-4
 ANISOTROPIES = (-0.999999, -0.9, -0.3, 0.0, 1e-9, 0.3, 0.9, 0.999999)
@@ -145,3 +154,26 @@ def test_bad_arguments_are_refused(call, message):
     with pytest.raises(ValueError) as error:
         call()
     assert str(error.value) == message
+
+
+def test_combined_media_have_the_coefficients_of_their_parts():
+    rows = {row.name: row for row in COMBINED_MEDIA}
+    first, second = np.array([[0.0, 0.5, 3.0]]), np.array([[1.0, 0.25, 0.0]])
+    inputs = {FIRST: first, SECOND: second}
+    passed = [volume.transmittance(each, 0.0, METER) for each in (second, first)]
+    for share, expected in enumerate(passed):
+        value = rows["medium_mix"].value({**inputs, AMOUNT: np.array([float(share)])})
+        assert np.allclose(value, expected)
+    assert np.allclose(rows["medium_add"].value(inputs), passed[0] * passed[1])
+    for name, factor in (("float", np.array([2.0])), ("color3", np.full((1, 3), 2.0))):
+        value = rows[f"medium_multiply_{name}"].value({**inputs, FACTOR: factor})
+        assert np.allclose(value, passed[1] ** 2)
+
+
+@pytest.mark.parametrize("row", [*MEDIA, *COMBINED_MEDIA], ids=lambda row: row.name)
+def test_the_variants_of_a_medium_are_others(row):
+    inputs = {name: np.array([[0.3, 0.6, 0.9]]) for name in row.inputs}
+    inputs |= {name: np.array([0.4]) for name in (AMOUNT, FACTOR) if name in inputs}
+    inputs |= {name: 2.0 * inputs[name] for name in (SECOND, "scattering") if name in inputs}
+    value = row.value(inputs)
+    assert all(np.abs(other(inputs) - value).max() > 1e-3 for _, other in row.variants)

@@ -11,8 +11,8 @@ from docs.upstream import repairs
 from docs.upstream import update as ledger
 from mxeon.conformance.checks import tolerances
 from mxeon.conformance.checks.evaluate import judge_check
+from mxeon.conformance.checks.native_probes import ExactProbe
 from mxeon.conformance.checks.nodes import NATIVE
-from mxeon.conformance.checks.probes import ExactProbe
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import ISSUES, OWN
 from mxeon.conformance.results import FAILED, PASSED

@@ -13,7 +13,7 @@ from mxeon.conformance.checks.probes import PairProbe
 from mxeon.errors import ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate
-from mxeon.shaders.hosts import fragment
+from mxeon.shaders.hosts import calls
 from tests.support.tolerances import SUMMED_DIRECTIONS, TWIN_ALBEDO, TWIN_VALUE
 
 HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang")
@@ -99,7 +99,7 @@ def test_an_unknown_branch_or_output_is_refused(host, word):
         host.evaluate(shader, PAIR, PAIR, {}, **options)
 
 
-@pytest.mark.parametrize("branch", fragment.CLOSURES)
+@pytest.mark.parametrize("branch", calls.CLOSURES)
 def test_an_opaque_lobe_lets_no_light_through_in_any_branch(host, branch):
     shader = generate(SUBJECTS[2].document(), host.target, lights=True)[0]
     assert not host.evaluate(shader, PAIR, PAIR, {}, branch, output="throughput").any()

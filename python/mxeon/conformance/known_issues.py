@@ -83,7 +83,7 @@ HAIR_ISSUES = (
     Issue(
         "genglsl_hair_uniform_lobe",
         "gl",
-        (("lobes", HAIR),),
+        (("each_lobe", HAIR),),
         HARDWARE,
         _product(("value", "integral"), (HAIR,)),
     ),
@@ -95,7 +95,9 @@ HAIR_ISSUES = (
         _product(("value", "black", "integral", "finite"), (HAIR,)),
     ),
     Issue("genglsl_hair_roughness", "gl", (("wide_lobes", HAIR),), HARDWARE),
-    Issue("genglsl_hair_azimuth", "gl", (("straight_views", HAIR),), HARDWARE, (("lobes", HAIR),)),
+    Issue(
+        "genglsl_hair_azimuth", "gl", (("straight_views", HAIR),), HARDWARE, (("each_lobe", HAIR),)
+    ),
     Issue("genglsl_hair_grazing", "gl", (("finite", HAIR),), HARDWARE, (("value", HAIR),)),
     Issue("genglsl_hair_environment", "gl", (("environment", HAIR),), HARDWARE),
 )
@@ -222,7 +224,8 @@ EMISSION_ISSUES = (
                 "absorption_vdf",
                 "mix, VDF",
                 "add, VDF",
-                "multiply, VDF",
+                "multiply, VDF, in2 float",
+                "multiply, VDF, in2 color3",
             ),
         ),
         (*HARDWARE, "cycles"),

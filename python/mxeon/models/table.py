@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import albedo, known_defects
+from mxeon.models import albedo, known_defect_albedos, known_defects
 from mxeon.models import brdf as models
 from mxeon.models.arguments import RANGES
 from mxeon.models.arrays import Array, ArrayLike
@@ -151,28 +151,28 @@ KNOWN_DEFECTS = (
         "EON with rho^3",
         known_defects.eon_rho_cubed_brdf,
         "roughness",
-        known_defects.eon_rho_cubed_albedo_dir,
+        known_defect_albedos.eon_rho_cubed_albedo_dir,
     ),
     Model(
         "fon_white_lobe",
         "FON + white lobe",
         known_defects.fon_white_lobe_brdf,
         "roughness",
-        known_defects.fon_white_lobe_albedo_dir,
+        known_defect_albedos.fon_white_lobe_albedo_dir,
     ),
     Model(
         "qon_fitted",
         "QON with MaterialX's fit of its albedo",
         models.qon_brdf,
         "sigma",
-        known_defects.qon_fitted_albedo_dir,
+        known_defect_albedos.qon_fitted_albedo_dir,
     ),
     Model(
         "qon_tinted_twice",
         "QON tinted twice",
         known_defects.qon_tinted_twice_brdf,
         "sigma",
-        known_defects.qon_tinted_twice_albedo_dir,
+        known_defect_albedos.qon_tinted_twice_albedo_dir,
     ),
 )
 
@@ -217,6 +217,6 @@ OTHERS = (
         "QON that takes degrees for radians",
         known_defects.qon_degrees_brdf,
         "sigma",
-        known_defects.qon_degrees_albedo_dir,
+        known_defect_albedos.qon_degrees_albedo_dir,
     ),
 )

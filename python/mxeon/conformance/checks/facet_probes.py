@@ -9,11 +9,10 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import RIM, SEED, Array, Batch, directions
 from mxeon.conformance.checks.measures import BLACK
+from mxeon.conformance.checks.native_probes import ExactProbe, NativeProbe
 from mxeon.conformance.checks.probes import (
     PICTURE_INPUTS,
     PICTURE_SIZE,
-    ExactProbe,
-    NativeProbe,
     PairProbe,
     Pairs,
     PictureProbe,

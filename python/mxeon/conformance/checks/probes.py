@@ -25,7 +25,7 @@ from mxeon.conformance.checks.batch import (
     rounded,
 )
 from mxeon.conformance.checks.bsdf.subjects import BsdfSubject
-from mxeon.conformance.checks.nodes import OwnNode, Subject, Surface
+from mxeon.conformance.checks.nodes import Subject, Surface
 from mxeon.conformance.checks.special import (
     diffuse_edges,
     node_inputs,
@@ -34,7 +34,6 @@ from mxeon.conformance.checks.special import (
     turned_directions,
     turned_frames,
 )
-from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning, Shader
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.hosts.base import Host
@@ -45,13 +44,6 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_d
 PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
-)
-EXACT_INPUTS: tuple[dict[str, Any], ...] = (
-    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
-    {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
-    {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
-    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
-    {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
 )
 PICTURE_SIZE = 128
 TURNED = 1 << 12  # pairs in frames of their own
@@ -243,57 +235,6 @@ class PlaneProbe(PictureProbe):
 
     def _radiance(self, shader: Shader, scene: Scene) -> NDArray[Any]:
         return self.host.plane(shader, scene)
-
-
-@dataclass(frozen=True, eq=False)
-class NativeProbe(PictureProbe):
-    """A node that a renderer has of its own, on a sphere."""
-
-    subject: OwnNode
-
-    @property
-    def claims(self) -> dict[str, str]:
-        """Titles of the model that the node claims, and of the form of it that is judged."""
-        claimed, *_ = self.subject.forms or (self.subject.model,)
-        names = {"claimed": claimed, "model": self.subject.model}
-        return {key: reference.model(name).title for key, name in names.items()}
-
-    def _picture(self, batch: Batch) -> Array:
-        scene, inputs = scene_of(batch), batch.inputs
-        image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
-        values = image[sphere(scene.size).mask]
-        return values[picture_pairs(scene)[2]].astype(np.float64)
-
-
-@dataclass(frozen=True, eq=False)
-class ExactProbe(NativeProbe):
-    """A node of a renderer's own, on a sphere whose points and light have no error but rounding."""
-
-    kind: ClassVar[str] = "exact"
-    size: ClassVar[int] = PICTURE_SIZE // 2
-
-    @property
-    def _inputs(self) -> list[dict[str, Any]]:
-        """EXACT_INPUTS, from dark to white and from rough to smooth."""
-        return [dict(inputs) for inputs in EXACT_INPUTS]
-
-    @cached_property
-    def few(self) -> tuple[Batch, ...]:
-        """The first for each light."""
-        return self.batches[:: len(EXACT_INPUTS)]
-
-    def nearest_form(self) -> "ExactProbe":
-        """The probe of the published form of the model that is nearest to what is measured."""
-        if not self.subject.forms:
-            return self
-        batch = self.batches[0]
-        values = self.direct(batch)
-        errors = {
-            form: float(np.abs(values - batch.expected(form)).max()) for form in self.subject.forms
-        }
-        return replace(
-            self, subject=replace(self.subject, model=min(errors, key=errors.__getitem__))
-        )
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents

@@ -14,11 +14,9 @@ from mxeon.conformance.checks.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
 from mxeon.conformance.checks.image import MATCH, judge_document
 from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
+from mxeon.conformance.checks.native_probes import ExactProbe
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
 from mxeon.conformance.checks.portraits import portraits
-from mxeon.conformance.checks.probes import (
-    ExactProbe,
-)
 from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.text import check_definitions, check_texts

@@ -22,11 +22,9 @@ from mxeon.conformance.checks import functions
 from mxeon.conformance.checks.evaluate import applies
 from mxeon.conformance.checks.facet_probes import probe_type
 from mxeon.conformance.checks.families import COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.checks.native_probes import NativeProbe
 from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject
-from mxeon.conformance.checks.probes import (
-    NativeProbe,
-    PairProbe,
-)
+from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import OWN

@@ -13,8 +13,8 @@ from mxeon.models.hair import (
     chiang_hair_attenuation,
     chiang_hair_bcsdf,
 )
-from mxeon.models.hair_defects import FORMS, READINGS
-from mxeon.models.hair_formulas import TEXT, Form
+from mxeon.models.hair.defects import FORMS, READINGS
+from mxeon.models.hair.formulas import TEXT, Form
 from mxeon.models.microfacet_albedo import dielectric_albedo_dir
 from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
 

@@ -15,7 +15,7 @@ from mxeon.models.arrays import Array
 from mxeon.models.artistic_ior import artistic_ior
 from mxeon.models.blackbody import LUMINANCE, blackbody, kang_xyz
 from mxeon.models.colorimetry import XYZ_TO_REC709
-from mxeon.models.hair_parameters import (
+from mxeon.models.hair.parameters import (
     EUMELANIN,
     PHEOMELANIN,
     chiang_hair_absorption_from_color,

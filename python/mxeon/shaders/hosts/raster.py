@@ -29,7 +29,7 @@ TRIANGLE = {  # attributes of its three vertices
 
 # What generated GLSL does in place of a lobe below the surface.
 IN_PLACE = {
-    SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred along a circle of the "
+    SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred as on a sphere of the "
     "surface's curvature, and under an environment it is Lambert of its color",
     TRANSMISSION: "transmission is rasterized: what is seen through the surface is the environment "
     "in one refracted direction, and no light that the object itself bends or blocks",

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts import base, fragment, raster
+from mxeon.shaders.hosts import base, calls, fragment, raster
 from mxeon.shaders.hosts.base import TURN, Identity
 
 try:
@@ -128,7 +128,7 @@ class Host(base.Host):
                 "slang: subsurface scattering reads the change from pixel to pixel, and a kernel has "
                 "no pixels"
             )
-        call = fragment.bsdf_call(shader, wo, wi, inputs, branch, output)
+        call = calls.bsdf_call(shader, wo, wi, inputs, branch, output)
         body = ["float3 P = float3(0.0);", call.statements]
         body.append(f"float3 mxeon_value = {call.value};")
         environment = self._environment(irradiance)

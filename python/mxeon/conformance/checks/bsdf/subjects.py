@@ -16,15 +16,15 @@ from mxeon.models.pbrlib.node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
 
 # Kinds of probes; see `mxeon.conformance.checks.bsdf.probes`.
-CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK, HAIR = KINDS = (
+CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
     "closed pairs",
     "sheen pairs",
     "fitted pairs",
     "microfacet pairs",
     "Schlick pairs",
-    "hair pairs",
 )
 MICROFACET_KINDS = (MICROFACET, SCHLICK)
+HAIR = "hair pairs"  # of the hair node
 COMBINED = "combined pairs"  # of a node that combines lobes
 FILM = "film pairs"  # of microfacets under a thin film
 QUADRATURES = {  # largest error of a probe's integrals of the equations

@@ -3,7 +3,6 @@
 
 import math
 
-from mxeon.conformance.checks.bsdf.hair_tolerances import HAIR_ALBEDO, HAIR_FRAME, HAIR_VALUE
 from mxeon.conformance.checks.bsdf.measures import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.checks.bsdf.subjects import (
     CLOSED,
@@ -18,6 +17,7 @@ from mxeon.conformance.checks.bsdf.subjects import (
     SCHLICK,
     SHEEN,
 )
+from mxeon.conformance.checks.hair.tolerances import HAIR_ALBEDO, HAIR_FRAME, HAIR_VALUE
 from mxeon.conformance.checks.measures import absolute, scaled
 from mxeon.conformance.checks.special import LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.conformance.checks.tolerance import ROUNDING, SCALED, Tolerance, rounded_up

@@ -10,10 +10,9 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, Candidate, directions
 from mxeon.conformance.checks.emission.probes import NodeProbe
-from mxeon.conformance.checks.emission.subjects import MEDIUM
+from mxeon.conformance.checks.emission.subjects import MEDIUM, view_rows
 from mxeon.conformance.checks.nodes import Changes
-from mxeon.models.pbrlib.media import MEDIA, Medium
-from mxeon.models.pbrlib.node import Inputs
+from mxeon.models.pbrlib.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 
 VIEWS = 1 << 8
@@ -23,6 +22,12 @@ INTERFACE = """  <dielectric_bsdf name="top" type="BSDF">
     <input name="scatter_mode" type="string" value="T" />
   </dielectric_bsdf>
 """
+PORT = '    <input name="{}" type="VDF" nodename="{}" />\n'
+SOURCES = {  # names of the media that a node takes, by its port
+    "mix": {"fg": "first", "bg": "second"},
+    "add": {"in1": "first", "in2": "second"},
+    "multiply": {"in1": "first"},
+}
 PORTS = """    <input name="top" type="BSDF" nodename="top" />
     <input name="base" type="VDF" nodename="medium" />
 """
@@ -46,7 +51,15 @@ class MediumSubject:
     @property
     def title(self) -> str:
         """Name in reports."""
-        return self.node
+        if not self.combined:
+            return self.node
+        scaled = f", in2 {self._kind(FACTOR)}" if FACTOR in self.inputs else ""
+        return f"{self.node}, VDF{scaled}"
+
+    @property
+    def combined(self) -> bool:
+        """Whether it combines media."""
+        return self.row in COMBINED_MEDIA
 
     @property
     def node(self) -> str:
@@ -66,15 +79,44 @@ class MediumSubject:
     @property
     def changes(self) -> dict[str, Changes]:
         """For each input: inputs without and with a change of it alone."""
-        return {name: ({}, {name: (0.9, 0.1, 0.6)}) for name in self.inputs}
+        return {
+            name: ({}, {name: 0.3 if self._kind(name) == "float" else (0.9, 0.1, 0.6)})
+            for name in self.inputs
+        }
 
     def document(self, inputs: Mapping[str, Any] | None = None) -> str:
         """MaterialX text of a surface that lets light into the medium."""
-        ports = "".join(input_text(name, "vector3", (0.5, 0.5, 0.5)) for name in self.inputs)
-        medium = node_text(self.node, "VDF", "medium", ports)
-        return document_text(
-            INTERFACE + medium + node_text("layer", "BSDF", "lobe", PORTS) + SURFACE
-        )
+        sources = SOURCES.get(self.node, {})
+        ports = {name: "" for name in ("medium", *sources.values())}
+        for path in self.inputs:
+            node, _, name = path.rpartition("/")
+            kind = self._kind(path)
+            value = 0.5 if kind == "float" else (0.5, 0.5, 0.5)
+            ports[node or "medium"] += input_text(name, kind, value)
+        ports["medium"] += "".join(PORT.format(*each) for each in sources.items())
+        media = [
+            node_text("anisotropic_vdf", "VDF", name, ports[name]) for name in sources.values()
+        ]
+        media.append(node_text(self.node, "VDF", "medium", ports["medium"]))
+        layer = node_text("layer", "BSDF", "lobe", PORTS)
+        return document_text(INTERFACE + "".join(media) + layer + SURFACE)
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random coefficients, of which an eighth is 0, shares and factors; float32 numbers."""
+        inputs = {}
+        for name in self.inputs:
+            shape = (count,) if self._kind(name) == "float" else (count, 3)
+            values = np.maximum(1.125 * rng.random(shape) - 0.125, 0.0)
+            largest = LARGEST if self._kind(name) == "vector3" else 1.0
+            inputs[name] = (largest * values).astype(np.float32).astype(np.float64)
+        return inputs
+
+    def _kind(self, path: str) -> str:
+        if path == AMOUNT:
+            return "float"
+        if path == FACTOR:
+            return "float" if self.row.name.endswith("_float") else "color3"
+        return "vector3"
 
     def expected(self, batch: Batch) -> Array:
         """Transmittance, (N, 3)."""
@@ -89,9 +131,7 @@ class MediumSubject:
 
 def _transmittance(value: Any, batch: Batch) -> Array:
     """Transmittance of a function of coefficients, (N, 3)."""
-    shape = batch.wo.shape
-    inputs: Inputs = {name: np.broadcast_to(values, shape) for name, values in batch.inputs.items()}
-    return np.asarray(value(inputs))
+    return np.asarray(value(view_rows(batch)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,10 +147,7 @@ class MediumProbe(NodeProbe):
         """Random views and coefficients, of which an eighth is 0."""
         rng = np.random.default_rng(SEED)
         wo = directions(rng, VIEWS)
-        inputs = {}
-        for name in self.subject.inputs:
-            values = LARGEST * np.maximum(1.125 * rng.random((VIEWS, 3)) - 0.125, 0.0)
-            inputs[name] = values.astype(np.float32).astype(np.float64)
+        inputs = self.subject.random_inputs(rng, VIEWS)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], inputs),)
 
     @property
@@ -126,7 +163,8 @@ class MediumProbe(NodeProbe):
     def through(self) -> Array:
         """Light that comes through the media of the batch, over that without them, (N, 3)."""
         (batch,) = self.batches
-        clear = batch.altered(**dict.fromkeys(self.subject.inputs, (0.0, 0.0, 0.0)))
+        coefficients = (each for each in self.subject.inputs if np.shape(batch.inputs[each])[1:])
+        clear = batch.altered(**dict.fromkeys(coefficients, (0.0, 0.0, 0.0)))
         with np.errstate(divide="ignore", invalid="ignore"):
             return self._evaluate(batch, "response") / self._evaluate(clear, "response")
 
@@ -138,4 +176,4 @@ class MediumProbe(NodeProbe):
         return np.asarray(values, np.float64)
 
 
-MEDIUM_NODES = tuple(MediumSubject(row) for row in MEDIA)
+MEDIUM_NODES = tuple(MediumSubject(row) for row in (*MEDIA, *COMBINED_MEDIA))

@@ -178,7 +178,7 @@ class EmissionSubject:
 
     def exitance(self, batch: Batch) -> Array:
         """Radiant exitance with the inputs of each view, (N, 3)."""
-        return self.row.exitance(_rows(batch))
+        return self.row.exitance(view_rows(batch))
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
@@ -244,7 +244,7 @@ def _float32(values: Array) -> Array:
 
 def _radiance(value: Value, batch: Batch) -> Array:
     """Radiance of a function of views and inputs, (N, 3)."""
-    return value(_unit(batch.wo), _rows(batch))
+    return value(_unit(batch.wo), view_rows(batch))
 
 
 def _unit(wo: Array) -> Array:
@@ -252,7 +252,7 @@ def _unit(wo: Array) -> Array:
     return np.clip(wo, -1.0, 1.0)
 
 
-def _rows(batch: Batch) -> dict[str, Array]:
+def view_rows(batch: Batch) -> dict[str, Array]:
     """The inputs with a row for each view."""
     count = len(batch.wo)
     return {

@@ -17,7 +17,7 @@ from mxeon.conformance.checks.emission.subjects import (
     AbsentSubject,
 )
 from mxeon.models.shading import surface_radiance
-from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
+from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 DARK = Scene("dark", size=8)
@@ -87,29 +87,10 @@ class SurfaceEmissionProbe(NodeProbe):
         return np.asarray(image[sphere(DARK.size).mask], np.float64)
 
 
-def _combined(node: str, ports: str) -> AbsentSubject:
-    """A node that combines two media, below a surface."""
-    medium = node_text("anisotropic_vdf", "VDF", "{}")
-    base = node_text(node, "VDF", "medium", ports)
-    layer = (
-        '    <input name="top" type="BSDF" nodename="top" />\n'
-        '    <input name="base" type="VDF" nodename="medium" />\n'
-    )
-    nodes = medium.format("first") + medium.format("second") + base
-    top = node_text("dielectric_bsdf", "BSDF", "top")
-    return AbsentSubject(
-        f"{node}, VDF", node, nodes + top + node_text("layer", "BSDF", "lobe", layer) + SURFACE
-    )
-
-
-PORT = '    <input name="{}" type="VDF" nodename="{}" />\n'
 ABSENT_NODES = (
     AbsentSubject(
         "measured_edf", "measured_edf", node_text("measured_edf", "EDF", "emission") + EMITTER
     ),
-    _combined("mix", PORT.format("fg", "first") + PORT.format("bg", "second")),
-    _combined("add", PORT.format("in1", "first") + PORT.format("in2", "second")),
-    _combined("multiply", PORT.format("in1", "first") + input_text("in2", "float", 1.0)),
 )
 SURFACE_NODES = (
     SurfaceSubject("surface, an EDF alone", lit=False),

@@ -82,7 +82,8 @@ TRANSMITTANCE = Tolerance(
     "transmittance",
     scaled,
     "twelve roundings of float32, 2^-24 each: of the exponential of a rounded sum, of a product and of "
-    "the quotient of two such values; and twice the error of the engine's own exponential; rounded up",
+    "the quotient of two such values; and twice the error of the engine's own exponential, and of its power "
+    "where two media are combined; rounded up",
 )
 OPACITY = Tolerance(
     rounded_up(3 * ROUNDING),
@@ -110,6 +111,8 @@ def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
         return replace(tolerance, value=rounded_up(tolerance.value + power_error(probe.host)))
     if probe.kind == MEDIUM:
         error = 2.0 * exponential_error(probe.host)
+        if probe.subject.combined:
+            error += 2.0 * power_error(probe.host)
         return replace(tolerance, value=rounded_up(tolerance.value + error))
     return tolerance
 

@@ -40,6 +40,8 @@ class Inputs:
         A material that loses no light, by the layer equation.
     needs : mapping of str to mapping
         What else the material has where an input is changed.
+    curved : tuple of str
+        Inputs of `changed` that a curved surface alone has to show; that of pairs is a plane.
     """
 
     judged: Mapping[str, Range]
@@ -49,6 +51,7 @@ class Inputs:
     silent: tuple[str, ...]
     white: Mapping[str, Any]
     needs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    curved: tuple[str, ...] = ()
 
 
 def drawn(rng: np.random.Generator, count: int, ranges: Mapping[str, Range]) -> dict[str, Array]:
@@ -145,6 +148,7 @@ STANDARD = Inputs(
         "transmission_dispersion",
         "subsurface_anisotropy",
     ),
+    curved=("subsurface_radius", "subsurface_scale"),
     white={
         "base": 1.0,
         "base_color": (1.0, 1.0, 1.0),
@@ -223,6 +227,7 @@ OPEN_PBR = Inputs(
         "transmission_dispersion_abbe_number",
         "subsurface_scatter_anisotropy",
     ),
+    curved=("subsurface_radius", "subsurface_radius_scale"),
     white={
         "base_weight": 1.0,
         "base_color": (1.0, 1.0, 1.0),

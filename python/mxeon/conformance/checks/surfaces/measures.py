@@ -36,8 +36,9 @@ def reach(probe: Any, _: Metric) -> Measurement:
 
 def misplaced(probe: Any) -> list[str]:
     """The inputs of `reach`."""
-    silent = set(probe.subject.table.silent)
-    return sorted(silent.symmetric_difference(without_effect(probe)))
+    table = probe.subject.table
+    wrong = set(table.silent).symmetric_difference(without_effect(probe))
+    return sorted(wrong.difference(table.curved))
 
 
 def without_effect(probe: Any) -> list[str]:

@@ -10,12 +10,11 @@ import numpy as np
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions
 from mxeon.conformance.checks.bsdf.probes import LEAST_VIEW, reflected
 from mxeon.conformance.checks.probes import PairProbe
-from mxeon.conformance.checks.surfaces.subjects import SurfaceShader
+from mxeon.conformance.checks.surfaces.subjects import WHOLE, SurfaceShader
 from mxeon.conformance.reference import Host as Reference
 from mxeon.shaders.generation import Shader, generate
-from mxeon.shaders.hosts.fragment import NORMAL, TANGENT
+from mxeon.shaders.hosts.calls import NORMAL, TANGENT
 
-WHOLE = "surface pairs"  # kind of probe
 PAIRS = 256  # of directions, each with a material of its own
 VIEWS = 64  # whose albedo is asked
 MATERIALS = 1 << 11  # whose energy is

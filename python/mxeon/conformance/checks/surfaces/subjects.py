@@ -18,6 +18,8 @@ from mxeon.conformance.checks.surfaces.inputs import (
 )
 from mxeon.shaders.nodes import document_text, node_text
 
+WHOLE = "surface pairs"  # kind of probe
+
 
 @dataclass(frozen=True)
 class SurfaceShader:

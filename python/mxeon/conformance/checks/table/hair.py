@@ -5,18 +5,18 @@ from collections.abc import Callable
 from typing import Any
 
 from mxeon.conformance import diagnosis
-from mxeon.conformance.checks.bsdf.hair_regions import REGIONS
-from mxeon.conformance.checks.bsdf.hair_tolerances import HAIR_REGIONS
 from mxeon.conformance.checks.bsdf.subjects import HAIR
 from mxeon.conformance.checks.controls import Altered, with_inputs
+from mxeon.conformance.checks.hair.regions import REGIONS
+from mxeon.conformance.checks.hair.tolerances import HAIR_REGIONS
 from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
 from mxeon.conformance.checks.table.check import Check
 from mxeon.conformance.diagnosis import Diagnosis
-from mxeon.models.hair_defects import FORMS, TILTED
+from mxeon.models.hair.defects import FORMS, TILTED
 from mxeon.models.pbrlib.hair import HAIR_NODE
 
 CLAIMS = {
-    "lobes": "R, TT, and TRT with all beyond, each apart, are those of the equations.",
+    "each_lobe": "R, TT, and TRT with all beyond, each apart, are those of the equations.",
     "narrow_lobes": "R and TT are right where they are narrow.",
     "tilted_lobes": "R and TT are right for every tilt of the cuticle.",
     "wide_lobes": "R and TT are right where they are wider than a roughness of 1.",

@@ -6,8 +6,7 @@ from typing import Any
 from mxeon.conformance import diagnosis, wiring
 from mxeon.conformance.checks import measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
-from mxeon.conformance.checks.bsdf.hair import HAIRS
-from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, KINDS
+from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, HAIR, KINDS
 from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -20,6 +19,7 @@ from mxeon.conformance.checks.controls import (
 from mxeon.conformance.checks.emission.subjects import KINDS as EMISSION_KINDS
 from mxeon.conformance.checks.emission.subjects import MEDIUM, PICTURES
 from mxeon.conformance.checks.engine import on_engine
+from mxeon.conformance.checks.hair.subjects import HAIRS
 from mxeon.conformance.checks.nodes import OwnNode, Surface
 from mxeon.conformance.checks.table.check import Check
 from mxeon.conformance.checks.table.names import COMBINATION, EMITTER, FRAMED, MEDIUM_NAMES, OTHERS
@@ -42,7 +42,7 @@ ROUGH = (*ANY, "fon")
 
 def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
     """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
-    kinds = KINDS + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    kinds = (*KINDS, HAIR) + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
     return dict.fromkeys(kinds, tolerance)
 
 

@@ -5,7 +5,7 @@ from mxeon.models.pbrlib import NODES
 from mxeon.models.pbrlib.combinations import COMBINATIONS
 from mxeon.models.pbrlib.emissions import COMBINED_EMISSIONS, EMISSIONS
 from mxeon.models.pbrlib.hair import HAIR_NODE
-from mxeon.models.pbrlib.media import MEDIA
+from mxeon.models.pbrlib.media import COMBINED_MEDIA, MEDIA
 from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE
 
 FRAMED = (*(row.name for row in NODES), "burley_lambert", HAIR_NODE.name)
@@ -13,4 +13,4 @@ FRAMED = (*(row.name for row in NODES), "burley_lambert", HAIR_NODE.name)
 OTHERS = (*FRAMED, SUBSURFACE_NODE.name)
 COMBINATION = tuple(row.name for row in COMBINATIONS)
 EMITTER = tuple(row.name for row in (*EMISSIONS, *COMBINED_EMISSIONS))
-MEDIUM_NAMES = tuple(row.name for row in MEDIA)
+MEDIUM_NAMES = tuple(row.name for row in (*MEDIA, *COMBINED_MEDIA))

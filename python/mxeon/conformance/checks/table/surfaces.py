@@ -11,8 +11,7 @@ from mxeon.conformance.checks.batch import Array, Batch
 from mxeon.conformance.checks.controls import Altered, scale, shifted
 from mxeon.conformance.checks.surfaces import diagnosis, tolerances
 from mxeon.conformance.checks.surfaces import measures as surface_measures
-from mxeon.conformance.checks.surfaces.probes import WHOLE
-from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.checks.surfaces.subjects import SHADERS, WHOLE
 from mxeon.conformance.checks.table.check import Check
 from mxeon.conformance.checks.tolerances import count_of
 

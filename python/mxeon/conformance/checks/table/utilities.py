@@ -8,7 +8,7 @@ from mxeon.conformance.checks.table.check import Check
 from mxeon.conformance.checks.tolerances import count_of
 from mxeon.conformance.checks.values import measures as value_measures
 from mxeon.conformance.checks.values import tolerances
-from mxeon.conformance.checks.values.probes import OSL_VALUES, VALUES
+from mxeon.conformance.checks.values.subjects import OSL_VALUES, VALUES
 from mxeon.models.pbrlib.utilities import UTILITIES
 
 NAMES = tuple(row.category for row in UTILITIES)

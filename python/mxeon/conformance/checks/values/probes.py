@@ -10,14 +10,13 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch
 from mxeon.conformance.checks.probes import PairProbe, PictureProbe
-from mxeon.conformance.checks.values.subjects import UtilitySubject
+from mxeon.conformance.checks.values.subjects import OSL_VALUES, VALUES, UtilitySubject
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts.base import Host
-from mxeon.shaders.hosts.fragment import GRAPH
+from mxeon.shaders.hosts.calls import GRAPH
 
 COUNT = 1 << 12
 FEW = 1 << 9
-VALUES, OSL_VALUES = "utility values", "utility values in OSL"  # kinds of probes
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from mxeon.conformance.checks.nodes import Changes
 from mxeon.models.pbrlib.utilities import UTILITIES, UtilityNode, Values
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
+VALUES, OSL_VALUES = "utility values", "utility values in OSL"  # kinds of probes
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
 KINDS = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
 SHARE = (0.0, 1.0)

@@ -13,7 +13,7 @@ import numpy as np
 from mxeon.conformance.checks.batch import SEED
 from mxeon.conformance.checks.measures import absolute, scaled
 from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance, rounded_up
-from mxeon.conformance.checks.values.probes import VALUES
+from mxeon.conformance.checks.values.subjects import VALUES
 from mxeon.shaders.hosts.base import Host
 
 COUNT = 1 << 12

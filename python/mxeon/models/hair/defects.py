@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mxeon.models.arrays import Array
-from mxeon.models.hair_formulas import TEXT, Form
+from mxeon.models.hair.formulas import TEXT, Form
 
 # The series of I_0 has so many terms, and above the limit a logarithm takes its place.
 TERMS, LIMIT, NARROW = 10, 12.0, 0.1

@@ -8,13 +8,13 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
-from mxeon.conformance.checks.bsdf.hair import HairSubject
-from mxeon.conformance.checks.bsdf.hair_regions import REGIONS
 from mxeon.conformance.checks.bsdf.probes import FEW, NODES, PAIRS, BsdfProbe
 from mxeon.conformance.checks.bsdf.subjects import HAIR
+from mxeon.conformance.checks.hair.regions import REGIONS
+from mxeon.conformance.checks.hair.subjects import HairSubject
 from mxeon.conformance.checks.special import LEAST_TURNED, special_directions
 from mxeon.models.hair import ROUGHNESSES
-from mxeon.models.hair_formulas import SCALE, section
+from mxeon.models.hair.formulas import SCALE, section
 
 WIDE = (0.05, 0.3)  # least variance and scale of values that are integrated
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.models.hair import TINTS
-from mxeon.models.hair_defects import BESSEL, CLAMPED, UNIFORM
+from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
 
 LOBES = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
 APART: dict[str, Any] = {**LOBES, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
@@ -42,7 +42,7 @@ class Region:
 
 # By the key of the check.
 REGIONS = {
-    "lobes": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBES, form=UNIFORM),
+    "each_lobe": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBES, form=UNIFORM),
     "narrow_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.0, form=BESSEL),
     "tilted_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.5, form=BESSEL),
     "wide_lobes": Region(SLANTED, (1.0, 100.0), (1.0, 10.0), APART, form=CLAMPED),

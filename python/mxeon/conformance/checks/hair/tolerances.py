@@ -3,12 +3,12 @@
 
 import math
 
-from mxeon.conformance.checks.bsdf.hair import LEAST_SCALE, LEAST_VARIANCE
-from mxeon.conformance.checks.bsdf.hair_regions import REGIONS
+from mxeon.conformance.checks.hair.regions import REGIONS
+from mxeon.conformance.checks.hair.subjects import LEAST_SCALE, LEAST_VARIANCE
 from mxeon.conformance.checks.measures import absolute, scaled
 from mxeon.conformance.checks.special import LEAST_TURNED
 from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance, rounded_up
-from mxeon.models.hair_formulas import SCALE
+from mxeon.models.hair.formulas import SCALE
 
 UNIT = "pi f, relative above 1"
 LARGEST = 1e5  # of pi f, so that a lobe falls to 1 within REACH
