@@ -5,14 +5,14 @@ import numpy as np
 
 from mxeon.models import fresnel_schlick
 from mxeon.models.microfacet_albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
-from mxeon.models.microfacet_btdf import evaluate_btdf
 from mxeon.models.microfacet_lobe import DIELECTRIC
-from mxeon.models.microfacet_transmittance import dielectric_transmittance_dir
-from mxeon.models.schlick_transmission import (
+from mxeon.models.transmission.btdf import evaluate_btdf
+from mxeon.models.transmission.schlick import (
     READINGS,
     generalized_schlick_transmittance_dir,
     schlick_ior,
 )
+from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
 
 HEAD = "| quantity | measured | expected |\n|---|---|---|\n"
 ROUGH, SMOOTH = (1.0, 1.0), (0.0, 0.0)

@@ -6,16 +6,20 @@ import pytest
 
 from mxeon.models import fresnel_dielectric, smith_g1, smith_g2
 from mxeon.models.microfacet_albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
-from mxeon.models.microfacet_btdf import dielectric_btdf, evaluate_btdf
 from mxeon.models.microfacet_lobe import DIELECTRIC
-from mxeon.models.microfacet_transmittance import dielectric_transmittance_dir
-from mxeon.models.refraction import Facet, refraction_direction, transmission_half_vector
-from mxeon.models.schlick_transmission import (
+from mxeon.models.transmission.btdf import dielectric_btdf, evaluate_btdf
+from mxeon.models.transmission.refraction import (
+    Facet,
+    refraction_direction,
+    transmission_half_vector,
+)
+from mxeon.models.transmission.schlick import (
     READINGS,
     generalized_schlick_btdf,
     generalized_schlick_transmittance_dir,
     schlick_ior,
 )
+from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
 from tests.support import tolerances
 from tests.support.availability import available
 from tests.support.hemispheres import view

@@ -11,14 +11,14 @@ from mxeon.conformance.checks.bsdf.probes import BsdfProbe
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
 from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES, SubsurfaceSubject
 from mxeon.conformance.checks.bsdf.thin_films import FILMS, film_probe_type
-from mxeon.conformance.checks.bsdf.transmission import TRANSMITTING
-from mxeon.conformance.checks.bsdf.transmission_probes import transmission_probe_type
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 from mxeon.conformance.checks.hair.probes import HairProbe
 from mxeon.conformance.checks.hair.subjects import HAIRS, HairSubject
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.surfaces.probes import surface_probe_type
 from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.checks.transmission.probes import transmission_probe_type
+from mxeon.conformance.checks.transmission.subjects import TRANSMITTING
 from mxeon.conformance.checks.values.probes import utility_probe_type
 from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mxeon.models.arrays import Array
-from mxeon.models.microfacet_transmittance import dielectric_transmittance_dir
 from mxeon.models.pbrlib.microfacets import DIELECTRIC, MICROFACET_NODES, SCHLICK
 from mxeon.models.pbrlib.node import Inputs, PbrNode
-from mxeon.models.schlick_transmission import generalized_schlick_transmittance_dir, schlick_ior
+from mxeon.models.transmission.schlick import generalized_schlick_transmittance_dir, schlick_ior
+from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
 
 MODES = ("T", "RT")
 

@@ -8,13 +8,13 @@ import numpy as np
 from mxeon.conformance import wiring
 from mxeon.conformance.checks.batch import Array
 from mxeon.conformance.checks.bsdf import tolerances
-from mxeon.conformance.checks.bsdf import transmission_measures as measures
-from mxeon.conformance.checks.bsdf.transmission import TRANSMISSION_KINDS, TRANSMITTING
 from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
 from mxeon.conformance.checks.measures import Case
 from mxeon.conformance.checks.table.check import Check
 from mxeon.conformance.checks.tolerance import Tolerance
 from mxeon.conformance.checks.tolerances import SURROUNDINGS, count_of
+from mxeon.conformance.checks.transmission import measures as measures
+from mxeon.conformance.checks.transmission.subjects import TRANSMISSION_KINDS, TRANSMITTING
 from mxeon.conformance.diagnosis import NEAR, Diagnosis, not_finite
 
 MODELS = tuple(subject.model for subject in TRANSMITTING)

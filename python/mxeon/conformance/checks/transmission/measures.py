@@ -9,7 +9,7 @@ from mxeon.conformance.checks.batch import Array, Batch
 from mxeon.conformance.checks.measures import Case, Measurement, Metric, point_of, worst_of
 from mxeon.conformance.checks.sky import sky, sky_map
 from mxeon.models.ggx import smith_g1
-from mxeon.models.refraction import refraction_direction
+from mxeon.models.transmission.refraction import refraction_direction
 
 BRANCHES = ("direct", "environment", "transmission")
 COUNT = 1 << 9  # views of smooth surfaces

@@ -13,8 +13,8 @@ import numpy as np
 from mxeon.models import fresnel_formulas as fresnel
 from mxeon.models.arguments import channel_count, checked
 from mxeon.models.arrays import Array, ArrayLike, Numbers
-from mxeon.models.microfacet_btdf import evaluate_btdf
-from mxeon.models.microfacet_transmittance import evaluate_transmittance
+from mxeon.models.transmission.btdf import evaluate_btdf
+from mxeon.models.transmission.transmittance import evaluate_transmittance
 
 LEAST, MOST = 0.01, 0.99  # reflectances along the normal that MaterialX's inversion takes
 
@@ -141,7 +141,7 @@ def generalized_schlick_btdf(
     Parameters
     ----------
     wo, wi, roughness, radiance
-        As those of `mxeon.models.microfacet_btdf.dielectric_btdf`.
+        As those of `mxeon.models.transmission.btdf.dielectric_btdf`.
     color0, color82, color90, exponent
         As those of `mxeon.models.generalized_schlick_brdf`.
     reading : str
@@ -211,7 +211,7 @@ def generalized_schlick_transmittance_dir(
     wo, color0, color82, color90, roughness, exponent, reading, inside
         As those of `generalized_schlick_btdf`.
     shadow : bool
-        As that of `mxeon.models.microfacet_transmittance.dielectric_transmittance_dir`.
+        As that of `mxeon.models.transmission.transmittance.dielectric_transmittance_dir`.
 
     Returns
     -------

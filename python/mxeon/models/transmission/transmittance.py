@@ -15,8 +15,8 @@ from mxeon.models.arguments import channel_count, checked, checked_directions, c
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
 from mxeon.models.microfacet_lobe import DIELECTRIC
-from mxeon.models.refraction import refracted
 from mxeon.models.sampling.visible_normals import visible_normal
+from mxeon.models.transmission.refraction import refracted
 
 NODES, BLOCK = 48, 2**4  # nodes in height and in azimuth of the cap of normals; views per block
 
@@ -35,7 +35,7 @@ def dielectric_transmittance_dir(
     Parameters
     ----------
     wo, tint, roughness, ior
-        As those of `mxeon.models.microfacet_btdf.dielectric_btdf`.
+        As those of `mxeon.models.transmission.btdf.dielectric_btdf`.
     shadow : bool
         Whether light is lost to other facets on the far side, as in the BTDF; without, it is the mean
         of 1 - F over the normals that wo sees.

@@ -24,7 +24,7 @@ from mxeon.models.arguments import (
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
 from mxeon.models.microfacet_lobe import DIELECTRIC
-from mxeon.models.refraction import Facet
+from mxeon.models.transmission.refraction import Facet
 
 
 def dielectric_btdf(
@@ -76,7 +76,7 @@ def dielectric_btdf(
 
     Examples
     --------
-    >>> from mxeon.models.refraction import refraction_direction
+    >>> from mxeon.models.transmission.refraction import refraction_direction
     >>> wo = [0.6, 0.0, 0.8]
     >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
     >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)

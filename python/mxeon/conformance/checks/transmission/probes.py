@@ -7,12 +7,12 @@ from typing import Any, ClassVar
 
 from mxeon.conformance.checks.batch import Array, Batch
 from mxeon.conformance.checks.bsdf.probes import MicrofacetProbe
-from mxeon.conformance.checks.bsdf.transmission import (
+from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.transmission.subjects import (
     SCHLICK_TRANSMITTED,
     TRANSMITTED,
     TransmissionSubject,
 )
-from mxeon.conformance.checks.probes import PairProbe
 
 
 @dataclass(frozen=True, eq=False)
