@@ -8,10 +8,10 @@ films of up to 1000 nm on each kind of substrate.
 
 import numpy as np
 
-from mxeon.models import thin_film_formulas as film
 from mxeon.models.ggx_formulas import smith_lambda
-from mxeon.models.microfacet_film import film_albedo_dir
-from mxeon.models.thin_film_curve import film_curve
+from mxeon.models.thin_film import formulas as film
+from mxeon.models.thin_film.curve import film_curve
+from mxeon.models.thin_film.lobe import film_albedo_dir
 
 SEED, COUNT, VIEWS = 1, 1 << 12, 1 << 8
 LEAST_COSINE, LEAST_ALPHA = 0.1, 1e-2

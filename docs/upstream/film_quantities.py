@@ -4,11 +4,11 @@
 import numpy as np
 
 from mxeon.models import thin_film as films
-from mxeon.models import thin_film_formulas as film
 from mxeon.models.colorimetry import XYZ_TO_REC709
 from mxeon.models.fresnel import fresnel_conductor, fresnel_schlick
-from mxeon.models.thin_film_curve import film_curve, without_clamp
-from mxeon.models.thin_film_spectrum import film_spectrum_xyz
+from mxeon.models.thin_film import formulas as film
+from mxeon.models.thin_film.curve import film_curve, without_clamp
+from mxeon.models.thin_film.spectrum import film_spectrum_xyz
 
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 # Index and extinction of substrates: diamond, glass, water, a dark metal and a bright one.

@@ -7,11 +7,12 @@ from dataclasses import replace
 import pytest
 
 from fits import thin_film as fit
-from mxeon.conformance.checks.bsdf import thin_films
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
-from mxeon.conformance.checks.bsdf.thin_films import FILMS, FilmProbe
 from mxeon.conformance.checks.evaluate import applies, judge_check
 from mxeon.conformance.checks.table.thin_films import CHECKS
+from mxeon.conformance.checks.thin_films import probes as thin_films
+from mxeon.conformance.checks.thin_films.probes import FilmProbe
+from mxeon.conformance.checks.thin_films.subjects import FILMS
 from mxeon.conformance.diagnosis import Diagnosis
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.shaders.library import data_folder

@@ -6,10 +6,8 @@ import pytest
 import tmm
 
 from docs.upstream import film_quantities
-from mxeon.models import thin_film_formulas as formulas
 from mxeon.models.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
 from mxeon.models.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
-from mxeon.models.microfacet_film import PolynomialCurve, film_albedo_dir, film_brdf
 from mxeon.models.pbrlib.thin_films import FILM_NODES
 from mxeon.models.thin_film import (
     MATERIALX,
@@ -19,8 +17,10 @@ from mxeon.models.thin_film import (
     film_dielectric,
     film_schlick,
 )
-from mxeon.models.thin_film_curve import film_curve, without_clamp
-from mxeon.models.thin_film_spectrum import film_spectrum, film_spectrum_xyz
+from mxeon.models.thin_film import formulas as formulas
+from mxeon.models.thin_film.curve import film_curve, without_clamp
+from mxeon.models.thin_film.lobe import PolynomialCurve, film_albedo_dir, film_brdf
+from mxeon.models.thin_film.spectrum import film_spectrum, film_spectrum_xyz
 from tests.models.test_pbrlib import directions, inputs
 
 with np.printoptions():  # it changes how arrays print, in every doctest of the process

@@ -9,14 +9,15 @@ from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
 from mxeon.conformance.checks.bsdf.probes import BsdfProbe
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
-from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES, SubsurfaceSubject
-from mxeon.conformance.checks.bsdf.thin_films import FILMS, film_probe_type
+from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 from mxeon.conformance.checks.hair.probes import HairProbe
-from mxeon.conformance.checks.hair.subjects import HAIRS, HairSubject
+from mxeon.conformance.checks.hair.subjects import HAIRS
 from mxeon.conformance.checks.probes import PairProbe
-from mxeon.conformance.checks.surfaces.probes import surface_probe_type
+from mxeon.conformance.checks.surfaces.probes import SurfaceProbe
 from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.checks.thin_films.probes import FilmProbe
+from mxeon.conformance.checks.thin_films.subjects import FILMS
 from mxeon.conformance.checks.transmission.probes import transmission_probe_type
 from mxeon.conformance.checks.transmission.subjects import TRANSMITTING
 from mxeon.conformance.checks.values.probes import utility_probe_type
@@ -42,25 +43,20 @@ class Family:
     common: bool = False
 
 
-def hair_probe_type(_: HairSubject, probe: type[Any]) -> type[HairProbe] | None:
-    """Class of the probes of the hair node, which needs a host that evaluates any pairs."""
-    return HairProbe if probe is PairProbe else None
-
-
-def subsurface_probe_type(_: SubsurfaceSubject, probe: type[Any]) -> type[BsdfProbe] | None:
-    """Class of the probes of subsurface scattering, which needs a host that evaluates any pairs."""
-    return BsdfProbe if probe is PairProbe else None
+def on_pairs(kind: type[Any]) -> Callable[[Any, type[Any]], type[Any] | None]:
+    """Class of probes of subjects that need a host that evaluates any pairs."""
+    return lambda subject, probe: kind if probe is PairProbe else None
 
 
 FAMILIES = (
     Family((*BSDFS, *COMBINED_NODES), bsdf_probe_type, common=True),
-    Family(HAIRS, hair_probe_type),
+    Family(HAIRS, on_pairs(HairProbe)),
     Family(EMISSION_SUBJECTS, emission_probe_type),
     Family(TRANSMITTING, transmission_probe_type),
-    Family(SUBSURFACES, subsurface_probe_type),
-    Family(FILMS, film_probe_type),
+    Family(SUBSURFACES, on_pairs(BsdfProbe)),
+    Family(FILMS, on_pairs(FilmProbe)),
     Family(UTILITY_SUBJECTS, utility_probe_type),
-    Family(SHADERS, surface_probe_type),
+    Family(SHADERS, on_pairs(SurfaceProbe)),
 )
 PBR_SUBJECTS = tuple(subject for family in FAMILIES for subject in family.subjects)
 COMMON_SUBJECTS = tuple(

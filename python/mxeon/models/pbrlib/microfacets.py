@@ -24,8 +24,8 @@ from mxeon.models.microfacet_defects import (
     MICROFACET_DEFECTS,
     averaged_channels,
 )
-from mxeon.models.microfacet_film import film_albedo_dir, film_brdf
 from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
+from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
 
 # Forms of the energy compensation, which the text leaves open.
 OPEN = ("compensation_half", "compensation_f0", "compensation_view", "compensation_fitted")

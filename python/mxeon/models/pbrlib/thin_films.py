@@ -9,7 +9,6 @@ from mxeon.models.arrays import Array
 from mxeon.models.colorimetry import XYZ_TO_REC709
 from mxeon.models.materialx_fits import compensation, layer_albedo
 from mxeon.models.microfacet_defects import averaged_channels, fitted_half
-from mxeon.models.microfacet_film import FILM, film_albedo_dir, film_brdf
 from mxeon.models.microfacet_lobe import Lobe
 from mxeon.models.pbrlib.microfacets import (
     CONDUCTOR,
@@ -29,6 +28,7 @@ from mxeon.models.thin_film import (
     film_dielectric,
     film_schlick,
 )
+from mxeon.models.thin_film.lobe import FILM, film_albedo_dir, film_brdf
 
 FITTED = Lobe(fitted_half)  # MaterialX's compensation
 OWN_MATRIX = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())))

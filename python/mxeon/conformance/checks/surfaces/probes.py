@@ -134,8 +134,3 @@ def _isotropic(batch: Batch) -> Batch:
     return batch.altered(
         **{name: np.zeros(len(batch.wo)) for name in batch.inputs if STRETCHED in name}
     )
-
-
-def surface_probe_type(subject: SurfaceShader, probe: type[Any]) -> type[PairProbe] | None:
-    """Class of a subject's probes on a host that has probes of a class; None if it has none."""
-    return SurfaceProbe if probe is PairProbe else None

@@ -4,28 +4,29 @@
 from mxeon.conformance import diagnosis, wiring
 from mxeon.conformance.checks import measures, tolerances
 from mxeon.conformance.checks.bsdf import measures as bsdf_measures
-from mxeon.conformance.checks.bsdf import thin_films
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
 from mxeon.conformance.checks.bsdf.subjects import FILM
 from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
 from mxeon.conformance.checks.table.check import Check
+from mxeon.conformance.checks.thin_films.measures import brighter, film_energy, film_limit, thicker
+from mxeon.conformance.checks.thin_films.subjects import FILM_MODELS, LAYERED
 
 CHECKS = (
     Check(
         "film",
         "The value under a thin film has the film's Airy reflectance.",
-        thin_films.FILM_MODELS,
+        FILM_MODELS,
         measures.value,
         "the film is a quarter thicker",
-        thin_films.thicker,
+        thicker,
         {FILM: bsdf_tolerances.FILM_VALUE},
         open=True,
     ),
     Check(
         "film_limit",
         "A film of index 1, and one next to nothing, leave the lobe as it is.",
-        thin_films.FILM_MODELS,
-        thin_films.film_limit,
+        FILM_MODELS,
+        film_limit,
         "every film has an index of 1.5",
         with_inputs(thinfilm_ior=1.5),
         {FILM: bsdf_tolerances.FILM_LIMIT},
@@ -34,19 +35,19 @@ CHECKS = (
     Check(
         "film_energy",
         "No film reflects more than a lobe that reflects everything.",
-        thin_films.FILM_MODELS,
-        thin_films.film_energy,
+        FILM_MODELS,
+        film_energy,
         "values are 100 times as large",
-        thin_films.brighter,
+        brighter,
         {FILM: bsdf_tolerances.FILM_ENERGY},
     ),
     Check(
         "film_environment",
         "The environment branch has the film's directional albedo.",
-        thin_films.FILM_MODELS,
+        FILM_MODELS,
         measures.environment,
         "the film is a quarter thicker",
-        thin_films.thicker,
+        thicker,
         {FILM: bsdf_tolerances.FILM_ALBEDO},
         diagnose=diagnosis.of_albedo,
         open=True,
@@ -54,7 +55,7 @@ CHECKS = (
     Check(
         "film_throughput",
         "The throughput of a layer under a film is 1 - E of the film.",
-        thin_films.LAYERED,
+        LAYERED,
         bsdf_measures.layering,
         "all light passes",
         pass_all,
@@ -64,7 +65,7 @@ CHECKS = (
     Check(
         "film_finite",
         "No value of a film at the edges of the domain is infinite or not a number.",
-        thin_films.FILM_MODELS,
+        FILM_MODELS,
         measures.finite,
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),

@@ -9,7 +9,7 @@ import numpy as np
 from mxeon.models.arguments import checked
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.evaluation import evaluate_material
-from mxeon.models.thin_film_curve import CIE_RGB, MATERIALX, PRINTED, TEXT, Form, film_curve
+from mxeon.models.thin_film.curve import CIE_RGB, MATERIALX, PRINTED, TEXT, Form, film_curve
 
 __all__ = [
     "CIE_RGB",

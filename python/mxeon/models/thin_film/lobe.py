@@ -10,7 +10,7 @@ from mxeon.models.arguments import checked
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.microfacet_albedo import lobe_albedo
 from mxeon.models.microfacet_lobe import Curve, Lobe, evaluate_lobe
-from mxeon.models.thin_film_curve import CURVES, TEXT, Form, film_curve, without_clamp
+from mxeon.models.thin_film.curve import CURVES, TEXT, Form, film_curve, without_clamp
 
 FILM = ("thinfilm_thickness", "thinfilm_ior")
 # Inputs of each node with channels, and those without.

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of microfacets under a thin film."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.checks.batch import SEED, Array, Batch, directions
+from mxeon.conformance.checks.bsdf.probes import MicrofacetProbe, simple
+from mxeon.conformance.checks.bsdf.subjects import FILM
+from mxeon.conformance.checks.special import special_directions
+from mxeon.conformance.checks.thin_films.subjects import THICK
+
+PAIRS = 1 << 8  # random ones, and special ones; each average over a film's curve takes long
+ALBEDOS = 24
+FEW = 1 << 6  # pairs of a control
+LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
+
+
+@dataclass(frozen=True, eq=False)
+class FilmProbe(MicrofacetProbe):
+    """A microfacet node under a thin film on a host that evaluates any pairs."""
+
+    kind: ClassVar[str] = FILM
+    diagnosed: ClassVar[int] = 1 << 5
+    least_cosine: ClassVar[float] = LEAST_FACET
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """PAIRS random pairs and special ones whose facets are not at grazing, and mirrored ones."""
+        rng = np.random.default_rng(SEED)
+        special = special_directions(rng)
+        picked = rng.permutation(len(special[0]))[:PAIRS]
+        pairs = (
+            self._batch(
+                rng, (directions(rng, PAIRS), directions(rng, PAIRS)), self.subject.random_inputs
+            ),
+            self._batch(rng, (special[0][picked], special[1][picked]), self.subject.special_inputs),
+            self.mirrored[0].first(PAIRS),
+        )
+        return tuple(batch.where(_steep(batch)) for batch in pairs)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of each."""
+        return tuple(batch.first(FEW) for batch in self.batches)
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """ALBEDOS views of the random pairs."""
+        batch = super(MicrofacetProbe, self).cosines[0].first(ALBEDOS)
+        return (replace(batch, inputs=simple(batch.inputs)),)
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Pairs and inputs at the edges of the domain, films next to vacuum and vast ones."""
+        rng = np.random.default_rng(SEED)
+        special = special_directions(rng)
+        picked = rng.permutation(len(special[0]))[: 2 * PAIRS]
+        wo, wi = (each[picked] for each in special)
+        inputs = self.subject.special_inputs(rng, len(wo))
+        inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
+        inputs["thinfilm_ior"][::16] = 0.0
+        return Batch(wo, wi, inputs)
+
+
+def _steep(batch: Batch) -> Array:
+    """Pairs whose half vector is not at grazing to either."""
+    half = batch.wo + batch.wi
+    length = np.linalg.norm(half, axis=1)
+    cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)
+    return np.asarray(cosine >= LEAST_FACET)
