@@ -208,10 +208,7 @@ def test_a_normal_that_is_no_unit_vector_is_refused():
         Reference().picture(generate(material(nodes), "glsl")[0], SMALL)
 
 
-SURFACES = ("standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface")
-
-
-@pytest.mark.parametrize("category", [*SURFACES, "disney_principled"])
+@pytest.mark.parametrize("category", ["UsdPreviewSurface", "disney_principled"])
 def test_a_surface_shader_has_a_picture_like_gl(category):
     shading = f'<{category} name="shading" type="surfaceshader"/>'
     shader = generate(document_text(shading), "glsl", lights=True)[0]

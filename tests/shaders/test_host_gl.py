@@ -166,7 +166,7 @@ def test_nodes_are_evaluated_together_with_inputs_by_their_paths(gl):
     assert np.allclose(both, one + other, rtol=1e-6)
 
 
-SHADERS = ("standard_surface", "open_pbr_surface", "gltf_pbr", "UsdPreviewSurface")
+SHADERS = ("standard_surface", "UsdPreviewSurface")
 
 
 @pytest.mark.parametrize("category", SHADERS)
