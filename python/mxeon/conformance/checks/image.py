@@ -2,10 +2,11 @@
 """Materials from documents: their pictures on a host against the reference's, pixel by pixel."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +14,7 @@ import mxeon
 from mxeon.conformance.checks.bsdf.tolerances import MICROFACET_VALUE, sum_of
 from mxeon.conformance.checks.measures import absolute
 from mxeon.conformance.checks.probes import picture_pairs
+from mxeon.conformance.checks.surfaces import tolerances as surfaces
 from mxeon.conformance.checks.tolerance import ROUNDING, Tolerance
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
 from mxeon.errors import NotRun, OutsideModel, ShaderError
@@ -52,6 +54,14 @@ FITTED = Tolerance(
     "pi f cos, relative above 1, times cos(theta_o)",
     absolute,
     "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "
+    "environment",
+)
+
+SHADED = Tolerance(
+    surfaces.ALBEDO.value + sum_of(256),
+    FITTED.unit,
+    absolute,
+    "the errors of all lobes of a surface shader, 2.3e-2, and that of a sum over 256 directions of an "
     "environment",
 )
 
@@ -175,7 +185,7 @@ def _picture(
 
 def _assert_judged(shader: Shader, host: Host) -> None:
     """Raise NotRun where the host has closures of its own, which are judged by themselves."""
-    own = sorted(_categories(shader) & set(BSDF_INPUTS))
+    own = sorted(_categories(_inner(shader)) & set(BSDF_INPUTS))
     if own and host.language == "osl":
         raise NotRun(
             f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown, and "
@@ -185,14 +195,28 @@ def _assert_judged(shader: Shader, host: Host) -> None:
 
 def _tolerance(shader: Shader) -> Tolerance:
     """Tolerance of a material's pictures."""
-    if _categories(shader) & FITTED_NODES:
+    if _categories(shader.document.traverseTree()) & FITTED_NODES:
         return FITTED
+    if _categories(_inner(shader)) & FITTED_NODES:
+        return SHADED
     return TEXTURED if _textured(shader) else PLAIN
 
 
-def _categories(shader: Shader) -> set[str]:
-    """Categories of the nodes of a shader's document."""
-    return {each.getCategory() for each in shader.document.traverseTree()}
+def _categories(elements: Iterable[Any]) -> set[str]:
+    """Categories of nodes."""
+    return {each.getCategory() for each in elements}
+
+
+def _inner(shader: Shader) -> Iterator[Any]:
+    """Nodes of a shader's document, and those of the graphs that define them."""
+    waiting, seen = [shader.document], set()
+    while waiting:
+        for each in waiting.pop().traverseTree():
+            yield each
+            graph = each.getImplementation() if each.isA(mx.Node) else None
+            if graph and graph.isA(mx.NodeGraph) and graph.getNamePath() not in seen:
+                seen.add(graph.getNamePath())
+                waiting.append(graph)
 
 
 def _textured(shader: Shader) -> bool:
@@ -227,7 +251,7 @@ def _judge_match(
     fields: dict[str, Any], cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
 ) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
-    scaled = tolerance is FITTED
+    scaled = tolerance.unit == FITTED.unit
     errors = [(*_worst_pixel(case, front_lit, scaled), case[0].name) for case in cases]
     error, worst, scene = max(errors, key=lambda entry: entry[0])
     first, image, expected = cases[0]
