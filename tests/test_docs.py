@@ -19,7 +19,8 @@ from playwright.sync_api import sync_playwright
 
 from docs.upstream.update import figures, written
 from mxeon import albedo, inversion, models, sampling
-from mxeon.conformance.known_issues import BSDF_ISSUES, STOCK
+from mxeon.conformance.known_issues.issue import STOCK
+from mxeon.conformance.known_issues.pbrlib import BSDF_ISSUES
 from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.hosts.webgl import program
 from tests.support.tolerances import PRINTED

@@ -10,7 +10,13 @@ from pathlib import Path
 import pytest
 
 from docs.upstream import materialx_repairs as repairs
-from mxeon.conformance.known_issues import CONTY_KULLA, DIELECTRIC, HAIR, TRANSMITTING, ZELTNER
+from mxeon.conformance.known_issues.pbrlib import (
+    CONTY_KULLA,
+    DIELECTRIC,
+    HAIR,
+    TRANSMITTING,
+    ZELTNER,
+)
 from mxeon.conformance.results import PASSED
 from tests.support.availability import available
 

@@ -14,7 +14,8 @@ from mxeon.conformance.checks.evaluate import judge_check
 from mxeon.conformance.checks.native_probes import ExactProbe
 from mxeon.conformance.checks.nodes import NATIVE
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues import ISSUES, OWN
+from mxeon.conformance.known_issues import ISSUES
+from mxeon.conformance.known_issues.issue import OWN
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun
 from mxeon.shaders.hosts import browser, open_host

@@ -11,7 +11,8 @@ from mxeon.conformance.checks.evaluate import judge_subject
 from mxeon.conformance.checks.facet_probes import PROBES, facet_pairs
 from mxeon.conformance.checks.nodes import NATIVE
 from mxeon.conformance.checks.tolerances import COARSE_FACETS, FACET_PAIRS, FACETS
-from mxeon.conformance.known_issues import OWN, with_page
+from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.known_issues.issue import OWN
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun

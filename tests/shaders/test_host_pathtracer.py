@@ -9,7 +9,8 @@ from mxeon.conformance.checks.evaluate import judge_check
 from mxeon.conformance.checks.facet_probes import FacetPairProbe
 from mxeon.conformance.checks.nodes import NATIVE
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues import ISSUES, OWN
+from mxeon.conformance.known_issues import ISSUES
+from mxeon.conformance.known_issues.issue import OWN
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.errors import NotRun
 from mxeon.models.sampling.cltc import eon_cltc_sample

@@ -27,7 +27,7 @@ from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues import OWN
+from mxeon.conformance.known_issues.issue import OWN
 from mxeon.conformance.results import Curve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import InputError

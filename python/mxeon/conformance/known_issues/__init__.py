@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Known issues of stock MaterialX and of renderers: the page of `docs/upstream/` on each failing check."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from mxeon.conformance.known_issues.diffuse import DIFFUSE_ISSUES
+from mxeon.conformance.known_issues.issue import Issue
+from mxeon.conformance.known_issues.pbrlib import (
+    BSDF_ISSUES,
+    EMISSION_ISSUES,
+    HAIR_ISSUES,
+    UTILITY_ISSUES,
+)
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
+
+RENDERERS = {
+    "cycles": "this Blender",
+    "three": "this three.js",
+    "babylon": "this Babylon.js",
+    "luxcore": "this LuxCoreRender",
+    "three-gpu-pathtracer": "this three-gpu-pathtracer",
+}
+ISSUES = (*BSDF_ISSUES, *EMISSION_ISSUES, *HAIR_ISSUES, *UTILITY_ISSUES, *DIFFUSE_ISSUES)
+
+
+def with_page(result: Result) -> Result:
+    """A result whose diagnosis ends with the page of the issue that explains it, if one does."""
+    pages = [f"see docs/upstream/{issue.page}.md" for issue in _issues(result)]
+    return replace(result, diagnosis="; ".join(filter(None, (result.diagnosis, *pages))))
+
+
+def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """Notes on issues that are repaired, all of whose rows pass: a text and a page for each.
+
+    Parameters
+    ----------
+    results : sequence of Result
+    software : dict of str to str
+        The versions of the packages, by name.
+
+    Returns
+    -------
+    tuple of (str, str)
+    """
+    verdicts = {
+        (result.library, result.host, result.check, result.subject): result.verdict
+        for result in results
+    }
+    return tuple(
+        (
+            f"repaired in {_software_of(issue, software)}, so that its page can go",
+            f"docs/upstream/{issue.page}.md",
+        )
+        for issue in ISSUES
+        if all(verdicts.get((issue.library, issue.host, *row)) == PASSED for row in issue.rows)
+    )
+
+
+def _software_of(issue: Issue, software: Mapping[str, str]) -> str:
+    """The software that has an issue, in words; MaterialX's pages have the name of a generator."""
+    materialx = f"MaterialX {software['MaterialX']}"
+    return materialx if issue.page.startswith("gen") else RENDERERS.get(issue.host, materialx)
+
+
+def _issues(result: Result) -> list[Issue]:
+    """Issues that a result shows that failed or differs, if it is of the library that has them."""
+    if result.verdict not in (FAILED, DIFFERS):
+        return []
+    return [
+        issue
+        for issue in ISSUES
+        if result.library == issue.library
+        and result.host in (issue.host, *issue.also)
+        and (result.check, result.subject) in (*issue.rows, *issue.implied)
+    ]
