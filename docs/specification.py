@@ -85,14 +85,21 @@ def measured(host):
             "subject": each.subject,
             "library": each.library,
             "verdict": each.verdict,
-            "error": f"{each.error:.0f}" if each.unit == "values" else f"{each.error:.2g}",
-            "allowed": f"{each.tolerance:.2g} {each.unit}",
+            "error": _figure(each),
+            "allowed": "" if each.tolerance is None else f"{each.tolerance:.2g} {each.unit}",
         }
         for finding in findings
         for each in finding.results
     ]
     place = f"{device.device}, {device.version}, MaterialX {mx.__version__}"
     return {"place": place, "results": results}
+
+
+def _figure(result):
+    """The error of a result in print; "" where nothing ran."""
+    if result.error is None:
+        return ""
+    return f"{result.error:.0f}" if result.unit == "values" else f"{result.error:.2g}"
 
 
 def page(text, data):
@@ -125,20 +132,30 @@ def node_table(node, data):
             rows.setdefault((each["check"], each["subject"]), {})[each["library"]] = each
     lines, passed = [], {}
     for (check, subject), found in rows.items():
-        if all(found[library]["verdict"] == PASSED for library in LIBRARIES):
+        if all(found.get(library, {}).get("verdict") == PASSED for library in LIBRARIES):
             passed.setdefault(check, []).append(_mode(subject))
         else:
             lines.append(_line(check, subject, found))
     words = ", ".join(f"`{check}`{_modes(modes, rows)}" for check, modes in passed.items())
-    return "\n" + (HEAD + "".join(lines) + "\n" if lines else "") + f"Passed with both: {words}.\n"
+    parts = [HEAD + "".join(lines)] if lines else []
+    parts += [f"Passed with both: {words}.\n"] if words else []
+    return "\n" + "\n".join(parts)
 
 
 def _line(check, subject, found):
     """A row of a table."""
-    errors = [f"{found[each]['error']}, {found[each]['verdict']}" for each in LIBRARIES]
-    mode = _mode(subject) or "all"
-    cells = check, mode, found[LIBRARIES[0]]["allowed"], *errors, _links(check, subject)
+    results = [found.get(each) for each in LIBRARIES]
+    errors = [_words(each) for each in results]
+    allowed = next((each["allowed"] for each in results if each and each["allowed"]), "")
+    cells = check, _mode(subject) or "all", allowed, *errors, _links(check, subject)
     return f"| {' | '.join(cells)} |\n"
+
+
+def _words(result):
+    """An error and its verdict; a dash where the check was not asked."""
+    if not result:
+        return "-"
+    return ", ".join(filter(None, (result["error"], result["verdict"])))
 
 
 def _mode(subject):
@@ -193,11 +210,12 @@ def targets(data):
 
 def _targets_line(check, subject, found):
     """A row of a table of every target."""
-    first = next(each for pair in found.values() for each in pair if each)
+    results = [each for pair in found.values() for each in pair if each]
+    allowed = next((each["allowed"] for each in results if each["allowed"]), "")
     cells = [
         "" if not any(pair) else " / ".join(_cell(each) for each in pair) for pair in found.values()
     ]
-    return f"| {' | '.join([check, _mode(subject), first['allowed'], *cells])} |\n"
+    return f"| {' | '.join([check, _mode(subject), allowed, *cells])} |\n"
 
 
 def _cell(result):
@@ -214,7 +232,7 @@ def main():
     data = json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}
     for host in [] if words == ["--page"] else words or HOSTS:
         data[host] = measured(host)
-    write_text(DATA, _text(data))
+        write_text(DATA, _text(data))
     for file in (PAGE, *SUMMARIES):
         write_text(file, page(file.read_text(encoding="utf-8"), data[HOST]))
     write_text(TARGETS, targets(data))
