@@ -158,7 +158,7 @@ def test_stock_osl_does_not_use_the_flag():
 )
 def test_every_parameter_of_an_entry_point_is_used_in_its_body(path):
     code = re.sub(r"//.*", "", path.read_text())
-    [(parameters, body)] = re.findall(r"(?ms)^void \w+\((.*?)\)\s*{(.*)^}", code)
+    [(parameters, body)] = re.findall(rf"(?ms)^void {path.stem}\((.*?)\)\s*{{(.*)^}}", code)
     names = [each.split()[-1] for each in parameters.split(",")]
     assert len(names) >= 5
     assert [name for name in names if not re.search(rf"\b{name}\b", body)] == []
