@@ -43,8 +43,12 @@ BLOCK = re.compile(r"(<!-- measured (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 # Rows of the summaries of other pages, and what stock computes.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
-    ("frame", "translucent_bsdf", "light of the wrong side, seen from the back"),
+    ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),
+    ("each_lobe", "chiang_hair_bsdf", "a last lobe that is pi^2 too bright"),
+    ("film", "generalized_schlick_bsdf, thin film", "half of the substrate's reflectance"),
     ("layer", "dielectric_bsdf, scatter_mode R", "a throughput without the tint, by a fit"),
+    ("lobes_energy", "gltf_pbr", "light made by layers"),
+    ("frame", "translucent_bsdf", "light of the wrong side, seen from the back"),
     ("lossless", "conductor_bsdf", "energy compensation by a fit"),
     ("layering", "sheen_bsdf, mode zeltner", "a throughput without the color"),
     ("environment", "sheen_bsdf, mode conty_kulla", "a fit"),
@@ -54,8 +58,9 @@ SUMMARY = (
         "generalized_schlick_bsdf, scatter_mode R",
         "one without exponent, of the mean color",
     ),
+    ("output", "blackbody", "a fit beyond its range"),
 )
-SHORT = 4  # rows of the summary in the README
+SHORT = 6  # rows of the summary in the README
 SUMMARIES = (FOLDER.parent / "README.md", FOLDER / "results.md")
 SUMMARY_HEAD = (
     "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"

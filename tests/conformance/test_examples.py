@@ -61,7 +61,7 @@ def test_materials_have_names_of_their_own():
     materials = functools.reduce(
         operator.iadd, (read_document(path).content.getMaterialNodes() for path in DOCUMENTS), []
     )
-    assert len({node.getName() for node in materials}) == len(materials) == 35
+    assert len({node.getName() for node in materials}) == len(materials) == 36
 
 
 def test_the_wedge_has_the_same_roughnesses_with_and_without_compensation():
