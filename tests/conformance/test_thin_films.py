@@ -122,7 +122,7 @@ def wrong_library(folder, text, other):
     source = file.read_text(encoding="utf-8")
     assert text in source
     file.write_text(source.replace(text, other), encoding="utf-8")
-    return str(folder / "profiles" / "specular")
+    return str(folder / "profiles" / "pbrlib")
 
 
 def judged(host, node, library):

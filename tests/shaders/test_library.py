@@ -144,7 +144,7 @@ def test_the_microfacet_nodes_are_eonlibs_unless_the_diffuse_part_alone_is_loade
         for node in ("dielectric", "conductor", "generalized_schlick", "sheen"):
             definition = library.load_library(name).getNodeDef(f"ND_{node}_bsdf")
             found = Path(definition.getImplementation("genglsl").getActiveSourceUri())
-            assert (library.specular_folder() in found.parents) == ours
+            assert (library.pbrlib_folder() in found.parents) == ours
 
 
 def test_a_missing_library_raises_too():

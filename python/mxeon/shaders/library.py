@@ -96,9 +96,9 @@ def profile_folder(profile: str, library: str = "eonlib") -> Path:
     return source_folder(library) / "profiles" / profile
 
 
-def specular_folder() -> Path:
-    """Folder of eonlib's microfacet and sheen nodes, to be loaded with that of the diffuse ones."""
-    return data_folder() / "profiles" / "specular"
+def pbrlib_folder() -> Path:
+    """Folder of eonlib's other nodes of pbrlib, to be loaded with that of the rough diffuse ones."""
+    return data_folder() / "profiles" / "pbrlib"
 
 
 def has_profile(library: str, profile: str) -> bool:
@@ -123,7 +123,7 @@ def _folders(library: str, profile: str | None) -> list[str]:
     if profile is not None and profile not in PROFILES:
         raise InputError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
     folders = {
-        "eonlib": [eonlib_folder(), specular_folder()],
+        "eonlib": [eonlib_folder(), pbrlib_folder()],
         "diffuse": [eonlib_folder()],
         "stock": [],
     }.get(library, [Path(library)])
