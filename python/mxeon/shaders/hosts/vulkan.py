@@ -60,6 +60,8 @@ FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filt
 FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # components -> format
 WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
 
+PROGRAMS = 8  # kept: the checks of a node evaluate one shader many times
+
 Bindings: TypeAlias = dict[int, tuple[dict[str, Any], Any]]  # kind and resource by number
 
 
@@ -87,6 +89,7 @@ class Host(base.Host):
                 )
         self._adapter = self._find_adapter()
         self._device = self._adapter.request_device_sync()
+        self._programs: dict[str, tuple[tuple[Any, ...], Any]] = {}
 
     def identity(self) -> Identity:
         """Version and device as the driver names them."""
@@ -144,9 +147,20 @@ class Host(base.Host):
             {0: (SAMPLER, self._device.create_sampler())},
             {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
         )
-        layouts, groups = zip(*(self._group(bindings) for bindings in sets), strict=True)
-        pipeline = self._pipeline(pixel, layouts)
+        layouts, pipeline = self._program(pixel, sets)
+        groups = [
+            self._group(layout, bindings) for layout, bindings in zip(layouts, sets, strict=True)
+        ]
         return self._draw(pipeline, groups, size)[:count]
+
+    def _program(self, pixel: str, sets: Iterable[Bindings]) -> tuple[tuple[Any, ...], Any]:
+        """Layouts of a text's bindings, and its pipeline: the same whatever the resources."""
+        if pixel not in self._programs:
+            if len(self._programs) == PROGRAMS:
+                self._programs.clear()
+            layouts = tuple(map(self._layout, sets))
+            self._programs[pixel] = layouts, self._pipeline(pixel, layouts)
+        return self._programs[pixel]
 
     def _draw(self, pipeline: Any, groups: Iterable[Any], size: tuple[int, int]) -> NDArray[Any]:
         """One frame as float32 rows, pixel after pixel."""
@@ -216,17 +230,20 @@ class Host(base.Host):
         texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE)
         return FILTERED, self._texture(texels)
 
-    def _group(self, bindings: Bindings) -> tuple[Any, Any]:
-        """Layout and group of one set of bindings."""
+    def _layout(self, bindings: Bindings) -> Any:
+        """Layout of one set of bindings."""
         kinds = [
             {"binding": number, "visibility": "FRAGMENT", **kind}
             for number, (kind, _) in bindings.items()
         ]
+        return self._device.create_bind_group_layout(entries=kinds)
+
+    def _group(self, layout: Any, bindings: Bindings) -> Any:
+        """Group of one set of bindings."""
         entries = [
             {"binding": number, "resource": resource} for number, (_, resource) in bindings.items()
         ]
-        layout = self._device.create_bind_group_layout(entries=kinds)
-        return layout, self._device.create_bind_group(layout=layout, entries=entries)
+        return self._device.create_bind_group(layout=layout, entries=entries)
 
     def _texture(self, texels: NDArray[Any]) -> Any:
         """A texture of 8-bit, float16 or float32 texels, of one to four components."""
@@ -247,7 +264,7 @@ class Host(base.Host):
         return self._device.create_buffer_with_data(data=data, usage="UNIFORM")
 
 
-@lru_cache(maxsize=8)  # a check evaluates one shader many times
+@lru_cache(maxsize=8)  # the vertex stage is always the same
 def _spirv(stage: str, text: str) -> bytes:
     """SPIR-V of a stage."""
     with TemporaryDirectory(prefix="mxeon-vulkan-") as folder:
