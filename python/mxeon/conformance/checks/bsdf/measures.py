@@ -9,6 +9,7 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Batch, rounded
 from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.checks.special import LEAST_COLOR82
 
 FEW = 1 << 12
 ROUNDED = 1e-9  # difference of two albedos that are the same
@@ -83,10 +84,16 @@ def shape(probe: Any, metric: Metric) -> Measurement:
 
 
 def _clear(batch: Batch) -> Batch:
-    """A batch without dielectrics whose index is near 1, of which float32 cannot hold F."""
-    if np.ndim(batch.inputs.get("ior", 0.0)) != 1:
-        return batch
-    return batch.altered(ior=np.maximum(batch.inputs["ior"], LEAST_INDEX))
+    """A batch without curves of which float32 cannot hold F: its terms cancel.
+
+    These are dielectrics whose index is near 1, and deep dips at 82 degrees, which turn F negative.
+    """
+    changes: dict[str, Any] = {}
+    if np.ndim(batch.inputs.get("ior", 0.0)) == 1:
+        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
+    if "color82" in batch.inputs:
+        changes["color82"] = np.maximum(batch.inputs["color82"], LEAST_COLOR82)
+    return batch.altered(**changes)
 
 
 def retroreflection(probe: Any, metric: Metric) -> Measurement:
