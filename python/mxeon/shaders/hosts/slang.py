@@ -123,7 +123,7 @@ class Host(base.Host):
         irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
         """Values of the shader's own BSDF function; see `mxeon.shaders.hosts.base.Host`."""
-        if "fwidth(" in shader.stages["pixel"]:
+        if "subsurface_bsdf(closureData" in shader.stages["pixel"]:
             raise NotRun(
                 "slang: subsurface scattering reads the change from pixel to pixel, and a kernel has "
                 "no pixels"
