@@ -45,6 +45,8 @@ FILES = (
     "sampling_variance",
     "scene",
     "sheen",
+    "subsurface",
+    "transmission",
     "twins",
 )
 # Tests left out, whose bounds are roundings of float32, printed digits or noise: all are far above
@@ -60,6 +62,7 @@ COARSE = (
     "library",
     "paths",
     "specular",
+    "subsurface_blur",
     "tracer",
     "upstream",
 )

@@ -278,7 +278,7 @@ def diffusion_blur(mu: ArrayLike, reach: float) -> Array:
     Examples
     --------
     >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
-    array([0.0015, 0.0807, 0.9532])
+    array([0.0097, 0.074 , 0.9344])
     """
     cosine = np.asarray(checked("cos_theta", mu), np.float64)
     checked("radius", reach)
