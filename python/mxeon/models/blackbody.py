@@ -83,8 +83,9 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
 
     Notes
     -----
-    Sums over the observer's table, of 5 nm, which are within 5e-5 of those over 1 nm. Spectra are scaled by their largest exponential, so that
-    cold bodies, of which no light is left in float64, keep their color.
+    Sums over the observer's table, of 5 nm, which are within 5e-5 of those over 1 nm. Spectra are scaled
+    by their largest exponential, so that cold bodies, of which no light is left in float64, keep their
+    color.
 
     References
     ----------

@@ -46,7 +46,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     wi : array_like, shape (..., 3)
         Direction to the light, unit vector to 1e-6, on either side.
     **inputs : array_like
-        Values of the node's ports, which have its defaults; form is one of `mxeon.models.hair.formulas.Form`:
+        Values of the node's ports, which have its defaults; form is a `mxeon.models.hair.formulas.Form`:
         `tint_R`, `tint_TT`, `tint_TRT`, shape (..., C), in [0, 1]; `ior`, shape (...), in [0, 1e50];
         `roughness_R`, `roughness_TT`, `roughness_TRT`, shape (..., 2), longitudinal variance in
         square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle`, shape (...),
