@@ -31,6 +31,8 @@ def run(room, *arguments):
     return subprocess.run(
         [sys.executable, "-m", "mxeon", *map(str, arguments)],
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)),
+        # Python would leave the compiled modules that find no room behind, cut short.
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         text=True,
         check=False,
