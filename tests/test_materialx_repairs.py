@@ -31,6 +31,15 @@ ROWS = (
     ("value", CONTY_KULLA),
     OF_FIT,
     ("frame", "translucent_bsdf"),
+    *(
+        ("combined_throughput", subject)
+        for subject in ("multiply, in2 float", "multiply, in2 color3", "multiply, of a sum")
+    ),
+    ("combined_throughput", "mix, of a sum"),
+    *(
+        (check, "layer, under a mix of a sum")
+        for check in ("combination", "combined_albedo", "combined_throughput")
+    ),
     ("transmittance", "anisotropic_vdf"),
     ("inputs", "anisotropic_vdf"),
     ("finite", DIELECTRIC),

@@ -138,6 +138,27 @@ REPAIRS = (
         for kind, factor in (("float", "weight"), ("color3", "tint"))
     ),
     _glsl(
+        "genglsl_add_throughput",
+        "mx_add_bsdf.glsl",
+        13,
+        "max(in1.throughput + in2.throughput - 1.0, 0.0);",
+        "in1.throughput + in2.throughput - 1.0;",
+    ),
+    _glsl(
+        "genglsl_add_throughput",
+        "mx_layer_bsdf.glsl",
+        5,
+        "base.response * top.throughput;",
+        "base.response * max(top.throughput, 0.0);",
+    ),
+    _glsl(
+        "genglsl_add_throughput",
+        "mx_layer_bsdf.glsl",
+        6,
+        "top.throughput * base.throughput;",
+        "min(top.throughput, 0.0) + max(top.throughput, 0.0) * base.throughput;",
+    ),
+    _glsl(
         "genglsl_medium_scattering",
         "mx_anisotropic_vdf.glsl",
         9,

@@ -79,6 +79,7 @@ CAUSES = {
     "genglsl_multiply_throughput": Cause(
         f"{PBRLIB}/mx_multiply_bsdf_float.glsl", 7, "in1.throughput"
     ),
+    "genglsl_add_throughput": Cause(f"{PBRLIB}/mx_add_bsdf.glsl", 13, "max(in1.throughput"),
     "genglsl_conty_kulla_fit": Cause(
         f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 28, "sheen_dir_albedo_analytic"
     ),

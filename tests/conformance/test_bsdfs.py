@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.checks.bsdf import probes as bsdf_probes
-from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
 from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
 from mxeon.conformance.checks.bsdf.subjects import BSDFS, QUADRATURES, RANGES
 from mxeon.conformance.checks.bsdf.tolerances import LEAST_ESS
@@ -298,17 +297,3 @@ def test_the_least_albedo_of_microfacets_is_that_of_the_roughest_along_the_norma
     assert np.isclose(ggx_albedo_dir(1.0, 1.0), LEAST_ESS, rtol=1e-10)
     mu, alpha = np.meshgrid(np.linspace(1e-4, 1.0, 12), np.linspace(1e-3, 1.0, 12))
     assert ggx_albedo_dir(mu, alpha).min() >= LEAST_ESS * (1.0 - 1e-10)
-
-
-@pytest.mark.parametrize("subject", COMBINED_NODES, ids=lambda each: each.title)
-def test_a_combination_is_that_of_the_layer_algebra(gl, subject):
-    scaled = subject.node == "multiply"
-    for library, wrong in (("stock", ["combined_throughput"] if scaled else []), ("eonlib", [])):
-        probe = BSDF_PROBES[subject.kind](gl, subject, library)
-        rows = [row for row in CHECKS if applies(row, subject, subject.kind, "gl")]
-        results = {row.key: judge_check(row, probe) for row in rows}
-        assert {"inputs", "combination", "combined_albedo", "combined_throughput"} == {*results}
-        assert [key for key, result in results.items() if result.verdict != PASSED] == wrong
-        assert all(result.control.caught for result in results.values())
-        for key in wrong:
-            assert "the throughput of the lobe before it is scaled" in results[key].diagnosis

@@ -9,6 +9,7 @@ from mxeon.models.layering import Bsdf, add, layer, mix, multiply, throughput
 # Values with the cosine, integrated: a lobe that reflects E has value E and throughput 1 - E. The
 # numbers are multiples of 1/64, so that the sums and products below are exact.
 A, B = (Bsdf(np.array(e), throughput(e)) for e in ([0.25, 0.5, 0.0], [0.5, 0.125, 1.0]))
+TREE = 1e-13  # 6 levels of up to 2^6 lobes: 400 roundings of 2^-53 of numbers up to the albedo, doubled
 NOTHING, BLACK = Bsdf(np.zeros(3), np.ones(3)), Bsdf(np.zeros(3), np.zeros(3))
 
 
@@ -39,8 +40,50 @@ def test_identities():
 
 
 def test_a_sum_that_reflects_more_than_all_light_hides_what_lies_below():
-    assert np.array_equal(add(B, B).throughput, [0.0, 0.75, 0.0])
-    assert np.array_equal(throughput([1.5, -1.0]), [0.0, 2.0])
+    sum_of_both = layer(add(B, B), Bsdf(np.ones(3), np.zeros(3)))
+    assert np.array_equal(sum_of_both.value, [1.0, 1.0, 2.0])
+    assert np.array_equal(sum_of_both.throughput, [0.0, 0.0, -1.0])
+    assert np.array_equal(throughput([1.5, -1.0]), [-0.5, 2.0])
+
+
+def test_half_of_a_sum_passes_what_it_does_not_reflect():
+    lobe = Bsdf(np.array(0.9), throughput(0.9))
+    nothing = Bsdf(np.zeros(()), np.ones(()))
+    for half in (multiply(add(lobe, lobe), 0.5), mix(add(lobe, lobe), nothing, 0.5)):
+        assert half.throughput == pytest.approx(0.1, abs=1e-15)
+        assert layer(half, Bsdf(np.ones(()), np.zeros(()))).value == pytest.approx(1.0, abs=1e-15)
+
+
+def tree(rng, depth):
+    """A random combination of lobes, and its albedo by the equations of the text."""
+    kind = rng.choice(("layer", "mix", "add", "multiply")) if depth else "lobe"
+    if kind == "lobe":
+        albedo = rng.random(3)
+        return Bsdf(albedo, throughput(albedo)), albedo
+    (one, E), (other, E_other) = tree(rng, depth - 1), tree(rng, rng.integers(depth))
+    if kind == "layer":  # where E exceeds 1, nothing is left of the base
+        return layer(one, other), E + np.where(E < 1.0, 1.0 - E, 0.0) * E_other
+    if kind == "mix":
+        w = rng.random()
+        return mix(one, other, w), (1.0 - w) * E_other + w * E
+    if kind == "add":
+        return add(one, other), E + E_other
+    s = 1.5 * rng.random(rng.choice((1, 3)))
+    return multiply(one, s), s * E
+
+
+def test_every_tree_of_combinations_keeps_the_albedo_of_the_text():
+    rng = np.random.default_rng(25)
+    above = 0
+    for _ in range(1000):
+        lobe, albedo = tree(rng, int(rng.integers(1, 7)))
+        scale = np.maximum(albedo, 1.0)
+        assert np.all(np.abs(lobe.value - albedo) <= TREE * scale)
+        assert np.all(np.abs(1.0 - lobe.throughput - albedo) <= TREE * scale)
+        white = layer(lobe, Bsdf(np.ones(3), np.zeros(3))).value
+        assert np.all(np.abs(white - np.maximum(albedo, 1.0)) <= TREE * scale)
+        above += np.count_nonzero(albedo > 1.0)
+    assert 500 < above < 2500  # of 3000 albedos, so that both sides of 1 count
 
 
 @pytest.mark.parametrize(

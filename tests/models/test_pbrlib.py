@@ -7,7 +7,7 @@ import pytest
 from mxeon.models import materialx_fits
 from mxeon.models.layering import Bsdf, layer
 from mxeon.models.pbrlib import NODES, node
-from mxeon.models.pbrlib.combinations import COMBINATIONS, ROUGHNESS
+from mxeon.models.pbrlib.combinations import COMBINATIONS, NESTED, ROUGHNESS
 from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
 from mxeon.models.quadrature import hemisphere_nodes
 from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
@@ -32,6 +32,8 @@ def inputs(row, count=COUNT):
             values[name] = 5.0 * values[name]
         if name == "ior":
             values[name] = 1.0 + values[name]
+        if name in ROUGHNESS and row.name in NESTED:
+            values[name] = 0.9 + 0.1 * rng.random(count)  # whose sum reflects more than all light
         if name == "roughness" and row in MICROFACET_NODES:
             values[name] = np.repeat(0.4 + 0.5 * rng.random((count, 1)), 2, axis=1)
     return values

@@ -133,7 +133,7 @@ def of_cases(
 def _of_rest(probe: Any, cases: Sequence[Case]) -> Diagnosis:
     """The explanation of throughputs, by albedos or by none."""
     *albedos, nothing = probe.subject.albedo_candidates
-    candidates = [Candidate(each.title, partial(_rest, each)) for each in albedos]
+    candidates = [Candidate(each.title, partial(_rest, each), each.permitted) for each in albedos]
     candidates.append(Candidate("all light passes", partial(_rest, nothing)))
     return _explained(probe, cases, candidates, (), _tolerance(probe, THROUGHPUTS))
 

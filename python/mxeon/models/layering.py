@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Algebra of `layer`, `mix`, `add` and `multiply` on values and throughputs of lobes.
 
-The throughput of a lobe is the part of the light that it leaves to what lies below: 1 - E, and 0
-where its directional albedo E exceeds 1, on which the text is silent. A value may carry its cosine
+The throughput of a lobe is 1 - E, with its directional albedo E. It is negative where E exceeds 1, so
+that sums which are scaled or mixed afterwards keep their E. What lies below gets no less than
+nothing: the text is silent on E above 1, and `layer` alone ends there. A value may carry its cosine
 or not: all four operations are linear in it.
 """
 
@@ -23,8 +24,8 @@ class Bsdf:
     value : ndarray, shape (..., C)
         BSDF in 1/sr, with or without the cosine.
     throughput : ndarray, shape (..., C)
-        Part of the light that reaches what lies below, per channel, dimensionless, at
-        least 0. A lobe that hides its base has 0.
+        1 - E, per channel, dimensionless: the part of the light that reaches what lies below,
+        none where it is negative. A lobe that hides its base has 0, whatever it reflects.
     """
 
     value: Array
@@ -34,7 +35,7 @@ class Bsdf:
 def throughput(albedo: ArrayLike) -> Array:
     """Throughput of a lobe with the directional albedo `albedo`.
 
-        T = max(1 - E, 0)
+        T = 1 - E
 
     Parameters
     ----------
@@ -44,8 +45,8 @@ def throughput(albedo: ArrayLike) -> Array:
     Returns
     -------
     ndarray, shape (..., C), float64
-        Dimensionless, at least 0. It exceeds 1 where the albedo is negative, as Zeltner's fit is,
-        by 2.2e-5.
+        Dimensionless; negative where the albedo exceeds 1. It exceeds 1 where the albedo is
+        negative, as Zeltner's fit is, by 2.2e-5.
 
     Raises
     ------
@@ -64,15 +65,15 @@ def throughput(albedo: ArrayLike) -> Array:
     Examples
     --------
     >>> throughput([0.25, 1.5])
-    array([0.75, 0.  ])
+    array([ 0.75, -0.5 ])
     """
-    return np.maximum(1.0 - np.asarray(checked("albedo", albedo), np.float64), 0.0)
+    return 1.0 - np.asarray(checked("albedo", albedo), np.float64)
 
 
 def layer(top: Bsdf, base: Bsdf) -> Bsdf:
     """A lobe over another.
 
-        f = f_top + T_top f_base,  T = T_top T_base
+        f = f_top + max(T_top, 0) f_base,  T = min(T_top, 0) + max(T_top, 0) T_base
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
     Returns
     -------
     Bsdf
-        1 - T is E_top + (1 - E_top) E_base, the albedo of f.
+        1 - T is E_top + (1 - E_top) E_base, the albedo of f; and E_top where that exceeds 1.
 
     References
     ----------
@@ -94,7 +95,9 @@ def layer(top: Bsdf, base: Bsdf) -> Bsdf:
     >>> float(both.value), float(both.throughput)
     (0.25, 0.0)
     """
-    return Bsdf(top.value + top.throughput * base.value, top.throughput * base.throughput)
+    passed = np.maximum(top.throughput, 0.0)
+    left = np.minimum(top.throughput, 0.0) + passed * base.throughput
+    return Bsdf(top.value + passed * base.value, left)
 
 
 def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
@@ -136,7 +139,7 @@ def mix(fg: Bsdf, bg: Bsdf, amount: ArrayLike) -> Bsdf:
 def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
     """Sum of two lobes, which may reflect more than all light.
 
-        f = f_1 + f_2,  T = max(1 - (E_1 + E_2), 0) = max(T_1 + T_2 - 1, 0)
+        f = f_1 + f_2,  T = 1 - (E_1 + E_2) = T_1 + T_2 - 1
 
     Parameters
     ----------
@@ -157,14 +160,13 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
     >>> float(both.value), float(both.throughput)
     (0.75, 0.25)
     """
-    left = np.maximum(in1.throughput + in2.throughput - 1.0, 0.0)
-    return Bsdf(in1.value + in2.value, left)
+    return Bsdf(in1.value + in2.value, in1.throughput + in2.throughput - 1.0)
 
 
 def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
     """A lobe scaled.
 
-        f = s f_1,  T = max(1 - s E_1, 0) = max(1 - s (1 - T_1), 0)
+        f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
     Parameters
     ----------
@@ -198,4 +200,4 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
     (0.5, 0.75)
     """
     s = np.asarray(checked("weight", weight), np.float64)
-    return Bsdf(s * in1.value, np.maximum(1.0 - s * (1.0 - in1.throughput), 0.0))
+    return Bsdf(s * in1.value, 1.0 - s * (1.0 - in1.throughput))

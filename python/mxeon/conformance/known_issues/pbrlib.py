@@ -20,6 +20,7 @@ TRANSMITTING = tuple(
     for node in ("dielectric", "generalized_schlick")
     for mode in ("T", "RT")
 )
+LAYERED_SUM = "layer, under a mix of a sum"
 HAIR = "chiang_hair_bsdf"
 HAIR_ISSUES = (
     Issue(
@@ -67,7 +68,19 @@ BSDF_ISSUES = (
     Issue(
         "genglsl_multiply_throughput",
         "gl",
-        product(("combined_throughput",), ("multiply, in2 float", "multiply, in2 color3")),
+        product(
+            ("combined_throughput",),
+            ("multiply, in2 float", "multiply, in2 color3", "multiply, of a sum"),
+        ),
+        HARDWARE,
+    ),
+    Issue(
+        "genglsl_add_throughput",
+        "gl",
+        (
+            ("combined_throughput", "mix, of a sum"),
+            *product(("combination", "combined_albedo", "combined_throughput"), (LAYERED_SUM,)),
+        ),
         HARDWARE,
     ),
     Issue(

@@ -76,7 +76,7 @@ def furnace(wo: Values, radiance: float) -> Lobe:
 
 def weighted(lobe: Bsdf, weight: Values, layerable: bool) -> Bsdf:
     """Lobe times its weight; what hides its base does so at any weight."""
-    left = np.maximum(1.0 - weight * (1.0 - lobe.throughput), 0.0) if layerable else lobe.throughput
+    left = 1.0 - weight * (1.0 - lobe.throughput) if layerable else lobe.throughput
     return Bsdf(lobe.value * weight, left)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects of the checks: the nodes of pbrlib that combine two lobes."""
+"""Subjects of the checks: the nodes of pbrlib that combine two lobes, or a sum of them."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,20 +7,48 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.batch import Array
-from mxeon.conformance.checks.bsdf.subjects import COMBINED, BsdfSubject
+from mxeon.conformance.checks.bsdf.subjects import COMBINED, NESTED, BsdfSubject
 from mxeon.conformance.checks.nodes import Changes
 from mxeon.conformance.checks.special import LEAST_SHEEN
-from mxeon.models.pbrlib.combinations import AMOUNT, COMBINATIONS, FACTOR, ROUGHNESS
-from mxeon.shaders.nodes import SURFACE, document_text, lobe_text, node_text
+from mxeon.models.pbrlib import combinations
+from mxeon.models.pbrlib.combinations import AMOUNT, AMOUNT_ABOVE, COMBINATIONS, FACTOR, ROUGHNESS
+from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 
-# XML of the ports of each node, by category; that of a factor is a value, which an evaluation sets.
-CONNECTED = '    <input name="{}" type="BSDF" nodename="{}" />\n'
-PORTS = {
-    "layer": CONNECTED.format("top", "top") + CONNECTED.format("base", "base"),
-    "mix": CONNECTED.format("fg", "top") + CONNECTED.format("bg", "base"),
-    "add": CONNECTED.format("in1", "top") + CONNECTED.format("in2", "base"),
-    "multiply": CONNECTED.format("in1", "top"),
+
+def _node(category: str, name: str = "lobe", value: str = "", **lobes: str) -> str:
+    """XML of a node over other nodes, by port; a value is what an evaluation sets."""
+    ports = "".join(
+        f'    <input name="{port}" type="BSDF" nodename="{lobe}" />\n'
+        for port, lobe in lobes.items()
+    )
+    return node_text(category, "BSDF", name, ports + value)
+
+
+TOP, BASE = (lobe_text("sheen_bsdf", {"mode": "zeltner"}, name) for name in ("top", "base"))
+SUM = TOP + BASE + _node("add", "sum", in1="top", in2="base")
+HALF, ONE = input_text("mix", "float", 0.5), input_text("in2", "float", 1.0)
+WHITE = input_text("in2", "color3", (1.0, 1.0, 1.0))
+NODES = {  # XML of each row
+    "layer": TOP + BASE + _node("layer", top="top", base="base"),
+    "mix": TOP + BASE + _node("mix", value=HALF, fg="top", bg="base"),
+    "add": TOP + BASE + _node("add", in1="top", in2="base"),
+    "multiply_float": TOP + _node("multiply", value=ONE, in1="top"),
+    "multiply_color3": TOP + _node("multiply", value=WHITE, in1="top"),
+    "multiply_sum": SUM + _node("multiply", value=WHITE, in1="sum"),
+    "mix_sum": SUM + _node("mix", value=HALF, fg="sum", bg="top"),
+    "layer_sum": SUM
+    + _node("mix", "mixed", HALF, fg="sum", bg="top")
+    + _node("layer", top="mixed", base="base"),
 }
+TITLES = {
+    "multiply_float": "multiply, in2 float",
+    "multiply_color3": "multiply, in2 color3",
+    "multiply_sum": "multiply, of a sum",
+    "mix_sum": "mix, of a sum",
+    "layer_sum": "layer, under a mix of a sum",
+}
+SINGLE = ("multiply_float", "multiply_color3")  # rows of `top` alone
+COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 
 
 @dataclass(frozen=True)
@@ -30,20 +58,17 @@ class CombinedSubject(BsdfSubject):
     @property
     def title(self) -> str:
         """Name in reports."""
-        if self.node != "multiply":
-            return self.node
-        return f"multiply, in2 {'color3' if self._colored else 'float'}"
+        return TITLES.get(self.model, self.node)
 
     @property
     def inputs(self) -> tuple[str, ...]:
         """Paths of the inputs that its values depend on."""
-        names = self.row.inputs
-        return names if self.node != "multiply" else (ROUGHNESS[0], FACTOR)
+        return (ROUGHNESS[0], FACTOR) if self.model in SINGLE else self.row.inputs
 
     @property
     def kind(self) -> str:
         """Kind of its probe."""
-        return COMBINED
+        return NESTED if self.model in combinations.NESTED else COMBINED
 
     @property
     def anisotropic(self) -> bool:
@@ -54,20 +79,13 @@ class CombinedSubject(BsdfSubject):
     def changes(self) -> dict[str, Changes]:
         """For each input: inputs without and with a change of it alone."""
         factor: Any = (0.9, 0.1, 0.6) if self._colored else 0.3
-        values = {**dict.fromkeys(ROUGHNESS, 0.4), AMOUNT: 0.3, FACTOR: factor}
+        amounts = dict.fromkeys((AMOUNT, AMOUNT_ABOVE), 0.3)
+        values = {**dict.fromkeys(ROUGHNESS, 0.4), **amounts, FACTOR: factor}
         return {name: ({}, {name: values[name]}) for name in self.inputs}
 
     def document(self, inputs: Any = None) -> str:
-        """MaterialX text of a material that is this node over two sheens."""
-        ports = PORTS[self.node]
-        if self.node == "multiply":
-            kind, value = ("color3", "1.0, 1.0, 1.0") if self._colored else ("float", "1.0")
-            ports += f'    <input name="in2" type="{kind}" value="{value}" />\n'
-        if self.node == "mix":
-            ports += '    <input name="mix" type="float" value="0.5" />\n'
-        lobes = [lobe_text("sheen_bsdf", {"mode": "zeltner"}, name) for name in ("top", "base")]
-        nodes = "".join(lobes[: 1 if self.node == "multiply" else 2])
-        return document_text(nodes + node_text(self.node, "BSDF", "lobe", ports) + SURFACE)
+        """MaterialX text of a material that is this node over sheens."""
+        return document_text(NODES[self.model] + SURFACE)
 
     def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
         colored = name == FACTOR and self._colored
@@ -78,7 +96,7 @@ class CombinedSubject(BsdfSubject):
 
     @property
     def _colored(self) -> bool:
-        return self.row.name == "multiply_color3"
+        return self.model in COLORED
 
 
 COMBINED_NODES = tuple(CombinedSubject(row) for row in COMBINATIONS)

@@ -31,6 +31,14 @@ def layering_cases(probe: Any) -> Iterator[Case]:
         yield from _throughput_cases(probe, branch)
 
 
+def passing(probe: Any, metric: Metric) -> Measurement:
+    """Throughput of a combination against 1 - E, where it is negative as `layer` takes it: 0."""
+    cases = (
+        case._replace(measured=np.maximum(case.measured, 0.0)) for case in layering_cases(probe)
+    )
+    return worst_of(metric, cases)
+
+
 def transmission(probe: Any, metric: Metric) -> Measurement:
     """Throughput of a layer against 1 - E, in the branch of light through the base."""
     return worst_of(metric, transmission_cases(probe))

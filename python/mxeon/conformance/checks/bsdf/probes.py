@@ -14,6 +14,7 @@ from mxeon.conformance.checks.bsdf.subjects import (
     COMBINED,
     FITTED,
     MICROFACET,
+    NESTED,
     SCHLICK,
     SHEEN,
     BsdfSubject,
@@ -277,6 +278,13 @@ class CombinedProbe(BsdfProbe):
         )
 
 
+@dataclass(frozen=True, eq=False)
+class NestedProbe(CombinedProbe):
+    """A node that combines a sum of two lobes."""
+
+    kind: ClassVar[str] = NESTED
+
+
 PROBES = (
     BsdfProbe,
     SheenProbe,
@@ -284,5 +292,6 @@ PROBES = (
     MicrofacetProbe,
     SchlickProbe,
     CombinedProbe,
+    NestedProbe,
 )
 BSDF_PROBES = {probe.kind: probe for probe in PROBES}

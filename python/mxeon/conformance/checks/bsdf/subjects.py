@@ -26,6 +26,7 @@ CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
 MICROFACET_KINDS = (MICROFACET, SCHLICK)
 HAIR = "hair pairs"  # of the hair node
 COMBINED = "combined pairs"  # of a node that combines lobes
+NESTED = "nested pairs"  # of a node that combines a sum
 FILM = "film pairs"  # of microfacets under a thin film
 QUADRATURES = {  # largest error of a probe's integrals of the equations
     CLOSED: 1e-8,

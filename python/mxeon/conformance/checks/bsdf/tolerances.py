@@ -13,6 +13,7 @@ from mxeon.conformance.checks.bsdf.subjects import (
     KINDS,
     MICROFACET,
     MICROFACET_KINDS,
+    NESTED,
     QUADRATURES,
     SCHLICK,
     SHEEN,
@@ -147,7 +148,14 @@ COMBINED_ALBEDO = Tolerance(
     rounded_up(3 * CLOSED_ALBEDO.value),
     "albedo",
     scaled,
-    "two albedos, and a throughput between them",
+    "two albedos, and a throughput between them; of a sum in a mix over a base too, since the slopes of "
+    "its albedo by the two are at most 1 and 2",
+)
+NESTED_VALUE = Tolerance(
+    COMBINED_VALUE.value + ZELTNER_VALUE.value + CLOSED_ALBEDO.value,
+    SCALED,
+    scaled,
+    "three values, of which a throughput of two albedos multiplies one",
 )
 # Largest errors of the shader's thin film, for cosines from 0.1 on: fits/thin_film.py measures each.
 FILM_ORDERS = 6.1e-3  # six orders and a geometric series, relative to the largest channel
@@ -192,6 +200,7 @@ VALUES = {
     MICROFACET: MICROFACET_VALUE,
     SCHLICK: MICROFACET_VALUE,
     COMBINED: COMBINED_VALUE,
+    NESTED: NESTED_VALUE,
     HAIR: HAIR_VALUE,
     FILM: FILM_VALUE,
 }
@@ -202,6 +211,7 @@ ALBEDOS = {
     MICROFACET: MICROFACET_ALBEDO,
     SCHLICK: MICROFACET_ALBEDO,
     COMBINED: COMBINED_ALBEDO,
+    NESTED: COMBINED_ALBEDO,
     HAIR: HAIR_ALBEDO,
     FILM: FILM_ALBEDO,
 }

@@ -6,7 +6,7 @@ from typing import Any
 from mxeon.conformance import diagnosis, wiring
 from mxeon.conformance.checks import measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
-from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, HAIR, KINDS
+from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, HAIR, KINDS, NESTED
 from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES
 from mxeon.conformance.checks.controls import (
     drop_changes,
@@ -255,7 +255,7 @@ CHECKS = (
             "facets": tolerances.count_of("inputs"),
             "coarse facets": tolerances.count_of("inputs"),
             "facet pairs": tolerances.count_of("inputs"),
-            COMBINED: tolerances.count_of("inputs"),
+            **dict.fromkeys((COMBINED, NESTED), tolerances.count_of("inputs")),
             **dict.fromkeys((*EMISSION_KINDS, MEDIUM, PICTURES), tolerances.count_of("inputs")),
         },
         diagnose=wiring.of_inputs,

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// Entry point of the node layer for two lobes: the base gets 1 - E of the top, and no less than nothing.
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+void layer_bsdf(ClosureData closureData, BSDF top, BSDF base, out BSDF result)
+{
+    vec3 passed = max(top.throughput, 0.0);
+    result.response = top.response + base.response * passed;
+    result.throughput = min(top.throughput, 0.0) + passed * base.throughput;
+}

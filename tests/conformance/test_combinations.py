@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes that combine lobes in GLSL: eonlib's carry what the text carries, stock ones do not."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
+from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
+from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.models.layering import Bsdf, add, layer, multiply, throughput
+
+PAGES = Path(__file__).resolve().parents[2] / "docs" / "upstream"
+
+UNSCALED = "the throughput of the lobe before it is scaled"
+ENDED = "a sum whose throughput ends at 0"
+COMBINED_WRONG = {  # of stock MaterialX: verdict of its combinations that are off, and diagnosis
+    "multiply_float": (DIFFERS, UNSCALED, {"combined_throughput"}),
+    "multiply_color3": (DIFFERS, UNSCALED, {"combined_throughput"}),
+    "multiply_sum": (DIFFERS, UNSCALED, {"combined_throughput"}),
+    "mix_sum": (FAILED, ENDED, {"combined_throughput"}),
+    "layer_sum": (FAILED, ENDED, {"combination", "combined_albedo", "combined_throughput"}),
+}
+
+
+def combined_results(gl, subject, library):
+    probe = BSDF_PROBES[subject.kind](gl, subject, library)
+    rows = [row for row in CHECKS if applies(row, subject, subject.kind, "gl")]
+    return {row.key: judge_check(row, probe) for row in rows}
+
+
+@pytest.mark.parametrize("subject", COMBINED_NODES, ids=lambda each: each.title)
+def test_a_combination_is_that_of_the_layer_algebra(gl, subject):
+    results = combined_results(gl, subject, "eonlib")
+    assert {"inputs", "combination", "combined_albedo", "combined_throughput"} == {*results}
+    assert {result.verdict for result in results.values()} == {PASSED}
+    assert all(result.control.caught for result in results.values())
+
+
+@pytest.mark.parametrize("subject", COMBINED_NODES, ids=lambda each: each.title)
+def test_a_combination_of_stock_is_off_where_its_page_says(gl, subject):
+    results = combined_results(gl, subject, "stock")
+    verdict, words, wrong = COMBINED_WRONG.get(subject.model, (PASSED, "", set()))
+    assert {key for key, result in results.items() if result.verdict != PASSED} == wrong
+    assert {results[key].verdict for key in wrong} <= {verdict}
+    for key in wrong - {"combined_albedo"}:  # where few pairs are wrong, and their place is named
+        assert words in results[key].diagnosis
+
+
+def test_the_pages_print_what_each_reading_reflects_in_a_white_furnace():
+    albedo, white = 0.7, Bsdf(np.ones(()), np.zeros(()))
+    lobe = Bsdf(np.array(albedo), throughput(albedo))
+    page = (PAGES / "genglsl_multiply_throughput.md").read_text("utf-8")
+    for s in (0.5, 0.0):
+        assert layer(multiply(lobe, s), white).value == 1.0
+        unchanged = layer(Bsdf(s * lobe.value, lobe.throughput), white).value
+        assert f" {unchanged:.2g} |" in page.split("MaterialX's GLSL |")[1].splitlines()[0]
+    half, lobe = 0.5, Bsdf(np.array(0.9), throughput(0.9))
+    ended = replace(add(lobe, lobe), throughput=np.zeros(()))
+    made = layer(multiply(ended, half), white).value
+    for name in ("multiply", "add"):
+        assert f"reflects {made:.2g}" in " ".join(
+            (PAGES / f"genglsl_{name}_throughput.md").read_text("utf-8").split()
+        ).replace("reflect ", "reflects ")
