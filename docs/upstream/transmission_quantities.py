@@ -19,7 +19,7 @@ ROUGH, SMOOTH = (1.0, 1.0), (0.0, 0.0)
 COLORS = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0  # color0, color82, color90
 DARK = 0.0, 0.0, 1.0
 EXPONENT = 5.0
-NODES = 256  # of an integral over directions, in cosine and azimuth
+NODES = 1 << 10  # in cosine and in azimuth: the sum is within 1e-4 of that of twice as many
 
 
 def readings_block():

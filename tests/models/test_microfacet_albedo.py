@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Albedos of the microfacet BRDFs: limits, invariants, agreement of independent quadratures."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
-from scipy.integrate import dblquad
+from scipy.integrate import dblquad, quad
 
 from mxeon.albedo import (
     conductor_albedo_dir,
@@ -18,7 +20,7 @@ from mxeon.models import (
     fresnel_dielectric,
     generalized_schlick_brdf,
     ggx_albedo,
-    microfacet_albedo,
+    slopes,
 )
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere
@@ -27,6 +29,7 @@ ALPHA = np.geomspace(1e-4, 1.0, 9)
 MU = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 13), 1.0 - np.geomspace(1e-12, 0.1, 4)]))
 GOLD = [0.183, 1.373], [3.424, 1.77]
 COLORS = [0.9, 0.2], 0.5, 1.0
+EXACT = {"epsabs": 1e-13, "epsrel": 1e-12, "limit": 200}
 NODES = {
     "dielectric_bsdf": (
         lambda wo, wi, alpha, *a: dielectric_brdf(wo, wi, [0.2, 1.0], alpha, 1.5, *a),
@@ -63,11 +66,11 @@ def test_the_albedo_is_converged(monkeypatch):
 
 
 def test_the_albedo_agrees_with_a_quadrature_over_slopes(monkeypatch):
-    monkeypatch.setattr(microfacet_albedo, "NODES", 32)
-    monkeypatch.setattr(microfacet_albedo, "QUADRANT", 48)
+    monkeypatch.setattr(slopes, "NODES", 32)
+    monkeypatch.setattr(slopes, "QUADRANT", 48)
     alpha, mu = np.array([0.03, 0.1, 0.3, 1.0]), np.array([1e-3, 0.1, 0.7])[:, None]
-    slopes = ggx_albedo_dir_anisotropic(unit(mu), np.stack([alpha, alpha], axis=-1))
-    assert np.abs(slopes - ggx_albedo_dir(mu, alpha)).max() < tolerances.E_SS
+    E = ggx_albedo_dir_anisotropic(unit(mu), np.stack([alpha, alpha], axis=-1))
+    assert np.abs(E - ggx_albedo_dir(mu, alpha)).max() < tolerances.E_SS
 
 
 def test_the_albedo_agrees_with_adaptive_quadrature_of_the_printed_integral():
@@ -121,20 +124,61 @@ def test_the_albedo_is_converged_over_slopes(name, monkeypatch):
         [[1e-4, 1e-4], [1e-3, 1e-3], [0.02, 0.02], [0.3, 0.3], [1.0, 1.0], [0.05, 0.6]]
     )
     values = albedo(wo, alpha)
-    monkeypatch.setattr(microfacet_albedo, "NODES", 32)
-    monkeypatch.setattr(microfacet_albedo, "QUADRANT", 32)
+    monkeypatch.setattr(slopes, "NODES", 32)
+    monkeypatch.setattr(slopes, "QUADRANT", 32)
     more = albedo(wo, alpha)
     assert (np.abs(values - more) / np.maximum(more, 1.0)).max() < tolerances.SLOPES
 
 
-def test_a_critical_angle_costs_accuracy(monkeypatch):
-    wo = unit(np.array([1e-4, 0.3, 0.72, 1.0]))[:, None]
-    alpha = np.array([[0.02, 0.02], [0.3, 0.3], [1.0, 1.0]])
-    values = dielectric_albedo_dir(wo, 1.0, alpha, 0.7)
-    monkeypatch.setattr(microfacet_albedo, "NODES", 48)
-    monkeypatch.setattr(microfacet_albedo, "QUADRANT", 48)
-    error = np.abs(values - dielectric_albedo_dir(wo, 1.0, alpha, 0.7)).max()
-    assert tolerances.SLOPES < error < tolerances.SLOPES_CRITICAL
+@pytest.mark.parametrize("ior", [0.3, 1.0 / 1.5, 0.95])
+def test_the_albedo_is_converged_at_a_critical_angle(ior, monkeypatch):
+    wo = unit(np.array([1e-4, 0.1, 0.5, 0.72, 0.75, 0.9, 1.0]), 0.7)[:, None]
+    alpha = np.array([[1e-4, 1e-4], [0.02, 0.02], [0.3, 0.3], [1.0, 1.0], [0.05, 0.6], [1.0, 0.1]])
+    values = dielectric_albedo_dir(wo, 1.0, alpha, ior)[..., 0]
+    monkeypatch.setattr(slopes, "SPLIT_NODES", 64)
+    monkeypatch.setattr(slopes, "SPLIT_PART", 64)
+    error = np.abs(values - dielectric_albedo_dir(wo, 1.0, alpha, ior)[..., 0])
+    assert error[:, :4].max() < tolerances.E_SS  # of isotropic lobes
+    assert error.max() < tolerances.SLOPES
+
+
+@pytest.mark.parametrize(
+    "mu, alpha, ior", [(0.5, 0.5, 1 / 1.5), (0.8, 0.3, 1 / 1.5), (0.3, 1.0, 0.7)]
+)
+def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle(mu, alpha, ior):
+    def around(c):
+        """The integrand over the azimuths of h around wo, of which c is the cosine."""
+        slope = np.sqrt((1.0 - c * c) * (1.0 - mu * mu))
+        horizon = (mu / (2.0 * c) - c * mu) / slope
+        if horizon >= 1.0:
+            return 0.0
+        return 2.0 * quad(value, 0.0, np.arccos(max(horizon, -1.0)), (c, slope), **EXACT)[0]
+
+    def value(psi, c, slope):
+        hz = c * mu + slope * np.cos(psi)
+        mu_i = 2.0 * c * hz - mu
+        D = 1.0 / (np.pi * alpha**2 * ((1.0 - hz * hz) / alpha**2 + hz * hz) ** 2)
+        smith = [np.sqrt(alpha**2 + (1.0 - alpha**2) * m * m) for m in (mu, mu_i)]
+        return D * c * 2.0 * mu_i / (smith[0] * mu_i + smith[1] * mu)
+
+    def share(t, low, high):
+        c = low + (high - low) * t * t * (3.0 - 2.0 * t)  # F has a square root at a critical angle
+        return fresnel_dielectric(c, ior) * around(c) * 6.0 * t * (1.0 - t) * (high - low)
+
+    theta, quarter = np.arccos(mu), 0.5 * np.pi
+    bends = [np.cos(0.5 * (quarter + theta)), np.cos(0.5 * (quarter - theta))]
+    parts = pairwise(sorted([1e-9, np.sqrt(1.0 - ior**2), *bends, 1.0 - 1e-15]))
+    expected = sum(quad(share, 0.0, 1.0, part, **EXACT)[0] for part in parts)
+    E = dielectric_albedo_dir(unit(mu), 1.0, [alpha, alpha], ior, compensate=False)[0]
+    assert abs(E - expected) < tolerances.SPLIT
+
+
+def test_a_critical_angle_that_is_not_split_would_be_seen():
+    wo, alpha, ior = unit(0.3), np.array([1.0, 1.0]), 1.0 / 1.5
+    c, weight = slopes.slope_nodes(wo, alpha)
+    unsplit = np.sum(fresnel_dielectric(c, ior) * weight)
+    E = dielectric_albedo_dir(wo, 1.0, alpha, ior, compensate=False)[0]
+    assert abs(unsplit - E) > 1e-3
 
 
 def test_a_white_surface_returns_all_light():

@@ -262,7 +262,8 @@ MICROFACET = (80 + 60) * ROUNDING
 E_SS = 1e-10
 E_SS_SMALL = 2e-8
 SLOPES = 5e-6
-SLOPES_CRITICAL = 3e-2
+# Albedo below index 1, in roughnesses where an adaptive quadrature reaches it: a hundred times its 1e-13.
+SPLIT = 1e-11
 
 # --- transmission, float64 ---------------------------------------------------------------------
 

@@ -24,16 +24,20 @@ class Curve:
         `at(cosine, **material)`, shape (C, ...): F, without a tint.
     average : callable
         `average(**material)`, shape (C, ...): F_ss.
+    critical : callable
+        `critical(**material)`, shape (...): square of the cosine below which F is 1, if above 0.
     """
 
     at: Callable[..., Array]
     average: Callable[..., Array]
+    critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
 # `material` may hold a tint, which F leaves alone.
 DIELECTRIC = Curve(
     lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
     lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
+    lambda ior, tint: np.asarray((1.0 - ior) * (1.0 + ior)),
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)
 SCHLICK = Curve(fresnel.schlick, fresnel.schlick_avg)

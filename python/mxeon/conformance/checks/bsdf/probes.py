@@ -243,8 +243,9 @@ class SchlickProbe(MicrofacetProbe):
 def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
-    The roughness is the same in both directions. The index of a dielectric is at least 1: below it, F
-    has a kink. Deep dips at 82 degrees, which turn F negative, are left out.
+    The roughness is the same in both directions. The index of a dielectric is at least 1: the fits of
+    shaders end there, and NODES^2 directions do not resolve a critical angle. Deep dips at 82
+    degrees, which turn F negative, are left out.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
