@@ -36,6 +36,7 @@ ROWS = (
         for subject in ("multiply, in2 float", "multiply, in2 color3", "multiply, of a sum")
     ),
     ("combined_throughput", "mix, of a sum"),
+    ("combined_throughput", "mix, of a layer under a sum"),
     *(
         (check, "layer, under a mix of a sum")
         for check in ("combination", "combined_albedo", "combined_throughput")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes that combine lobes in GLSL: eonlib's carry what the text carries, stock ones do not."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from mxeon.conformance.checks.evaluate import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.layering import Bsdf, add, layer, multiply, throughput
+from mxeon.shaders.library import data_folder
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "upstream"
 
@@ -23,8 +25,30 @@ COMBINED_WRONG = {  # of stock MaterialX: verdict of its combinations that are o
     "multiply_color3": (DIFFERS, UNSCALED, {"combined_throughput"}),
     "multiply_sum": (DIFFERS, UNSCALED, {"combined_throughput"}),
     "mix_sum": (FAILED, ENDED, {"combined_throughput"}),
+    "mix_layer": (FAILED, ENDED, {"combined_throughput"}),
     "layer_sum": (FAILED, ENDED, {"combination", "combined_albedo", "combined_throughput"}),
 }
+# Wrong lines of eonlib: file, text, the text in its place, and the rows and the check that see them.
+PASSES = "combined_throughput"
+SUM = "in1.throughput + in2.throughput - 1.0"
+LIT = "max(top.throughput, 0.0)"
+WRONG = (
+    ("add", f"= {SUM}", f"= max({SUM}, 0.0)", "mix_sum", PASSES),
+    ("add", "in2.throughput - 1.0", "in2.throughput - 1.1", "add", PASSES),
+    ("add", "in1.response + in2.response", "in1.response", "add", "combination"),
+    ("layer", LIT, "top.throughput", "layer_sum", "combination"),
+    ("layer", "base.response * passed", "base.response", "layer", "combination"),
+    ("layer", "passed * base.throughput", "passed", "layer", PASSES),
+    ("layer", "min(top.throughput, 0.0) + ", "", "mix_layer", PASSES),
+    (
+        "multiply",
+        "= 1.0 - weight * (1.0 - in1.throughput)",
+        "= in1.throughput",
+        "multiply_sum",
+        PASSES,
+    ),
+    ("multiply", "- in1.throughput)", "- max(in1.throughput, 0.0))", "multiply_sum", PASSES),
+)
 
 
 def combined_results(gl, subject, library):
@@ -49,6 +73,21 @@ def test_a_combination_of_stock_is_off_where_its_page_says(gl, subject):
     assert {results[key].verdict for key in wrong} <= {verdict}
     for key in wrong - {"combined_albedo"}:  # where few pairs are wrong, and their place is named
         assert words in results[key].diagnosis
+
+
+@pytest.mark.parametrize("wrong", WRONG, ids=lambda each: f"{each[0]}: {each[2]}")
+def test_a_wrong_line_of_a_combination_is_seen(gl, tmp_path, wrong):
+    name, old, new, model, check = wrong
+    [subject] = [each for each in COMBINED_NODES if each.model == model]
+    for folder in ("libraries", "genglsl", "profiles"):
+        shutil.copytree(data_folder() / folder, tmp_path / folder)
+    library = str(tmp_path / "profiles" / "pbrlib")
+    assert combined_results(gl, subject, library)[check].verdict == PASSED
+    for file in (tmp_path / "genglsl").glob(f"{name}_bsdf*.glsl"):
+        text = file.read_text("utf-8")
+        assert old in text
+        file.write_text(text.replace(old, new), "utf-8")
+    assert combined_results(gl, subject, library)[check].verdict in (DIFFERS, FAILED)
 
 
 def test_the_pages_print_what_each_reading_reflects_in_a_white_furnace():

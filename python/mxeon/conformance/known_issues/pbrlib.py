@@ -79,6 +79,7 @@ BSDF_ISSUES = (
         "gl",
         (
             ("combined_throughput", "mix, of a sum"),
+            ("combined_throughput", "mix, of a layer under a sum"),
             *product(("combination", "combined_albedo", "combined_throughput"), (LAYERED_SUM,)),
         ),
         HARDWARE,

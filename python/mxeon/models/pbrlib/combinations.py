@@ -100,6 +100,11 @@ def _sum_layered(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda 
     return layering.layer(mixed, base)
 
 
+def _layer_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
+    layered = layering.layer(finish(layering.add(top, base)), base)
+    return layering.mix(layered, top, _column(inputs, AMOUNT))
+
+
 def _unscaled(combine: Combine) -> tuple[Variant, ...]:
     """A scaled lobe that passes what it passes before it is scaled: the text is open on it."""
     title = "the throughput of the lobe before it is scaled"
@@ -157,5 +162,13 @@ COMBINATIONS = (
         (AMOUNT_ABOVE,),
         _clamped(_sum_layered, layered=True),
     ),
+    _combined(
+        "mix_layer",
+        "a mix of a layer under a sum",
+        "mix",
+        _layer_mixed,
+        (AMOUNT,),
+        _clamped(_layer_mixed, layered=False),
+    ),
 )
-NESTED = ("multiply_sum", "mix_sum", "layer_sum")  # rows of combinations of a sum
+NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer")  # rows of combinations of a sum

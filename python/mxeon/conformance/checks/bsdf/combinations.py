@@ -39,6 +39,9 @@ NODES = {  # XML of each row
     "layer_sum": SUM
     + _node("mix", "mixed", HALF, fg="sum", bg="top")
     + _node("layer", top="mixed", base="base"),
+    "mix_layer": SUM
+    + _node("layer", "layered", top="sum", base="base")
+    + _node("mix", value=HALF, fg="layered", bg="top"),
 }
 TITLES = {
     "multiply_float": "multiply, in2 float",
@@ -46,6 +49,7 @@ TITLES = {
     "multiply_sum": "multiply, of a sum",
     "mix_sum": "mix, of a sum",
     "layer_sum": "layer, under a mix of a sum",
+    "mix_layer": "mix, of a layer under a sum",
 }
 SINGLE = ("multiply_float", "multiply_color3")  # rows of `top` alone
 COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
