@@ -28,7 +28,10 @@ UNTINTED = "MaterialX's fit of its albedo without a tint (rms "
 AVERAGED = "MaterialX's fit of its albedo, averaged over the channels (rms "
 STOCK = {
     "burley": {"environment": "MaterialX's fit of its albedo (rms "},
-    "translucent": {"frame": "all of them where the normal faces away from the viewer"},
+    "translucent": {
+        "frame": "all of them where the normal faces away from the viewer",
+        "surroundings": "all of them where the normal faces away from the viewer",
+    },
     "conty_kulla": {
         "value": "not as exact as it has to be",
         "environment": "MaterialX's fit of its albedo (rms ",

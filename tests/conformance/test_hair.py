@@ -32,6 +32,7 @@ STOCK = {
     "tilted_lobes": "values that are not finite with a tilted cuticle",
     "wide_lobes": "nearest known model: every roughness in [0.001, 1] (rms ",
     "straight_views": "",
+    "surroundings": "",
 }
 
 # By name: text of eonlib's shader, the text in its place, key of the check and words of the diagnosis.
@@ -76,6 +77,11 @@ WRONG = {
     "horizon": ("max(1.0 - F * T, 1e-7)", "(1.0 - F * T)", "finite", "values that are not finite"),
     "environment": (
         "back * mx_environment_irradiance(-N)", "vec3(0.0)", "environment", "no known model is near",
+    ),
+    "sides exchanged": (
+        "(front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N))",
+        "(back * mx_environment_irradiance(N) + front * mx_environment_irradiance(-N))", "surroundings",
+        "the environment is looked up on the other side of the surface",
     ),
     "too dark": ("total * closureData", "0.9 * total * closureData", "integral", ""),
 }  # fmt: skip

@@ -6,6 +6,7 @@ import shutil
 import pytest
 
 from mxeon.conformance.checks.evaluate import judge_subject
+from mxeon.conformance.checks.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.checks.nodes import SUBJECTS
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.checks.table import CHECKS
@@ -202,11 +203,57 @@ def test_the_other_hosts_see_what_is_around_the_model(hosts, tmp_path, host, nam
     assert result.verdict == FAILED and words in result.diagnosis
 
 
-def wrong_library(folder, text, other):
+# Of nodes beside the rough diffuse ones, by name: node, file, text, the other text, key, words.
+BLUR = "curvature * max(radius, vec3(0.0))"
+BESIDE = {
+    "light from the viewer's side": (
+        "translucent_bsdf",
+        "translucent_bsdf.glsl",
+        "mx_environment_irradiance(N)",
+        "mx_environment_irradiance(-N)",
+        "surroundings",
+        "on the other side of the surface",
+    ),
+    "radius ignored": (
+        "subsurface_bsdf",
+        "subsurface_bsdf.glsl",
+        BLUR,
+        "curvature * vec3(0.5) * step(0.0, radius.x + 1.0)",
+        "sphere",
+        "",
+    ),
+    "far profile at nine reaches": (
+        "subsurface_bsdf",
+        "subsurface_blur.glsl",
+        "3.0 * reach)",
+        "9.0 * reach)",
+        "sphere",
+        "",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BESIDE)
+def test_a_wrong_line_of_another_node_fails_the_check_meant_for_it(gl, tmp_path, name):
+    title, file, text, other, key, words = BESIDE[name]
+    [subject] = [each for each in PBR_SUBJECTS if each.title == title]
+    probe = probe_type_of(subject, PairProbe)
+    for library, verdict in (
+        ("eonlib", PASSED),
+        (wrong_library(tmp_path, text, other, file), FAILED),
+    ):
+        [result] = judge_subject(
+            probe(gl, subject, library), [row for row in CHECKS if row.key == key]
+        )
+        assert result.verdict == verdict and result.control.caught
+    assert words in result.diagnosis
+
+
+def wrong_library(folder, text, other, name="oren_nayar_lobe.glsl"):
     """A copy of the library whose lobe has one text in place of another."""
-    for name in ("libraries", "genglsl"):
-        shutil.copytree(data_folder() / name, folder / name)
-    file = folder / "genglsl" / "oren_nayar_lobe.glsl"
+    for part in ("libraries", "genglsl"):
+        shutil.copytree(data_folder() / part, folder / part)
+    file = folder / "genglsl" / name
     source = file.read_text(encoding="utf-8")
     assert text in source
     file.write_text(source.replace(text, other), encoding="utf-8")

@@ -19,7 +19,7 @@ from mxeon.conformance.checks.measures import (
     throughput_cases,
 )
 from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.checks.sky import sky
+from mxeon.conformance.checks.sky import sky, sky_behind
 from mxeon.conformance.checks.tolerances import FRAMES, OPAQUE, SURROUNDINGS
 from mxeon.conformance.diagnosis import NEAR, Diagnosis, not_finite, of_value, region
 from mxeon.conformance.faults import normal_ignored
@@ -146,6 +146,8 @@ def of_surroundings(probe: Any) -> Diagnosis:
     for words, found in LOOKUPS.items():
         if np.sqrt(np.mean((case.measured - found(case.batch)) ** 2)) <= SURROUNDINGS.value:
             return Diagnosis(f"the environment is looked up {words}")
+    if np.sqrt(np.mean((case.measured - sky_behind(case.expected)) ** 2)) <= SURROUNDINGS.value:
+        return Diagnosis("the environment is looked up on the other side of the surface")
     wrong = absolute(case.measured, case.expected) > SURROUNDINGS.value
     return Diagnosis(not_finite([case]) or region([case.batch], [wrong]) or UNKNOWN)
 

@@ -7,9 +7,8 @@ from typing import Any
 
 from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
 from mxeon.conformance.checks.bsdf.pictures import bsdf_probe_type
-from mxeon.conformance.checks.bsdf.probes import BsdfProbe
 from mxeon.conformance.checks.bsdf.subjects import BSDFS
-from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES
+from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES, SubsurfaceProbe
 from mxeon.conformance.checks.emission.family import EMISSION_SUBJECTS, emission_probe_type
 from mxeon.conformance.checks.hair.probes import HairProbe
 from mxeon.conformance.checks.hair.subjects import HAIRS
@@ -53,7 +52,7 @@ FAMILIES = (
     Family(HAIRS, on_pairs(HairProbe)),
     Family(EMISSION_SUBJECTS, emission_probe_type),
     Family(TRANSMITTING, transmission_probe_type),
-    Family(SUBSURFACES, on_pairs(BsdfProbe)),
+    Family(SUBSURFACES, on_pairs(SubsurfaceProbe)),
     Family(FILMS, on_pairs(FilmProbe)),
     Family(UTILITY_SUBJECTS, utility_probe_type),
     Family(SHADERS, on_pairs(SurfaceProbe)),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.checks.batch import Array, Batch
-from mxeon.conformance.checks.sky import sky, sky_map
+from mxeon.conformance.checks.sky import sky_map
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.shaders.hosts import front_lit_only
@@ -19,6 +19,7 @@ from mxeon.shaders.nodes import FLAG
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
 BRANCHES = ("direct", "environment", "transmission", "emission")
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one is asked
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
 Metric = Callable[[Array, Any], Array]  # of measured and expected values: error of each row
@@ -111,10 +112,16 @@ def surroundings(probe: Any, metric: Metric) -> Measurement:
 
 def surroundings_case(probe: Any) -> Case:
     """The case of `surroundings`."""
-    batch = probe.turned.altered(color=WHITE)
+    batch = probe.turned
+    if "color" in probe.subject.inputs:
+        batch = batch.altered(color=WHITE)
+    level = probe.albedo(batch)
+    bright = level.min(axis=1) > LEAST_LIGHT
+    if bright.any():  # or what is dark is wrong
+        batch, level = batch.where(bright), level[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
-        measured = probe.albedo(batch, sky_map()) / probe.albedo(batch)
-    return Case(batch, measured, sky(batch.normal))
+        measured = probe.albedo(batch, sky_map()) / level
+    return Case(batch, measured, probe.subject.sky(batch))
 
 
 def quadrature(probe: Any, metric: Metric) -> Measurement:

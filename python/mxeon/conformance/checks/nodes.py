@@ -9,6 +9,7 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Batch, Candidate, random_inputs
+from mxeon.conformance.checks.sky import sky
 from mxeon.conformance.checks.special import special_inputs
 from mxeon.models import table as reference
 from mxeon.models.table import OTHERS, Model
@@ -55,6 +56,10 @@ class OfModel:
     def albedo(self, batch: Batch) -> Array:
         """Directional albedo of the model, (N, 3)."""
         return batch.albedo(self.model)
+
+    def sky(self, batch: Batch) -> Array:
+        """Mean of the uneven sky that it scatters, (N, 3): of the viewer's side."""
+        return sky(batch.normal)
 
     def passed(self, batch: Batch) -> Array:
         """Throughput, (N, 3): an opaque node lets nothing through."""

@@ -42,7 +42,13 @@ HAIR_ISSUES = (
         "genglsl_hair_azimuth", "gl", (("straight_views", HAIR),), HARDWARE, (("each_lobe", HAIR),)
     ),
     Issue("genglsl_hair_grazing", "gl", (("finite", HAIR),), HARDWARE, (("value", HAIR),)),
-    Issue("genglsl_hair_environment", "gl", (("environment", HAIR),), HARDWARE),
+    Issue(
+        "genglsl_hair_environment",
+        "gl",
+        (("environment", HAIR),),
+        HARDWARE,
+        (("surroundings", HAIR),),
+    ),
 )
 BSDF_ISSUES = (
     Issue("genglsl_zeltner_normal", "gl", (("value", ZELTNER),), HARDWARE),
@@ -89,10 +95,16 @@ BSDF_ISSUES = (
         "gl",
         (("value", "subsurface_bsdf"),),
         HARDWARE,
-        product(("integral", "energy"), ("subsurface_bsdf",)),
+        product(("integral", "energy", "sphere"), ("subsurface_bsdf",)),
     ),
     Issue("genglsl_burley_fit", "gl", (("environment", "burley_diffuse_bsdf"),), HARDWARE),
-    Issue("genglsl_translucent_side", "gl", (("frame", "translucent_bsdf"),), HARDWARE),
+    Issue(
+        "genglsl_translucent_side",
+        "gl",
+        (("frame", "translucent_bsdf"),),
+        HARDWARE,
+        (("surroundings", "translucent_bsdf"),),
+    ),
     Issue(
         "genglsl_ior_zero",
         "gl",
@@ -144,14 +156,17 @@ BSDF_ISSUES = (
         "gl",
         (("value", DIELECTRIC), ("environment", DIELECTRIC)),
         HARDWARE,
-        product(("value", "environment", "integral", "shape"), MICROFACETS),
+        (
+            *product(("value", "environment", "integral", "shape"), MICROFACETS),
+            *product(("film_average",), FILMS),
+        ),
     ),
     Issue(
         "genglsl_film_half",
         "gl",
         product(("film", "film_limit"), FILMS[2:]),
         HARDWARE,
-        product(("film_environment", "film_throughput"), FILMS[2:]),
+        product(("film_environment", "film_visible", "film_throughput"), FILMS[2:]),
     ),
     Issue(
         "genglsl_film_throughput",
@@ -165,7 +180,10 @@ BSDF_ISSUES = (
         "gl",
         product(("film", "film_limit"), FILMS[1:2]),
         HARDWARE,
-        (*product(("film", "film_limit"), FILMS[:1]), ("film_environment", FILMS[1])),
+        (
+            *product(("film", "film_limit"), FILMS[:1]),
+            *product(("film_environment", "film_visible"), FILMS[:2]),
+        ),
     ),
 )
 EMISSION_ISSUES = (

@@ -10,6 +10,7 @@ import numpy as np
 
 from mxeon.conformance.checks.batch import Array, Batch, Candidate
 from mxeon.conformance.checks.nodes import Changes
+from mxeon.conformance.checks.sky import sky
 from mxeon.conformance.checks.special import LEAST_SHEEN
 from mxeon.models import pbrlib
 from mxeon.models.pbrlib.node import Inputs, PbrNode
@@ -173,6 +174,10 @@ class BsdfSubject:
     def integral(self, batch: Batch) -> Array:
         """Integral of the values with weight, (N, 3)."""
         return _albedo(self.row.integral or self.row.albedo, batch)
+
+    def sky(self, batch: Batch) -> Array:
+        """Mean of the uneven sky that it scatters, (N, 3): of the side from which light comes."""
+        return sky(-batch.normal if self.row.transmits else batch.normal)
 
     def passed(self, batch: Batch) -> Array:
         """Throughput, (N, 3): the share of the light from below that passes."""

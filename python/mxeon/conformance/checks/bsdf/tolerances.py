@@ -138,6 +138,13 @@ ANISOTROPY = Tolerance(
     "alpha, 0.05, times the fourth power of the distribution; rounded up",
 )
 
+RINGS = Tolerance(
+    0.02,
+    "pi f cos",
+    absolute,
+    "eight circles for each of the two exponentials of the profile, against their integral: 1.8e-2 at "
+    "most, away from the light, at a mean free path of a fifth of the sphere's radius; rounded up",
+)
 COMBINED_VALUE = Tolerance(
     rounded_up(2 * ZELTNER_VALUE.value + CLOSED_ALBEDO.value),
     SCALED,
@@ -161,29 +168,47 @@ NESTED_VALUE = Tolerance(
 FILM_ORDERS = 6.1e-3  # six orders and a geometric series, relative to the largest channel
 FILM_AVERAGE = 6.3e-3  # F_ss in six cosines
 FILM_VISIBLE = 2.3e-2  # mean over the visible facets in nine of them
+FILM_SEEN = 6e-3  # the same for alpha and cosine from 0.6 on, up to 700 nm
 FILM_HEIGHTS = (
     1.3e-3  # sum of the sensitivities' heights, which the text gives in five digits, over 1
 )
 FILM_VALUE = Tolerance(
-    rounded_up((ESS_FIT + FILM_AVERAGE * (1.0 - LEAST_ESS)) / LEAST_ESS + FILM_ORDERS),
+    rounded_up(
+        0.5 * (ESS_FIT + FILM_AVERAGE * (1.0 - LEAST_ESS)) / LEAST_ESS + FILM_ORDERS,
+    ),
     SCALED,
     scaled,
     "the sum of six orders, 6.1e-3 of the film's reflectance, and the fit of E_ss, 5e-4, and F_ss in "
-    "six cosines, 6.3e-3, as they enter the compensation where E_ss is least, 0.31; rounded up",
+    "six cosines, 6.3e-3, as they enter the compensation where E_ss is least, 0.31: at alpha 1, where "
+    "pi f cos without F is at most 1/2; rounded up",
 )
 FILM_ALBEDO = Tolerance(
-    rounded_up(MICROFACET_ALBEDO.value + FILM_VISIBLE + FILM_AVERAGE * (1.0 - LEAST_ESS)),
+    rounded_up(FILM_VISIBLE + FILM_AVERAGE * (1.0 - LEAST_ESS) + ESS_FIT),
     "albedo",
     absolute,
-    "the fits of a lobe without a film, the mean over nine visible facets, 2.3e-2, and F_ss in six "
-    "cosines, 6.3e-3, times the light that is lost, at most 0.69; rounded up",
+    "the mean over nine visible facets, 2.3e-2, and F_ss in six cosines, 6.3e-3, times the light that "
+    "is lost, at most 0.69; and the fit of E_ss, 5e-4: the fit of a lobe's albedo has no part in a "
+    "film's; rounded up",
+)
+FILM_MEAN = Tolerance(
+    rounded_up(FILM_AVERAGE),
+    "reflectance",
+    absolute,
+    "F_ss in six cosines, 6.3e-3; rounded up",
+)
+FILM_STEEP = Tolerance(
+    rounded_up(FILM_SEEN),
+    "reflectance",
+    absolute,
+    "the mean over nine visible facets of rough lobes seen from above, 6e-3; rounded up",
 )
 FILM_LIMIT = Tolerance(
-    rounded_up(FILM_HEIGHTS + MICROFACET_VALUE.value),
+    rounded_up(FILM_HEIGHTS + 0.5 * FRESNEL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS),
     SCALED,
     scaled,
-    "the sensitivities, whose heights add up to 1 within 1.3e-3, and the fits of the compensation of a "
-    "lobe without a film; rounded up",
+    "the sensitivities, whose heights add up to 1 within 1.3e-3, and the fit of F_ss without a film, "
+    "3.6e-4, as it enters the compensation at alpha 1, where pi f cos without F is at most 1/2; E_ss is "
+    "the same with a film and without; rounded up",
 )
 FILM_ENERGY = Tolerance(
     MICROFACET_VALUE.value,

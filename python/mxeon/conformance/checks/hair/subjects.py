@@ -11,7 +11,8 @@ import numpy as np
 from mxeon.conformance.checks.batch import Array, Batch, Candidate
 from mxeon.conformance.checks.bsdf.subjects import HAIR, NOTHING, BsdfSubject, whole
 from mxeon.conformance.checks.nodes import Changes
-from mxeon.models.hair import ROUGHNESSES, TINTS
+from mxeon.conformance.checks.sky import sky
+from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.pbrlib.hair import HAIR_NODE
 from mxeon.models.pbrlib.node import Inputs
 from mxeon.shaders.nodes import input_types
@@ -28,6 +29,12 @@ CHANGES: dict[str, Any] = {
     "cuticle_angle": 0.55,
     "normal": (0.0, 0.6, 0.8),
 }
+FRONT = (
+    1.0,
+    0.0,
+    1.0,
+    0.5,
+)  # share of R, TT, TRT and TRRT+ that takes light from the viewer's side
 # The variable of the default of `curve_direction` is the surface's tangent.
 DIRECTION = {"tangent": (0.6, 0.8, 0.0)}
 
@@ -75,6 +82,18 @@ class HairSubject(BsdfSubject):
         return self.row.albedo(batch.wo, whole(batch))
 
     integral = albedo
+
+    def sky(self, batch: Batch) -> Array:
+        """Mean of the uneven sky that it scatters, (N, 3).
+
+        R and TRT leave on the side where light comes in, TT on the other one, and what is beyond
+        spreads over both.
+        """
+        inputs = whole(batch)
+        A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
+        shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
+        front = shares @ FRONT / shares.sum(axis=-1)
+        return np.asarray(front * sky(batch.normal) + (1.0 - front) * sky(-batch.normal))
 
     def passed(self, batch: Batch) -> Array:
         """Throughput, (N, 3): the node cannot be layered."""

@@ -6,8 +6,17 @@ from typing import Any
 from mxeon.conformance import diagnosis, wiring
 from mxeon.conformance.checks import measures, sampling_measures, tolerances
 from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
-from mxeon.conformance.checks.bsdf.subjects import BSDFS, COMBINED, HAIR, KINDS, NESTED
-from mxeon.conformance.checks.bsdf.subsurface import SUBSURFACES
+from mxeon.conformance.checks.bsdf.subjects import (
+    BSDFS,
+    CLOSED,
+    COMBINED,
+    FITTED,
+    HAIR,
+    KINDS,
+    NESTED,
+    SHEEN,
+)
+from mxeon.conformance.checks.bsdf.subsurface import ON_SPHERES, SUBSURFACES, sphere_cases
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
@@ -35,6 +44,9 @@ EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
 OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name, SUBSURFACE_NODE.name)
 BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS, *SUBSURFACES) if subject.black)
+# Nodes that look an environment up at a normal, beside the rough diffuse ones.
+SHEENS = tuple(row.name for row in NODES if row.category == "sheen_bsdf")
+LOOKED_UP = ("burley", "translucent", *SHEENS, HAIR_NODE.name, SUBSURFACE_NODE.name)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
@@ -44,6 +56,12 @@ def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Toleranc
     """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
     kinds = (*KINDS, HAIR) + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
     return dict.fromkeys(kinds, tolerance)
+
+
+def of_sphere(probe: Any) -> Diagnosis:
+    """The explanation of light on a sphere."""
+    cases = list(sphere_cases(probe))
+    return diagnosis.of_cases(probe, cases, ON_SPHERES, bsdf_tolerances.RINGS)
 
 
 def has_flag(subject: Any, host: str) -> bool:
@@ -178,13 +196,23 @@ CHECKS = (
     ),
     Check(
         "surroundings",
-        "An uneven environment is looked up at the normal, which is turned to the viewer.",
-        ANY,
+        "An uneven environment is looked up at the normal, which is turned to the viewer, or behind it.",
+        (*ANY, *LOOKED_UP),
         measures.surroundings,
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
-        {"pairs": tolerances.SURROUNDINGS},
+        dict.fromkeys(("pairs", CLOSED, SHEEN, FITTED, HAIR), tolerances.SURROUNDINGS),
         diagnose=wiring.of_surroundings,
+    ),
+    Check(
+        "sphere",
+        "On a sphere the diffusion profile spreads light, by the radius and the anisotropy.",
+        (SUBSURFACE_NODE.name,),
+        lambda probe, metric: measures.worst_of(metric, sphere_cases(probe)),
+        "the mean free path is 0.3 in every channel",
+        with_inputs(radius=(0.3, 0.3, 0.3)),
+        {CLOSED: bsdf_tolerances.RINGS},
+        diagnose=of_sphere,
     ),
     Check(
         "throughput",
