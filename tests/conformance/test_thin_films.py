@@ -22,7 +22,7 @@ ROWS = {check.key: check for check in CHECKS}
 CHOICES = "MaterialX's matrix, orders and mixed channels"
 HALF = "half of the substrate's reflectance, and MaterialX's choices"
 FITTED = "the bare lobe's fit, and the film in the compensation"
-SMALL = {"PAIRS": 1 << 6, "ALBEDOS": 12}
+SMALL = {"PAIRS": 1 << 6, "ALBEDOS": 12, "VIEWS": 8}
 
 # What fails or differs with stock MaterialX, with words of the diagnosis; all else passes.
 STOCK = {
@@ -54,6 +54,13 @@ WRONG = {
         "conductor_bsdf", "clamp(0.5 * F, 0.0, 1.0)", "1.1 + 0.0 * F", "film_energy",
     ),
     "one facet": ("conductor_bsdf", "i < 9", "i < 1", "film_environment"),
+    "one cosine for the average": (
+        "conductor_bsdf", "vec3 thin_film_avg(FresnelData fd)\n{",
+        "vec3 thin_film_avg(FresnelData fd)\n{\n    return thin_film_fresnel(2.0 / 3.0, fd);\n", "film_average",
+    ),
+    "facets without masking": (
+        "conductor_bsdf", " * mx_ggx_smith_G2(mu_i, mu_o, alpha)", "", "film_visible",
+    ),
     "half of the film": (
         "generalized_schlick_bsdf", "return total / weights", "return 0.5 * total / weights",
         "film_throughput",

@@ -168,7 +168,7 @@ NESTED_VALUE = Tolerance(
 FILM_ORDERS = 6.1e-3  # six orders and a geometric series, relative to the largest channel
 FILM_AVERAGE = 6.3e-3  # F_ss in six cosines
 FILM_VISIBLE = 2.3e-2  # mean over the visible facets in nine of them
-FILM_SEEN = 6e-3  # the same for alpha and cosine from 0.6 on, up to 700 nm
+FILM_SEEN = 8.8e-3  # the same for alpha from 0.3 on and films of up to 150 nm
 FILM_HEIGHTS = (
     1.3e-3  # sum of the sensitivities' heights, which the text gives in five digits, over 1
 )
@@ -200,7 +200,7 @@ FILM_STEEP = Tolerance(
     rounded_up(FILM_SEEN),
     "reflectance",
     absolute,
-    "the mean over nine visible facets of rough lobes seen from above, 6e-3; rounded up",
+    "the mean over nine visible facets of rough lobes under films of up to 150 nm, 8.8e-3; rounded up",
 )
 FILM_LIMIT = Tolerance(
     rounded_up(FILM_HEIGHTS + 0.5 * FRESNEL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS),

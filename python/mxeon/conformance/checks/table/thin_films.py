@@ -8,7 +8,16 @@ from mxeon.conformance.checks.bsdf import tolerances as bsdf_tolerances
 from mxeon.conformance.checks.bsdf.subjects import FILM
 from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
 from mxeon.conformance.checks.table.check import Check
-from mxeon.conformance.checks.thin_films.measures import brighter, film_energy, film_limit, thicker
+from mxeon.conformance.checks.thin_films.measures import (
+    brighter,
+    film_average,
+    film_energy,
+    film_limit,
+    film_visible,
+    of_average,
+    of_visible,
+    thicker,
+)
 from mxeon.conformance.checks.thin_films.subjects import FILM_MODELS, LAYERED
 
 CHECKS = (
@@ -50,6 +59,28 @@ CHECKS = (
         thicker,
         {FILM: bsdf_tolerances.FILM_ALBEDO},
         diagnose=diagnosis.of_albedo,
+        open=True,
+    ),
+    Check(
+        "film_average",
+        "The compensation has the average of the film's curve over the hemisphere.",
+        FILM_MODELS,
+        film_average,
+        "the film is a quarter thicker",
+        thicker,
+        {FILM: bsdf_tolerances.FILM_MEAN},
+        diagnose=of_average,
+        open=True,
+    ),
+    Check(
+        "film_visible",
+        "The albedo has the mean of the film's curve over the facets that are seen and lit.",
+        FILM_MODELS,
+        film_visible,
+        "the film is a quarter thicker",
+        thicker,
+        {FILM: bsdf_tolerances.FILM_STEEP},
+        diagnose=of_visible,
         open=True,
     ),
     Check(

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of microfacets under a thin film."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import SEED, Array, Batch, directions
+from mxeon.conformance.checks.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.checks.bsdf.probes import MicrofacetProbe, simple
 from mxeon.conformance.checks.bsdf.subjects import FILM
 from mxeon.conformance.checks.special import special_directions
@@ -16,6 +17,10 @@ from mxeon.conformance.checks.thin_films.subjects import THICK
 PAIRS = 1 << 8  # random ones, and special ones; each average over a film's curve takes long
 ALBEDOS = 24
 FEW = 1 << 6  # pairs of a control
+VIEWS = 16  # whose averages are judged by themselves
+HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
+STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 150.0)}  # see `steep`
+LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
 
 
@@ -49,9 +54,30 @@ class FilmProbe(MicrofacetProbe):
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
-        """ALBEDOS views of the random pairs."""
+        """ALBEDOS views of the random pairs, and as many where few facets stand for all the least."""
         batch = super(MicrofacetProbe, self).cosines[0].first(ALBEDOS)
-        return (replace(batch, inputs=simple(batch.inputs)),)
+        return replace(batch, inputs=simple(batch.inputs)), self._views(ALBEDOS, HARD)
+
+    @cached_property
+    def steep(self) -> Batch:
+        """Views of rough films, of which masking takes the facets whose curve is another."""
+        return self._views(VIEWS, STEEP)
+
+    def _views(self, count: int, ranges: Mapping[str, tuple[float, float]]) -> Batch:
+        """Views of films with a roughness, a cosine and a thickness in ranges, and mirrored lights."""
+        rng = np.random.default_rng(SEED)
+        alpha, mu, thickness = (
+            low + (high - low) * rng.random(count) for low, high in ranges.values()
+        )
+        azimuth, radius = 2.0 * np.pi * rng.random(count), np.sqrt(1.0 - mu * mu)
+        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+        inputs = simple(self.subject.random_inputs(rng, count))
+        inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
+        inputs["roughness"] = rounded([alpha, alpha])
+        inputs["thinfilm_thickness"] = rounded([thickness])[:, 0]
+        if "tint" in inputs:
+            inputs["tint"] = np.ones((count, 3))
+        return Batch(wo, wo * [-1.0, -1.0, 1.0], inputs)
 
     @cached_property
     def edges(self) -> Batch:
