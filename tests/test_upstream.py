@@ -7,13 +7,19 @@ from functools import cache
 import numpy as np
 import pytest
 
+from docs.upstream import marks
 from docs.upstream import update as ledger
-from mxeon.models.ggx_albedo import ggx_albedo_dir
-from mxeon.models.microfacet_defects import fitted_albedo
 from tests.support.availability import available
 from tests.support.tolerances import PRINTED
 
 PAGES = [defect.page for defect in ledger.ISSUES] + list(ledger.OF_QUANTITIES)
+# Hosts whose packages the pages name files of, by the beginning of a page.
+HOSTS = {
+    "three": "three",
+    "babylon": "babylon",
+    "pathtracer": "three-gpu-pathtracer",
+    "cycles": "cycles",
+}
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
 
 # Those of three.js and Babylon.js are measured in tests/shaders/test_host_browser.py.
@@ -103,16 +109,58 @@ def test_the_quantities_of_each_page_are_those_computed(page, measure):
         assert ledger.written(page) == measure()
 
 
-def test_the_fit_of_ggx_is_as_far_off_as_its_page_says():
-    mu, alpha = (v.ravel() for v in np.meshgrid(*2 * [np.geomspace(1e-3, 1.0, 40)]))
-    error = abs(fitted_albedo(mu, alpha, 1.0, 1.0) - ggx_albedo_dir(mu, alpha)).max()
-    text = (ledger.FOLDER / "genglsl_ggx_fit.md").read_text()
-    assert f"Its errors reach {error:.2f}, at low alpha near grazing" in text
+# --- numbers of the sentences ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cause", ledger.CAUSES.values(), ids=lambda cause: cause.file)
-def test_each_cause_is_at_its_line(cause):
-    text = ledger.stock_path(cause).read_text().splitlines()
-    assert cause.word in text[cause.line - 1]
-    pages = [path.read_text() for path in ledger.FOLDER.glob("*.md")]
-    assert any(f"{cause.file}:{cause.line}`" in page for page in pages)
+NUMBERED = pytest.mark.parametrize("path", ledger.pages(), ids=lambda path: path.stem)
+
+
+@NUMBERED
+def test_the_marked_numbers_of_each_page_are_those_measured(path):
+    host = next((each for each in HOSTS if path.stem.startswith(each)), "gl")
+    with available(HOSTS.get(host, host)):
+        assert ledger.wrong_numbers(path) == []
+
+
+@pytest.mark.parametrize("path", ledger.pages()[:-1], ids=lambda path: path.stem)
+def test_every_number_of_a_page_has_a_mark_or_is_a_name_or_an_input(path):
+    text = path.read_text()
+    assert marks.unmarked(text, ledger.rows_of(text)) == []
+
+
+@pytest.mark.parametrize("page, name", ledger.TABLES, ids=" ".join)
+def test_the_tables_of_each_page_are_those_computed(page, name):
+    text = (ledger.FOLDER / f"{page}.md").read_text()
+    assert f"<!-- measured {name} -->\n{ledger.TABLES[page, name]()}<!-- end -->" in text
+
+
+PAGE = """# A defect of 0.3
+
+The error is 0.31<!--error-->, or 31<!--row 1--> %, at roughness 0.5, in `a.glsl`.
+"""
+
+
+@pytest.mark.parametrize(
+    "error, row, found", [(0.312, 0.306, []), (0.32, 0.306, ["0.31"]), (0.312, 0.32, ["31"])]
+)
+def test_a_number_that_is_not_measured_is_seen(error, row, found):
+    wrong = marks.wrong(PAGE, lambda: {"error": error}, [row])
+    assert [each.split("<")[0] for each in wrong] == found
+
+
+@pytest.mark.parametrize("added, found", [(" It is 0.7.", ["0.7"]), (" It is 0.7<!--text-->.", [])])
+def test_a_number_without_a_mark_is_seen(added, found):
+    assert marks.unmarked(PAGE + added, [0.306]) == found
+
+
+def test_the_title_has_to_round_a_number_of_the_page():
+    assert marks.unmarked(PAGE.replace("of 0.3", "of 0.4"), [0.306]) == ["0.4"]
+
+
+def test_the_line_of_a_text_is_found_once():
+    file = "mx_multiply_bsdf_float.glsl"
+    assert marks.line_of(file, "result.throughput = in1.throughput") == 7
+    with pytest.raises(ValueError, match="one line of .* must hold 'in1'"):
+        marks.line_of(file, "in1")
+    with pytest.raises(FileNotFoundError, match="must be one installed file"):
+        marks.line_of("mx_nowhere.glsl", "in1")

@@ -39,6 +39,17 @@ def distances(albedo, anisotropy, count, seed=1):
     return np.concatenate(ended)
 
 
+def reflectance_of_h(albedo):
+    """Reflectance of an isotropic half space under a uniform sky, by Chandrasekhar's H function."""
+    x, w = np.polynomial.legendre.leggauss(64)
+    mu, weights = (0.5 * (x + 1.0)) ** 2, 0.5 * (x + 1.0) * w
+    h = np.ones(len(mu))
+    for _ in range(400):
+        integral = (mu * weights * h / (mu + mu[:, np.newaxis])).sum(axis=1)
+        h = 1.0 / (np.sqrt(1.0 - albedo) + 0.5 * albedo * integral)
+    return 1.0 - 2.0 * np.sqrt(1.0 - albedo) * (h * mu * weights).sum()
+
+
 def _down(count):
     return np.repeat([[0.0], [0.0], [-1.0]], count, axis=1)
 

@@ -76,6 +76,12 @@ def _albedo():
     return dielectric_transmittance_dir(_view(1.0), 1.0, (1e-3, 1e-3), 1.5)[0] / 1.5**2
 
 
+def inside_albedo():
+    """The same albedo from inside, where radiance is multiplied by ior^2."""
+    transmitted = dielectric_transmittance_dir(_view(1.0), 1.0, (1e-3, 1e-3), 1.0 / 1.5)[0]
+    return {"inside": transmitted * 1.5**2}
+
+
 def _unjoined():
     """Share of the light from wo that the text's BTDF passes without a facet between, ior 1.5."""
     x, w = np.polynomial.legendre.leggauss(NODES)

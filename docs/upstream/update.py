@@ -2,20 +2,23 @@
 """Measure the figures of the upstream pages: `python -m docs.upstream.update` rewrites them.
 
 With names of hosts, it rewrites the pages of these, and those whose figures need no check. Each page
-has a block between two markers, which only this program writes.
+has a block between two markers, which only this program writes; numbers of the sentences have marks:
+`docs.upstream.marks`.
 """
 
 import re
 import sys
 from contextlib import closing
-from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream.figures import FIGURES, TABLES
 from docs.upstream.film_quantities import OF_FILMS
 from docs.upstream.light_quantities import light_block
+from docs.upstream.marks import filled, wrong
 from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.surface_quantities import OF_SURFACES
@@ -33,101 +36,13 @@ from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import OREN_NAYAR, SURFACE, document_text, input_text, node_text
 
 FOLDER = Path(__file__).parent
+SPECIFICATION = FOLDER.parent / "specification.md"
 BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
 HEAD = "| check | subject | measured | allowed | unit |\n|---|---|---|---|---|\n"
 MEASURED = 2  # column of a row's figure
 
 # Pages whose figures are errors of the driver that they name.
 OF_DRIVERS = ("genglsl_albedo_acos",)
-
-
-@dataclass(frozen=True)
-class Cause:
-    """Location of a defect in MaterialX's data.
-
-    Attributes
-    ----------
-    file : str
-        Path below the folder `libraries`.
-    line : int
-        Line of the file, from 1.
-    word : str
-        Text that occurs in the line.
-    """
-
-    file: str
-    line: int
-    word: str
-
-
-OPENPBR = "bxdf/open_pbr_surface.mtlx"
-PBRLIB = "pbrlib/genglsl"
-MICROFACET = f"{PBRLIB}/lib/mx_microfacet_diffuse.glsl"
-SPECULAR = f"{PBRLIB}/lib/mx_microfacet_specular.glsl"
-# Causes by page, where the source is part of MaterialX's data.
-CAUSES = {
-    "genglsl_clamped_dot": Cause("pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl", 22, "LdotV"),
-    "genglsl_qon_albedo_fit": Cause(MICROFACET, 21, "dir_albedo_analytic"),
-    "genglsl_albedo_acos": Cause(MICROFACET, 92, "mx_acos"),
-    "genosl_dropped_flag": Cause(
-        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 5, "oren_nayar_diffuse_bsdf({{normal}}"
-    ),
-    "openpbr_thin_walled": Cause(OPENPBR, 140, "subsurface_thin_walled_reflection_bsdf"),
-    "openpbr_thin_walled_tint": Cause(OPENPBR, 149, "subsurface_thin_walled_brdf_factor"),
-    "genglsl_zeltner_normal": Cause(f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 121, "N*NdotV"),
-    "genglsl_sheen_throughput": Cause(f"{PBRLIB}/mx_sheen_bsdf.glsl", 42, "1.0 - dirAlbedo"),
-    "genglsl_multiply_throughput": Cause(
-        f"{PBRLIB}/mx_multiply_bsdf_float.glsl", 7, "in1.throughput"
-    ),
-    "genglsl_add_throughput": Cause(f"{PBRLIB}/mx_add_bsdf.glsl", 13, "max(in1.throughput"),
-    "genglsl_conty_kulla_fit": Cause(
-        f"{PBRLIB}/lib/mx_microfacet_sheen.glsl", 28, "sheen_dir_albedo_analytic"
-    ),
-    "genglsl_burley_fit": Cause(MICROFACET, 150, "burley_diffuse_dir_albedo"),
-    "genglsl_subsurface_circle": Cause(MICROFACET, 170, "mx_integrate_burley_diffusion"),
-    "genglsl_translucent_side": Cause(f"{PBRLIB}/mx_translucent_bsdf.glsl", 16, "N = -N"),
-    "genglsl_ior_zero": Cause(SPECULAR, 229, "g2 < 0.0"),
-    "genglsl_microfacet_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "dirAlbedo"),
-    "genglsl_ggx_fit": Cause(SPECULAR, 91, "ggx_dir_albedo_analytic"),
-    "genglsl_microfacet_compensation": Cause(
-        f"{PBRLIB}/mx_dielectric_bsdf.glsl", 47, "energy_compensation"
-    ),
-    "genglsl_missing_nodes": Cause(
-        f"{PBRLIB}/pbrlib_genglsl_impl.mtlx", 32, "IM_anisotropic_vdf_genglsl"
-    ),
-    "genglsl_medium_scattering": Cause(f"{PBRLIB}/mx_anisotropic_vdf.glsl", 9, "exp(-absorption)"),
-    "pbrlib_edf_sides": Cause(f"{PBRLIB}/mx_generalized_schlick_edf.glsl", 8, "forward_facing"),
-    **{
-        f"genglsl_hair_{page}": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", line, word)
-        for page, line, word in (
-            ("uniform_lobe", 263, "1.0 / 2.0 * M_PI"),
-            ("longitudinal", 88, "1.0 / (8.0 * x)"),
-            ("roughness", 247, "clamp(roughness_R"),
-            ("azimuth", 218, "sinGammaO"),
-            ("grazing", 186, "T * f"),
-            ("environment", 286, "mx_environment_radiance"),
-        )
-    },
-    "genglsl_blackbody_cold": Cause(f"{PBRLIB}/mx_blackbody.glsl", 14, "800.0"),
-    "genslang_blackbody_constant": Cause(f"{PBRLIB}/mx_blackbody.glsl", 2, "const mat3"),
-    "genglsl_black_pigment": Cause(f"{PBRLIB}/mx_chiang_hair_bsdf.glsl", 18, "-log(eumelanin"),
-    "genosl_hair_constants": Cause(
-        "pbrlib/genosl/pbrlib_genosl_impl.mtlx", 78, 'sourcecode="vector(1.0)"'
-    ),
-    "genglsl_transmission_masking": Cause(f"{PBRLIB}/lib/mx_environment_fis.glsl", 59, "G1V"),
-    "genglsl_refraction_nan": Cause(SPECULAR, 519, "refract(R, N1, ior)"),
-    "genglsl_film_half": Cause(SPECULAR, 341, "0.5 * f"),
-    "genglsl_film_throughput": Cause(f"{PBRLIB}/mx_dielectric_bsdf.glsl", 48, "F0, 1.0"),
-    "genglsl_film_choices": Cause(SPECULAR, 318, "XYZ_TO_RGB"),
-    "genglsl_anisotropic_environment": Cause(
-        f"{PBRLIB}/lib/mx_environment_fis.glsl", 16, "avgAlpha"
-    ),
-}
-
-
-def stock_path(cause):
-    """The file of a cause in the MaterialX that is installed."""
-    return Path(mx.getDefaultDataSearchPath().find(f"libraries/{cause.file}").asString())
 
 
 def judged(host):
@@ -183,6 +98,22 @@ def _figure(result):
 def figures(text):
     """Figures of the rows of a block."""
     return [float(row.split(" | ")[MEASURED]) for row in _rows(text)]
+
+
+def rows_of(text):
+    """Figures of the table of a page, of checks or quantities, by row; NaN where there is no number."""
+    lines = (
+        text.split(BEGIN)[1].split(END)[0].split("\n\n")[0].splitlines() if BEGIN in text else []
+    )
+    column = MEASURED if lines and lines[0].startswith("| check") else 1
+    return [_number(line.strip("| ").split(" | ")[column]) for line in lines[2:]]
+
+
+def _number(cell):
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")
 
 
 def without_figures(text):
@@ -292,7 +223,37 @@ def main():
     for page, text in blocks.items():
         path = FOLDER / f"{page}.md"
         head, rest = path.read_text(encoding="utf-8").split(BEGIN)
-        write_text(path, head + BEGIN + text + END + rest.split(END)[1])
+        write_text(path, head + BEGIN + text + END + rest.split(END, 1)[1])
+    for path in pages():
+        write_text(path, remeasured(path))
+
+
+def pages():
+    """Files whose sentences have numbers with marks."""
+    return [*sorted(set(FOLDER.glob("*.md")) - {FOLDER / "README.md"}), SPECIFICATION]
+
+
+@cache
+def _figures(page):
+    """The measurement of a page's figures, done once."""
+    return cache(FIGURES.get(page, dict))
+
+
+def wrong_numbers(path):
+    """Marked numbers of a file that are not those measured here."""
+    text = path.read_text(encoding="utf-8")
+    return wrong(text, _figures(path.stem), rows_of(text))
+
+
+def remeasured(path):
+    """A file with its tables beside that of checks, and with the marked numbers of its sentences."""
+    text = path.read_text(encoding="utf-8")
+    for (page, name), table in TABLES.items():
+        if page == path.stem:
+            begin = f"<!-- measured {name} -->\n"
+            head, rest = text.split(begin)
+            text = head + begin + table() + END + rest.split(END, 1)[1]
+    return filled(text, _figures(path.stem), rows_of(text))
 
 
 if __name__ == "__main__":

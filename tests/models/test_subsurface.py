@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from docs.upstream.random_walk import distances
+from docs.upstream.random_walk import distances, reflectance_of_h
 from mxeon.models.subsurface import (
     GAIN,
     LINEAR,
@@ -51,17 +51,6 @@ def test_the_albedo_rises_with_the_color_up_to_its_peak():
     rises = np.diff(subsurface_albedo(near)) > 0.0
     assert rises[near[1:] < 1.0 - SUBSURFACE_PEAK].all() and not rises[-1]
     assert (np.diff(subsurface_albedo(COLORS)) > 0.0).all()
-
-
-def reflectance_of_h(albedo):
-    """Reflectance of an isotropic half space under a uniform sky, by Chandrasekhar's H function."""
-    x, w = np.polynomial.legendre.leggauss(64)
-    mu, weights = (0.5 * (x + 1.0)) ** 2, 0.5 * (x + 1.0) * w
-    h = np.ones(len(mu))
-    for _ in range(400):
-        integral = (mu * weights * h / (mu + mu[:, np.newaxis])).sum(axis=1)
-        h = 1.0 / (np.sqrt(1.0 - albedo) + 0.5 * albedo * integral)
-    return 1.0 - 2.0 * np.sqrt(1.0 - albedo) * (h * mu * weights).sum()
 
 
 def test_an_isotropic_half_space_has_the_color():

@@ -30,8 +30,8 @@ NODES: dict[str, tuple[Curve, tuple[str, ...], tuple[str, ...]]] = {
 }
 
 
-# MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 6.4e-2 off
-# in [1e-4, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
+# MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off
+# in [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
 # numerators of A and B, denominators of A and B.
 ALBEDO_FIT = np.array(
     [
