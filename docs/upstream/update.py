@@ -15,6 +15,7 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream.average_quantities import OF_AVERAGES
 from docs.upstream.figures import FIGURES, TABLES
 from docs.upstream.film_quantities import OF_FILMS
 from docs.upstream.light_quantities import light_block
@@ -197,6 +198,7 @@ OF_QUANTITIES = {
     "pbrlib_edf_sides": edf_sides_block,
     "pbrlib_printed_angles": printed_angles_block,
     "pbrlib_printed_b": printed_b_block,
+    **OF_AVERAGES,
     **OF_PBRLIB,
     **OF_SUBSURFACE,
     **OF_TRANSMISSION,

@@ -19,6 +19,7 @@ from mxeon.models import (
 )
 from mxeon.models.ggx_albedo import ggx_albedo_dir
 from mxeon.models.microfacet_defects import MICROFACET_DEFECTS, NODES, averaged_channels
+from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere
 
@@ -180,11 +181,45 @@ def test_a_known_defect_differs_from_the_specification(defect, name):
     assert np.max(np.abs(value / BRDFS[name](wo, wi, alpha) - 1.0)) > 1e-3
 
 
+COMPENSATIONS = (
+    "compensation_half",
+    "compensation_f0",
+    "compensation_view",
+    "compensation_average",
+)
+
+
+@pytest.mark.parametrize("exponent, equal", [(5.0, True), (2.0, False)])
+def test_the_average_by_its_ends_is_that_of_schlicks_curve_of_exponent_5(exponent, equal):
+    wo, wi, alpha = pairs(20)
+    colors = {"color0": COLORS[0], "color82": [1.0, 1.0, 1.0], "color90": COLORS[2]}
+    inputs = colors | {"exponent": exponent, "roughness": alpha}
+    value = generalized_schlick_brdf(wo, wi, *colors.values(), alpha, exponent)
+    same = DEFECTS["compensation_average"].value("generalized_schlick_bsdf", wo, wi, inputs)
+    assert np.allclose(same, value, rtol=tolerances.MICROFACET, atol=0.0) == equal
+
+
+AVERAGE_FITTED = DEFECTS["compensation_average_fitted"].title
+
+
+@pytest.mark.parametrize("row", MICROFACET_NODES, ids=lambda row: row.name)
+def test_the_text_permits_the_average_by_its_ends(row):
+    wo, wi, alpha = pairs(20)
+    inputs = {
+        name: np.broadcast_to(v, (20, *np.shape(v))) for name, v in INPUTS[row.category].items()
+    }
+    inputs |= {"roughness": alpha[:, [0, 0]]}
+    value, albedo = (
+        each for each in row.variants if each.title == AVERAGE_FITTED and each.permitted
+    )
+    assert value.value(wo, wi, inputs).shape == albedo.albedo(wo, inputs).shape == (20, 3)
+
+
 def test_defects_agree_with_the_specification_where_they_should():
     wo, wi, alpha = pairs(20)
     white = {"color0": 1.0, "color82": 1.0, "color90": 1.0, "exponent": 5.0, "roughness": alpha}
     value = generalized_schlick_brdf(wo, wi, 1.0, 1.0, 1.0, alpha, 5.0, True)
-    for name in ("compensation_half", "compensation_f0", "compensation_view"):
+    for name in COMPENSATIONS:
         same = DEFECTS[name].value("generalized_schlick_bsdf", wo, wi, white, True)
         assert np.allclose(same, value, rtol=tolerances.MICROFACET, atol=0.0)
     isotropic = white | {"roughness": alpha[:, [0, 0]]}

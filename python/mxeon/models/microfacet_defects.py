@@ -152,9 +152,44 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 def fitted_half(pair: Pair) -> Array:
     """Compensation of MaterialX 1.39.5: F at the half vector, and the fit for E_ss."""
+    return 1.0 + pair.curve.at(pair.cosine, **pair.material) * _missing_by_fit(pair)
+
+
+def schlick_average(normal: Array, grazing: Array | float) -> Array:
+    """Average of F over the hemisphere, as Schlick's curve of exponent 5 has it between two ends.
+
+    MaterialX takes it for every curve since its pull request 2958, of June 2026.
+
+    Examples
+    --------
+    >>> schlick_average(np.array([0.04]), 1.0).round(6)
+    array([0.085714])
+    """
+    average: Array = normal + (grazing - normal) / 21.0
+    return average
+
+
+def _averaged(pair: Pair) -> Array:
+    """Average of F by its ends."""
+    ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
+    return schlick_average(*ends)
+
+
+def averaged_exact(pair: Pair) -> Array:
+    """Compensation with the average of F by its ends."""
+    return 1.0 + _averaged(pair) * missing(pair.wo[2], pair.roughness)
+
+
+def averaged_fitted(pair: Pair) -> Array:
+    """Compensation of MaterialX after 1.39.5: the average of F by its ends, and the fit for E_ss."""
+    return 1.0 + _averaged(pair) * _missing_by_fit(pair)
+
+
+def _missing_by_fit(pair: Pair) -> Array:
+    """(1 - E_ss) / E_ss by the fit of MaterialX 1.39.5."""
     alpha = np.maximum(ggx.mean_alpha(pair.roughness), 1e-6)
     E = fitted_albedo(np.clip(pair.wo[2], 1e-6, 1.0), alpha, 1.0, 1.0)
-    return 1.0 + pair.curve.at(pair.cosine, **pair.material) * ((1.0 - E) / E)
+    return (1.0 - E) / E
 
 
 def _separable(pair: Pair) -> Array:
@@ -191,6 +226,16 @@ MICROFACET_DEFECTS = (
         "compensation_fitted",
         "compensation with F at the half vector and MaterialX's fit of E_ss",
         Lobe(fitted_half),
+    ),
+    MicrofacetDefect(
+        "compensation_average",
+        "compensation with the average F0 + (F90 - F0) / 21",
+        Lobe(averaged_exact),
+    ),
+    MicrofacetDefect(
+        "compensation_average_fitted",
+        "compensation with the average F0 + (F90 - F0) / 21 and MaterialX's fit of E_ss",
+        Lobe(averaged_fitted),
     ),
     MicrofacetDefect(
         "smith_separable", "masking and shadowing uncorrelated", Lobe(visibility=_separable)

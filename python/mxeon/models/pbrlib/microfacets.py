@@ -23,12 +23,20 @@ from mxeon.models.microfacet_defects import (
     FITTED_DEFECTS,
     MICROFACET_DEFECTS,
     averaged_channels,
+    schlick_average,
 )
 from mxeon.models.pbrlib.node import Inputs, PbrNode, Variant
 from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
 
 # Forms of the energy compensation, which the text leaves open.
-OPEN = ("compensation_half", "compensation_f0", "compensation_view", "compensation_fitted")
+OPEN = (
+    "compensation_half",
+    "compensation_f0",
+    "compensation_view",
+    "compensation_fitted",
+    "compensation_average",
+    "compensation_average_fitted",
+)
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 
 
@@ -62,8 +70,17 @@ class Lobe:
 
     def indirect(self, wo: Array, inputs: Inputs) -> Array:
         """Albedo with the compensation of MaterialX's indirect branch: F at the view direction."""
+        return self._compensated(wo, inputs, self._at_view(wo, inputs))
+
+    def averaged(self, wo: Array, inputs: Inputs) -> Array:
+        """The same with the average of F by its ends, as in MaterialX after 1.39.5."""
+        F0 = self.fresnel(np.ones(len(wo)), inputs)
+        average = schlick_average(F0, inputs[self.edge] if self.edge else 1.0)
+        return self._compensated(wo, inputs, average)
+
+    def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
         single = self.albedo(wo, isotropic(inputs), compensate=False)
-        return np.asarray(single * compensation(wo, inputs, self._at_view(wo, inputs)))
+        return np.asarray(single * compensation(wo, inputs, F))
 
     def _at_view(self, wo: Array, inputs: Inputs) -> Array:
         return self.fresnel(np.minimum(wo[:, 2], 1.0), inputs)
@@ -171,6 +188,11 @@ def _variants(lobe: Lobe) -> tuple[Variant, ...]:
         Variant(
             "compensation with F at the view direction and MaterialX's fit of E_ss",
             albedo=lobe.indirect,
+            permitted=True,
+        ),
+        Variant(
+            "compensation with the average F0 + (F90 - F0) / 21 and MaterialX's fit of E_ss",
+            albedo=lobe.averaged,
             permitted=True,
         ),
         Variant("MaterialX's fit of its albedo without a tint", albedo=lobe.fitted),

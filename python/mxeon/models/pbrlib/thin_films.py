@@ -8,7 +8,7 @@ import numpy as np
 from mxeon.models.arrays import Array
 from mxeon.models.colorimetry import XYZ_TO_REC709
 from mxeon.models.materialx_fits import compensation, layer_albedo
-from mxeon.models.microfacet_defects import averaged_channels, fitted_half
+from mxeon.models.microfacet_defects import averaged_channels, averaged_fitted, fitted_half
 from mxeon.models.microfacet_lobe import Lobe
 from mxeon.models.pbrlib.microfacets import (
     CONDUCTOR,
@@ -31,6 +31,7 @@ from mxeon.models.thin_film import (
 from mxeon.models.thin_film.lobe import FILM, film_albedo_dir, film_brdf
 
 FITTED = Lobe(fitted_half)  # MaterialX's compensation
+AVERAGED = Lobe(averaged_fitted)  # that of MaterialX after 1.39.5
 OWN_MATRIX = Form(tuple(map(tuple, XYZ_TO_REC709.tolist())))
 STOCK = Form(
     CIE_RGB, 2, True, 1.0, 0.01
@@ -114,7 +115,8 @@ def _variants(row: PbrNode) -> tuple[Variant, ...]:
         one = form == MIXED and row.category == "dielectric_bsdf"  # index of all channels
         if one or (form.share != 1.0 and not schlick):
             continue
-        for words, terms in (("", None), (", and its compensation", FITTED)):
+        later = ((", and the average of F by its ends", AVERAGED),) if form == STOCK else ()
+        for words, terms in (("", None), (", and its compensation", FITTED), *later):
             value = partial(_value, row.category, form, terms)
             variants.append(Variant(f"{title}{words}", value, permitted=permitted))
     return tuple(variants)
