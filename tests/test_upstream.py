@@ -2,13 +2,16 @@
 """The pages on defects of MaterialX: each is still there, at its place, and as large."""
 
 import re
+import shutil
 from functools import cache
 
 import numpy as np
 import pytest
 
+from docs.upstream import ledger as rows
 from docs.upstream import marks
 from docs.upstream import update as ledger
+from mxeon.conformance.known_issues.issue import Issue, read_issues
 from tests.support.availability import available
 from tests.support.tolerances import PRINTED
 
@@ -50,10 +53,57 @@ def test_every_page_is_in_the_ledger():
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_page_has_all_parts_and_is_listed(page):
+def test_every_page_has_all_parts(page):
     text = (ledger.FOLDER / f"{page}.md").read_text()
     assert [heading for heading in HEADINGS if f"\n## {heading}\n" not in text] == []
-    assert f"({page}.md)" in (ledger.FOLDER / "README.md").read_text()
+
+
+# --- what comes from the rows -----------------------------------------------------------------
+
+
+GENERATED = rows.generated()
+
+
+@pytest.mark.parametrize("path", GENERATED, ids=lambda path: path.name)
+def test_what_comes_from_the_rows_of_the_pages_is_current(path):
+    assert path.read_text(encoding="utf-8") == GENERATED[path]
+
+
+NEW = """# A new defect
+
+<!-- ledger
+group = "sheen"
+host = "gl"
+differs = true
+[rows]
+value = ["sheen_bsdf, mode zeltner"]
+-->
+"""
+
+
+def test_a_page_takes_one_file(tmp_path):
+    """Its row comes into the index, the navigation, and the issues of the package."""
+    folder = shutil.copytree(ledger.FOLDER, tmp_path / "upstream")
+    (folder / "a_new_page.md").write_text(NEW)
+    index, navigation, issues = rows.generated(folder).values()
+    assert "- [A new defect](a_new_page.md) (*differs*)\n" in index
+    assert "          - upstream/a_new_page.md\n" in navigation
+    [issue] = [each for each in read_issues(issues) if each.page == "a_new_page"]
+    assert issue == Issue("a_new_page", "gl", (("value", "sheen_bsdf, mode zeltner"),))
+
+
+@pytest.mark.parametrize(
+    "old, new, message",
+    [
+        ("<!-- ledger", "<!--", "a_new_page.md must have a comment <!-- ledger"),
+        ("differs", "verdict", r"keys of a_new_page.md must be some of .*; got \['verdict'\]"),
+        ("sheen", "cloth", "group of a_new_page must be one of rough_diffuse, .*; got cloth"),
+    ],
+)
+def test_a_wrong_row_is_refused(tmp_path, old, new, message):
+    (tmp_path / "a_new_page.md").write_text(NEW.replace(old, new, 1))
+    with pytest.raises(ValueError, match=message):
+        rows.generated(tmp_path)
 
 
 def measured(defect):

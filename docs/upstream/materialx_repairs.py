@@ -14,18 +14,17 @@ SHEEN, LOBES = "mx_sheen_bsdf.glsl", "lib/mx_microfacet_sheen.glsl"
 SPECULAR = "lib/mx_microfacet_specular.glsl"
 
 
-def _glsl(page: str, file: str, line: int, old: str, new: str) -> Repair:
+def _glsl(page: str, file: str, old: str, new: str) -> Repair:
     """A change of a file of pbrlib's GLSL."""
-    return Repair(page, PACKAGE, f"libraries/pbrlib/genglsl/{file}", line, old, new)
+    return Repair(page, PACKAGE, f"libraries/pbrlib/genglsl/{file}", old, new)
 
 
 HAIR = "mx_chiang_hair_bsdf.glsl"
 HAIR_REPAIRS = (
-    _glsl("genglsl_hair_uniform_lobe", HAIR, 263, "(1.0 / 2.0 * M_PI)", "(1.0 / (2.0 * M_PI))"),
+    _glsl("genglsl_hair_uniform_lobe", HAIR, "(1.0 / 2.0 * M_PI)", "(1.0 / (2.0 * M_PI))"),
     _glsl(
         "genglsl_hair_longitudinal",
         HAIR,
-        71,
         """    float n = 1.0;
     float d = 1.0;
     float f = 1.0;
@@ -49,14 +48,12 @@ HAIR_REPAIRS = (
     _glsl(
         "genglsl_hair_longitudinal",
         HAIR,
-        88,
         "x + 0.5 * (-log(2.0 * M_PI) + log(1.0 / x) + 1.0 / (8.0 * x));",
         "x - 0.5 * log(2.0 * M_PI * x) + log(1.0 + (1.0 + (4.5 + 37.5 / (8.0 * x)) / (8.0 * x)) / (8.0 * x));",
     ),
     _glsl(
         "genglsl_hair_longitudinal",
         HAIR,
-        127,
         "    float inv_v = 1.0 / v;\n",
         "    float inv_v = 1.0 / v;\n    cosThetaI = abs(cosThetaI);\n"
         "    vec2 d = vec2(cosThetaI - cosThetaO, sinThetaI + sinThetaO);\n",
@@ -64,7 +61,6 @@ HAIR_REPAIRS = (
     _glsl(
         "genglsl_hair_longitudinal",
         HAIR,
-        131,
         "exp(mx_hair_log_I0(a) - b - inv_v + 0.6931 + log(0.5 * inv_v));",
         "exp(mx_hair_log_I0(a) - a - 0.5 * dot(d, d) * inv_v) * inv_v;",
     ),
@@ -72,16 +68,14 @@ HAIR_REPAIRS = (
         _glsl(
             "genglsl_hair_roughness",
             HAIR,
-            247 + number,
             f"clamp(roughness_{lobe}, 0.001, 1.0);",
             f"max(roughness_{lobe}, vec2(1e-8, 1e-4));",
         )
-        for number, lobe in enumerate(("R", "TT", "TRT"))
+        for lobe in ("R", "TT", "TRT")
     ),
     _glsl(
         "genglsl_hair_azimuth",
         HAIR,
-        218,
         """        float sinGammaO = mx_hair_transform_sin_cos(cosGammaO);
         if (dot(k1_p, Y) > 0.0)
             sinGammaO = -sinGammaO;
@@ -94,28 +88,24 @@ HAIR_REPAIRS = (
     _glsl(
         "genglsl_hair_azimuth",
         HAIR,
-        228,
         "asin(sinGammaT);",
         "mx_atan(sinGammaT, cosGammaT);",
     ),
     _glsl(
         "genglsl_hair_grazing",
         HAIR,
-        186,
         "(vec3(1.0) - T * f);",
         "max(vec3(1.0) - T * f, 1e-7);",
     ),
     _glsl(
         "genglsl_hair_grazing",
         HAIR,
-        216,
         "vec3 k1_p = normalize(V - X * dot(V, X));",
         "vec3 k1_p = cosThetaO > 0.0 ? normalize(V - X * dot(V, X)) : N;",
     ),
     _glsl(
         "genglsl_hair_grazing",
         HAIR,
-        224,
         "float cosThetaT = mx_hair_transform_sin_cos(sinThetaT);",
         "float cosThetaT = max(mx_hair_transform_sin_cos(sinThetaT), M_FLOAT_EPS);",
     ),
@@ -124,14 +114,13 @@ HAIR_REPAIRS = (
 REPAIRS = (
     *HAIR_REPAIRS,
     *(
-        _glsl("genglsl_film_half", SPECULAR, line, f"R23{pol} = 0.5 * f;", f"R23{pol} = f;")
-        for line, pol in ((341, "p"), (342, "s"))
+        _glsl("genglsl_film_half", SPECULAR, f"R23{pol} = 0.5 * f;", f"R23{pol} = f;")
+        for pol in "ps"
     ),
     *(
         _glsl(
             "genglsl_multiply_throughput",
             f"mx_multiply_bsdf_{kind}.glsl",
-            7,
             "result.throughput = in1.throughput;",
             f"result.throughput = 1.0 - {factor} * (1.0 - in1.throughput);",
         )
@@ -140,122 +129,105 @@ REPAIRS = (
     _glsl(
         "genglsl_add_throughput",
         "mx_add_bsdf.glsl",
-        13,
         "max(in1.throughput + in2.throughput - 1.0, 0.0);",
         "in1.throughput + in2.throughput - 1.0;",
     ),
     _glsl(
         "genglsl_add_throughput",
         "mx_layer_bsdf.glsl",
-        5,
         "base.response * top.throughput;",
         "base.response * max(top.throughput, 0.0);",
     ),
     _glsl(
         "genglsl_add_throughput",
         "mx_layer_bsdf.glsl",
-        6,
         "top.throughput * base.throughput;",
         "min(top.throughput, 0.0) + max(top.throughput, 0.0) * base.throughput;",
     ),
     _glsl(
         "genglsl_medium_scattering",
         "mx_anisotropic_vdf.glsl",
-        9,
         "exp(-absorption)",
         "exp(-(absorption + scattering))",
     ),
     _glsl(
         "genglsl_zeltner_normal",
         LOBES,
-        121,
         "    vec3 X = V - N*NdotV;\n",
         "    vec3 X = V - N*NdotV;\n    X -= N*dot(N, X);\n",
     ),
     _glsl(
         "genglsl_sheen_throughput",
         SHEEN,
-        42,
         "vec3(1.0 - dirAlbedo * weight)",
         "1.0 - dirAlbedo * color * weight",
     ),
     _glsl(
         "genglsl_sheen_throughput",
         SHEEN,
-        44,
         "else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)",
         "else",
     ),
     _glsl(
         "genglsl_sheen_throughput",
         SHEEN,
-        57,
         "vec3 Li = mx_environment_irradiance(N);",
         "vec3 Li = (closureData.closureType == CLOSURE_TYPE_INDIRECT) ?"
         " mx_environment_irradiance(N) : vec3(0.0);",
     ),
-    _glsl("genglsl_conty_kulla_fit", LOBES, 5, "NDF(float NdotH,", "NDF(float sin2,"),
+    _glsl("genglsl_conty_kulla_fit", LOBES, "NDF(float NdotH,", "NDF(float sin2,"),
     _glsl(
         "genglsl_conty_kulla_fit",
         LOBES,
-        8,
         "    float cos2 = NdotH * NdotH;\n    float sin2 = 1.0 - cos2;\n",
         "",
     ),
     _glsl(
         "genglsl_conty_kulla_fit",
         LOBES,
-        67,
         "float NdotH = clamp(H.z, M_FLOAT_EPS, 1.0);",
         "float NdotH = dot(H.xy, H.xy);",
     ),
     _glsl(
         "genglsl_conty_kulla_fit",
         SHEEN,
-        25,
         "float NdotH = clamp(dot(N, H), M_FLOAT_EPS, 1.0);",
         "vec3 T = cross(N, H);\n            float NdotH = min(dot(T, T), 1.0);",
     ),
     _glsl(
         "genglsl_translucent_side",
         "mx_translucent_bsdf.glsl",
-        1,
         '#include "lib/mx_closure_type.glsl"\n',
         '#include "lib/mx_closure_type.glsl"\n#include "lib/mx_microfacet.glsl"\n',
     ),
     _glsl(
         "genglsl_translucent_side",
         "mx_translucent_bsdf.glsl",
-        16,
         "    N = -N;\n",
         "    N = -mx_forward_facing_normal(N, V);\n",
     ),
-    _glsl("genglsl_ior_zero", SPECULAR, 229, "    if (g2 < 0.0)", "    if (g2 <= 0.0)"),
+    _glsl("genglsl_ior_zero", SPECULAR, "    if (g2 < 0.0)", "    if (g2 <= 0.0)"),
     _glsl(
         "genglsl_ior_zero",
         SPECULAR,
-        273,
         "    vec3 t3 = cosTheta2 * a2plusb2 + vec3(sinTheta2 * sinTheta2);\n",
         "    vec3 t3 = max(cosTheta2 * a2plusb2 + vec3(sinTheta2 * sinTheta2), 1e-20);\n",
     ),
     _glsl(
         "genglsl_transmission_masking",
         "lib/mx_environment_fis.glsl",
-        59,
         "    radiance /= G1V * float(envRadianceSamples);\n",
         "    radiance /= (fd.refraction ? 1.0 : G1V) * float(envRadianceSamples);\n",
     ),
     _glsl(
         "genglsl_refraction_nan",
         SPECULAR,
-        517,
         "    R = refract(R, N, 1.0 / ior);\n",
         "    float cosine = -dot(R, N);\n    R = refract(R, N, 1.0 / ior);\n",
     ),
     _glsl(
         "genglsl_refraction_nan",
         SPECULAR,
-        519,
         "    return refract(R, N1, ior);\n",
         "    return ior * R - (ior * dot(R, N1) + cosine) * N1;\n",
     ),

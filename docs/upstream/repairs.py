@@ -19,8 +19,6 @@ class Repair:
         The page on the defect.
     package, file : str
         Name of the package, and path inside it.
-    line : int
-        Line of the installed file at which the change begins, from 1.
     old, new : str
         Text of the file, and what takes its place wherever it occurs.
     """
@@ -28,7 +26,6 @@ class Repair:
     page: str
     package: str
     file: str
-    line: int
     old: str
     new: str
 
@@ -52,12 +49,10 @@ environmentIrradiance*=single+surfaceAlbedo*average*(1.0-single)/(vec3{f}(1.0)-s
 GLSL, WGSL = {"float": "float", "f": ""}, {"float": "let", "f": "f"}
 
 
-def _surroundings(file: str, line: int, text: str, rest: str, words: dict[str, str]) -> Repair:
+def _surroundings(file: str, text: str, rest: str, words: dict[str, str]) -> Repair:
     """EON in surroundings, after the line that scales the irradiance."""
     added = SHARE.format(**words).replace("\\\n", "")
-    return Repair(
-        "babylon_flat_surroundings", BABYLON, file, line, text + rest, text + added + rest
-    )
+    return Repair("babylon_flat_surroundings", BABYLON, file, text + rest, text + added + rest)
 
 
 PBR, OPEN_PBR = "ShadersInclude/pbrBlockReflection.js", "ShadersInclude/openpbrIblFunctions.js"
@@ -66,12 +61,11 @@ SCALED, END = "environmentIrradiance*=vReflectionInfos.x;", "return environmentI
 COLORED = "environmentIrradiance*=vReflectionColor.rgb*vReflectionInfos.x;"
 FACED, FLAT = {"normal": "surfaceNormal"}, {"normal": "normalW"}
 REPAIRS = (
-    Repair("three_materialx_roughness", THREE, MAPPINGS, 376, COLOR, COLOR + LOADED),
+    Repair("three_materialx_roughness", THREE, MAPPINGS, COLOR, COLOR + LOADED),
     Repair(
         "babylon_reflectance_floor",
         BABYLON,
         f"Shaders/{DIRECT}",
-        36,
         "clamp(info.surfaceAlbedo,vec3(0.1),",
         "clamp(info.surfaceAlbedo,vec3(0.0001),",
     ),
@@ -79,16 +73,14 @@ REPAIRS = (
         "babylon_reflectance_floor",
         BABYLON,
         f"ShadersWGSL/{DIRECT}",
-        38,
         "clamp(info.surfaceAlbedo,vec3f(0.1),",
         "clamp(info.surfaceAlbedo,vec3f(0.0001),",
     ),
-    _surroundings(f"Shaders/{PBR}", 281, COLORED, "", GLSL | FLAT),
-    _surroundings(f"ShadersWGSL/{PBR}", 306, COLORED, "", WGSL | FLAT),
-    _surroundings(f"Shaders/{OPEN_PBR}", 85, SCALED, END, GLSL | FACED),
+    _surroundings(f"Shaders/{PBR}", COLORED, "", GLSL | FLAT),
+    _surroundings(f"ShadersWGSL/{PBR}", COLORED, "", WGSL | FLAT),
+    _surroundings(f"Shaders/{OPEN_PBR}", SCALED, END, GLSL | FACED),
     _surroundings(
         f"ShadersWGSL/{OPEN_PBR}",
-        89,
         "environmentIrradiance*=reflectionInfos.x;",
         END,
         WGSL | FACED,
@@ -101,7 +93,6 @@ PATHTRACER_REPAIRS = (
         "pathtracer_webgl_retro",
         PATHTRACER,
         f"{SHADER}/bsdf/bsdf_functions.glsl.js",
-        23,
         "float rr = 0.5 + 2.0 * surf.roughness * fl * fl;",
         "float rr = 2.0 * surf.roughness * dot( wi, wh ) * dot( wi, wh );",
     ),
@@ -109,7 +100,6 @@ PATHTRACER_REPAIRS = (
         "pathtracer_webgl_nan",
         PATHTRACER,
         f"{SHADER}/common/fresnel_functions.glsl.js",
-        36,
         "float sinThetaISq = 1.0f - cosThetaI * cosThetaI;",
         "float sinThetaISq = max( 0.0, 1.0f - cosThetaI * cosThetaI );",
     ),

@@ -18,6 +18,7 @@ import numpy as np
 from docs.upstream.average_quantities import OF_AVERAGES
 from docs.upstream.figures import FIGURES, TABLES
 from docs.upstream.film_quantities import OF_FILMS
+from docs.upstream.ledger import generated
 from docs.upstream.light_quantities import light_block
 from docs.upstream.marks import filled, wrong
 from docs.upstream.pbr_quantities import OF_PBRLIB
@@ -214,7 +215,9 @@ def written(page):
 
 
 def main():
-    """Write the blocks of all pages, or of those that show on the named hosts."""
+    """Write the blocks of all pages, or of those that show on the named hosts; and what comes from rows."""
+    for path, text in generated().items():
+        write_text(path, text)
     issues = [each for each in ISSUES if not sys.argv[1:] or each.host in sys.argv[1:]]
     measured = {host: judged(host) for host in dict.fromkeys(each.host for each in issues)}
     blocks = {}

@@ -3,15 +3,9 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 
-from mxeon.conformance.known_issues.diffuse import DIFFUSE_ISSUES
-from mxeon.conformance.known_issues.issue import Issue
-from mxeon.conformance.known_issues.pbrlib import (
-    BSDF_ISSUES,
-    EMISSION_ISSUES,
-    HAIR_ISSUES,
-    UTILITY_ISSUES,
-)
+from mxeon.conformance.known_issues.issue import Issue, read_issues
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
 
 RENDERERS = {
@@ -21,7 +15,8 @@ RENDERERS = {
     "luxcore": "this LuxCoreRender",
     "three-gpu-pathtracer": "this three-gpu-pathtracer",
 }
-ISSUES = (*BSDF_ISSUES, *EMISSION_ISSUES, *HAIR_ISSUES, *UTILITY_ISSUES, *DIFFUSE_ISSUES)
+# Written by `python -m docs.upstream.update` from the rows of the pages.
+ISSUES = read_issues(Path(__file__).with_name("issues.json").read_text(encoding="utf-8"))
 
 
 def with_page(result: Result) -> Result:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The type of a known issue, and who may have one."""
 
-from collections.abc import Sequence
+import json
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TypedDict
 
 STOCK = "stock"
 OWN = "its own nodes"  # in the place of a library
-HARDWARE = ("webgl", "vulkan", "wgsl", "slang")  # hosts whose text comes from that of GLSL
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,32 @@ class Issue:
     library: str = STOCK
 
 
-def product(checks: Sequence[str], subjects: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Each of some checks of each of some subjects."""
-    return tuple((check, subject) for check in checks for subject in subjects)
+class _Row(TypedDict):
+    """An issue in issues.json."""
+
+    page: str
+    host: str
+    rows: list[tuple[str, str]]
+    also: list[str]
+    implied: list[tuple[str, str]]
+    library: str
+
+
+def read_issues(text: str) -> tuple[Issue, ...]:
+    """The issues in a text of JSON, which `docs/upstream/ledger.py` writes from the pages."""
+    rows: list[_Row] = json.loads(text)
+    return tuple(
+        Issue(
+            row["page"],
+            row["host"],
+            _pairs(row["rows"]),
+            tuple(row["also"]),
+            _pairs(row["implied"]),
+            row["library"],
+        )
+        for row in rows
+    )
+
+
+def _pairs(rows: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    return tuple((check, subject) for check, subject in rows)
