@@ -60,7 +60,6 @@ SUMMARY = (
     ),
     ("output", "blackbody", "a fit beyond its range"),
 )
-PAGES = {"anisotropic_albedo": ["genglsl_anisotropic_environment"]}  # with figures of their own
 SHORT = 6  # rows of the summary in the README
 SUMMARIES = (FOLDER.parent / "README.md", FOLDER / "results.md")
 SUMMARY_HEAD = (
@@ -184,7 +183,6 @@ def _links(check, subject):
         for issue in ISSUES
         if issue.host == HOST and (check, subject) in (*issue.rows, *issue.implied)
     ]
-    pages = pages or PAGES.get(check, [])
     names = {each: each.partition("_")[2].replace("_", " ") for each in pages}
     return ", ".join(f"[{name}](upstream/{each}.md)" for each, name in names.items())
 

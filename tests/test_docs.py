@@ -235,7 +235,7 @@ def test_the_page_on_the_specification_has_the_figures_of_the_ledger():
     rows = {
         row: figure
         for issue in ISSUES
-        if (issue.host, issue.library) == ("gl", STOCK)
+        if issue.rows and (issue.host, issue.library) == ("gl", STOCK)
         for row, figure in zip(issue.rows, figures(written(issue.page)), strict=True)
     }
     shown = {row: figure for row, figure in rows.items() if row in errors}

@@ -15,7 +15,7 @@ from mxeon.conformance.known_issues.issue import Issue, read_issues
 from tests.support.availability import available
 from tests.support.tolerances import PRINTED
 
-PAGES = [defect.page for defect in ledger.ISSUES] + list(ledger.OF_QUANTITIES)
+PAGES = [defect.page for defect in ledger.CHECKED] + list(ledger.OF_QUANTITIES)
 # Hosts whose packages the pages name files of, by the beginning of a page.
 HOSTS = {
     "three": "three",
@@ -26,7 +26,7 @@ HOSTS = {
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
 
 # Those of three.js and Babylon.js are measured in tests/shaders/test_host_browser.py.
-DEFECTS = [defect for defect in ledger.ISSUES if defect.host not in ("three", "babylon")]
+DEFECTS = [defect for defect in ledger.CHECKED if defect.host not in ("three", "babylon")]
 of_each_defect = pytest.mark.parametrize("defect", DEFECTS, ids=lambda each: each.page)
 
 

@@ -7,9 +7,10 @@
     also = ["webgl", "vulkan"]              # other hosts that show it
     library = "stock"                       # that has it; "its own nodes" of a renderer
     differs = true                          # where the text leaves the choice
-    [rows]                                  # check = subjects: the results of the page's table
+    [rows]                                  # check = subjects: the results of the page's table, if it
+                                            # is one of checks; all of them fail
     value = ["sheen_bsdf, mode zeltner"]
-    [implied]                               # other results that fail for it
+    [implied]                               # other results that fail for it, or may
     [repaired]                              # results that pass with the repairs of materialx_repairs.py
     -->
 
@@ -84,7 +85,7 @@ def _row(path):
         issue = {
             "page": path.stem,
             "host": table["host"],
-            "rows": _pairs(table["rows"]),
+            "rows": _pairs(table.get("rows", {})),
             "also": table.get("also", []),
             "implied": _pairs(table.get("implied", {})),
             "library": table.get("library", "stock"),

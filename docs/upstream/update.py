@@ -43,6 +43,8 @@ BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
 HEAD = "| check | subject | measured | allowed | unit |\n|---|---|---|---|---|\n"
 MEASURED = 2  # column of a row's figure
 
+# Issues whose pages have a table of checks.
+CHECKED = tuple(each for each in ISSUES if each.rows)
 # Pages whose figures are errors of the driver that they name.
 OF_DRIVERS = ("genglsl_albedo_acos",)
 
@@ -61,7 +63,7 @@ def judged(host):
     NotRun
         If the host cannot run here.
     """
-    rows = {row for issue in ISSUES if issue.host == host for row in issue.rows}
+    rows = {row for issue in CHECKED if issue.host == host for row in issue.rows}
     tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,), nodes=(ALL,)).tasks
     chosen = [
         each
@@ -218,7 +220,7 @@ def main():
     """Write the blocks of all pages, or of those that show on the named hosts; and what comes from rows."""
     for path, text in generated().items():
         write_text(path, text)
-    issues = [each for each in ISSUES if not sys.argv[1:] or each.host in sys.argv[1:]]
+    issues = [each for each in CHECKED if not sys.argv[1:] or each.host in sys.argv[1:]]
     measured = {host: judged(host) for host in dict.fromkeys(each.host for each in issues)}
     blocks = {}
     for each in issues:

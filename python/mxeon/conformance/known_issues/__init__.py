@@ -48,7 +48,8 @@ def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tu
             f"docs/upstream/{issue.page}.md",
         )
         for issue in ISSUES
-        if all(verdicts.get((issue.library, issue.host, *row)) == PASSED for row in issue.rows)
+        if issue.rows
+        and all(verdicts.get((issue.library, issue.host, *row)) == PASSED for row in issue.rows)
     )
 
 
