@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures in the sentences of pages, by page and name; the marks of the pages ask for them."""
 
+from functools import cache
+
 import numpy as np
 from scipy.optimize import brentq
 
@@ -144,6 +146,7 @@ def energy_figures():
     }
 
 
+@cache
 def profile_figures():
     """Errors of the albedo inversion, and of the profile's width with the repair."""
     colors = np.linspace(0.02, 0.98, 25)

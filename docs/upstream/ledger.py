@@ -20,8 +20,12 @@ From these come the index, the navigation of the site, and `known_issues/issues.
 import json
 import re
 import tomllib
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
+
+from docs.upstream.marks import kinds
 
 FOLDER = Path(__file__).parent
 INDEX, NAVIGATION = FOLDER / "README.md", FOLDER.parents[1] / "mkdocs.yml"
@@ -129,6 +133,22 @@ def index_text(text, ledger):
     return GROUP.sub(filled, text)
 
 
+def counts_text(text, texts):
+    """The index with the number of marks of each kind on the pages with these texts."""
+    count = sum((kinds(each) for each in texts), Counter())
+    words = (
+        f"{count['measured']} are figures that a function measures, {count['row']} those of a page's table, "
+        f"{count['at']} lines that are found by their text, {count['command']} printed by a named command; "
+        f"{count['recorded']} are records; {count['text'] + count['source']} stand in printed texts and "
+        f"sources, and {count['given']} are chosen."
+    )
+    begin, end = "<!-- marks -->\n", "<!-- end -->\n"
+    head, rest = text.split(begin)
+    return (
+        f"{head}{begin}Of the numbers with a mark\n{fill(words, 110)}\n{end}{rest.split(end, 1)[1]}"
+    )
+
+
 def navigation_text(text, index):
     """The site's navigation with the pages in the order of the index."""
     pages = ["README", *re.findall(r"^- \[.*\]\((\w+)\.md\)", index, re.MULTILINE)]
@@ -138,6 +158,7 @@ def navigation_text(text, index):
 def generated(folder=FOLDER, index=INDEX, navigation=NAVIGATION, issues=ISSUES):
     """The text of each file that comes from the rows, by path."""
     ledger = rows(folder)
-    listed = index_text(index.read_text(encoding="utf-8"), ledger)
+    texts = [(folder / f"{row.page}.md").read_text(encoding="utf-8") for row in ledger]
+    listed = counts_text(index_text(index.read_text(encoding="utf-8"), ledger), texts)
     text = navigation_text(navigation.read_text(encoding="utf-8"), listed)
     return {index: listed, navigation: text, issues: issues_text(ledger)}

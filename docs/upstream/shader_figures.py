@@ -14,7 +14,11 @@ from mxeon.models.subsurface import diffusion_blur
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import data_folder
 
-REACHES = (0.001, 0.03, 0.1, 0.3, 1.0, 10.0, 1000.0)
+REACHES = (
+    0.03,
+    0.1,
+    0.3,
+)  # of the profile; others have smaller errors: tests/shaders/test_subsurface_blur.py
 COSINES = np.linspace(-1.0, 1.0, 401).astype(np.float32).astype(np.float64)
 CHANGES = {"color82": 0.3, "exponent": 1.0}  # of the default node, color82 1 and exponent 5
 
