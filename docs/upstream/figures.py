@@ -136,6 +136,19 @@ def masking_figures():
     return {"masking": 1.0 / smith_g1([np.sqrt(0.75), 0.0, 0.5], [1.0, 1.0])}
 
 
+def sum_figures():
+    """What two lobes of albedo 0.9, added and halved, pass by GLSL, and return over a white base."""
+    E = 0.9
+    passed = 0.5 * max(2.0 * (1.0 - E) - 1.0, 0.0) + 0.5  # half of the sum, half of nothing
+    return {"right": 1.0 - E, "passed": passed, "total": E + passed}
+
+
+def multiple_figures():
+    """What lobes of albedo 0.7 return in all where GLSL halves them, or scales them to nothing."""
+    E = 0.7
+    return {**sum_figures(), "half": 0.5 * E + 1.0 - E, "none": 1.0 - E}
+
+
 def energy_figures():
     """Roughnesses at which the albedos of Conty-Kulla and Burley reach 1 at grazing angles."""
     grazing = np.geomspace(1e-6, 0.3, 200)
@@ -174,11 +187,13 @@ def specification_figures():
 FIGURES = {
     **OF_HAIR,
     "babylon_reflectance_floor": floor_figures,
+    "genglsl_add_throughput": sum_figures,
     "genglsl_blackbody_cold": blackbody_figures,
     "genglsl_film_choices": film_figures,
     "genglsl_ggx_fit": ggx_fit_figures,
     "genglsl_microfacet_throughput": throughput_changes,
     "genglsl_missing_nodes": cone_figures,
+    "genglsl_multiply_throughput": multiple_figures,
     "genglsl_qon_albedo_fit": qon_fit_figures,
     "genglsl_refraction_nan": refraction_figures,
     "genglsl_subsurface_circle": circle_figures,

@@ -181,7 +181,7 @@ def kinds(text: str) -> Counter[str]:
 BLOCK = re.compile(r"<!-- measured(?: \w+)? -->\n.*?<!-- end -->", re.DOTALL)
 NO_PROSE = (
     BLOCK,
-    re.compile(rf"{NUMBER}`?<!--[^>\n]+?-->"),  # with a mark
+    re.compile(rf"{NUMBER}(?=`?<!--[^>\n]+?-->)"),  # with a mark
     re.compile(r"<!--.*?-->", re.DOTALL),
     re.compile(r"^    .*$", re.MULTILINE),
     re.compile(r"`[^`]*`"),
