@@ -185,7 +185,7 @@ def test_other_arguments_are_refused():
         chiang_hair_bcsdf([0, 0, 1], [0, 0, -1], weight=1.0)
     with pytest.raises(ValueError, match="^wi must be unit vectors"):
         chiang_hair_bcsdf([0, 0, 1], [0, 0, -2])
-    with pytest.raises(ValueError, match=r"^theta must lie in \[-pi/2, pi/2\]; got 2.0"):
+    with pytest.raises(ValueError, match=r"^theta_i must lie in \[-pi/2, pi/2\]; got 2.0"):
         hair_longitudinal(2.0, 0.0, 0.1)
     with pytest.raises(ValueError, match=r"^variance must lie in \[1e-12, 1e12\]; got 0"):
         hair_longitudinal(0.0, 0.0, 0.0)

@@ -115,8 +115,11 @@ def test_samples_have_the_cdf():
             r"scatter_anisotropy must lie in \[-1, 1\]; got -1.5",
         ),
         (lambda: subsurface_reflectance(-0.1), r"single_scatter must lie in \[0, 1\]; got -0.1"),
-        (lambda: subsurface_coefficients(0.5, 0.0), r"radius must lie in \(0, inf\); got 0.0"),
-        (lambda: diffusion_profile([1.0, 0.0], 1.0), r"separation must lie in \(0, inf\)"),
+        (
+            lambda: subsurface_coefficients(0.5, 0.0),
+            r"radius must lie in \[1e-150, 1e150\]; got 0.0",
+        ),
+        (lambda: diffusion_profile([1.0, 0.0], 1.0), r"separation must lie in \[1e-150, 1e150\]"),
         (lambda: diffusion_sample(1.0, 1.0), r"u must lie in \[0, 1\); got 1.0"),
     ],
 )

@@ -201,7 +201,7 @@ def test_equal_inputs_of_all_directions_have_the_values_of_each(row):
 
 
 def test_bad_films_are_refused():
-    with pytest.raises(ValueError, match=r"^thinfilm_ior must lie in \[1, 1e50\]; got 0.9"):
+    with pytest.raises(ValueError, match=r"^film_ior must lie in \[1, 1e50\]; got 0.9"):
         film_dielectric(1.0, 100.0, 0.9, 1.5)
     wo, material = [0.0, 0.0, 1.0], {"tint": WHITE, "ior": 1.5, "roughness": [0.3, 0.3]}
     film = {"thinfilm_thickness": -1.0, "thinfilm_ior": 1.5}

@@ -9,7 +9,7 @@ and work on the closed domain; of numbers alone, those without channels return a
 import numpy as np
 
 from mxeon.models import formulas
-from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arguments import checked_colors, checked_numbers
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.formulas import C1, C2, fon_a, qon_a, qon_b
 
@@ -47,7 +47,7 @@ def fon_loss(mu: ArrayLike) -> Array:
     >>> fon_loss([0.0, 0.5, 1.0]).round(6)
     array([0.      , 0.173441, 0.287793])
     """
-    (mu,) = _floats(mu=mu)
+    (mu,) = checked_numbers(mu=mu)
     return formulas.fon_loss(mu)
 
 
@@ -86,7 +86,7 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
     >>> qon_albedo_dir([0.0, 1.0], 0.5).round(6)
     array([0.949924, 0.784483])
     """
-    mu, sigma = _floats(mu=mu, sigma=sigma)
+    mu, sigma = checked_numbers(mu=mu, sigma=sigma)
     g_over_pi = C1 - formulas.fon_loss(mu) + 2.0 / (3.0 * np.pi) * np.sqrt((1.0 - mu) * (1.0 + mu))
     return qon_a(sigma) + qon_b(sigma) * g_over_pi
 
@@ -120,7 +120,7 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
     >>> qon_albedo_avg(0.5).round(6)
     np.float64(0.855278)
     """
-    (sigma,) = _floats(sigma=sigma)
+    (sigma,) = checked_numbers(sigma=sigma)
     return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_b(sigma)
 
 
@@ -159,7 +159,7 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     >>> fon_albedo_dir([0.0, 1.0], 1.0).round(6)
     array([1.      , 0.776522])
     """
-    mu, r = _floats(mu=mu, roughness=roughness)
+    mu, r = checked_numbers(mu=mu, roughness=roughness)
     return 1.0 - r * formulas.fon_loss(mu) * fon_a(r)
 
 
@@ -198,7 +198,7 @@ def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
     >>> fon_albedo_dir_approx([0.0, 1.0], 1.0).round(6)
     array([1.000356, 0.776522])
     """
-    mu, r = _floats(mu=mu, roughness=roughness)
+    mu, r = checked_numbers(mu=mu, roughness=roughness)
     return 1.0 - r * formulas.fon_loss_approx(mu) * fon_a(r)
 
 
@@ -231,7 +231,7 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
     >>> fon_albedo_avg([0.0, 1.0]).round(6)
     array([1.      , 0.832811])
     """
-    (r,) = _floats(roughness=roughness)
+    (r,) = checked_numbers(roughness=roughness)
     return (1.0 + C2 * r) * fon_a(r)
 
 
@@ -274,7 +274,7 @@ def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array
     array([[0.5     , 1.      ],
            [0.439034, 1.      ]])
     """
-    rho, r, mu = _colored(rho, roughness=roughness, mu=mu)
+    (rho,), (r, mu) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
     return _eon_albedo(formulas.fon_loss(mu), rho, r)
 
 
@@ -316,7 +316,7 @@ def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -
     array([[0.500097, 1.      ],
            [0.439034, 1.      ]])
     """
-    rho, r, mu = _colored(rho, roughness=roughness, mu=mu)
+    (rho,), (r, mu) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
     return _eon_albedo(formulas.fon_loss_approx(mu), rho, r)
 
 
@@ -352,24 +352,10 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
     >>> eon_albedo_avg([0.5, 1.0], 1.0).round(6)
     array([0.45439, 1.     ])
     """
-    return _eon_albedo(C1 - C2, *_colored(rho, roughness=roughness))
+    (rho,), (r,) = checked_colors({"rho": rho}, roughness=roughness)
+    return _eon_albedo(C1 - C2, rho, r)
 
 
 def _eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
     """Albedo of EON where FON loses r A loss."""
     return rho * (1.0 - (1.0 - rho) * r * loss / formulas.eon_denominator(rho, r))
-
-
-def _floats(**arguments: ArrayLike) -> list[Array]:
-    """Checked arguments in float64, whose shapes broadcast."""
-    arrays = {name: checked(name, value) for name, value in arguments.items()}
-    lead_shape({}, arrays)
-    return [np.asarray(array, np.float64) for array in arrays.values()]
-
-
-def _colored(rho: ArrayLike, **arguments: ArrayLike) -> tuple[Array, ...]:
-    """Checked `rho` (..., C), and the others with an axis for its channels."""
-    rho = np.atleast_1d(np.asarray(checked("rho", rho), np.float64))
-    numbers = {name: checked(name, value) for name, value in arguments.items()}
-    lead_shape({"rho": rho}, numbers)
-    return rho, *(np.asarray(array, np.float64)[..., np.newaxis] for array in numbers.values())

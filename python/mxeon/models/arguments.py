@@ -1,101 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Validation of arguments: ranges, directions and shapes.
+"""Validation of arguments: ranges, directions, shapes, switches and choices.
 
 Directions leave the surface, in a local frame with the normal +z.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NoReturn
 
 import numpy as np
 
-from mxeon.models.arrays import ArrayLike, Numbers
+from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.ranges import RANGES
 from mxeon.models.tiling import blocks, channels_first
-
-_LARGEST = float(np.finfo(np.float64).max)
-
-# Closed ranges of the quantities, by name: least, largest, as printed.
-RANGES = {
-    "mu": (0.0, 1.0, "[0, 1]"),
-    "rho": (0.0, 1.0, "[0, 1]"),
-    "roughness": (0.0, 1.0, "[0, 1]"),
-    "sigma": (0.0, 0.5 * np.pi, "[0, pi/2]"),
-    "color": (0.0, 1.0, "[0, 1]"),
-    "amount": (0.0, 1.0, "[0, 1]"),
-    "weight": (0.0, _LARGEST, "[0, inf)"),
-    "albedo": (-_LARGEST, _LARGEST, "(-inf, inf)"),
-    "mu_o": (0.0, 1.0, "[0, 1]"),
-    "mu_i": (0.0, 1.0, "[0, 1]"),
-    "alpha": (0.0, 1.0, "[0, 1]"),
-    "tint": (0.0, 1.0, "[0, 1]"),
-    "color0": (0.0, 1.0, "[0, 1]"),
-    "color82": (0.0, 1.0, "[0, 1]"),
-    "color90": (0.0, 1.0, "[0, 1]"),
-    "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
-    "ior": (0.0, 1e50, "[0, 1e50]"),
-    "extinction": (0.0, 1e50, "[0, 1e50]"),
-    "radiance": (0.0, 1e50, "[0, 1e50]"),
-    "intensity": (0.0, 1e50, "[0, 1e50]"),
-    "exposure": (-1000.0, 1000.0, "[-1000, 1000]"),
-    "opacity": (0.0, 1.0, "[0, 1]"),
-    "inner_angle": (0.0, 360.0, "[0, 360]"),
-    "outer_angle": (0.0, 360.0, "[0, 360]"),
-    "absorption": (0.0, 1e50, "[0, 1e50]"),
-    "scattering": (0.0, 1e50, "[0, 1e50]"),
-    "distance": (0.0, 1e50, "[0, 1e50]"),
-    "cos_theta": (-1.0, 1.0, "[-1, 1]"),
-    "g": (-float(np.nextafter(1.0, 0.0)), float(np.nextafter(1.0, 0.0)), "(-1, 1)"),
-    "anisotropy": (0.0, 1.0, "[0, 1]"),
-    "glossiness": (0.0, 1.0, "[0, 1]"),
-    "reflectivity": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
-    "edge_color": (0.0, 1.0, "[0, 1]"),
-    "temperature": (1.0, 1e9, "[1, 1e9]"),
-    "wavelength": (1.0, 1e9, "[1, 1e9]"),
-    "longitudinal": (0.0, 1.0, "[0, 1]"),
-    "azimuthal": (0.0, 1.0, "[0, 1]"),
-    "scale_tt": (0.0, 1e50, "[0, 1e50]"),
-    "scale_trt": (0.0, 1e50, "[0, 1e50]"),
-    "melanin_concentration": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
-    "melanin_redness": (0.0, 1.0, "[0, 1]"),
-    "eumelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
-    "pheomelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
-    "hair_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
-    "azimuthal_roughness": (0.0, 1.0, "[0, 1]"),
-    "thinfilm_thickness": (0.0, 1e9, "[0, 1e9]"),  # nm
-    "thinfilm_ior": (1.0, 1e50, "[1, 1e50]"),
-    **dict.fromkeys(("tint_R", "tint_TT", "tint_TRT"), (0.0, 1.0, "[0, 1]")),
-    "variance": (1e-12, 1e12, "[1e-12, 1e12]"),  # where exponents and squares still fit
-    "scale": (1e-12, 1e12, "[1e-12, 1e12]"),
-    **dict.fromkeys(
-        ("roughness_R", "roughness_TT", "roughness_TRT"), (1e-12, 1e12, "[1e-12, 1e12]")
-    ),
-    "cuticle_angle": (0.0, 1.0, "[0, 1]"),
-    "absorption_coefficient": (0.0, 1e50, "[0, 1e50]"),
-    "x": (0.0, _LARGEST, "[0, inf)"),
-    "theta": (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]"),
-    "phi": (-_LARGEST, _LARGEST, "(-inf, inf)"),
-    "reflectance": (0.0, 1.0, "[0, 1]"),
-    "transmittance": (0.0, 1.0, "[0, 1]"),
-    "single_scatter": (0.0, 1.0, "[0, 1]"),
-    "scatter_anisotropy": (-1.0, 1.0, "[-1, 1]"),
-    "separation": (float(np.nextafter(0.0, 1.0)), _LARGEST, "(0, inf)"),
-    "radius": (float(np.nextafter(0.0, 1.0)), _LARGEST, "(0, inf)"),
-    "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
-}
 
 # Largest error of the squared length of a direction: directions rounded to float32 pass.
 UNIT_TOLERANCE = 1e-6
 
 
-def checked(name: str, value: ArrayLike) -> Numbers:
+def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
     """Argument as an array of real numbers inside the range that its name has in `RANGES`.
 
     Parameters
     ----------
     name : str
-        A key of `RANGES`.
+        Name of the argument; a key of `RANGES` if no quantity is named.
     value : array_like
         The caller's argument.
+    quantity : str
+        Key of `RANGES`, where the name has another range elsewhere.
 
     Returns
     -------
@@ -116,10 +48,72 @@ def checked(name: str, value: ArrayLike) -> Numbers:
     ValueError: roughness must lie in [0, 1]; got 1.2 at index (1,)
     """
     array = _real(name, value)
-    low, high, interval = RANGES[name]
-    if array.size and not (array.min() >= low and array.max() <= high):
-        _refuse(f"{name} must lie in {interval}", array, (array >= low) & (array <= high))
+    low, high, interval = RANGES[quantity or name]
+    # In float64: half floats would round the ends of the range to infinity.
+    if array.size and not (float(array.min()) >= low and float(array.max()) <= high):
+        wide = np.asarray(array, np.float64)
+        _refuse(f"{name} must lie in {interval}", array, (wide >= low) & (wide <= high))
     return array
+
+
+def checked_numbers(**values: ArrayLike) -> list[Array]:
+    """Numbers inside the ranges of their names, in float64, whose shapes broadcast.
+
+    Examples
+    --------
+    >>> checked_numbers(mu=[0.5, 1.0], roughness=[0.1, 0.2, 0.3])
+    Traceback (most recent call last):
+    ...
+    ValueError: mu, roughness must broadcast; got shapes (2,), (3,)
+    """
+    return broadcastable({}, {name: checked(name, value) for name, value in values.items()})
+
+
+def checked_color(name: str, value: ArrayLike) -> Numbers:
+    """Argument inside the range of its name, with an axis of at least one channel."""
+    color = np.atleast_1d(checked(name, value))
+    if not color.shape[-1]:
+        raise ValueError(f"{name} must have at least one channel; got shape {color.shape}")
+    return color
+
+
+def checked_rgb(name: str, value: ArrayLike) -> Numbers:
+    """Argument inside the range of its name, in red, green and blue; one channel counts for all."""
+    color = checked_color(name, value)
+    if color.shape[-1] not in (1, 3):
+        raise ValueError(f"{name} must have 1 or 3 channels; got shape {color.shape}")
+    return np.broadcast_to(color, (*color.shape[:-1], 3))
+
+
+def checked_colors(
+    colors: Mapping[str, ArrayLike], **numbers: ArrayLike
+) -> tuple[list[Array], list[Array]]:
+    """Colors (..., C) and numbers with an axis for their channels, in float64, that broadcast."""
+    vectors = {name: checked_color(name, value) for name, value in colors.items()}
+    values = broadcastable(vectors, {name: checked(name, each) for name, each in numbers.items()})
+    channel_count(vectors)
+    return values[: len(colors)], [value[..., np.newaxis] for value in values[len(colors) :]]
+
+
+def checked_switch(name: str, value: bool) -> bool:
+    """Argument that is True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} must be True or False; got {value!r}")
+    return bool(value)
+
+
+def checked_count(name: str, value: int) -> int:
+    """Argument that is a positive integer, and not too large for an array."""
+    if not isinstance(value, int | np.integer) or isinstance(value, bool) or not 0 < value < 2**31:
+        raise ValueError(f"{name} must be a positive integer; got {value!r}")
+    return int(value)
+
+
+def checked_choice(name: str, value: str, known: Collection[str]) -> str:
+    """Argument that is one of the known words."""
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
+    return value
 
 
 def checked_directions(name: str, value: ArrayLike) -> Numbers:
@@ -158,23 +152,18 @@ def checked_directions(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
-    """Argument of shape (..., 3), none of whose directions points above the horizon."""
+    """Argument of shape (..., 3) of unit vectors, none of which points above the horizon."""
     array = checked_triples(name, value)
     z = array[..., 2]
     if (z > 0.0).any():
         _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > 0.0), "z = ")
-    return array
+    return checked_sphere(name, array)
 
 
 def checked_sphere(name: str, value: ArrayLike) -> Numbers:
     """Argument of shape (..., 3) of unit vectors, on either side of the surface."""
     array = checked_triples(name, value)
-    mirrored = np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1)
-    if not are_directions(np.moveaxis(mirrored, -1, 0)):
-        refuse_direction(name, mirrored)
-    """Argument of shape (..., 3), of unit vectors on either side of the horizon."""
-    array = checked_triples(name, value)
-    checked_directions(name, array * np.where(array[..., 2:] < 0.0, [1.0, 1.0, -1.0], 1.0))
+    checked_directions(name, np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1))
     return array
 
 
@@ -254,6 +243,12 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
         raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
 
 
+def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
+    """Checked vectors and numbers, in this order, as float64 arrays whose shapes broadcast."""
+    lead_shape(vectors, numbers)
+    return [np.asarray(array, np.float64) for array in (*vectors.values(), *numbers.values())]
+
+
 def channel_count(colors: Mapping[str, Numbers]) -> int:
     """Number of channels to which colors of shape (..., C) broadcast.
 
@@ -281,7 +276,7 @@ def _real(name: str, value: ArrayLike) -> Numbers:
         array = np.empty(0, object)
     if not np.can_cast(array.dtype, np.float64, "same_kind"):
         raise ValueError(f"{name} must be real numbers; got {value!r}")
-    return array
+    return array.astype(np.float64) if array.dtype == np.bool_ else array
 
 
 def _refuse(rule: str, array: Numbers, valid: Numbers, quantity: str = "") -> NoReturn:

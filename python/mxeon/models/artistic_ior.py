@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arguments import checked_numbers
 from mxeon.models.arrays import Array, ArrayLike
 
 
@@ -47,7 +47,7 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
     >>> round(float(ior), 4), round(float(extinction), 4)
     (0.1676, 3.2568)
     """
-    r, g = _numbers(reflectivity=reflectivity, edge_color=edge_color)
+    r, g = checked_numbers(reflectivity=reflectivity, edge_color=edge_color)
     n_min, n_max = _extremes(r)
     ior = g * n_min + (1.0 - g) * n_max
     square = g * (n_max - n_min) * ((ior - n_min) + (n_min - 1.0 / n_max))
@@ -68,8 +68,8 @@ def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, A
     -------
     reflectivity, edge_color : ndarray, shape (...), float64
         r in [0, 1]. The edge color lies in [0, 1] for metals that the parameterization reaches, those
-        with n >= (1 - r) / (1 + r); it is above 1 for others, and nan at r = 0, where n is 1 for every
-        edge color, and at r = 1.
+        with n >= (1 - r) / (1 + r); it is above 1 for others, and 0 at r = 0, where n is 1 for every
+        edge color.
 
     Raises
     ------
@@ -86,11 +86,14 @@ def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, A
     >>> round(float(r), 9), round(float(g), 9)
     (0.9, 0.25)
     """
-    n, k = _numbers(ior=ior, extinction=extinction)
+    n, k = checked_numbers(ior=ior, extinction=extinction)
     r = normal_reflectance(n, k)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        n_min, n_max = _extremes(r)
-        return r, np.asarray((n_max - n) / (n_max - n_min))
+    # With 1 - r = 4 n / S, S = (n + 1)^2 + k^2, both extremes times n have no pole at r = 1.
+    S = np.square(n + 1.0) + np.square(k)
+    largest = np.square(1.0 + np.sqrt(r)) * S / 4.0
+    width = largest - 4.0 * np.square(n) / (S * (1.0 + r))
+    edge = (largest - np.square(n)) / np.where(width > 0.0, width, 1.0)
+    return r, np.where(width > 0.0, edge, 0.0)
 
 
 def normal_reflectance(ior: Array, extinction: Array) -> Array:
@@ -111,13 +114,6 @@ def normal_reflectance(ior: Array, extinction: Array) -> Array:
     """
     square = np.square(extinction)
     return np.asarray((np.square(ior - 1.0) + square) / (np.square(ior + 1.0) + square))
-
-
-def _numbers(**values: ArrayLike) -> list[Array]:
-    """Arguments inside their ranges that broadcast."""
-    numbers = {name: checked(name, value) for name, value in values.items()}
-    shape = lead_shape({}, numbers)
-    return [np.broadcast_to(value, shape).astype(np.float64) for value in numbers.values()]
 
 
 def _extremes(r: Array) -> tuple[Array, Array]:

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.models.arguments import checked
+from mxeon.models.arguments import checked_numbers
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.colorimetry import CIE_1931, WAVELENGTHS, XYZ_TO_REC709
 
@@ -58,8 +58,8 @@ def planck_radiance(wavelength: ArrayLike, temperature: ArrayLike) -> Array:
     >>> round(float(planck_radiance(500.0, 6504.0)), 2)
     46224.39
     """
-    length = NANOMETER * np.asarray(checked("wavelength", wavelength), np.float64)
-    kelvin = np.asarray(checked("temperature", temperature), np.float64)
+    length, kelvin = checked_numbers(wavelength=wavelength, temperature=temperature)
+    length = NANOMETER * length
     with np.errstate(over="ignore"):
         return np.asarray(FIRST * NANOMETER / (length**5 * np.expm1(SECOND / (length * kelvin))))
 
@@ -96,7 +96,7 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     >>> blackbody_xyz(6504.0).round(4)
     array([0.9688, 1.    , 1.1218])
     """
-    kelvin = np.asarray(checked("temperature", temperature), np.float64)[..., np.newaxis]
+    kelvin = checked_numbers(temperature=temperature)[0][..., np.newaxis]
     exponent = SECOND / (NANOMETER * WAVELENGTHS * kelvin)
     least = exponent[..., -1:]  # of the longest wavelength
     # exp(x) - 1 over exp(least), which never overflows for the terms that count
@@ -173,7 +173,7 @@ def kang_xyz(temperature: ArrayLike) -> Array:
     array([[1.3733, 1.    , 0.0917],
            [0.9686, 1.    , 1.1216]])
     """
-    kelvin = np.asarray(checked("temperature", temperature), np.float64)
+    (kelvin,) = checked_numbers(temperature=temperature)
     warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)
     x = np.where(kelvin < 4000.0, warm, hot)
     cold, warm, hot = (np.polyval(fit, x) for fit in KANG_Y)

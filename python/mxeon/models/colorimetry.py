@@ -2,9 +2,9 @@
 """Colors of spectra: the CIE 1931 standard observer, and linear Rec. 709."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from mxeon.models.arrays import Array
+from mxeon.models.arguments import checked_numbers
+from mxeon.models.arrays import Array, ArrayLike
 
 WAVELENGTHS = np.arange(360.0, 835.0, 5.0)  # nm
 # Color-matching functions of the CIE 1931 2-degree standard observer at WAVELENGTHS, by ISO/CIE 11664-1.
@@ -131,18 +131,23 @@ def matching_functions(wavelength: ArrayLike) -> Array:
     Parameters
     ----------
     wavelength : array_like, shape (N,)
-        In nm.
+        In nm, in [1, 1e9].
 
     Returns
     -------
     ndarray, shape (N, 3)
         x, y and z, interpolated linearly in a table of 5 nm; 0 outside [360, 830].
 
+    Raises
+    ------
+    ValueError
+        If `wavelength` leaves its range; names the first bad element.
+
     Examples
     --------
     >>> matching_functions([555.0])
     array([[0.5120501, 1.       , 0.00575  ]])
     """
-    at = np.asarray(wavelength, np.float64)
+    (at,) = checked_numbers(wavelength=wavelength)
     columns = [np.interp(at, WAVELENGTHS, column, 0.0, 0.0) for column in CIE_1931.T]
     return np.stack(columns, axis=-1)

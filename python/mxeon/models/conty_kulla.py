@@ -15,12 +15,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arguments import checked_numbers
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.tiling import BLOCK
 
 # Above this cosine the closed form of the inner integral cancels, and Gauss-Legendre serves.
 STEEP = 0.25
+
+# Roughness above 0 that divides is at least this, lest the quotient overflow.
+LEAST = 1e-300
 
 
 def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
@@ -61,10 +64,9 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
     0.083333333333
     """
-    mu, roughness = checked("mu", mu), checked("roughness", roughness)
-    shape = lead_shape({}, {"mu": mu, "roughness": roughness})
-    cosines = np.broadcast_to(mu, shape).astype(np.float64).ravel()
-    shapes = np.broadcast_to(roughness, shape).astype(np.float64).ravel()
+    mu, roughness = np.broadcast_arrays(*checked_numbers(mu=mu, roughness=roughness))
+    cosines, shapes = mu.ravel(), np.where(roughness > 0.0, np.maximum(roughness, LEAST), 0.0)
+    shapes = shapes.ravel()
     albedo = np.zeros(cosines.shape)
     step = max(1, BLOCK // len(_rule()[0]))
     for steep in (False, True):
@@ -72,7 +74,7 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
         for start in range(0, len(chosen), step):
             block = chosen[start : start + step]
             albedo[block] = _albedo(cosines[block], shapes[block], steep)
-    return albedo.reshape(shape)[()]
+    return albedo.reshape(mu.shape)[()]
 
 
 def _albedo(mu: Array, roughness: Array, steep: bool) -> Array:

@@ -6,10 +6,12 @@ cosine, pi times that unit. Directions leave the surface, normal +z; one below t
 back of the surface. `measured_edf` has no function here: its values are those of a file.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_sphere, lead_shape
-from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.arguments import broadcastable, checked_colors, checked_numbers, checked_sphere
+from mxeon.models.arrays import Array, ArrayLike
 
 HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
 
@@ -45,7 +47,7 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
     >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
     array([0.5, 2. ])
     """
-    mu, c, _ = arguments(wo, radiance)
+    mu, (c,), _ = _checked(wo, {"radiance": radiance})
     return np.array(np.broadcast_to(c, (*np.broadcast_shapes(mu.shape, c.shape[:-1]), c.shape[-1])))
 
 
@@ -76,7 +78,8 @@ def uniform_exitance(radiance: ArrayLike) -> Array:
     >>> round(float(uniform_exitance(2.0)), 6)
     6.283185
     """
-    return np.asarray(np.pi * checked("radiance", radiance).astype(np.float64))[()]
+    (c,) = checked_numbers(radiance=radiance)
+    return np.asarray(np.pi * c)[()]
 
 
 def conical_edf(
@@ -117,8 +120,9 @@ def conical_edf(
            [1.251183]])
     """
     angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
-    mu, c, (inner, outer) = arguments(wo, radiance, **angles)
-    return np.asarray(c * conical_falloff(np.maximum(mu, 0.0), inner, outer)[..., np.newaxis])
+    mu, (c,), (inner, outer) = _checked(wo, {"radiance": radiance}, **angles)
+    falloff = conical_falloff(np.maximum(mu, 0.0)[..., np.newaxis], inner, outer)
+    return np.asarray(c * falloff)
 
 
 def conical_falloff(mu: Array, inner: Array, outer: Array) -> Array:
@@ -168,7 +172,7 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     array([1.570796])
     """
     angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
-    _, c, (inner, outer) = arguments((0.0, 0.0, 1.0), radiance, **angles)
+    (c,), (inner, outer) = checked_colors({"radiance": radiance}, **angles)
     a, b = cone_cosine(outer), cone_cosine(inner)
     h = np.where(outer > inner, cone_width(inner, outer), 0.0)
     start = np.clip(np.where(h > 0.0, -a / np.where(h > 0.0, h, 1.0), 1.0), 0.0, 1.0)
@@ -179,7 +183,7 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     ramp = antiderivative(1.0) - antiderivative(start)
     cone = 0.5 * np.sin(HALF_TURN * inner) ** 2
     share = np.where(b <= 0.0, 0.5, cone + ramp)
-    return np.asarray(2.0 * np.pi * c * share[..., np.newaxis])
+    return np.asarray(2.0 * np.pi * c * share)
 
 
 def generalized_schlick_edf(
@@ -220,10 +224,10 @@ def generalized_schlick_edf(
     >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
     array([1.6])
     """
-    mu, base, (q,) = arguments(wo, base, exponent=exponent)
-    r0, r90 = (np.atleast_1d(checked(*each)) for each in (("color0", color0), ("color90", color90)))
-    power = (np.maximum(1.0 - np.abs(mu), 0.0) ** q)[..., np.newaxis]
-    return np.asarray(base * (r0 + (r90 - r0) * power))
+    colors = {"base": base, "color0": color0, "color90": color90}
+    mu, (c, r0, r90), (q,) = _checked(wo, colors, exponent=exponent)
+    power = np.maximum(1.0 - np.abs(mu[..., np.newaxis]), 0.0) ** q
+    return np.asarray(c * (r0 + (r90 - r0) * power))
 
 
 def generalized_schlick_exitance(
@@ -258,9 +262,9 @@ def generalized_schlick_exitance(
     >>> generalized_schlick_exitance([1.0], [0.0], [1.0], 0.0).round(6)
     array([3.141593])
     """
-    _, c, (q,) = arguments((0.0, 0.0, 1.0), radiance, exponent=exponent)
-    r0, r90 = (np.atleast_1d(checked(*each)) for each in (("color0", color0), ("color90", color90)))
-    share = (2.0 / ((q + 1.0) * (q + 2.0)))[..., np.newaxis]
+    colors = {"radiance": radiance, "color0": color0, "color90": color90}
+    (c, r0, r90), (q,) = checked_colors(colors, exponent=exponent)
+    share = 2.0 / ((q + 1.0) * (q + 2.0))
     return np.asarray(np.pi * c * (r0 + (r90 - r0) * share))
 
 
@@ -275,13 +279,13 @@ def cone_width(inner: Array, outer: Array) -> Array:
     return np.asarray(2.0 * np.sin(half * (outer + inner)) * np.sin(half * (outer - inner)))
 
 
-def arguments(
-    wo: ArrayLike, radiance: ArrayLike, **numbers: ArrayLike
-) -> tuple[Array, Numbers, list[Array]]:
-    """Cosines of the view, the radiance and further numbers, checked, in float64."""
+def _checked(
+    wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
+) -> tuple[Array, list[Array], list[Array]]:
+    """Cosines of the view, and what `checked_colors` returns, all of which broadcast."""
     directions = checked_sphere("wo", wo)
-    c = np.atleast_1d(checked("radiance", radiance)).astype(np.float64)
-    values = {name: checked(name, value) for name, value in numbers.items()}
-    lead_shape({"wo": directions, "radiance": c}, values)
-    mu = np.asarray(directions[..., 2], np.float64)
-    return np.clip(mu, -1.0, 1.0), c, [np.asarray(each, np.float64) for each in values.values()]
+    vectors, values = checked_colors(colors, **numbers)
+    parts = dict(zip(colors, vectors, strict=True))
+    plain = {name: value[..., 0] for name, value in zip(numbers, values, strict=True)}
+    broadcastable({"wo": directions} | parts, plain)
+    return np.clip(np.asarray(directions[..., 2], np.float64), -1.0, 1.0), vectors, values

@@ -6,7 +6,7 @@ Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no o
 
 import numpy as np
 
-from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arguments import checked_colors
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.formulas import C1, C2
 
@@ -252,10 +252,8 @@ def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike)
 
 def _checked(color: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Checked arguments as float64 arrays: colors (..., C), roughness (..., 1)."""
-    color = np.atleast_1d(np.asarray(checked("color", color), np.float64))
-    roughness = np.asarray(checked("roughness", roughness), np.float64)
-    lead_shape({"color": color}, {"roughness": roughness})
-    return color, roughness[..., np.newaxis]
+    (color,), (roughness,) = checked_colors({"color": color}, roughness=roughness)
+    return color, roughness
 
 
 def _polynomial(color: ArrayLike, roughness: ArrayLike, slope: float, zero: float) -> Array:

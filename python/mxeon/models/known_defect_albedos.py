@@ -5,6 +5,7 @@ import numpy as np
 
 from mxeon.models import formulas
 from mxeon.models.albedo import eon_albedo_dir, fon_albedo_dir, qon_albedo_dir
+from mxeon.models.arguments import checked_colors
 from mxeon.models.arrays import Array, ArrayLike
 
 
@@ -21,12 +22,18 @@ def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike)
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
 
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
     Examples
     --------
     >>> qon_tinted_twice_albedo_dir(0.5, [0.5, 1.0], 0.0).round(6)
     array([0.25, 1.  ])
     """
-    return np.square(rho) * qon_albedo_dir(mu, sigma)[..., np.newaxis]
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    return np.square(color) * qon_albedo_dir(m, s)
 
 
 def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
@@ -42,16 +49,21 @@ def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> A
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
 
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
     Examples
     --------
     >>> qon_degrees_albedo_dir(1.0, [0.5, 1.0], 0.0).round(6)
     array([0.5, 1. ])
     """
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
     rough = 0.5 * np.pi
-    lobe = (qon_albedo_dir(mu, rough) - formulas.qon_a(rough)) / formulas.qon_b(rough)
-    sigma = np.degrees(np.asarray(sigma, np.float64))
-    white: Array = np.asarray(formulas.qon_a(sigma) + formulas.qon_b(sigma) * lobe)
-    return white[..., np.newaxis] * np.asarray(rho, np.float64)
+    lobe = (qon_albedo_dir(m, rough) - formulas.qon_a(rough)) / formulas.qon_b(rough)
+    degrees = np.degrees(s)
+    return np.asarray((formulas.qon_a(degrees) + formulas.qon_b(degrees) * lobe) * color)
 
 
 def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
@@ -79,8 +91,8 @@ def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike
     >>> eon_rho_cubed_albedo_dir(0.5, [0.5, 1.0], 1.0).round(6)
     array([0.447959, 1.      ])
     """
-    fon = fon_albedo_dir(mu, roughness)[..., np.newaxis]
-    return np.asarray(rho) * (eon_albedo_dir(mu, rho, roughness) + (1.0 - np.asarray(rho)) * fon)
+    (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
+    return color * (eon_albedo_dir(mu, rho, roughness) + (1.0 - color) * fon_albedo_dir(m, r))
 
 
 def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
@@ -108,7 +120,8 @@ def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLik
     >>> fon_white_lobe_albedo_dir(1.0, [0.0, 1.0], 1.0).round(6)
     array([0.223478, 1.      ])
     """
-    return 1.0 - (1.0 - np.asarray(rho)) * fon_albedo_dir(mu, roughness)[..., np.newaxis]
+    (color,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
+    return 1.0 - (1.0 - color) * fon_albedo_dir(m, r)
 
 
 def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
@@ -128,6 +141,11 @@ def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Ar
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1]; off by up to 0.068 at rho 1.
 
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
     Notes
     -----
     Coefficients of MaterialX 1.39.5, `mx_microfacet_diffuse.glsl`, which clamps the quotient to 1.
@@ -137,8 +155,7 @@ def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Ar
     >>> qon_fitted_albedo_dir(0.5, [0.5, 1.0], 1.0).round(6)
     array([0.374198, 0.748396])
     """
-    mu, sigma = np.asarray(mu, np.float64), np.asarray(sigma, np.float64)
-    over = 1.0 - 0.4297 * sigma - 0.7632 * mu * sigma + 1.4385 * sigma**2
-    under = 1.0 - 0.6076 * sigma - 0.4993 * mu * sigma + 2.0315 * sigma**2
-    white: Array = np.minimum(over / under, 1.0)
-    return white[..., np.newaxis] * np.asarray(rho, np.float64)
+    (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
+    over = 1.0 - 0.4297 * s - 0.7632 * m * s + 1.4385 * s**2
+    under = 1.0 - 0.6076 * s - 0.4993 * m * s + 2.0315 * s**2
+    return np.asarray(np.minimum(over / under, 1.0) * color)

@@ -4,6 +4,7 @@
 import numpy as np
 
 from mxeon.models import formulas
+from mxeon.models.arguments import checked
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.brdf import qon_brdf
 from mxeon.models.burley import burley_brdf
@@ -73,7 +74,7 @@ def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     >>> burley_cosine_brdf([0.0, 0.0, 1.0], [0.8, 0.0, 0.6], [0.5, 1.0], 0.5).round(6)
     array([0.095395, 0.19079 ])
     """
-    value = burley_brdf(wo, wi, rho, np.square(roughness))
+    value = burley_brdf(wo, wi, rho, np.square(checked("roughness", roughness)))
     return value * np.asarray(wi, np.float64)[..., 2:]
 
 
@@ -234,7 +235,7 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
     >>> qon_tinted_twice_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.5, 1.0], 0.0).round(6)
     array([0.079577, 0.31831 ])
     """
-    return np.asarray(rho) * qon_brdf(wo, wi, rho, sigma)
+    return checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
 
 
 def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:

@@ -10,7 +10,7 @@ In retroreflective mode wo is replaced by its mirror image about the normal.
 
 import numpy as np
 
-from mxeon.models.arguments import checked
+from mxeon.models.arguments import checked, checked_switch
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.microfacet_lobe import (
     CONDUCTOR,
@@ -206,4 +206,4 @@ def generalized_schlick_brdf(
 
 def _lobe(compensate: bool) -> Lobe:
     """The lobe of the specification, with or without its energy compensation."""
-    return Lobe() if compensate else Lobe(factor=uncompensated)
+    return Lobe() if checked_switch("compensate", compensate) else Lobe(factor=uncompensated)

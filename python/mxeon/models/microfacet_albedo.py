@@ -8,7 +8,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mxeon.models.arguments import channel_count, checked, checked_directions, checked_pairs
+from mxeon.models.arguments import (
+    channel_count,
+    checked,
+    checked_directions,
+    checked_pairs,
+    checked_switch,
+)
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
 from mxeon.models.ggx_albedo import albedo
@@ -202,6 +208,7 @@ def lobe_albedo(
 ) -> Array:
     """Albedo of a lobe with this Fresnel curve, whose checked inputs `vectors` and `numbers` are."""
     wo, roughness = checked_directions("wo", wo), checked_pairs("roughness", roughness)
+    checked_switch("compensate", compensate)
 
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
         c, weight = slope_nodes(wo, roughness)

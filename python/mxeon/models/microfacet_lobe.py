@@ -8,7 +8,12 @@ import numpy as np
 
 from mxeon.models import fresnel_formulas as fresnel
 from mxeon.models import ggx_formulas as ggx
-from mxeon.models.arguments import channel_count, checked_directions, checked_pairs
+from mxeon.models.arguments import (
+    channel_count,
+    checked_directions,
+    checked_pairs,
+    checked_switch,
+)
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
 from mxeon.models.ggx_albedo import albedo
@@ -119,6 +124,7 @@ def evaluate_lobe(
     """Values of a lobe, shape (..., C); `vectors` and `numbers` are checked inputs of the curve."""
     directions = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     pairs = {"roughness": checked_pairs("roughness", roughness)}
+    checked_switch("retroreflective", retroreflective)
 
     def value(wo: Array, wi: Array, roughness: Array, **material: Array) -> Array:
         if retroreflective:

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models.arguments import checked, lead_shape
+from mxeon.models.arguments import checked, checked_count, lead_shape
 from mxeon.models.arrays import Array, ArrayLike
 
 
@@ -57,6 +57,7 @@ def albedo_dir_quadrature(
     >>> albedo_dir_quadrature(eon_brdf, 0.3, [0.5, 1.0], 1.0).round(12)
     array([0.47804055, 1.        ])
     """
+    checked_count("nodes", nodes)
     mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
     parameters = [np.asarray(value) for value in parameter]
     numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameters)}

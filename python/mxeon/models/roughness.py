@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_pairs, lead_shape
+from mxeon.models.arguments import checked_numbers, checked_pairs
 from mxeon.models.arrays import Array, ArrayLike
 
 LARGEST_ANISOTROPY = 0.98  # beyond it alpha along the tangent would soon divide by 0
@@ -45,12 +45,12 @@ def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
     array([[0.25 , 0.25 ],
            [0.5  , 0.125]])
     """
-    numbers = {
-        "roughness": checked("roughness", roughness),
-        "anisotropy": checked("anisotropy", anisotropy),
-    }
-    shape = lead_shape({}, numbers)
-    r, a = (np.broadcast_to(value, shape).astype(np.float64) for value in numbers.values())
+    return _stretched(*checked_numbers(roughness=roughness, anisotropy=anisotropy))
+
+
+def _stretched(r: Array, a: Array) -> Array:
+    """`roughness_anisotropy` on valid arrays."""
+    r, a = np.broadcast_arrays(r, a)
     aspect = np.sqrt(1.0 - np.minimum(a, LARGEST_ANISOTROPY))
     return np.stack([np.minimum(r * r / aspect, 1.0), r * r * aspect], axis=-1)
 
@@ -112,6 +112,5 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
     >>> glossiness_anisotropy(0.5, 0.75)
     array([0.5  , 0.125])
     """
-    return roughness_anisotropy(
-        1.0 - np.asarray(checked("glossiness", glossiness), np.float64), anisotropy
-    )
+    g, a = checked_numbers(glossiness=glossiness, anisotropy=anisotropy)
+    return _stretched(1.0 - g, a)

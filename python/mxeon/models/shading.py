@@ -3,12 +3,8 @@
 
 import numpy as np
 
-from mxeon.models.arguments import checked
+from mxeon.models.arguments import checked_colors
 from mxeon.models.arrays import Array, ArrayLike
-from mxeon.models.emission import arguments
-from mxeon.models.volume import extinction, transmittance
-
-UP = (0.0, 0.0, 1.0)
 
 
 def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLike) -> Array:
@@ -45,8 +41,8 @@ def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLik
     array([ 6., 12.])
     """
     numbers = {"intensity": intensity, "exposure": exposure}
-    _, c, (scale, stops) = arguments(UP, emission, **numbers)
-    return np.asarray(c * (scale * np.exp2(stops))[..., np.newaxis])
+    (c,), (scale, stops) = checked_colors({"emission": emission}, **numbers)
+    return np.asarray(c * (scale * np.exp2(stops)))
 
 
 def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
@@ -81,9 +77,9 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     >>> surface_radiance([1.0], [0.5], 0.5)
     array([0.75])
     """
-    _, emitted, (covered,) = arguments(UP, emission, opacity=opacity)
-    light = np.atleast_1d(checked("radiance", scattered))
-    return np.asarray(covered[..., np.newaxis] * (emitted + light))
+    colors = {"emission": emission, "scattered": scattered}
+    (emitted, light), (covered,) = checked_colors(colors, opacity=opacity)
+    return np.asarray(covered * (emitted + light))
 
 
 def volume_radiance(
@@ -128,10 +124,10 @@ def volume_radiance(
     >>> volume_radiance([1.0], [3.0], [0.0], [0.0], 2.0)
     array([7.])
     """
-    _, light, (t,) = arguments(UP, behind, distance=distance)
-    emitted = np.atleast_1d(checked("radiance", emission))
-    sigma_t, along = extinction(absorption, scattering), np.asarray(t)[..., np.newaxis]
-    depth = sigma_t * along
+    media = {"absorption": absorption, "scattering": scattering}
+    (light, emitted, sigma_a, sigma_s), (t,) = checked_colors(
+        {"behind": behind, "emission": emission} | media, distance=distance
+    )
+    depth = (sigma_a + sigma_s) * t
     share = np.where(depth > 0.0, -np.expm1(-depth) / np.where(depth > 0.0, depth, 1.0), 1.0)
-    passed = transmittance(absorption, scattering, along)
-    return np.asarray(light * passed + emitted * along * share)
+    return np.asarray(light * np.exp(-depth) + emitted * t * share)

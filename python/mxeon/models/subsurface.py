@@ -5,9 +5,11 @@ The albedo inversion is that of van de Hulst's fit for a half space, solved for 
 `subsurface_reflectance`. NumPy only.
 """
 
+from functools import cache
+
 import numpy as np
 
-from mxeon.models.arguments import checked
+from mxeon.models.arguments import broadcastable, checked, checked_numbers
 from mxeon.models.arrays import Array, ArrayLike
 
 # Of the text's inversion, with its digits: the quotients of van de Hulst's fit, rounded.
@@ -55,8 +57,11 @@ def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Ar
     >>> subsurface_albedo([0.2, 0.5, 0.8]).round(6)
     array([0.613357, 0.911709, 0.990589])
     """
-    color = np.asarray(checked("rho", rho), np.float64)
-    g = np.asarray(checked("scatter_anisotropy", scatter_anisotropy), np.float64)
+    return _single_scatter(*checked_numbers(rho=rho, scatter_anisotropy=scatter_anisotropy))
+
+
+def _single_scatter(color: Array, g: Array) -> Array:
+    """`subsurface_albedo` on valid arrays."""
     polynomial = SQUARED[0] + SQUARED[1] * color + SQUARED[2] * color**2
     d = LINEAR[0] + LINEAR[1] * color - np.sqrt(polynomial)
     isotropic = 1.0 - d * d
@@ -99,8 +104,8 @@ def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayL
     >>> subsurface_reflectance(0.911709).round(4).item()
     0.5
     """
-    w = np.asarray(checked("single_scatter", single_scatter), np.float64)
-    g = np.asarray(checked("scatter_anisotropy", scatter_anisotropy), np.float64)
+    values = {"single_scatter": single_scatter, "scatter_anisotropy": scatter_anisotropy}
+    w, g = checked_numbers(**values)
     with np.errstate(invalid="ignore", divide="ignore"):
         s = np.sqrt(np.where(w == 1.0, 0.0, (1.0 - w) / (1.0 - g * w)))
     return np.asarray((1.0 - s) * (1.0 - LOSS * s) / (1.0 + GAIN * s))
@@ -118,7 +123,7 @@ def subsurface_coefficients(
     rho : array_like
         Diffuse reflectance, dimensionless, in [0, 1].
     radius : array_like, broadcasts with rho
-        Mean free path l, a length, above 0.
+        Mean free path l, a length, in [1e-150, 1e150].
     scatter_anisotropy : array_like, broadcasts with rho
         Mean cosine g of a scattering, dimensionless, in [-1, 1].
 
@@ -141,7 +146,9 @@ def subsurface_coefficients(
     >>> [round(float(each), 4) for each in subsurface_coefficients(0.5, 0.1)]
     [9.1171, 0.8829]
     """
-    albedo, length = subsurface_albedo(rho, scatter_anisotropy), checked("radius", radius)
+    values = {"rho": rho, "radius": radius, "scatter_anisotropy": scatter_anisotropy}
+    color, length, g = checked_numbers(**values)
+    albedo = _single_scatter(color, g)
     return np.asarray(albedo / length), np.asarray((1.0 - albedo) / length)
 
 
@@ -153,9 +160,9 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
     Parameters
     ----------
     separation : array_like
-        Distance r, a length, above 0.
+        Distance r, a length, in [1e-150, 1e150].
     radius : array_like, broadcasts with separation
-        Mean free path l, a length, above 0.
+        Mean free path l, a length, in [1e-150, 1e150].
 
     Returns
     -------
@@ -177,7 +184,7 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
     >>> diffusion_profile(1.0, 1.0).round(6).item()
     0.043147
     """
-    r, length = checked("separation", separation), checked("radius", radius)
+    r, length = checked_numbers(separation=separation, radius=radius)
     return np.asarray(
         (np.exp(-r / length) + np.exp(-r / (3.0 * length))) / (8.0 * np.pi * length * r)
     )
@@ -208,7 +215,8 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
     >>> diffusion_cdf(2.5, 1.0).round(6).item()
     0.65353
     """
-    x = checked("separation", separation) / checked("radius", radius)
+    r, length = checked_numbers(separation=separation, radius=radius)
+    x = r / length
     return np.asarray(-0.25 * np.expm1(-x) - 0.75 * np.expm1(-x / 3.0))
 
 
@@ -220,7 +228,7 @@ def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     u : array_like
         Dimensionless, in [0, 1).
     radius : array_like, broadcasts with u
-        Mean free path l, a length, above 0.
+        Mean free path l, a length, in [1e-150, 1e150].
 
     Returns
     -------
@@ -241,13 +249,14 @@ def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     >>> diffusion_sample(0.65353, 1.0).round(4).item()
     2.5
     """
-    rest = 1.0 - checked("u", u)
+    share, length = checked_numbers(u=u, radius=radius)
+    rest = 1.0 - share
     with np.errstate(divide="ignore"):
         logarithm = np.log(2.0 * np.sinh(np.arcsinh(2.0 * rest) / 3.0))
-    return np.asarray(-3.0 * checked("radius", radius) * np.minimum(logarithm, 0.0))
+    return np.asarray(-3.0 * length * np.minimum(logarithm, 0.0))
 
 
-def diffusion_blur(mu: ArrayLike, reach: float) -> Array:
+def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
     """Cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
 
         W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
@@ -256,8 +265,8 @@ def diffusion_blur(mu: ArrayLike, reach: float) -> Array:
     ----------
     mu : array_like
         Cosine of the light with the normal, dimensionless, in [-1, 1].
-    reach : float
-        Mean free path over the radius of the sphere, above 0; its limit 0 is max(mu, 0).
+    reach : array_like, broadcasts with mu
+        Mean free path over the radius of the sphere, in [1e-150, 1e150]; its limit 0 is max(mu, 0).
 
     Returns
     -------
@@ -280,21 +289,28 @@ def diffusion_blur(mu: ArrayLike, reach: float) -> Array:
     >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
     array([0.0097, 0.074 , 0.9344])
     """
-    cosine = np.asarray(checked("cos_theta", mu), np.float64)
-    checked("radius", reach)
+    numbers = {"mu": checked("mu", mu, "cos_theta"), "reach": checked("reach", reach)}
+    cosine, length = broadcastable({}, numbers)
+    reach = length[..., np.newaxis]
     parts = [(0.25, _exponential(cosine, reach)), (0.75, _exponential(cosine, 3.0 * reach))]
     total = sum(weight * share for weight, (_, share) in parts)
     return np.asarray(sum(weight * share * mean for weight, (mean, share) in parts) / total)
 
 
-def _exponential(mu: Array, reach: float) -> tuple[Array, float]:
+def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
     """Mean over the circles of one exponential of the profile, and its share on the sphere."""
+    u, weights = _rule()
+    share = -np.expm1(-2.0 / reach)
+    distance = np.minimum(-reach * np.log1p(-u * share), 2.0)
+    return (weights * _circle(mu[..., np.newaxis], distance)).sum(axis=-1), share[..., 0]
+
+
+@cache
+def _rule() -> tuple[Array, Array]:
+    """Nodes in [0, 1] and weights of Gauss-Legendre in PANELS of equal width."""
     x, w = np.polynomial.legendre.leggauss(NODES)
     u = (np.arange(PANELS)[:, np.newaxis] + 0.5 * (x + 1.0)).ravel() / PANELS
-    weights = np.tile(0.5 * w / PANELS, PANELS)
-    share = float(-np.expm1(-2.0 / reach))
-    distance = np.minimum(-reach * np.log1p(-u * share), 2.0)
-    return (weights * _circle(mu[..., np.newaxis], distance)).sum(axis=-1), share
+    return u, np.tile(0.5 * w / PANELS, PANELS)
 
 
 def _circle(mu: Array, distance: Array) -> Array:

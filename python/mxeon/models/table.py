@@ -8,9 +8,9 @@ import numpy as np
 
 from mxeon.models import albedo, known_defect_albedos, known_defects
 from mxeon.models import brdf as models
-from mxeon.models.arguments import RANGES
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.burley import burley_albedo_dir, burley_brdf
+from mxeon.models.ranges import RANGES
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ scattered, so that light that goes straight on has wi = -wo.
 import numpy as np
 
 from mxeon.models.arguments import (
-    checked,
+    checked_numbers,
     checked_pairs,
     checked_sphere,
     lead_shape,
@@ -43,7 +43,7 @@ def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
     >>> float(extinction(0.5, 1.5))
     2.0
     """
-    sigma_a, sigma_s = _numbers(absorption=absorption, scattering=scattering)
+    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
     return np.asarray(sigma_a + sigma_s)[()]
 
 
@@ -77,11 +77,9 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
     >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
     0.135335
     """
-    sigma_t = extinction(absorption, scattering)
-    (t,) = _numbers(distance=distance)
-    with np.errstate(invalid="ignore"):
-        depth = np.where((sigma_t == 0.0) | (t == 0.0), 0.0, sigma_t * t)
-    return np.asarray(np.exp(-depth))[()]
+    values = {"absorption": absorption, "scattering": scattering, "distance": distance}
+    sigma_a, sigma_s, t = checked_numbers(**values)
+    return np.asarray(np.exp(-(sigma_a + sigma_s) * t))[()]
 
 
 def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
@@ -111,7 +109,7 @@ def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Ar
     >>> float(single_scattering_albedo(0.5, 1.5))
     0.75
     """
-    sigma_a, sigma_s = _numbers(absorption=absorption, scattering=scattering)
+    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
     sigma_t = sigma_a + sigma_s
     return np.asarray(sigma_s / np.where(sigma_t > 0.0, sigma_t, 1.0))[()]
 
@@ -153,7 +151,7 @@ def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
     >>> hg_phase([1.0, -1.0], 0.5).round(6)
     array([0.477465, 0.017684])
     """
-    cosine, mean = _numbers(cos_theta=cos_theta, g=g)
+    cosine, mean = checked_numbers(cos_theta=cos_theta, g=g)
     return np.asarray(_phase(1.0 - np.where(mean < 0.0, -cosine, cosine), mean))[()]
 
 
@@ -197,7 +195,7 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     >>> wi.round(12) + 0.0, round(float(pdf), 6)
     (array([0., 1., 0.]), 0.079577)
     """
-    views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), _numbers(g=g)
+    views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), checked_numbers(g=g)
     shape = lead_shape({"wo": views, "u": pairs}, {"g": mean})
     x, azimuth = 2.0 * pairs[..., 0] - 1.0, 2.0 * np.pi * pairs[..., 1]
     square = 2.0 * (1.0 + mean * x) ** 2
@@ -239,7 +237,11 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
     0.477465
     """
-    views, lights, (mean,) = checked_sphere("wo", wo), checked_sphere("wi", wi), _numbers(g=g)
+    views, lights, (mean,) = (
+        checked_sphere("wo", wo),
+        checked_sphere("wi", wi),
+        checked_numbers(g=g),
+    )
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
     side = np.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
     difference = (
@@ -263,10 +265,3 @@ def _phase(less: Array, g: Array) -> Array:
     size = np.abs(g)
     square = (1.0 - size) ** 2 + 2.0 * size * less
     return np.asarray((1.0 - size) * (1.0 + size) / (4.0 * np.pi * square * np.sqrt(square)))
-
-
-def _numbers(**values: ArrayLike) -> list[Array]:
-    """Numbers of these names, checked, in float64."""
-    arrays = {name: checked(name, value) for name, value in values.items()}
-    lead_shape({}, arrays)
-    return [np.asarray(each, np.float64) for each in arrays.values()]

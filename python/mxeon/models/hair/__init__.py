@@ -11,7 +11,9 @@ import numpy as np
 from mxeon.models.arguments import (
     channel_count,
     checked,
+    checked_color,
     checked_directions,
+    checked_numbers,
     checked_pairs,
     checked_sphere,
 )
@@ -89,8 +91,8 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
         lobes = _lobes(wo, wi, inputs, form)
         tints = [inputs[name] for name in (*TINTS, TINTS[-1])]
-        total: Array = np.sum([t * lobe for t, lobe in zip(tints, lobes, strict=True)], axis=0)
-        return form.factor * total
+        first, *others = (tint * lobe for tint, lobe in zip(tints, lobes, strict=True))
+        return form.factor * sum(others, first)
 
     return evaluate_material(formula, vectors | values, numbers, channel_count(colors), BLOCK)
 
@@ -128,13 +130,13 @@ def chiang_hair_attenuation(
     >>> chiang_hair_attenuation([0.0, 0.0, 1.0], 1.55, 0.0).round(6)
     array([[0.046521, 0.909123, 0.042293, 0.002063]])
     """
-    absorption = np.atleast_1d(checked("absorption_coefficient", absorption_coefficient))
-    vectors = {"wo": checked_directions("wo", wo), "absorption": absorption}
+    absorption = checked_color("absorption_coefficient", absorption_coefficient)
+    vectors = {"wo": checked_directions("wo", wo), "absorption_coefficient": absorption}
     channels = absorption.shape[-1]
 
-    def formula(wo: Array, absorption: Array, ior: Array) -> Array:
+    def formula(wo: Array, absorption_coefficient: Array, ior: Array) -> Array:
         view, effective = formulas.section(wo, ior)
-        factors = formulas.attenuations(view, effective, ior, absorption, TEXT)
+        factors = formulas.attenuations(view, effective, ior, absorption_coefficient, TEXT)
         return np.concatenate(list(np.moveaxis(factors, 0, 1)))
 
     values = evaluate_material(formula, vectors, {"ior": checked("ior", ior)}, 4 * channels, BLOCK)
@@ -172,9 +174,8 @@ def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLik
     >>> round(float(hair_longitudinal(0.3, -0.3, 0.01)), 6)
     4.18169
     """
-    theta_i, theta_o = (np.asarray(checked("theta", each), float) for each in (theta_i, theta_o))
-    v = np.asarray(checked("variance", variance), float)
-    inclined = np.sin(theta_i), np.cos(theta_i), np.sin(theta_o), np.cos(theta_o)
+    i, o, v = checked_numbers(theta_i=theta_i, theta_o=theta_o, variance=variance)
+    inclined = np.sin(i), np.cos(i), np.sin(o), np.cos(o)
     return formulas.longitudinal(*inclined, v)
 
 
@@ -207,8 +208,7 @@ def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
     >>> round(float(hair_azimuthal(0.5, 0.3)), 6)
     0.325121
     """
-    phi, s = np.asarray(checked("phi", phi), float), np.asarray(checked("scale", scale), float)
-    return formulas.azimuthal(phi, s)
+    return formulas.azimuthal(*checked_numbers(phi=phi, scale=scale))
 
 
 DEFAULTS: dict[str, ArrayLike] = {

@@ -6,7 +6,7 @@ A film of thickness 0 is the node's own Fresnel curve. `Form` says what the spec
 
 import numpy as np
 
-from mxeon.models.arguments import checked
+from mxeon.models.arguments import checked, checked_rgb, lead_shape
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.evaluation import evaluate_material
 from mxeon.models.thin_film.curve import CIE_RGB, MATERIALX, PRINTED, TEXT, Form, film_curve
@@ -21,6 +21,8 @@ __all__ = [
     "film_dielectric",
     "film_schlick",
 ]
+
+PORTS = {"thickness": "thinfilm_thickness", "film_ior": "thinfilm_ior"}  # of the nodes
 
 
 def film_dielectric(
@@ -71,7 +73,10 @@ def film_dielectric(
            [0.0209, 0.0142, 0.0348]])
     """
     return _reflectance(
-        "dielectric_bsdf", form, {}, {"mu": mu, "ior": ior} | _film(thickness, film_ior)
+        "dielectric_bsdf",
+        form,
+        {},
+        {"mu": mu, "ior": ior, "thickness": thickness, "film_ior": film_ior},
     )
 
 
@@ -118,7 +123,8 @@ def film_conductor(
            [0.9554, 0.7184, 0.1298]])
     """
     colors = {"ior": ior, "extinction": extinction}
-    return _reflectance("conductor_bsdf", form, colors, {"mu": mu} | _film(thickness, film_ior))
+    numbers = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
+    return _reflectance("conductor_bsdf", form, colors, numbers)
 
 
 def film_schlick(
@@ -168,18 +174,16 @@ def film_schlick(
            [1.    , 0.7633, 0.1166]])
     """
     colors = {"color0": color0, "color82": color82, "color90": color90}
-    numbers = {"mu": mu, "exponent": exponent} | _film(thickness, film_ior)
+    numbers = {"mu": mu, "exponent": exponent, "thickness": thickness, "film_ior": film_ior}
     return _reflectance("generalized_schlick_bsdf", form, colors, numbers)
-
-
-def _film(thickness: ArrayLike, film_ior: ArrayLike) -> dict[str, ArrayLike]:
-    return {"thinfilm_thickness": thickness, "thinfilm_ior": film_ior}
 
 
 def _reflectance(
     category: str, form: Form, colors: dict[str, ArrayLike], numbers: dict[str, ArrayLike]
 ) -> Array:
     """Curve of a node under a film over arguments that broadcast."""
+    if not isinstance(form, Form):
+        raise ValueError(f"form must be a Form; got {form!r}")
     curve = film_curve(category, form)
 
     def at(mu: Array, **material: Array) -> Array:
@@ -187,7 +191,8 @@ def _reflectance(
             material["tint"] = np.ones(1)  # which the curve leaves alone
         return curve.at(mu, **material)
 
-    vectors = {name: np.atleast_1d(checked(name, value)) for name, value in colors.items()}
-    return evaluate_material(
-        at, vectors, {name: checked(name, value) for name, value in numbers.items()}, 3
-    )
+    vectors = {name: checked_rgb(name, value) for name, value in colors.items()}
+    values = {name: checked(name, value) for name, value in numbers.items()}
+    lead_shape(vectors, values)
+    ports = {PORTS.get(name, name): value for name, value in values.items()}
+    return evaluate_material(at, vectors, ports, 3)

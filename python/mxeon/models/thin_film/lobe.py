@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from mxeon.models.arguments import checked
+from mxeon.models.arguments import checked, checked_choice, checked_directions, checked_rgb
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.microfacet_albedo import lobe_albedo
 from mxeon.models.microfacet_lobe import Curve, Lobe, evaluate_lobe
@@ -124,9 +124,14 @@ def _material(
     category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike
 ) -> tuple[dict[str, Numbers], dict[str, Numbers]]:
     """Checked inputs with channels and without."""
-    colors, numbers = INPUTS[category]
+    colors, numbers = INPUTS[checked_choice("category", category, INPUTS)]
+    if not isinstance(inputs, Mapping):
+        raise ValueError(f"inputs must be a mapping of names to values; got {inputs!r}")
+    if missing := {"roughness", *colors, *numbers, *FILM} - set(inputs):
+        raise ValueError(f"inputs must have {', '.join(sorted(missing))}")
+    wo = checked_directions("wo", wo)
     return (
-        {name: _short(np.atleast_1d(checked(name, inputs[name])), 1, wo) for name in colors},
+        {name: _short(checked_rgb(name, inputs[name]), 1, wo) for name in colors},
         {name: _short(checked(name, inputs[name]), 0, wo) for name in (*numbers, *FILM)},
     )
 

@@ -7,7 +7,7 @@ interfaces and the phase of one passage give the sum of all reflections in close
 
 import numpy as np
 
-from mxeon.models.arguments import checked
+from mxeon.models.arguments import checked, checked_numbers
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.colorimetry import matching_functions
 
@@ -28,7 +28,7 @@ def film_spectrum(
     Parameters
     ----------
     wavelength : array_like, shape (...)
-        In nm, above 0.
+        In nm, in [1, 1e9].
     mu, thickness, film_ior, ior, extinction : array_like, shape (...)
         As those of `mxeon.models.thin_film.film_dielectric` and `film_conductor`, without channels.
 
@@ -51,14 +51,21 @@ def film_spectrum(
     >>> film_spectrum([450.0, 550.0, 650.0], 1.0, 100.0, 1.38, 1.5, 0.0).round(4)
     array([0.0173, 0.0141, 0.0156])
     """
-    mu = np.asarray(checked("mu", mu), np.float64)
-    n2 = np.asarray(checked("thinfilm_ior", film_ior), np.float64)
-    n3 = checked("ior", ior) + 1j * checked("extinction", extinction)
+    film = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
+    substrate = {"ior": ior, "extinction": extinction}
+    return _spectrum(*checked_numbers(wavelength=wavelength, **film, **substrate))
+
+
+def _spectrum(
+    wavelength: Array, mu: Array, thickness: Array, n2: Array, n: Array, k: Array
+) -> Array:
+    """`film_spectrum` on valid arrays."""
+    n3 = n + 1j * k
     sin2 = (1.0 - mu) * (1.0 + mu)
     c2 = np.sqrt(1.0 - sin2 / n2**2)
     w3 = np.sqrt(n3**2 - sin2 + 0j)  # n3 times the cosine in the substrate
-    path = 4.0 * np.pi * n2 * c2 * checked("thinfilm_thickness", thickness)
-    turn = np.exp(1j * path / np.asarray(wavelength))
+    path = 4.0 * np.pi * n2 * c2 * thickness
+    turn = np.exp(1j * path / wavelength)
     s = _amplitude(mu, n2 * c2), _amplitude(n2 * c2, w3)
     p = _amplitude(n2 * mu, c2), _amplitude(n3**2 * c2, n2 * w3)
     both = [(upper + lower * turn) / (1.0 + upper * lower * turn) for upper, lower in (s, p)]
@@ -97,10 +104,13 @@ def film_spectrum_xyz(
     >>> film_spectrum_xyz(1.0, 400.0, 1.33, 1.5, 0.0).round(4)
     array([0.0246, 0.0326, 0.0161])
     """
-    material = [np.asarray(each)[..., np.newaxis] for each in (mu, thickness, film_ior)]
-    substrate = [np.asarray(each)[..., np.newaxis] for each in (ior, extinction)]
-    R = film_spectrum(VISIBLE, *material, *substrate)
-    weights = matching_functions(VISIBLE) * np.reshape(light, (-1, 1))
+    film = {"mu": mu, "thickness": thickness, "film_ior": film_ior}
+    material = checked_numbers(**film, ior=ior, extinction=extinction)
+    power = checked("light", light)
+    if power.shape not in ((), VISIBLE.shape) or not power.any():
+        raise ValueError(f"light must be {len(VISIBLE)} powers, not all 0; got {light!r}")
+    R = _spectrum(VISIBLE, *(each[..., np.newaxis] for each in material))
+    weights = matching_functions(VISIBLE) * np.reshape(power / power.max(), (-1, 1))
     return np.asarray(R @ (weights / weights.sum(axis=0)))
 
 

@@ -19,6 +19,7 @@ from mxeon.models.arguments import (
     checked,
     checked_directions,
     checked_pairs,
+    checked_switch,
     checked_transmitted,
 )
 from mxeon.models.arrays import Array, ArrayLike, Numbers
@@ -109,6 +110,8 @@ def evaluate_btdf(
     """
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_pairs("roughness", roughness)}
+    checked_switch("radiance", radiance)
+    checked_switch("anywhere", anywhere)
 
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
         facet = Facet.of(wo, wi, ior, anywhere)

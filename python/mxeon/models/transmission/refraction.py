@@ -10,6 +10,8 @@ from mxeon.models.arguments import checked, checked_directions, checked_transmit
 from mxeon.models.arrays import Array, ArrayLike
 from mxeon.models.evaluation import evaluate_material
 
+LEAST = 1e-50  # index below which all light counts as reflected; its square divides
+
 
 def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Array:
     """Direction on the far side into which light along `wo` is refracted, and that refracts into it.
@@ -93,10 +95,10 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     """`refraction_direction` on float64 arrays, components first."""
-    inverse = 1.0 / np.where(ior > 0.0, ior, 1.0)
+    inverse = 1.0 / np.maximum(ior, LEAST)
     cosine = np.sum(wo * normal, axis=0)
     squared = 1.0 - inverse * inverse * (1.0 - cosine) * (1.0 + cosine)
-    passes = (squared > 0.0) & (cosine > 0.0) & (ior > 0.0)
+    passes = (squared > 0.0) & (cosine > 0.0) & (ior > LEAST)
     scale = inverse * cosine - np.sqrt(np.maximum(squared, 0.0))
     wi = scale * normal - inverse * wo
     return np.where(passes, wi, 0.0)

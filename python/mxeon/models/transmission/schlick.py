@@ -11,7 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from mxeon.models import fresnel_formulas as fresnel
-from mxeon.models.arguments import channel_count, checked
+from mxeon.models.arguments import (
+    channel_count,
+    checked,
+    checked_choice,
+    checked_color,
+    checked_switch,
+)
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.transmission.btdf import evaluate_btdf
 from mxeon.models.transmission.transmittance import evaluate_transmittance
@@ -114,7 +120,7 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
     (array([2.2299]), array([1.5, 3. ]))
     """
     how = _reading(reading)
-    r = np.atleast_1d(checked("color0", color0))
+    r = checked_color("color0", color0)
     return index_of(np.mean(r, axis=-1, keepdims=True) if how.index == "average" else r, how.least)
 
 
@@ -177,6 +183,7 @@ def generalized_schlick_btdf(
     array([10.1048])
     """
     how = _reading(reading)
+    checked_switch("inside", inside)
     channels = [
         evaluate_btdf(
             how.at,
@@ -239,6 +246,7 @@ def generalized_schlick_transmittance_dir(
     array([0.945, 0.738])
     """
     how = _reading(reading)
+    checked_switch("inside", inside)
     channels = [
         evaluate_transmittance(
             how.at,
@@ -261,7 +269,7 @@ def _parts(
 ) -> list[tuple[Array, dict[str, Numbers]]]:
     """Index and colors of each evaluation: of all channels, or of one after another."""
     given = {"color0": color0, "color82": color82, "color90": color90}
-    colors = {name: np.atleast_1d(checked(name, value)) for name, value in given.items()}
+    colors = {name: checked_color(name, value) for name, value in given.items()}
     count = channel_count(colors)
     if how.index == "average":
         return [(index_of(np.mean(colors["color0"], axis=-1), how.least), colors)]
@@ -279,6 +287,4 @@ def _parts(
 
 def _reading(name: str) -> Reading:
     """A row of READINGS."""
-    if name not in READINGS:
-        raise ValueError(f"reading must be one of {', '.join(READINGS)}; got {name!r}")
-    return READINGS[name]
+    return READINGS[checked_choice("reading", name, READINGS)]

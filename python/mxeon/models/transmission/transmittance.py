@@ -11,7 +11,13 @@ from functools import lru_cache
 import numpy as np
 
 from mxeon.models import ggx_formulas as ggx
-from mxeon.models.arguments import channel_count, checked, checked_directions, checked_pairs
+from mxeon.models.arguments import (
+    channel_count,
+    checked,
+    checked_directions,
+    checked_pairs,
+    checked_switch,
+)
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
 from mxeon.models.microfacet_lobe import DIELECTRIC
@@ -83,6 +89,7 @@ def evaluate_transmittance(
     """Transmittance, shape (..., C), of checked inputs; `numbers` has the index."""
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_pairs("roughness", roughness)}
+    checked_switch("shadow", shadow)
 
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
         wo, roughness = wo + 0.0 * roughness[:1], roughness + 0.0 * wo[:1]

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every public function of the models with bad values: which are refused, and in which words.
+
+The functions are those of the package that take arrays; no list of them is kept. A value is refused
+by a ValueError whose first words are arguments of the signature, or computed to finite numbers.
+"""
+
+import importlib
+import inspect
+import math
+import pkgutil
+import warnings
+from decimal import Decimal
+from fractions import Fraction
+from functools import cache
+from itertools import combinations, product
+from types import SimpleNamespace
+
+import numpy as np
+
+import mxeon.models
+from mxeon.models.arrays import ArrayLike
+from mxeon.models.fresnel_formulas import schlick
+from mxeon.models.layering import Bsdf
+from mxeon.models.microfacet_lobe import SCHLICK, Lobe
+from mxeon.models.ranges import RANGES
+from mxeon.models.thin_film import PRINTED
+
+UP, LOW = (0.0, 0.6, 0.8), (0.0, 0.6, -0.8)
+COLORS = {"color0": np.array([0.5]), "color82": np.array([0.5]), "color90": np.array([1.0])}
+FILM = {"tint": np.ones(3), "ior": 1.5, "roughness": (0.5, 0.4), "thinfilm_thickness": 100.0}
+PAIR, FIVE = (0.5, 0.4), np.array(5.0)
+LOBE = Bsdf(np.array(0.5), np.array(0.5))
+
+# Values that functions take, by the name of the argument: the first one that fits the function.
+# Other arguments have 0.5, or their defaults.
+COLOR, BSDF = ((0.5, 0.4, 0.3),), (LOBE,)
+VALID = {
+    **dict.fromkeys(("wo", "wh", "normal"), ((0.6, 0.0, 0.8),)),
+    "wi": (UP, LOW),
+    "roughness": (0.5, PAIR),
+    "u": (0.5, (0.5, 0.25)),
+    **dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), COLOR),
+    **dict.fromkeys(("ior", "extinction", "exponent", "film_ior"), (1.5,)),
+    **dict.fromkeys(("temperature", "wavelength"), (500.0,)),
+    **dict.fromkeys(("fg", "bg", "in1"), BSDF),
+    "form": (PRINTED,),
+    "category": ("dielectric_bsdf",),
+    "inputs": (FILM | {"thinfilm_ior": 1.4}, {"tint_R": 0.5}),
+    "lobe": (Lobe(),),
+    "curve": (SCHLICK,),
+    "at": (lambda cosine, ior, **colors: schlick(cosine, **colors),),
+    "brdf": (lambda wo, wi, rho, *parameter: rho * wi[..., :1],),
+    "nodes": (4,),
+    "parameter": ((),),
+    "vectors": (COLORS,),
+    "numbers": ({"exponent": FIVE}, {"exponent": FIVE, "ior": np.array(1.5)}, {}),
+}
+CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for others
+PLUMBING = (
+    "mxeon.models.arguments",
+    "mxeon.models.evaluation",
+)  # which has no arguments of its own
+TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried
+
+SMALLEST, LEAST = math.ulp(0.0), np.finfo(np.float64).tiny
+# No argument takes all of them, and most take few.
+BAD = (
+    None, True, False, "x", "", "0.5", b"x", {}, [], (), {0.5}, print, Decimal("0.5"),
+    Fraction(1, 2), 1j, math.nan, math.inf, -math.inf, SMALLEST, 1e-320, LEAST, -SMALLEST, -0.0, 0.0,
+    1e-160, 1e160, 1.7e308, -1.0, 2.0, 10**400, np.ma.masked, [[0.5], [0.5, 0.5]], [None],
+    np.zeros((0, 3)), np.full(7, 0.5), np.full((5, 7), 0.5), np.full(3, math.nan),
+    np.datetime64(0, "s"), np.float16(math.inf), np.str_("0.5"),
+)  # fmt: skip
+
+
+@cache
+def functions():
+    """Public functions of the models that take arrays, by their full names."""
+    return {
+        f"{module.__name__}.{name}": each
+        for module in modules()
+        if module.__name__ not in PLUMBING
+        for name, each in vars(module).items()
+        if inspect.isfunction(each) and each.__module__ == module.__name__
+        if not name.startswith(CHECKS) and any(map(_is_array, _parameters(each).values()))
+    }
+
+
+def modules():
+    """The package of the models, and all of its modules."""
+    package = mxeon.models
+    names = (each.name for each in pkgutil.walk_packages(package.__path__, f"{package.__name__}."))
+    return [package, *map(importlib.import_module, names)]
+
+
+def rows():
+    """Function, argument and the place of a bad value, or of the one it is put into."""
+    for name, function in functions().items():
+        for argument in tried(function):
+            first = _part(base(function), argument)
+            for place, inside in product(range(len(BAD)), (False, True)):
+                if not inside or (np.ndim(first) and isinstance(BAD[place], float)):
+                    yield name, argument, place, inside
+        for pair in combinations(tried(function, arrays=True), 2):
+            yield name, pair, 0, False
+
+
+def tried(function, arrays=False):
+    """Names of the arguments that get bad values: arrays, numbers, switches and choices.
+
+    Those of a mapping by names follow a dot.
+    """
+    for name, each in _parameters(function).items():
+        if _is_array(each) or (not arrays and each.annotation in TAKEN):
+            yield name
+        elif name == "inputs" and not arrays:
+            yield from (f"{name}.{key}" for key in base(function)[name])
+
+
+def fault(row):
+    """What is wrong with the answer to a row; empty if nothing is."""
+    name, argument, place, inside = row
+    function = functions()[name]
+    values = dict(base(function))
+    if isinstance(argument, tuple):
+        for each, count in zip(argument, (2, 3), strict=True):
+            values[each] = np.tile(values[each], (count, *(1,) * np.ndim(values[each])))
+    else:
+        first = _part(values, argument)
+        value = _inside(first, BAD[place]) if inside else BAD[place]
+        name, _, key = argument.partition(".")
+        values[name] = values[name] | {key: value} if key else value
+    return answer(function, values)
+
+
+def _part(values, argument):
+    """An argument, or what a mapping has under the key that follows a dot."""
+    name, _, key = argument.partition(".")
+    return values[name][key] if key else values[name]
+
+
+def answer(function, values):
+    """What is wrong with the answer of a function; empty if nothing is."""
+    parameters = _parameters(function)
+    more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
+    named = {name: value for name, value in values.items() if name not in more}
+    places = [named.pop(n) for n, each in parameters.items() if each.kind < each.VAR_POSITIONAL]
+    places += [e for n, p in parameters.items() if p.kind is p.VAR_POSITIONAL for e in named.pop(n)]
+    try:
+        with warnings.catch_warnings(action="error"), np.errstate(under="ignore"):
+            result = function(*places, **named, **(values[more[0]] if more else {}))
+    except ValueError as error:
+        first = str(error).split(" must ")[0].split(", ")
+        names = set(parameters) | (set(RANGES) if more or "inputs" in parameters else set())
+        return "" if set(first) <= names else f"says {error}"
+    except Exception as error:
+        return f"raises {type(error).__name__}: {error}"
+    return "" if _is_finite(result) else f"returns {result}"
+
+
+@cache
+def base(function):
+    """Arguments of a function that it takes."""
+    parameters, reasons = _parameters(function), []
+    for chosen in product(*map(_valid, parameters.values())):
+        values = dict(zip(parameters, chosen, strict=True))
+        if not (why := answer(function, values)):
+            return values
+        reasons.append(why)
+    raise LookupError(f"{function.__name__} takes none of the valid arguments: {reasons}")
+
+
+def _parameters(function):
+    return inspect.signature(function).parameters
+
+
+def _valid(parameter):
+    default = 0.5 if parameter.default is parameter.empty else parameter.default
+    return VALID.get(parameter.name, (default,))
+
+
+def _is_array(parameter):
+    return parameter.annotation == ArrayLike and parameter.kind < parameter.VAR_POSITIONAL
+
+
+def _inside(valid, value):
+    """The valid array with a value in its first place; a direction stays as long as it was."""
+    array = np.array(valid)
+    array[0] = value
+    return array
+
+
+def _is_finite(result):
+    parts = result if isinstance(result, tuple) else (result,)
+    if isinstance(result, (Bsdf, SimpleNamespace)):
+        parts = vars(result).values()
+    arrays = [np.asarray(part) for part in parts]
+    return all(array.dtype == np.float64 and np.isfinite(array).all() for array in arrays)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bad arguments of every public function of the models, which are found by introspection."""
+
+import functools
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mxeon.models.artistic_ior import artistic_ior, artistic_parameters
+from mxeon.models.conty_kulla import conty_kulla_albedo_dir
+from mxeon.models.transmission.refraction import refraction_direction
+from tests.fuzz import arguments
+
+PAGES = Path(__file__).resolve().parents[2] / "docs" / "api"
+NO_ARRAYS = {"threads", "layer", "add"}  # functions on the pages that take no array
+
+
+@pytest.fixture(scope="module")
+def faults():
+    """What is wrong with the answers to all rows, by function."""
+    told = defaultdict(list)
+    for row in arguments.rows():
+        if why := arguments.fault(row):
+            told[row[0]].append((row[1], arguments.BAD[row[2]], why))
+    return told
+
+
+@pytest.mark.parametrize("name", arguments.functions())
+def test_bad_arguments_are_refused_by_name_or_computed(name, faults):
+    assert not faults[name]
+
+
+def test_the_least_number_above_zero_counts_as_zero():
+    for function in arguments.functions().values():
+        for name in arguments.tried(function, arrays=True):
+            least, zero = (result(function, name, value) for value in (arguments.SMALLEST, 0.0))
+            if least and zero and name != "thickness":  # where the text has a jump
+                np.testing.assert_allclose(least[0], zero[0], 1e-9, 1e-12, err_msg=str(function))
+
+
+def result(function, name, value):
+    """What a function returns, in a tuple; empty if it refuses the value."""
+    returned = []
+
+    @functools.wraps(function)
+    def kept(*values, **named):
+        returned.append(function(*values, **named))
+        return 0.0
+
+    arguments.answer(kept, arguments.base(function) | {name: value})
+    return tuple(getattr(each, "value", each) for each in returned)
+
+
+def test_every_function_on_the_pages_is_tried():
+    text = "".join(page.read_text(encoding="utf-8") for page in PAGES.glob("*.md"))
+    names = re.findall(
+        r"^::: mxeon\.(?:models|albedo|inversion|sampling)[\w.]*\.([a-z]\w+)$", text, re.M
+    )
+    tried = {name.rpartition(".")[2] for name in arguments.functions()}
+    assert len(names) > 90
+    assert set(names) - NO_ARRAYS <= tried
+
+
+@pytest.mark.parametrize(
+    "answer",
+    ("says roughness must", "raises KeyError", "returns [nan]"),
+    ids=("another name", "another error", "no number"),
+)
+def test_what_is_wrong_with_an_answer_is_told(answer):
+    def function(mu):
+        if "says" in answer:
+            raise ValueError("roughness must lie in [0, 1]")
+        return {}["mu"] if "Key" in answer else np.array([np.nan])
+
+    assert arguments.answer(function, {"mu": 0.5}).startswith(answer)
+
+
+def test_there_are_forty_bad_values():
+    assert len(arguments.BAD) == 40
+
+
+@pytest.mark.parametrize("roughness", (5e-324, 1e-320, 1e-300))
+def test_conty_kulla_has_no_albedo_away_from_grazing_at_the_least_roughness(roughness):
+    assert conty_kulla_albedo_dir(0.5, roughness) == 0.0
+
+
+def test_edge_color_of_an_index_of_zero_is_its_limit():
+    near, at = artistic_parameters([1e-12, 0.0], 1.5)[1]
+    assert at == 1.0
+    assert near == pytest.approx(1.0, abs=1e-11)
+
+
+def test_edge_color_of_no_reflection_is_one_that_gives_it_back():
+    index = artistic_ior(*artistic_parameters(1.0, 0.0))
+    assert [float(part) for part in index] == [1.0, 0.0]
+
+
+@pytest.mark.parametrize("ior", (5e-324, 1e-160, 1e-51))
+def test_an_index_of_nothing_reflects_all(ior):
+    assert not refraction_direction([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], ior).any()
