@@ -10,6 +10,7 @@ import * as inversion from "./models/inversion";
 import * as table from "./models/table";
 import type { Stage } from "./stage";
 import type { State } from "./state";
+import { page_data } from "./texts";
 import "./style.css";
 
 /** What tests and consoles may use. */
@@ -27,7 +28,7 @@ declare global {
   var mxeon: Hook | undefined;
 }
 
-const data = JSON.parse(document.getElementById("data")!.textContent!) as PageData;
+const data = page_data(document.getElementById("data")!.textContent!);
 const hook = {
   data,
   models: { ...albedo, ...inversion, ...table },

@@ -11,16 +11,18 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
+from mxeon.cli.explore import MATERIALS
 from mxeon.conformance.checks.probes import PairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS
-from mxeon.explorer import page, page_data
-from mxeon.explorer.data import Models
+from mxeon.explorer import PARAGRAPH, TEXTS, page, page_data
+from mxeon.explorer.data import Models, PageData
 from mxeon.explorer.diagnosis import measured_models
-from mxeon.explorer.documents import document_sources
+from mxeon.explorer.documents import _texels, document_sources
 from mxeon.explorer.sources import RENDERERS
 from mxeon.explorer.stills import COLOR, LIGHT, picture
+from mxeon.io.images import write_image
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text
@@ -35,7 +37,11 @@ NASTY = "</script><script>globalThis.hit = 1</script><!--"
 
 def data_of(text):
     """The data of a page, as a browser would read them."""
-    return json.loads(re.search(r'type="application/json">(.*?)</script>', text, re.DOTALL)[1])
+    data = json.loads(re.search(r'type="application/json">(.*?)</script>', text, re.DOTALL)[1])
+    for each in data["sources"]:
+        for name in filter(each.__contains__, TEXTS):
+            each[name] = PARAGRAPH.join(data["texts"][place] for place in each[name])
+    return data
 
 
 def test_the_page_is_one_small_file_that_names_no_other():
@@ -252,6 +258,27 @@ def test_a_document_is_shown_with_its_own_values_and_inputs(browser, tmp_path):
         } == {0.25}
         until(page, f"before => {sums} < 0.5 * before", before)
         assert page.locator(".side.left .verdict strong").inner_text() == "material"
+
+
+def test_the_page_holds_what_materials_share_once():
+    source = document_sources(CLAY)[0]
+    sizes = [len(page(PageData("1", "1", "", (source,) * count))) for count in (1, 2, 1002)]
+    assert sizes[1] - sizes[0] < 0.1 * len(source.pixel)
+    assert sizes[2] - sizes[1] <= 1001 * (sizes[1] - sizes[0])
+
+
+def test_more_materials_than_a_page_may_hold_are_refused(tmp_path, capsys):
+    arguments = ["explore", CLAY, "--workers", "0", "--output", str(tmp_path / "out.html")]
+    assert main([*arguments, "--maxShaders", "0"]) == MISUSE
+    assert "renderable elements; got 2: raise it with --maxShaders" in capsys.readouterr().err
+    assert main(["explore", "--help"]) == PASSED_STATUS
+    assert f"renderable elements; {MATERIALS}" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_texture_of_one_row_is_reduced_along_it(tmp_path):
+    write_image(tmp_path / "row.png", np.full((1, 5000, 3), 255, np.uint8), {})
+    texels = _texels(str(tmp_path / "row.png"))
+    assert (texels.width, texels.height) == (250, 1)
 
 
 def test_the_data_are_the_fields_that_the_page_reads():

@@ -76,8 +76,11 @@ def add_workers(command: argparse.ArgumentParser) -> None:
     )
 
 
-def add_policy(command: argparse.ArgumentParser, runs_code: bool = False) -> None:
-    """Add the options of `mxeon.shaders.document.policy`; --allowCode where code would run."""
+def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:
+    """Add the options of `mxeon.shaders.document.policy`, with defaults of the command's own.
+
+    --allowCode is added where code would run.
+    """
     command.add_argument(
         "--path",
         action="append",
@@ -100,7 +103,7 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False) -> Non
             help="permit running shader code that documents contain",
         )
     for name, meaning in LIMITS.items():
-        limit = getattr(Policy, name)
+        limit = defaults.get(name, getattr(Policy, name))
         group.add_argument(
             f"--max{name.capitalize()}",
             type=int,

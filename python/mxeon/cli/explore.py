@@ -9,6 +9,8 @@ from mxeon.cli.batch import run_batch
 from mxeon.cli.output import fail, status_of, warn
 from mxeon.errors import PASSED
 
+MATERIALS = 300  # of a document: a page of 3 MB, in 10 s
+
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its options."""
@@ -22,7 +24,7 @@ def add_parser(commands: arguments.Commands) -> None:
     )
     command.add_argument("--output", metavar="OUT", required=True, help="the .html file to write")
     arguments.add_workers(command)
-    arguments.add_policy(command, runs_code=True)
+    arguments.add_policy(command, runs_code=True, shaders=MATERIALS)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, replace
 from importlib.resources import files
 from itertools import chain
+from typing import Any
 
 import MaterialX as mx
 
@@ -23,6 +24,7 @@ from mxeon.shaders.functions import source
 
 __all__ = ["document_sources", "page", "page_data"]
 
+TEXTS, PARAGRAPH = ("pixel", "document"), "\n\n"  # fields that stand in the table of texts
 MARK = "%DATA%"  # in the template; the data take its place
 # Characters that could end the script element, or be read otherwise in HTML, as JSON writes them.
 ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
@@ -83,6 +85,20 @@ def page(data: PageData) -> str:
     False
     """
     template = files("mxeon.explorer").joinpath("explorer.html").read_text(encoding="utf-8")
-    text = json.dumps(asdict(data), ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    fields = _with_texts(asdict(data))
+    text = json.dumps(fields, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     before, _, after = template.partition(MARK)
     return before + text.translate(ESCAPES) + after
+
+
+def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
+    """The data with each paragraph of shaders and documents once; `explorer/src/texts.ts` undoes it.
+
+    Shaders share nearly all of their functions, and materials of one file the whole document.
+    """
+    places: dict[str, int] = {}
+    for each in fields["sources"]:
+        for name in filter(each.__contains__, TEXTS):
+            parts = each[name].split(PARAGRAPH)
+            each[name] = [places.setdefault(part, len(places)) for part in parts]
+    return fields | {"texts": list(places)}

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import MaterialX as mx
 import numpy as np
 
-from mxeon.errors import ImageError, MxeonError, printable
+from mxeon.errors import MxeonError, printable
 from mxeon.explorer.data import Controls, Models, Port, ShaderSource, Texels
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
@@ -59,8 +59,8 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
             if library == LIBRARIES[0]:
                 raise
             continue  # a node that stock MaterialX lacks
+        text = document_text(shaders[0].document) if shaders else ""  # one for all of them
         for shader in shaders:
-            text = document_text(shader.document)
             title = f"{shader.element}, {library}"
             source = shader_source(shader, text, f"{shader.name}/{library}", title, name, library)
             sources.append(source)
@@ -233,13 +233,11 @@ def _texels(path: str) -> Texels | None:
     if not Path(path).is_file():
         return None
     pixels = read_texture(path)
-    step = -(-max(pixels.shape[:2]) // LARGEST_IMAGE)
-    rows, columns = pixels.shape[0] // step, pixels.shape[1] // step
-    if not rows or not columns:
-        raise ImageError(f"{path}: must not be more than {LARGEST_IMAGE} times as long as wide")
-    blocks = pixels[: rows * step, : columns * step].reshape(rows, step, columns, step, -1)
+    high, wide = (-(-size // LARGEST_IMAGE) for size in pixels.shape[:2])
+    rows, columns = pixels.shape[0] // high, pixels.shape[1] // wide
+    blocks = pixels[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
     mean = blocks.mean(axis=(1, 3))
     rgba = np.ones((rows, columns, 4))
     rgba[..., : mean.shape[-1]] = mean
-    codes = np.rint(255.0 * np.clip(rgba, 0.0, 1.0)).astype(np.uint8)
+    codes = np.rint(255.0 * np.clip(np.nan_to_num(rgba), 0.0, 1.0)).astype(np.uint8)
     return Texels(columns, rows, b64encode(codes.tobytes()).decode())
