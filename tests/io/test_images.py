@@ -4,10 +4,12 @@
 import os
 
 import numpy as np
+import OpenImageIO as oiio
 import pytest
 
 from mxeon.errors import ImageError
-from mxeon.io.images import read_image, srgb_decoded, srgb_encoded, write_image
+from mxeon.io.images import ImageWarning, read_image, srgb_decoded, srgb_encoded, write_image
+from mxeon.shaders.hosts.textures import read_latlong, read_texture
 
 PIXELS = np.arange(24.0, dtype=np.float32).reshape(2, 4, 3)
 
@@ -34,6 +36,36 @@ def test_a_file_that_is_not_regular_is_refused_and_blocks_nobody(tmp_path, make)
     reason = "not a regular file" if make else "No such file or directory"
     with pytest.raises(ImageError, match=f"a.exr: must be an image file; {reason}$"):
         read_image(path)
+
+
+def test_bytes_of_a_message_that_are_no_text_are_told_as_numbers(tmp_path):
+    path = tmp_path / "a.exr"
+    write_image(path, PIXELS, {})
+    path.write_bytes(path.read_bytes().replace(b"\0chlist\0", b"\0\xffhlist\0", 1))
+    with pytest.raises(ImageError, match=r"a.exr: must be an image .*\\xffhlist"):
+        read_image(path)
+
+
+def test_a_picture_that_is_cut_and_still_read_is_told(tmp_path):
+    path = tmp_path / "a.jpg"
+    codes = np.arange(64 * 64 * 3, dtype=np.uint32).astype(np.uint8).reshape(64, 64, 3)
+    assert oiio.ImageBuf(codes).write(str(path))  # whose pixels are not those that it got
+    path.write_bytes(path.read_bytes()[:-100])
+    with pytest.warns(ImageWarning, match="a.jpg: is damaged; JPEG error: Premature end"):
+        assert read_image(path).shape == (64, 64, 3)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_an_environment_that_is_not_finite_is_refused_and_a_texture_is_told(tmp_path, value):
+    path = tmp_path / "a.exr"
+    pixels = PIXELS.copy()
+    pixels[1, 2, 0] = value
+    write_image(path, pixels, {})
+    reason = f"a.exr: (must|should) hold finite numbers; got {value} at row 1, column 2, 1 in all"
+    with pytest.raises(ImageError, match=reason):
+        read_latlong(path)
+    with pytest.warns(ImageWarning, match=reason):
+        read_texture(path)
 
 
 def test_the_codes_of_srgb_are_decoded_to_what_was_encoded():

@@ -256,6 +256,19 @@ def test_eight_bits_in_a_float_file_are_refused(kit):
     assert "never rounded to eight bits" in result.diagnosis
 
 
+def test_one_bright_pixel_does_not_look_like_eight_bits(kit):
+    write_exr(render(kit, "true_side"), planted(3e38)(read(render(kit, "true_side"))), {})
+    assert not [each for each in check_kit(kit).results if each.check == "file"]
+
+
+def test_a_damaged_picture_costs_no_other(kit):
+    path = render(kit, "true_side")
+    path.write_bytes(path.read_bytes().replace(b"\0chlist\0", b"\0\xffhlist\0", 1))
+    run = check_kit(kit)
+    assert r"\xffhlist" in result_of(run, "file", "true_side").diagnosis
+    assert [each.check for each in run.results].count("file") == 1
+
+
 def test_an_eight_bit_file_is_refused(kit):
     render(kit, "true_side").unlink()
     path = kit / "renders" / "true_side.png"

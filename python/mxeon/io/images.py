@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Images in memory and as files: linear EXR, sRGB PNG, and the difference of two images."""
 
+from __future__ import annotations
+
 import errno
-from collections.abc import Mapping
+import warnings
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError
 from mxeon.io.files import AnyPath, assert_regular, replacing
+
+if TYPE_CHECKING:
+    import OpenImageIO as oiio
 
 Floats = NDArray[np.float64]
 Pixels = NDArray[np.float32]
@@ -20,6 +26,10 @@ NOT_FINITE = (255, 0, 255)  # code values of a pixel that is not a finite number
 LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
 PNG_END = b"IEND\xaeB`\x82"  # the last chunk of a PNG file
 INCOMPLETE = "the file is incomplete; the disk may be full"
+
+
+class ImageWarning(UserWarning):
+    """An image that can be read and is damaged, or that holds other values than numbers."""
 
 
 def srgb_decoded(image: ArrayLike) -> Floats:
@@ -137,6 +147,34 @@ def read_image(path: AnyPath) -> Pixels:
     ImageError
         If it is no regular file, if OpenImageIO cannot read it, in OpenImageIO's words, or if it
         has more than LARGEST values, which a small file can.
+
+    Warns
+    -----
+    ImageWarning
+        If OpenImageIO reads it and has an error to report, as of a JPEG file that is cut.
+    """
+    import OpenImageIO as oiio
+
+    file = open_image(path)
+    values = file.spec().image_pixels() * file.spec().nchannels
+    if values > LARGEST:
+        raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
+    pixels: Pixels | None = file.read_image(oiio.FLOAT)
+    reason = words(file.geterror)
+    if pixels is None:
+        raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
+    if reason:
+        warnings.warn(ImageWarning(f"{path}: is damaged; {reason}"), stacklevel=2)
+    return pixels
+
+
+def open_image(path: AnyPath) -> oiio.ImageInput:
+    """An image file that OpenImageIO opens.
+
+    Raises
+    ------
+    ImageError
+        If it is no regular file, or OpenImageIO cannot read it, in OpenImageIO's words.
     """
     import OpenImageIO as oiio
 
@@ -145,14 +183,25 @@ def read_image(path: AnyPath) -> Pixels:
     except OSError as error:
         raise ImageError(f"{path}: must be an image file; {error.strerror}") from None
     file = oiio.ImageInput.open(str(path))
-    values = file.spec().image_pixels() * file.spec().nchannels if file else 0
-    if values > LARGEST:
-        raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
-    pixels: Pixels | None = file.read_image(oiio.FLOAT) if file else None
-    if pixels is None:
-        reason = " ".join((file.geterror() if file else oiio.geterror()).split())
+    if file is None:
+        reason = words(oiio.geterror)
         raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
-    return pixels
+    return file
+
+
+def words(message: Callable[[], str]) -> str:
+    """A library's message on one line; bytes of a file in it that are no UTF-8 as backslashes and hex.
+
+    Examples
+    --------
+    >>> words(lambda: b"channel \\xff is\\nmissing".decode())
+    'channel \\\\xff is missing'
+    """
+    try:
+        text = message()
+    except UnicodeDecodeError as error:
+        text = error.object.decode(errors="backslashreplace")
+    return " ".join(text.split())
 
 
 def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str]) -> None:
@@ -188,7 +237,7 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
         image.specmod().attribute(name, value)
     with replacing(path) as beside:
         if not image.write(str(beside)):
-            raise OSError(errno.EIO, image.geterror().replace(str(beside), str(path)))
+            raise OSError(errno.EIO, words(image.geterror).replace(str(beside), str(path)))
         if not _holds(beside, pixels):
             raise OSError(errno.EIO, INCOMPLETE)
 
@@ -201,7 +250,7 @@ def _holds(path: Path, pixels: Pixels | Codes) -> bool:
         return False  # before OpenImageIO reads it, as libpng would print a message
     file = oiio.ImageInput.open(str(path))
     stored: NDArray[Any] | None = file.read_image(oiio.UNKNOWN) if file else None
-    oiio.geterror()  # else it is printed when Python ends
+    words(oiio.geterror)  # else it is printed when Python ends
     return stored is not None and stored.tobytes() == pixels.tobytes()
 
 

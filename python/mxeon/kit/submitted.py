@@ -11,13 +11,16 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from mxeon.io.files import assert_regular, regular
+from mxeon.errors import ImageError
+from mxeon.io.files import regular
+from mxeon.io.images import open_image, words
 from mxeon.kit.views import View
 from mxeon.shaders.scene import sphere
 
 COLUMNS = ["row", "column", "red", "green", "blue"]
 CHANNELS = "RGB"
 LEVELS = 255  # steps of an eight-bit value
+ROUNDED = LEVELS * 2.0**-12  # steps by which a half float of at most 1 may be rounded
 FLOATS = ("half", "float", "double")
 # A smooth shading has as many values as pixels; eight bits leave far fewer than one in four.
 DISTINCT = 4
@@ -75,12 +78,10 @@ def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
 
 def _read_image(file: Path, size: int) -> NDArray[np.float64]:
     try:
-        assert_regular(file)
-    except OSError as error:
-        raise Unusable(f"{file.name}: must be an EXR or CSV file; {error.strerror}") from None
-    image = oiio.ImageInput.open(str(file))
-    if image is None:
-        raise Unusable(f"{file.name}: must be an EXR or CSV file; {oiio.geterror()}")
+        image = open_image(file)
+    except ImageError as error:
+        reason = str(error).partition("; ")[2]
+        raise Unusable(f"{file.name}: must be an EXR or CSV file; {reason}") from None
     spec = image.spec()
     if (spec.width, spec.height) != (size, size):
         raise Unusable(
@@ -90,11 +91,15 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
         raise Unusable(f"{file.name}: must begin at the display window's corner; got {offset}")
     if str(spec.format) not in FLOATS:
         raise Unusable(f"{file.name}: must hold half or float numbers; got {spec.format}")
-    channels = _channels(file, spec.channelnames)
+    try:
+        channels = _channels(file, spec.channelnames)
+    except UnicodeDecodeError:
+        raise Unusable(f"{file.name}: must have names of channels in UTF-8") from None
     pixels = image.read_image(oiio.FLOAT)
+    reason = words(image.geterror)
     image.close()
-    if pixels is None:
-        raise Unusable(f"{file.name}: must be a whole image; {image.geterror()}")
+    if pixels is None or reason:
+        raise Unusable(f"{file.name}: must be a whole image; {reason}")
     return pixels[..., channels].astype(np.float64, order="C")
 
 
@@ -142,10 +147,10 @@ def _table(file: Path, lines: Any, size: int) -> NDArray[np.float64]:
 
 
 def _check_depth(file: Path, values: NDArray[np.float64]) -> None:
-    """Refuse eight-bit values: few distinct ones, all of them multiples of 1 / 255."""
+    """Refuse eight-bit values: few distinct ones, all of them multiples of 1 / 255 up to 1."""
     distinct = len(np.unique(values))
     steps = values * LEVELS
-    whole = np.abs(steps - np.rint(steps)).max() < 0.02 * (1.0 + np.abs(values).max())
+    whole = values.max() <= 1.0 and np.abs(steps - np.rint(steps)).max() <= ROUNDED
     if 2 < distinct < len(values) / DISTINCT and whole:
         raise Unusable(
             f"{file.name}: must hold numbers that were never rounded to eight bits; got multiples "

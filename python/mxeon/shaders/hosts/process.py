@@ -67,6 +67,7 @@ class Worker:
                 stdout=PIPE,
                 stderr=log,
                 text=True,
+                errors="replace",
                 env=os.environ | {"TMPDIR": str(self.log.parent)},  # Blender leaves a folder
             )
         self.version = self._reply()["version"]

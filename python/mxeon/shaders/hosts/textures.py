@@ -5,13 +5,14 @@ Read with OpenImageIO, as float32 arrays (height, width, channels), linear or as
 transforms are the shader's.
 """
 
+import warnings
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import ImageError
-from mxeon.io.images import read_image
+from mxeon.io.images import ImageWarning, read_image
 
 IRRADIANCE_SIZE = 32  # rows of an irradiance map: a cosine lobe has no finer detail
 FIRST_TILE = {"<UDIM>": "1001", "<UVTILE>": "u1_v1"}  # MaterialX's names of it
@@ -28,12 +29,19 @@ def read_texture(path: str | Path) -> NDArray[np.float32]:
     ------
     ImageError
         As `mxeon.io.images.read_image` does; or if it has more channels than a color.
+
+    Warns
+    -----
+    ImageWarning
+        As `mxeon.io.images.read_image` does; or if a value is not a finite number.
     """
     for token, word in FIRST_TILE.items():
         path = str(path).replace(token, word)
     pixels = read_image(path)
     if pixels.shape[-1] > 4:
         raise ImageError(f"{path}: must have at most 4 channels; got {pixels.shape[-1]}")
+    if reason := _not_finite(pixels):
+        warnings.warn(ImageWarning(f"{path}: should hold finite numbers; {reason}"), stacklevel=2)
     return (np.repeat(pixels, 3, axis=-1) if pixels.shape[-1] == 1 else pixels)[::-1]
 
 
@@ -48,7 +56,7 @@ def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
     Raises
     ------
     ImageError
-        If the image cannot be read, or has fewer than 3 channels.
+        If the image cannot be read, has fewer than 3 channels, or a value that is not finite.
     """
     if isinstance(environment, (str, Path)):
         pixels = read_image(environment)
@@ -57,8 +65,19 @@ def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
             raise ImageError(
                 f"{environment}: must have red, green and blue; got {channels} channels"
             )
+        if reason := _not_finite(pixels[..., :3]):
+            raise ImageError(f"{environment}: must hold finite numbers; {reason}")
         return pixels[..., :3]
     return np.full((1, 1, 3), environment or 0.0, dtype=np.float32)
+
+
+def _not_finite(pixels: NDArray[np.float32]) -> str:
+    """The first value that is not a finite number, and how many there are; empty if none is."""
+    bad = np.argwhere(~np.isfinite(pixels))
+    if not len(bad):
+        return ""
+    row, column, _ = bad[0]
+    return f"got {pixels[tuple(bad[0])]} at row {row}, column {column}, {len(bad)} in all"
 
 
 def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:

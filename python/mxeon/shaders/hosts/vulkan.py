@@ -277,7 +277,7 @@ def _spirv(stage: str, text: str) -> bytes:
 def _run(command: Sequence[str], text: str = "") -> None:
     try:
         process = subprocess.run(
-            command, input=text, capture_output=True, text=True, timeout=TIMEOUT
+            command, input=text, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
         )
     except subprocess.TimeoutExpired:
         raise NotRun(f"vulkan: {command[0]} takes longer than {TIMEOUT:.0f} s") from None
