@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Dask cluster as a farm: real schedulers and worker processes on this machine."""
 
+import logging
 import os
+import socket
 import subprocess
 import sys
+from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 
 import pytest
 
 import mxeon
 from mxeon.conformance.run import check
-from mxeon.errors import NotRun
+from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
@@ -154,6 +157,39 @@ def test_a_scheduler_that_ends_is_one_line():
     workers = cluster.Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
     with pytest.raises(NotRun, match="scheduler must run until the end; it answers no more"):
         list(cluster.run(square, [1], workers, 1.0, NotRun))
+
+
+@pytest.mark.parametrize("error", [OSError("closed"), CancelledError()], ids=["comm", "future"])
+def test_a_scheduler_whose_connection_breaks_is_one_line(error):
+    def submit(*_, **__):
+        raise error
+
+    client = Client(SOMEBODY)
+    client.submit = submit
+    with pytest.raises(NotRun, match=f"^{cluster.GONE}$"):
+        list(cluster.run(square, [1], cluster.Workers(client, 60.0), 1.0, NotRun))
+
+
+def test_what_dask_tells_by_itself_is_silent():
+    with pytest.raises(ValueError, match="scheduler must"):
+        run(square, [1], "nowhere")
+    names = [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    assert names and not any(
+        map(logging.Logger.isEnabledFor, map(logging.getLogger, names), [50] * 99)
+    )
+
+
+def test_a_listener_that_never_answers_is_given_up(monkeypatch):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(InputError, match="got '.*': .*; raise it with --waitForWorkers"):
+            check([EXAMPLE], scheduler=address, wait=0.5)
+
+
+@pytest.mark.parametrize("address", ["", " "])
+def test_an_empty_address_is_refused(address):
+    with pytest.raises(InputError, match="scheduler must be the address"):
+        check([EXAMPLE], scheduler=address)
 
 
 def test_an_impossible_wait_is_one_line():

@@ -8,13 +8,18 @@ have: which workers are compatible, items that only some machines can do, and ti
 from __future__ import annotations
 
 import faulthandler
+import logging
 import sys
 import time
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from functools import partial
+from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import Any
 
 import mxeon
@@ -24,6 +29,8 @@ from mxeon.jobs.timeouts import WAIT, check_timeout
 
 WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
 ANSWER = 10.0  # seconds until a scheduler answers
+GONE = "scheduler must run until the end; it answers no more"
+LOGGERS = ("distributed", "tornado", "asyncio")
 POLL = 1.0  # seconds between looks at the workers that come and go
 
 
@@ -49,11 +56,11 @@ def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
         If Dask is not installed; says what to install.
     """
     check_timeout(wait, "waitForWorkers")
-    client = _client(address)
+    client = _client(address, wait)
     try:
         yield Workers(client, wait)
     finally:
-        client.close()
+        _in_time(partial(client.close, timeout=ANSWER), 2.0 * ANSWER)
 
 
 def run(
@@ -85,6 +92,20 @@ def run(
     NotRun
         If the cluster is without a compatible worker for too long, or its scheduler is gone.
     """
+    try:
+        yield from _outcomes(work, items, workers, timeout, unavailable)
+    except (OSError, CancelledError):  # of the connection: what items raise is in their outcomes
+        raise NotRun(GONE) from None
+
+
+def _outcomes(
+    work: Callable[[Any], Any],
+    items: Sequence[Any],
+    workers: Workers,
+    timeout: float,
+    unavailable: type[Exception],
+) -> Iterator[tuple[int, Outcome]]:
+    """Outcomes as those of `run`, while the scheduler runs."""
     from distributed import wait
 
     waiting = deque(_Task(index, item) for index, item in enumerate(items))
@@ -132,18 +153,47 @@ class WorkerUnavailable(Exception):
         return str(self.args[0])
 
 
-def _client(address: str) -> Any:
+def _client(address: str, wait: float) -> Any:
     try:
         from distributed import Client
     except ModuleNotFoundError:
         raise PackageError("--scheduler needs distributed: pip install 'mxeon[dask]'") from None
+    for name in (*LOGGERS, *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in LOGGERS:  # what these tell is told here in one line
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
+    if not address.strip():
+        raise InputError(rule)
     try:
-        return Client(address, timeout=ANSWER)
+        client = _in_time(partial(Client, address, timeout=min(ANSWER, wait)), wait)
     except (OSError, ValueError) as error:
-        reason = str(error).partition("\n")[0]
-        raise InputError(
-            f"scheduler must be the address of a running Dask scheduler; got {address}: {reason}"
-        ) from None
+        raise InputError(f"{rule}: {str(error).partition(chr(10))[0]}") from None
+    if client is None:
+        raise InputError(f"{rule}: no answer within {wait:g} s; raise it with --waitForWorkers")
+    return client
+
+
+def _in_time(work: Callable[[], Any], seconds: float) -> Any:
+    """What work returns, or raises, within some seconds; None if it goes on, in a thread of its own.
+
+    Dask waits for a scheduler that takes a connection and says nothing for minutes.
+    """
+    answers: SimpleQueue[tuple[Any, Exception | None]] = SimpleQueue()
+
+    def answer() -> None:
+        try:
+            answers.put((work(), None))
+        except Exception as error:
+            answers.put((None, error))
+
+    Thread(target=answer, daemon=True).start()
+    try:
+        value, error = answers.get(timeout=seconds)
+    except Empty:
+        return None
+    if error:
+        raise error
+    return value
 
 
 def _progress(
@@ -207,7 +257,7 @@ class Workers:
         """Addresses of the compatible workers; warns once of each other one."""
         info = self.client.scheduler_info(n_workers=-1)
         if "workers" not in info:  # the client has closed
-            raise NotRun("scheduler must run until the end; it answers no more")
+            raise NotRun(GONE)
         threads = {address: worker["nthreads"] for address, worker in info["workers"].items()}
         new = sorted(threads.keys() - self._compatible.keys())
         versions = self.client.run(_version, workers=new, on_error="return") if new else {}

@@ -194,7 +194,7 @@ def _executor(
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
     check_timeout(timeout)
-    if scheduler:
+    if scheduler is not None:
         with cluster.connect(scheduler, wait) as remote:
             job = partial(work, policy)
             yield partial(cluster.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
