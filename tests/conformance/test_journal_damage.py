@@ -148,3 +148,11 @@ def test_findings_of_another_run_do_not_count(tmp_path):
     (tmp_path / "a" / NAME).write_bytes(header + line)
     with pytest.warns(UserWarning, match="line 2"):
         assert read_journal(tmp_path / "a")[1] == {}
+
+
+def test_a_half_of_a_character_is_damage(tmp_path):
+    findings = replace(FINDINGS, notes=(("half \ud83d", "place"),), pictures=())
+    with journal(tmp_path) as written:
+        written.add(0, findings)
+    with pytest.warns(UserWarning, match="damaged in the journal.*: line 2"):
+        assert not read_journal(tmp_path)[1]

@@ -173,16 +173,15 @@ def test_a_scheduler_whose_connection_breaks_is_one_line(error):
 def test_what_dask_tells_by_itself_is_silent():
     with pytest.raises(ValueError, match="scheduler must"):
         run(square, [1], "nowhere")
-    names = [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]
-    assert names and not any(
-        map(logging.Logger.isEnabledFor, map(logging.getLogger, names), [50] * 99)
-    )
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict]
+    dask = [each for each in loggers if each.name.startswith("distributed")]
+    assert dask and not any(each.isEnabledFor(logging.CRITICAL) for each in dask)
 
 
 def test_a_listener_that_never_answers_is_given_up(monkeypatch):
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(InputError, match="got '.*': .*; raise it with --waitForWorkers"):
+        with pytest.raises(InputError, match="scheduler must be the address"):
             check([EXAMPLE], scheduler=address, wait=0.5)
 
 

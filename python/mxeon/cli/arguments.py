@@ -3,10 +3,10 @@
 
 import argparse
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, NoReturn
 
-from mxeon.errors import MISUSE, one_line
+from mxeon.errors import MISUSE, InputError, one_line
 from mxeon.jobs.timeouts import TIMEOUT
 from mxeon.shaders.document.policy import LIMITS, SEARCH_PATH, Policy, environment_path
 
@@ -74,6 +74,13 @@ def add_workers(command: argparse.ArgumentParser) -> None:
         default=argparse.SUPPRESS,
         help=argparse.SUPPRESS,
     )
+
+
+def assert_other(output: str | None, files: Iterable[str | None]) -> None:
+    """Raise InputError if an output would replace one of the files that are read for it."""
+    there = [file for file in (output, *files) if file and os.path.exists(file)]
+    if there[:1] == [output] and any(os.path.samefile(there[0], file) for file in there[1:]):
+        raise InputError(f"output must be another file than the one to read; got {output}")
 
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:

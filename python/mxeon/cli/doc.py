@@ -40,6 +40,7 @@ def run(options: argparse.Namespace) -> int:
 
     if options.json and not options.compare:
         raise InputError("--json must come with --compare: a template has no differences")
+    arguments.assert_other(options.output, [options.file])
     text = _text(options.file)
     tables = library_tables(options.library)
     try:

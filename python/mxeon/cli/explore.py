@@ -33,6 +33,7 @@ def run(options: argparse.Namespace) -> int:
     from mxeon.explorer import document_sources, page, page_data
     from mxeon.io.files import write_text
 
+    arguments.assert_other(options.output, options.files)
     results = read_run(options.report).results if options.report else ()
     work = partial(document_sources, policy=arguments.policy(options))
     documents = list(run_batch(work, options.files, options.workers, options.timeout))

@@ -45,6 +45,7 @@ def run(options: argparse.Namespace) -> int:
     """Write a picture; return the exit status."""
     from mxeon.io.images import write_picture
 
+    arguments.assert_other(options.output, [options.file, options.environment])
     names = ("host", "scene", "environment", "size", "element", "library")
     known = {name: getattr(options, name) for name in names}
     paths = Paths(options.samples, options.bounces)

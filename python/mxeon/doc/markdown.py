@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from mxeon.doc.ports import Port, Table
-from mxeon.errors import DocumentError, PackageError
+from mxeon.errors import DocumentError, PackageError, printable
 
 MARKER = re.compile(r"@MX_TABLE_(\w+)@")
 COLUMNS = ("Port", "Description", "Type", "Default", "Accepted Values")
@@ -40,10 +40,15 @@ def fill(template: str, tables: Mapping[str, Table]) -> str:
 
 def table_text(table: Table) -> str:
     """A table as Markdown, its columns aligned."""
-    rows = [COLUMNS, *(_cells(port, table.ports) for port in table.ports)]
+    rows = [COLUMNS, *(tuple(map(_cell, _cells(port, table.ports))) for port in table.ports)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     rows.insert(1, tuple("-" * width for width in widths))
     return "\n".join(f"|{'|'.join(map(str.ljust, row, widths))}|" for row in rows)
+
+
+def _cell(text: str) -> str:
+    """A text that ends no cell, breaks no row and steers no terminal."""
+    return " ".join(printable(text).split()).replace("|", "\\|")
 
 
 def read_tables(text: str) -> dict[str, Table]:

@@ -183,6 +183,8 @@ def _port(shader: Shader, port: Input) -> Port:
     """An input without a value, with its label and range."""
     words = partial(_attribute, _descriptions(shader.document, port.path))
     low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
+    if low and high and not math.isfinite(high[0] - low[0]):
+        low = high = None  # a slider of such a length has no step
     label = words("uiname") or port.path.rpartition("/")[2].replace("_", " ")
     # Words that choose from a list are numbers in the shader; frames of images do not move here.
     shown = not (words("enum") or port.type == "filename" or "frame" in port.path)

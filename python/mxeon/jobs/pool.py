@@ -25,6 +25,8 @@ from mxeon.jobs.timeouts import check_timeout
 
 logger = logging.getLogger(__name__)
 
+# A tracker outlives a process that was killed, and would tell of its semaphores on the terminal.
+QUIET = "ignore::UserWarning:multiprocessing.resource_tracker"
 ATTEMPTS = 2
 BREAKS = 3  # pools that break one after the other before any item is done
 START = 60.0  # seconds that a process may take before it begins to work
@@ -177,6 +179,8 @@ def _start(pool: ProcessPool) -> bool:
     """Start the threads and processes of a pool; whether it is active then."""
     try:
         with block_signals(), safe_path():
+            if QUIET not in sys.warnoptions:
+                sys.warnoptions.append(QUIET)  # which the tracker's process inherits
             resource_tracker.ensure_running()  # else the first process does, and unblocks signals
         with block_signals():
             return bool(pool.active)

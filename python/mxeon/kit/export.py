@@ -11,6 +11,7 @@ from string import Template
 from typing import Any
 
 import mxeon
+from mxeon.errors import InputError
 from mxeon.io.files import write_text
 from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
@@ -24,12 +25,12 @@ RENDERS = "renders"
 
 
 def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
-    """Write the kit into `folder`. Replaces files of the same name; keeps submitted pictures.
+    """Write the kit into `folder`. Replaces an earlier kit; keeps submitted pictures.
 
     Parameters
     ----------
     folder : path-like
-        Created if it does not exist.
+        Created if it does not exist; empty, or of an earlier kit.
     size : int
         Width and height of the pictures in pixels.
 
@@ -41,10 +42,12 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
     Raises
     ------
     ValueError
-        If the size is out of range.
+        If the size is out of range, or the folder has no name, holds something else than a kit, or
+        a link under a name of the kit's files.
     OSError
         If a file cannot be written.
     """
+    _assert_own(folder)
     folder, pictures, mesh = Path(folder), views(size), unit_sphere()
     for material in MATERIALS:
         write_text(folder / "materials" / f"{material.name}.mtlx", material_document(material))
@@ -56,6 +59,21 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
     (folder / RENDERS).mkdir(exist_ok=True)
     write_text(folder / "README.md", _page(pictures, size, mesh))
     return folder / "README.md"
+
+
+def _assert_own(folder: str | PathLike[str]) -> None:
+    """Raise InputError unless a folder is new, empty or a kit's, whose files are no links."""
+    if not str(folder):
+        raise InputError("folder must have a name; got ''")
+    path = Path(folder)
+    if not path.is_dir():
+        return
+    if any(path.iterdir()) and not (path / DESCRIPTION).exists():
+        raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")
+    names = (DESCRIPTION, "README.md", "sphere.obj", "sphere.usda", "materials", "scenes")
+    links = [each for name in names for each in (path / name, *path.glob(f"{name}/*"))]
+    for link in filter(Path.is_symlink, links):
+        raise InputError(f"{link}: must be no link, through which another file would be replaced")
 
 
 def material_document(material: Material) -> str:

@@ -20,6 +20,7 @@ from mxeon.io.files import regular
 
 FORMAT = 3
 NAME = "journal/items.jsonl"
+HALF = b"\\ud"  # begins the escape of half of a character
 PLAN = -1  # number of the plan among the lines
 
 
@@ -119,6 +120,8 @@ def to_line(record: dict[str, Any], seed: str = "") -> bytes:
 def _checked(line: bytes, seed: str = "") -> tuple[dict[str, Any], str]:
     """The record of a line, and its digest."""
     record = json.loads(line)
+    if HALF in line.lower():
+        json.dumps(record, ensure_ascii=False).encode()  # which no half of a character survives
     digest = record.pop("digest")
     if digest != _digest(record, seed):
         raise InputError("its digest is that of another text")

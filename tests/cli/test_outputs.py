@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Outputs that would replace what is read, or files that nobody named."""
+
+import pytest
+
+from mxeon.cli import main
+from mxeon.doc.markdown import read_tables, table_text
+from mxeon.doc.ports import Port, Table
+from mxeon.errors import MISUSE
+from mxeon.explorer.documents import document_sources
+from mxeon.kit.export import export_kit
+from tests.support.documents import lobe, material
+
+
+@pytest.mark.parametrize(
+    "arguments", (["explore"], ["doc"], ["render", "--host", "gl"]), ids=lambda each: each[0]
+)
+@pytest.mark.parametrize("output", ("same", "link"))
+def test_an_output_that_is_the_input_is_refused(arguments, output, tmp_path, capsys):
+    file, link = tmp_path / "same.exr", tmp_path / "link.exr"
+    file.write_text("text")
+    link.symlink_to(file)
+    assert main([*arguments, str(file), "--output", str(tmp_path / f"{output}.exr")]) == MISUSE
+    assert "output must be another file" in capsys.readouterr().err
+    assert file.read_text() == "text"
+
+
+def test_a_kit_is_written_over_a_kit_alone(tmp_path, monkeypatch, capsys):
+    (tmp_path / "README.md").write_text("mine")
+    monkeypatch.chdir(tmp_path)
+    for folder in (".", ""):
+        assert main(["kit", "export", folder]) == MISUSE
+    assert "must be new, empty or a kit" in capsys.readouterr().err
+    assert [each.name for each in tmp_path.iterdir()] == ["README.md"]
+
+
+@pytest.mark.parametrize("name", ("kit.json", "README.md", "sphere.obj", "materials"))
+def test_a_kit_is_not_written_through_a_link(name, tmp_path):
+    other, kit = tmp_path / "other", tmp_path / "kit"
+    other.write_text("mine")
+    export_kit(kit, 64)
+    path = kit / name
+    if path.is_dir():
+        path.rename(tmp_path / "moved")
+    path.unlink(missing_ok=True)
+    path.symlink_to(other)
+    with pytest.raises(ValueError, match=f"{path}: must be no link"):
+        export_kit(kit, 64)
+    assert other.read_text() == "mine"
+
+
+def test_a_description_breaks_no_table_and_steers_no_terminal():
+    text = "two\nlines | a bar \x1b[31m"
+    table = table_text(Table("node", (Port("in", text, ("float",)),)))
+    assert len(table.splitlines()) == 3 and "\x1b" not in table
+    [port] = read_tables(f"# node\n\n{table}\n")["node"].ports
+    assert port.description == "two lines | a bar \ufffd[31m"
+
+
+def test_a_range_too_long_for_a_slider_is_none(tmp_path):
+    file = tmp_path / "long.mtlx"
+    long = 'type="float" uimin="-1e308" uimax="1e308" value'
+    file.write_text(material(lobe(roughness=0.5)).replace('type="float" value', long))
+    ports = {port.path: port for port in document_sources(str(file))[0].inputs}
+    assert (ports["lobe/roughness"].min, ports["lobe/roughness"].max) == (None, None)
