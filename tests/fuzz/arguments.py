@@ -22,7 +22,7 @@ import mxeon.models
 from mxeon.models.arrays import ArrayLike
 from mxeon.models.fresnel_formulas import schlick
 from mxeon.models.layering import Bsdf
-from mxeon.models.microfacet_lobe import SCHLICK, Lobe
+from mxeon.models.microfacet_lobe import SCHLICK, Lobe, uncompensated
 from mxeon.models.ranges import RANGES
 from mxeon.models.thin_film import PRINTED
 
@@ -47,7 +47,8 @@ VALID = {
     "form": (PRINTED,),
     "category": ("dielectric_bsdf",),
     "inputs": (FILM | {"thinfilm_ior": 1.4}, {"tint_R": 0.5}),
-    "lobe": (Lobe(),),
+    "lobe": (Lobe(factor=uncompensated),),
+    "compensate": (False,),  # which takes less time
     "curve": (SCHLICK,),
     "at": (lambda cosine, ior, **colors: schlick(cosine, **colors),),
     "brdf": (lambda wo, wi, rho, *parameter: rho * wi[..., :1],),
@@ -63,6 +64,7 @@ PLUMBING = (
 )  # which has no arguments of its own
 TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried
 
+ACCEPTED, REFUSED = 0, 2
 SMALLEST, LEAST = math.ulp(0.0), np.finfo(np.float64).tiny
 # No argument takes all of them, and most take few.
 BAD = (
@@ -118,8 +120,8 @@ def tried(function, arrays=False):
             yield from (f"{name}.{key}" for key in base(function)[name])
 
 
-def fault(row):
-    """What is wrong with the answer to a row; empty if nothing is."""
+def judged(row):
+    """Exit status, as a command would have it, and what is wrong with the answer to a row."""
     name, argument, place, inside = row
     function = functions()[name]
     values = dict(base(function))
@@ -141,7 +143,7 @@ def _part(values, argument):
 
 
 def answer(function, values):
-    """What is wrong with the answer of a function; empty if nothing is."""
+    """ACCEPTED or REFUSED, and what is wrong with the answer of a function, empty if nothing is."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     named = {name: value for name, value in values.items() if name not in more}
@@ -152,11 +154,12 @@ def answer(function, values):
             result = function(*places, **named, **(values[more[0]] if more else {}))
     except ValueError as error:
         first = str(error).split(" must ")[0].split(", ")
-        names = set(parameters) | (set(RANGES) if more or "inputs" in parameters else set())
-        return "" if set(first) <= names else f"says {error}"
+        names = set(parameters).union(*(each for each in values.values() if isinstance(each, dict)))
+        names |= set(RANGES) if more or "inputs" in parameters else set()
+        return REFUSED, "" if set(first) <= names else f"says {error}"
     except Exception as error:
-        return f"raises {type(error).__name__}: {error}"
-    return "" if _is_finite(result) else f"returns {result}"
+        return REFUSED, f"raises {type(error).__name__}: {error}"
+    return ACCEPTED, "" if _is_finite(result) else f"returns {result}"
 
 
 @cache
@@ -165,9 +168,9 @@ def base(function):
     parameters, reasons = _parameters(function), []
     for chosen in product(*map(_valid, parameters.values())):
         values = dict(zip(parameters, chosen, strict=True))
-        if not (why := answer(function, values)):
+        if (outcome := answer(function, values)) == (ACCEPTED, ""):
             return values
-        reasons.append(why)
+        reasons.append(outcome)
     raise LookupError(f"{function.__name__} takes none of the valid arguments: {reasons}")
 
 
@@ -176,7 +179,9 @@ def _parameters(function):
 
 
 def _valid(parameter):
-    default = 0.5 if parameter.default is parameter.empty else parameter.default
+    default = parameter.default
+    if default is parameter.empty:
+        default = True if parameter.annotation is bool else 0.5
     return VALID.get(parameter.name, (default,))
 
 

@@ -14,6 +14,7 @@ from mxeon.models.arguments import (
     checked_directions,
     checked_pairs,
     checked_switch,
+    lead_shape,
 )
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
@@ -194,7 +195,8 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
     array([0.837774, 0.874089])
     """
-
+    wo, roughness = checked_directions("wo", wo), checked_pairs("roughness", roughness)
+    lead_shape({"wo": wo, "roughness": roughness}, {})
     return lobe_albedo(WHITE, wo, roughness, {"tint": np.ones(1)}, {}, False)[..., 0][()]
 
 

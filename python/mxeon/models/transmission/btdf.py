@@ -25,7 +25,7 @@ from mxeon.models.arguments import (
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.evaluation import evaluate_material
 from mxeon.models.microfacet_lobe import DIELECTRIC
-from mxeon.models.transmission.refraction import Facet
+from mxeon.models.transmission.refraction import LEAST, Facet
 
 
 def dielectric_btdf(
@@ -119,7 +119,7 @@ def evaluate_btdf(
         G2 = ggx.visibility(wo[2], -wi[2], ggx.mean_alpha(roughness))
         lobe = ggx.ndf(facet.normal, roughness) * G2
         if radiance:
-            lobe = lobe / np.where(ior > 0.0, ior, 1.0) ** 2
+            lobe = lobe / np.maximum(ior, LEAST) ** 2
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
         return f * material["tint"] if "tint" in material else f
 

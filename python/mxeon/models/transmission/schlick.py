@@ -16,7 +16,11 @@ from mxeon.models.arguments import (
     checked,
     checked_choice,
     checked_color,
+    checked_directions,
+    checked_pairs,
     checked_switch,
+    checked_transmitted,
+    lead_shape,
 )
 from mxeon.models.arrays import Array, ArrayLike, Numbers
 from mxeon.models.transmission.btdf import evaluate_btdf
@@ -184,6 +188,13 @@ def generalized_schlick_btdf(
     """
     how = _reading(reading)
     checked_switch("inside", inside)
+    parts, numbers = (
+        _parts(how, color0, color82, color90),
+        {"exponent": checked("exponent", exponent)},
+    )
+    directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
+    pairs = {"roughness": checked_pairs("roughness", roughness)}
+    lead_shape(directions | pairs | parts[0][1], numbers)
     channels = [
         evaluate_btdf(
             how.at,
@@ -192,10 +203,10 @@ def generalized_schlick_btdf(
             roughness,
             1.0 / index if inside else index,
             colors,
-            {"exponent": checked("exponent", exponent)},
+            numbers,
             radiance=radiance,
         )
-        for index, colors in _parts(how, color0, color82, color90)
+        for index, colors in parts
     ]
     return np.concatenate(np.broadcast_arrays(*channels), axis=-1)
 
@@ -247,19 +258,23 @@ def generalized_schlick_transmittance_dir(
     """
     how = _reading(reading)
     checked_switch("inside", inside)
+    parts, numbers = (
+        _parts(how, color0, color82, color90),
+        {"exponent": checked("exponent", exponent)},
+    )
+    directions = {"wo": checked_directions("wo", wo)}
+    pairs = {"roughness": checked_pairs("roughness", roughness)}
+    lead_shape(directions | pairs | parts[0][1], numbers)
     channels = [
         evaluate_transmittance(
             how.at,
             wo,
             roughness,
             colors,
-            {
-                "exponent": checked("exponent", exponent),
-                "ior": 1.0 / index if inside else index,
-            },
+            numbers | {"ior": 1.0 / index if inside else index},
             shadow,
         )
-        for index, colors in _parts(how, color0, color82, color90)
+        for index, colors in parts
     ]
     return np.concatenate(np.broadcast_arrays(*channels), axis=-1)
 
