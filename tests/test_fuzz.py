@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from mxeon import cli
+from mxeon import cli, explorer
 from mxeon.jobs import pool
+from tests.fuzz import pages
 from tests.fuzz.attack import FAMILIES, cases
 from tests.fuzz.cases import OUT, Case, case
 from tests.fuzz.found import FOUND
@@ -17,6 +18,7 @@ from tests.fuzz.trial import guarded, numbered, trial
 from tests.fuzz.words import CANARY, POISON
 
 LIMIT = 60.0  # seconds for one case
+SLOW = ("signals", "kits", "results", "templates", "explorer documents")  # a second for each case
 
 
 def faults(work, items):
@@ -36,7 +38,7 @@ def test_a_slice_of_the_fuzz_run_ends_without_fault():
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_slice_of_each_family_of_the_attack_ends_without_fault(family):
-    count = 4 if family == "signals" else 12  # a signal takes a process of its own
+    count = 3 if family in SLOW else 12
     outcomes = pool.run(FAMILIES[family].trial, cases(family, count), 1, LIMIT)
     assert [said for _, each in outcomes if (said := each.failure or each.value[1])] == []
 
@@ -83,3 +85,18 @@ def killed(_):
 
 def test_a_case_is_the_same_again():
     assert case(1, 7) == case(1, 7) != case(1, 8)
+
+
+def unescaped(text):
+    """The outcome of a page in which text of a document stands as it is."""
+    explorer.ESCAPES = {}
+    return pages.shown(text)
+
+
+def test_a_script_that_a_page_lets_in_is_a_fault():
+    text = pages.to_document(None, ("uiname", pages.SCRIPTS[0]))
+    [(_, outcome)] = pool.run(unescaped, [text], 1, LIMIT)
+    status, fault = outcome.value
+    if status == pages.NOT_RUN:
+        pytest.skip("Chromium does not run here")
+    assert fault

@@ -5,7 +5,8 @@
 
 Where `python -m tests.fuzz` mutates at random, a family covers its tables evenly: every element kind with
 every type, every attribute with every odd value, every spelling of a number, every encoding, every
-option, every value of a journal, signals at any time. The figures go to docs/reliability.json under "attack".
+option, every value of a journal, of results and of a kit's description, every argument of the models'
+functions, the explorer's page in Chromium, signals at any time. The figures go to docs/reliability.json under "attack".
 """
 
 import argparse
@@ -22,7 +23,7 @@ from xml.etree import ElementTree
 from tqdm import tqdm
 
 from mxeon.jobs import pool
-from tests.fuzz import journals, signals
+from tests.fuzz import arguments, journals, kits, pages, results, signals, templates
 from tests.fuzz.__main__ import FIGURES, keep
 from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
 from tests.fuzz.documents import originals
@@ -169,6 +170,12 @@ FAMILIES = {
     "encodings": Family(codings, _coding_case, 600),
     "command lines": Family(lines, _line_case, 1000),
     "journals": Family(journals.rows, journals.to_case, 500),
+    "results": Family(results.rows, results.to_case, 500),
+    "kits": Family(kits.rows, kits.to_case, 300),
+    "templates": Family(templates.rows, templates.to_case, 700),
+    "arguments": Family(arguments.rows, lambda _, row: row, 10_000, arguments.judged),
+    "explorer documents": Family(pages.document_rows, pages.to_document, 60, pages.shown),
+    "explorer addresses": Family(pages.fragment_rows, lambda _, row: row, 500, pages.addressed),
     "signals": Family(signals.rows, lambda _, row: row, 150, signals.struck),
 }
 

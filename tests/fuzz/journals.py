@@ -32,7 +32,7 @@ def rows():
     """Line, place in it, and what is put there: a value for one of JSON's, or a byte."""
     lines = original().splitlines()
     for number, line in enumerate(lines):
-        for path in _paths(json.loads(line)):
+        for path in paths(json.loads(line)):
             for value in (*ODD, *VALUES[:20]):
                 yield number, path, value
         for place in range(0, len(line), 97):
@@ -46,22 +46,26 @@ def to_case(_, row):
     if isinstance(path, int):
         lines[number] = lines[number][:path] + value + lines[number][path + 1 :]
     else:
-        record = json.loads(lines[number])
-        *parents, last = path
-        part = record
-        for key in parents:
-            part = part[key]
-        part[last] = value
-        lines[number] = json.dumps(record)
+        lines[number] = json.dumps(planted(json.loads(lines[number]), path, value))
     text = "\n".join(lines) + "\n"
     name = f"line {number}, {path}: {value!r}"
     return Case(name, ((NAME, text.encode(errors="replace")),), ("report", "make", "run"))
 
 
-def _paths(part, path=()):
+def planted(record, path, value):
+    """A record in which a value stands at the end of a path of keys."""
+    *parents, last = path
+    part = record
+    for key in parents:
+        part = part[key]
+    part[last] = value
+    return record
+
+
+def paths(part, path=()):
     """Keys that lead to each value of a record."""
     pairs = part.items() if isinstance(part, dict) else enumerate(part)
     for key, value in pairs:
         yield (*path, key)
         if isinstance(value, (dict, list)):
-            yield from _paths(value, (*path, key))
+            yield from paths(value, (*path, key))

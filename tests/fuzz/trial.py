@@ -23,7 +23,14 @@ MAKING = (
     "generate",
     "render",
 )  # commands that have a process for each document, which hides crashes
-JUDGING = ("check", "kit", "report", "render", "library")  # commands that may end with 1: it failed
+JUDGING = (
+    "check",
+    "doc",
+    "kit",
+    "report",
+    "render",
+    "library",
+)  # commands that may end with 1: it failed
 LONGEST_LINE = 1200  # a message of 1000 characters, its prefix, and a path
 MEMORY = 6 * 2**30
 
