@@ -188,10 +188,7 @@ def generalized_schlick_btdf(
     """
     how = _reading(reading)
     checked_switch("inside", inside)
-    parts, numbers = (
-        _parts(how, color0, color82, color90),
-        {"exponent": checked("exponent", exponent)},
-    )
+    parts, numbers = _parts(how, color0, color82, color90), _power(exponent)
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_pairs("roughness", roughness)}
     lead_shape(directions | pairs | parts[0][1], numbers)
@@ -258,10 +255,7 @@ def generalized_schlick_transmittance_dir(
     """
     how = _reading(reading)
     checked_switch("inside", inside)
-    parts, numbers = (
-        _parts(how, color0, color82, color90),
-        {"exponent": checked("exponent", exponent)},
-    )
+    parts, numbers = _parts(how, color0, color82, color90), _power(exponent)
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_pairs("roughness", roughness)}
     lead_shape(directions | pairs | parts[0][1], numbers)
@@ -298,6 +292,10 @@ def _parts(
         )
         for channel in range(count)
     ]
+
+
+def _power(exponent: ArrayLike) -> dict[str, Numbers]:
+    return {"exponent": checked("exponent", exponent)}
 
 
 def _reading(name: str) -> Reading:
