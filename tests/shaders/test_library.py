@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import MaterialX as mx
 import pytest
@@ -105,8 +106,62 @@ def test_stock_finds_its_own_implementation(target):
 @pytest.mark.parametrize("profile, folder", [(None, "libraries|eonlib"), ("cycles", "cycles")])
 def test_the_profile_takes_the_place_of_the_osl_implementations(profile, folder):
     found = library.implementations(library.load_library(profile=profile))
-    folders = {Path(each.document).parent.name for each in found if each.target == "genosl"}
+    ours = (each for each in found if each.target == "genosl" and each.node in NODEDEFS)
+    folders = {Path(each.document).parent.name for each in ours}
     assert len(folders) == 1 and re.fullmatch(folder, *folders)
+
+
+def written(folders):
+    """Nodedefs and targets of the implementations in the documents of some folders, as XML has them."""
+    roots = [ElementTree.parse(path).getroot() for each in folders for path in each.glob("*.mtlx")]
+    elements = [each for root in roots for each in root]
+    return {
+        (each.get("nodedef"), each.get("target", ""))
+        for each in elements
+        if each.tag in ("implementation", "nodegraph") and each.get("nodedef")
+    }
+
+
+EONLIB = (library.eonlib_folder(), library.pbrlib_folder())
+STANDARD = library.standard_folders()[0].resolve()
+SHIPPED = (
+    ("diffuse", None, EONLIB[:1]),
+    ("eonlib", None, EONLIB),
+    ("eonlib", "cycles", (*EONLIB, library.profile_folder("cycles"))),
+)
+
+
+@pytest.mark.parametrize("name, profile, folders", SHIPPED)
+def test_all_that_eonlib_ships_is_found_on_every_target_that_takes_it(name, profile, folders):
+    document = library.load_library(name, profile)
+    found = library.implementations(document, name, profile)
+    assert [each for each in found if not each.ours] == []
+    pairs = {(each.node, each.target) for each in found}
+    assert {(node, target) for node, target in written(folders) if target} <= pairs
+    for node, target in written(folders):
+        heirs = {"genglsl": {"essl", "genmsl", "genslang"}, "": set(library.TARGETS)}
+        assert {(node, heir) for heir in heirs.get(target, ())} <= pairs
+
+
+def test_whatever_is_missing_of_eonlib_is_named():
+    document = loaded([*map(str, EONLIB), *STOCK])
+    elements = (*document.getImplementations(), *document.getNodeGraphs())
+    ours = [
+        each
+        for each in elements
+        if library.data_folder() in parents(each) and STANDARD not in parents(each)
+    ]
+    for each in ours:
+        node, target = each.getNodeDefString(), each.getTarget()
+        each.removeAttribute("nodedef")
+        with pytest.raises(library.LibraryError, match=f"implementation of {node} for {target}"):
+            library.assert_ours(document)
+        each.setNodeDefString(node)
+    assert len(ours) == len(written(EONLIB))
+
+
+def parents(element):
+    return Path(element.getSourceUri()).resolve().parents
 
 
 def test_a_library_is_loaded_once():
@@ -134,8 +189,8 @@ def test_the_wrong_order_raises_with_node_target_and_remedy():
         library.assert_ours(loaded([*STOCK, OURS]))
     message = str(raised.value)
     assert "\n" not in message
-    assert "ND_oren_nayar_diffuse_bsdf for genglsl must be eonlib's; got " in message
-    assert "pbrlib_genglsl_impl.mtlx" in message
+    assert re.search(r"ND_oren_nayar_diffuse_bsdf for gen\w+ must be eonlib's; got ", message)
+    assert re.search(r"/pbrlib_gen\w+_impl.mtlx", message)
     assert message.endswith(f"load {OURS} before the standard libraries")
 
 
@@ -280,8 +335,8 @@ def test_a_folder_is_loaded_before_the_standard_libraries(tmp_path):
 
 
 def test_the_folder_of_eonlib_is_eonlib():
-    assert library.implementations(library.load_library(OURS)) == library.implementations(
-        library.load_library()
+    assert library.implementations(library.load_library(OURS), "diffuse") == (
+        library.implementations(library.load_library("diffuse"), "diffuse")
     )
 
 

@@ -11,15 +11,24 @@ from mxeon.cli import main
 from mxeon.conformance.results import NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import InterfaceError, NotRun
-from mxeon.shaders import generation, generators, library
+from mxeon.shaders import closure_calls, generation, generators, library
+from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.hosts import open_host
-from mxeon.shaders.library import UntestedVersionWarning, check_closure_calls, load_library
+from mxeon.shaders.library import UntestedVersionWarning, load_library
+from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.documents import lobe, material
 from tests.support.plans import keep_checks
 
 EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
-DEFINITION = "void eon_diffuse_bsdf(ClosureData closureData, float weight, inout BSDF bsdf)"
-CACHES = (load_library, generators._library_generator)
+CACHES = (
+    load_library,
+    generators._library_generator,
+    closure_calls._functions,
+    closure_calls._parameters,
+    closure_calls._call,
+)
+# Functions that eonlib had for a target when this was written; it may have more.
+LEAST_FUNCTIONS = dict.fromkeys(generation.TARGETS, 20) | {"osl": 4, "mdl": 0}
 
 
 @pytest.fixture
@@ -91,31 +100,94 @@ def test_checks_of_another_closure_interface_are_not_run(other_interface, monkey
     assert verdicts["eon_diffuse_bsdf"] == PASSED
 
 
+@pytest.mark.parametrize("target", generation.TARGETS)
+@pytest.mark.parametrize("profile", [None, *library.PROFILES])
+def test_a_generator_calls_every_function_of_eonlib_as_it_is_defined(target, profile):
+    ours = [each for each in functions(target, profile) if parameters(each)]
+    calls = [closure_calls._call(target, "eonlib", profile, node, name) for _, node, name in ours]
+    assert list(map(len, calls)) == list(map(len, map(parameters, ours)))
+    assert len(ours) == len(functions(target, profile)) >= LEAST_FUNCTIONS[target]
+
+
+def functions(target, profile):
+    """Sources, nodedefs and functions by which eonlib implements nodes for a target."""
+    data = load_library(profile=profile)
+    name = generation.GENERATORS[target].create().getTarget()
+    return [
+        (file, nodedef, function)
+        for file, rows in closure_calls._functions("eonlib", profile).items()
+        for nodedef, function in rows
+        if (found := data.getNodeDef(nodedef).getImplementation(name))
+        and found.getAttribute("function") == function
+        and file.endswith(".osl") == (target == "osl")
+    ]
+
+
+def parameters(row):
+    return closure_calls._parameters(row[0], row[2])
+
+
+def test_each_function_of_eonlib_is_refused_where_it_takes_one_argument_more(monkeypatch):
+    def parameters(file, function, old=closure_calls._parameters):
+        return [*old(file, function), "float gain"]
+
+    monkeypatch.setattr(closure_calls, "_parameters", parameters)
+    for file, _, function in functions("glsl", None):
+        with pytest.raises(InterfaceError, match=f"does not call eonlib's function {function}[(]"):
+            check_closure_calls(Stage([file]), "glsl", "eonlib", None)
+
+
+class Stage:
+    """A stage that is made of some sources."""
+
+    def __init__(self, files):
+        self._files = files
+
+    def getSourceDependencies(self):
+        return set(self._files)
+
+
+class Generator:
+    """A generator that writes a text, whatever it is asked for."""
+
+    def __init__(self, text):
+        self._text = text
+
+    def generate(self, *_):
+        return self
+
+    def getSourceCode(self, _):
+        return self._text
+
+
 @pytest.mark.parametrize(
     "call",
     [
-        "eon_diffuse_bsdf_reflection(L, V, P)",
+        "eon_diffuse_bsdf_reflection(L, V, P, w, c, r, N)",
         "eon_diffuse_bsdf(L, V)",
-        "eon_diffuse_bsdf(c, f(a, b))",
+        "eon_diffuse_bsdf(c, f(a, b), r, N, result)",
+        "mx_eon_diffuse_bsdf(c, w, a, r, N, result)",
     ],
 )
-def test_calls_of_another_form_are_refused(call):
+def test_a_generator_with_calls_of_another_form_is_refused(fresh, monkeypatch, call):
+    text = f"void eon_diffuse_bsdf(ClosureData closureData) {{}}\nvoid main() {{ {call}; }}"
+    monkeypatch.setattr(closure_calls, "generator_of", lambda *_: Generator(text))
+    monkeypatch.setattr(closure_calls, "context_of", lambda *_: None)
+    file = str(library.data_folder() / "genglsl" / "eon_diffuse_bsdf.glsl")
     with pytest.raises(
         InterfaceError, match="eon_diffuse_bsdf.ClosureData closureData, float weight"
     ):
-        check_closure_calls(f"{DEFINITION} {{}}\nvoid main() {{ {call}; }}", "glsl")
+        check_closure_calls(Stage([file]), "glsl", "eonlib", None)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        f"{DEFINITION} {{}}\nvoid main() {{ eon_diffuse_bsdf(c, max(0.0, w), result); }}",
-        "oren_nayar_diffuse_bsdf(normal, color, roughness)",
-        "void mx_oren_nayar_diffuse_bsdf(ClosureData c)\nmx_oren_nayar_diffuse_bsdf(c, w)",
-    ],
-)
-def test_calls_of_the_same_form_and_other_functions_are_accepted(text):
-    check_closure_calls(text, "glsl")
+@pytest.mark.parametrize("target", generation.TARGETS)
+def test_nodes_that_bear_the_names_of_functions_are_no_calls(target):
+    names = {OREN_NAYAR: EON, EON: OREN_NAYAR, "dielectric_bsdf": "dielectric_bsdf"}
+    nodes = "".join(f'<{each} name="{name}" type="BSDF"/>' for each, name in names.items())
+    add = '<add name="{}" type="BSDF"><input name="in1" type="BSDF" nodename="{}"/>'
+    add += '<input name="in2" type="BSDF" nodename="{}"/></add>'
+    first = add.format("both", OREN_NAYAR, EON) + add.format("lobe", "both", "dielectric_bsdf")
+    assert generation.generate(material(nodes + first), target)
 
 
 def test_a_host_whose_target_this_version_lacks_is_not_run(monkeypatch):

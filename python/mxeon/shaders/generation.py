@@ -5,6 +5,7 @@ import re
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from types import MappingProxyType
 
 import MaterialX as mx
@@ -12,13 +13,14 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import DocumentError, InputError
 from mxeon.io.files import AnyPath
+from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.document.labels import label
 from mxeon.shaders.document.notes import CodeWarning, warn_of_files
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.document.sources import Sources, copied_sources
 from mxeon.shaders.document.values import Plain, plain
-from mxeon.shaders.generators import GENERATORS, TARGETS, context_of, generator_of
-from mxeon.shaders.library import check_closure_calls
+from mxeon.shaders.generators import GENERATORS, TARGETS, context_of, generator_of, tokens_of
 from mxeon.shaders.names import shader_names
 
 __all__ = [
@@ -182,14 +184,19 @@ def generate(
     content, names = checked.content, shader_names(checked.renderables)
     generator = generator_of(content, target, library, profile)
     context = context_of(content, target, generator, lights, policy.path)
-    shaders = tuple(
-        _generate(content, each, names[each.getNamePath()], target, context)
-        for each in _select(checked.renderables, element)
-    )
+    elements = _select(checked.renderables, element)
+    tokens = partial(tokens_of, target, library, profile)
+    with copied_sources(content, context, policy, tokens) as sources:
+        sources.check_limit(len(elements), checked.nodes)
+        shaders = []
+        for each in elements:
+            source = _generate(content, each, names[each.getNamePath()], target, context, sources)
+            check_closure_calls(source.getStage("pixel"), target, library, profile)
+            shaders.append(_shader(source, each.getNamePath(), target, content))
     warn_of_files(_files(shaders), content)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
-    return shaders
+    return tuple(shaders)
 
 
 def _select(elements: Sequence[mx.TypedElement], name: str | None) -> Sequence[mx.TypedElement]:
@@ -209,18 +216,22 @@ def _generate(
     name: str,
     target: str,
     context: mx_gen.GenContext,
-) -> Shader:
-    path = element.getNamePath()
+    sources: Sources,
+) -> mx_gen.Shader:
+    path, generator = element.getNamePath(), context.getShaderGenerator()
     try:
-        shader = context.getShaderGenerator().generate(name, element, context)
+        return generator.generate(name, element, context)
     except (mx.Exception, LookupError) as error:
-        reason = str(error).strip().splitlines()[0]
+        reason = sources.in_words(str(error).strip().splitlines()[0])
         raise DocumentError(
             f'{label(document)}: element "{path}" must give {target}; {reason}'
         ) from None
-    stages = {stage: shader.getSourceCode(stage) for stage in STAGES if shader.hasStage(stage)}
-    check_closure_calls(stages["pixel"], target)
-    return Shader(name, path, target, MappingProxyType(stages), _inputs(shader, document), document)
+
+
+def _shader(source: mx_gen.Shader, path: str, target: str, document: mx.Document) -> Shader:
+    stages = {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
+    inputs = _inputs(source, document)
+    return Shader(source.getName(), path, target, MappingProxyType(stages), inputs, document)
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:

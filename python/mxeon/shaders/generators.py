@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """MaterialX's shader generators, set up for a target, a data library and a document."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import import_module
 from typing import Any
 
@@ -93,3 +93,14 @@ def context_of(
         light = document.getNodeDef("ND_directional_light")
         mx_gen.HwShaderGenerator.bindLightShader(light, 1, context)
     return context
+
+
+@cache
+def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
+    """Words of includes, and the names that a generator has in their place: known once it has run."""
+    document = mx.createDocument()
+    document.setDataLibrary(load_library(library, profile))
+    generator = generator_of(document, target, library, profile)
+    surface = document.addNode("surface", "surface", "surfaceshader")
+    generator.generate("surface", surface, context_of(document, target, generator, False, ()))
+    return dict(generator.getTokenSubstitutions())

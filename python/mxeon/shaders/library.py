@@ -9,7 +9,6 @@ and generated code is checked against the closure interface of eonlib's sources.
 """
 
 import os
-import re
 import warnings
 from dataclasses import dataclass
 from functools import cache
@@ -19,9 +18,8 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 import mxeon
-from mxeon.errors import InputError, InterfaceError, LibraryError, PackageError
-from mxeon.io.files import regular
-from mxeon.shaders.nodes import DIFFUSE_NODES, NODEDEFS
+from mxeon.errors import InputError, LibraryError, PackageError
+from mxeon.shaders.library_files import check_files, check_sources, read_options
 
 TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
 SOURCES = (".mtlx", ".glsl", ".osl")  # endings of the files that a library is made of
@@ -152,8 +150,7 @@ def library_name(library: str | os.PathLike[str]) -> str:
             f"documents; got {str(library)!r}"
         )
     library = os.path.abspath(library)
-    for path in (*documents, *_sources(library)):
-        _assert_text(path)
+    check_files([*documents, *_sources(library)])
     return library
 
 
@@ -165,15 +162,6 @@ def _sources(library: str) -> list[Path]:
         for path in sorted(folder.rglob("*.*"))
         if path.suffix in SOURCES and not path.is_dir()
     ]
-
-
-def _assert_text(path: Path) -> None:
-    """Raise an error unless a path names a regular file of text in UTF-8."""
-    with open(path, "rb", opener=regular) as file:
-        try:
-            file.read().decode()
-        except UnicodeDecodeError:
-            raise InputError(f"{path}: must be text in UTF-8") from None
 
 
 @cache
@@ -213,11 +201,18 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
         warnings.warn(UntestedVersionWarning(note), stacklevel=2)
     document = mx.createDocument()
     try:
-        mx.loadLibraries(_folders(library, profile), mx.getDefaultDataSearchPath(), document)
+        mx.loadLibraries(
+            _folders(library, profile),
+            mx.getDefaultDataSearchPath(),
+            document,
+            readOptions=read_options(),
+        )
     except (mx.Exception, mx.ExceptionParseError) as error:
         raise InputError(f"library {library}: {error}") from None
+    if library not in LIBRARIES:
+        check_sources(document, library_name(library))
     if library in ("eonlib", "diffuse"):
-        assert_ours(document)
+        assert_ours(document, library, profile)
     return document
 
 
@@ -238,54 +233,48 @@ def untested(version: str) -> str:
     return f"MaterialX {version} has not been tested with mxeon {mxeon.__version__}"
 
 
-def check_closure_calls(text: str, target: str) -> None:
-    """Raise InterfaceError unless generated text calls eonlib's functions as they are defined.
+def implementations(
+    document: mx.Document, library: str = "eonlib", profile: str | None = None
+) -> tuple[Implementation, ...]:
+    """Implementations that a document and its data library have of all that eonlib ships.
 
     Parameters
     ----------
-    text : str
-        Pixel stage of a generated shader.
-    target : str
-        The target it was generated for, for the message.
-    """
-    for name in DIFFUSE_NODES:
-        # Patterns begin with letters, for which `re` searches fast.
-        definition = re.search(rf"void {name}(?<!\wvoid {name})\(", text)
-        if not definition:  # the node is not used, or not eonlib's
-            continue
-        parameters = _arguments(text, definition.end())
-        for call in re.finditer(rf"{name}(?<!void {name})(?<!\w{name})\w*\(", text):
-            if call[0] != f"{name}(" or len(_arguments(text, call.end())) != len(parameters):
-                raise InterfaceError(
-                    f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
-                    f"{name}({', '.join(parameters)}); use --library stock"
-                )
-
-
-def _arguments(text: str, start: int) -> list[str]:
-    """Arguments of a call, or parameters of a definition, whose parenthesis opens before `start`."""
-    depth, commas, end = 1, [start - 1], start
-    while depth:
-        depth += {"(": 1, ")": -1}.get(text[end], 0)
-        if text[end] == "," and depth == 1:
-            commas.append(end)
-        end += 1
-    ends = [*commas[1:], end - 1]
-    return [" ".join(text[a + 1 : b].split()) for a, b in zip(commas, ends, strict=True)]
-
-
-def implementations(document: mx.Document) -> tuple[Implementation, ...]:
-    """Implementations in a document and its data library of eonlib's nodes on every target.
+    document : MaterialX.Document
+    library : str
+        "eonlib", or "diffuse" for what its diffuse part ships.
+    profile : str or None
+        Ships more.
 
     Returns
     -------
     tuple of Implementation
-        One for each pair of NODEDEFS and the TARGETS that this MaterialX has.
+        One for each nodedef of eonlib's documents on each target that they implement it for.
     """
     data = document.getDataLibrary() or document
-    defined = {each.getName() for each in data.getTargetDefs()} or TARGETS
-    targets = [target for target in TARGETS if target in defined]
-    return tuple(_implementation(document, node, target) for node in NODEDEFS for target in targets)
+    return tuple(
+        _implementation(document, node, each)
+        for node, target in _shipped(library, profile)
+        for each in _heirs(data, target)
+    )
+
+
+@cache
+def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
+    """Nodedefs and targets of the implementations in eonlib's documents; "" for every target."""
+    count, document = len(mx.getDefaultDataLibraryFolders()), mx.createDocument()
+    mx.loadLibraries(_folders(library, profile)[:-count], mx.FileSearchPath(), document)
+    elements = (*document.getImplementations(), *document.getNodeGraphs())
+    pairs = ((each.getNodeDefString(), each.getTarget()) for each in elements)
+    return tuple(dict.fromkeys(pair for pair in pairs if pair[0]))
+
+
+def _heirs(data: mx.Document, target: str) -> list[str]:
+    """Those of TARGETS that take an implementation for a target."""
+    definitions = {each.getName(): each for each in data.getTargetDefs()}
+    known = [each for each in TARGETS if each in definitions or not definitions]
+    parents = {each: definitions[each].getMatchingTargets() for each in definitions}
+    return [each for each in known if target in ("", each, *parents.get(each, ()))]
 
 
 def _implementation(document: mx.Document, node: str, target: str) -> Implementation:
@@ -296,12 +285,12 @@ def _implementation(document: mx.Document, node: str, target: str) -> Implementa
     return Implementation(node, target, element.getName(), element.getActiveSourceUri())
 
 
-def assert_ours(document: mx.Document) -> None:
-    """Raise LibraryError unless every implementation of eonlib's nodes in a document is eonlib's.
+def assert_ours(document: mx.Document, library: str = "eonlib", profile: str | None = None) -> None:
+    """Raise LibraryError unless a document takes all that eonlib ships from eonlib.
 
-    The message names the node, the target and the file of the other implementation.
+    The message names node, target and other file; parameters as those of `implementations`.
     """
-    for each in implementations(document):
+    for each in implementations(document, library, profile):
         if not each.ours:
             where = each.document or "nothing"
             raise LibraryError(

@@ -19,8 +19,8 @@ from mxeon.shaders.document.policy import Policy
 
 def check_shaders(
     document: mx.Document, elements: Sequence[mx.TypedElement], policy: Policy
-) -> None:
-    """Raise DocumentError unless the shaders of renderable elements stay within the limits.
+) -> int:
+    """Number of nodes in the shaders of renderable elements; DocumentError if they exceed a limit.
 
     Refused are nodes and nodegraphs that lead back to themselves, and too many of them, or of
     their inputs: in all, in a row or within each other.
@@ -40,6 +40,7 @@ def check_shaders(
         ports += _inputs(element.getParent())
         policy.check_limit("ports", ports, rule, "inputs of nodes in all its shaders")
         policy.check_limit("nodes", total, rule, "nodes in all its shaders")
+    return total
 
 
 def check_inheritance(document: mx.Document, policy: Policy) -> None:

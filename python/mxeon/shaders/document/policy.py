@@ -22,6 +22,7 @@ LIMITS = {
     "chain": "nodes connected in a row",
     "shaders": "renderable elements",
     "ports": "inputs of the nodes of all shaders, nodegraphs counted as one node",
+    "text": "characters that code of the document's own may have in all its shaders",
 }
 
 
@@ -45,7 +46,7 @@ class Policy:
         Folders, searched after its own, in which it may name files too; by default those of the
         environment variable MATERIALX_SEARCH_PATH.
     size : int
-        Bytes of the document and all that it includes.
+        Bytes of the document and all that it includes, and of all sources of its own.
     length : int
         Characters of one attribute.
     depth : int
@@ -59,7 +60,7 @@ class Policy:
     tokens : int
         Tokens, each of which MaterialX looks for in each name of a file.
     includes : int
-        Documents that include each other in a row.
+        Documents, or sources, that include each other in a row.
     nodes : int
         Nodes of all its shaders together, those of a nodegraph counted wherever it is used.
     chain : int
@@ -68,6 +69,9 @@ class Policy:
         Renderable elements.
     ports : int
         Inputs of the nodes of all its shaders together, and of the nodegraphs they lie in.
+    text : int
+        Characters that its own code may have in all its shaders: its functions once for each shader,
+        its longest expression once for each node.
 
     Raises
     ------
@@ -110,6 +114,7 @@ class Policy:
     chain: int = 1_000
     shaders: int = 3_000
     ports: int = 200_000
+    text: int = 64 * 2**20
 
     def __post_init__(self) -> None:
         for name in LIMITS:

@@ -43,10 +43,13 @@ class Document:
         With its data library attached.
     renderables : tuple of MaterialX.TypedElement
         Its renderable elements; at least one.
+    nodes : int
+        Number of nodes in their shaders, nodegraphs counted wherever they are used.
     """
 
     content: mx.Document
     renderables: tuple[mx.TypedElement, ...]
+    nodes: int
 
 
 def read_document(
@@ -104,9 +107,9 @@ def read_document(
     content.setDataLibrary(data)
     _check(content, policy)
     elements = _renderables(content)
-    check_shaders(content, elements, policy)
+    nodes = check_shaders(content, elements, policy)
     warn_of_elements(content)
-    return Document(content, elements)
+    return Document(content, elements, nodes)
 
 
 def _is_text(source: AnyPath) -> TypeGuard[str]:

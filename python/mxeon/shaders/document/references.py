@@ -110,9 +110,18 @@ def _sources(element: mx.Implementation, home: Path, path: Iterable[str]) -> lis
     return [base / name for base in bases if name and os.path.lexists(base / name)]
 
 
+def library_path(path: AnyPath) -> str:
+    """Path by which MaterialX opens a file of the libraries; "" for any other file."""
+    real = os.path.realpath(path)
+    for root, known in _libraries().items():
+        if Path(real).is_relative_to(root):
+            return os.path.join(known, os.path.relpath(real, root))
+    return ""
+
+
 @cache
-def _libraries() -> tuple[Path, ...]:
-    """Folders whose files any document may use: MaterialX's own and eonlib's."""
+def _libraries() -> dict[Path, str]:
+    """Folders whose files any document may use: MaterialX's own and eonlib's, as MaterialX has them."""
     standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
     ours = (eonlib_folder(), *(data_folder() / name for name in ("profiles", "genglsl", "genosl")))
-    return tuple(Path(each).resolve() for each in (*standard, *ours))
+    return {Path(each).resolve(): str(each) for each in (*standard, *ours)}

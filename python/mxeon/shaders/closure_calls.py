@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether the generators of this MaterialX call a library's functions as its sources define them.
+
+Versions of MaterialX pass closures other arguments. So a generator is asked to write a call of each
+function that a shader uses, in a document of mxeon's own, where no name can be taken for another: the
+document of the shader, and its text, are not searched.
+"""
+
+import os
+import re
+from collections import defaultdict
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
+
+from mxeon.errors import InterfaceError
+from mxeon.shaders.generators import context_of, generator_of
+from mxeon.shaders.library import load_library, standard_folders
+
+NODE = "asked"  # name of the node whose call is asked for
+CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which calls what it is given
+
+
+def check_closure_calls(
+    stage: mx_gen.ShaderStage, target: str, library: str, profile: str | None
+) -> None:
+    """Raise InterfaceError unless a stage calls the functions of a library as they are defined.
+
+    Parameters
+    ----------
+    stage : MaterialX.PyMaterialXGenShader.ShaderStage
+        Of a generated shader; it knows the sources that it is made of.
+    target : str
+        The target it was generated for.
+    library, profile : str
+        See `mxeon.shaders.library.load_library`.
+    """
+    known = _functions(library, profile)
+    for file in stage.getSourceDependencies():
+        for nodedef, function in known.get(file, ()):
+            parameters = _parameters(file, function)
+            call = _call(target, library, profile, nodedef, function)
+            if parameters and len(call) != len(parameters):
+                raise InterfaceError(
+                    f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
+                    f"{function}({', '.join(parameters)}); use --library stock"
+                )
+
+
+@cache
+def _functions(library: str, profile: str | None) -> Mapping[str, list[tuple[str, str]]]:
+    """Nodedefs and functions of each source of a library, but for MaterialX's own."""
+    functions: dict[str, list[tuple[str, str]]] = defaultdict(list)
+    standard = set(standard_folders())
+    for each in load_library(library, profile).getImplementations():
+        document = Path(each.getActiveSourceUri())
+        if each.hasFile() and each.hasFunction() and standard.isdisjoint(document.parents):
+            file = os.path.normpath(document.parent / each.getFile())
+            functions[file].append((each.getNodeDefString(), each.getFunction()))
+    return functions
+
+
+@cache
+def _parameters(file: str, function: str) -> list[str]:
+    """Parameters of a function as a source defines it; none if it does not."""
+    text = Path(file).read_text(encoding="utf-8")
+    definition = re.search(rf"\bvoid\s+{function}\s*\(", text)
+    return _arguments(text, definition.end()) if definition else []
+
+
+@cache
+def _call(target: str, library: str, profile: str | None, nodedef: str, function: str) -> list[str]:
+    """Arguments with which a generator calls the function of a node; none if it does not call it."""
+    document = mx.createDocument()
+    document.setDataLibrary(load_library(library, profile))
+    generator = generator_of(document, target, library, profile)
+    context = context_of(document, target, generator, False, ())
+    text = generator.generate(NODE, _surface(document, nodedef), context).getSourceCode("pixel")
+    calls = list(re.finditer(rf"(?<!void )\b{function}\(", text))
+    return _arguments(text, calls[-1].end()) if calls else []
+
+
+def _surface(document: mx.Document, nodedef: str) -> mx.Node:
+    """A node of a nodedef, or the surface that calls it if it is a closure."""
+    definition = document.getNodeDef(nodedef)
+    kind = definition.getType()
+    node = document.addNode(definition.getNodeString(), NODE, kind)
+    node.setNodeDefString(nodedef)
+    if kind == "VDF":
+        base, node, kind = node, document.addNode("layer", "layer", "BSDF"), "BSDF"
+        node.addInput("base", "VDF").setConnectedNode(base)
+    if kind not in CLOSURES:
+        return node
+    surface = document.addNode("surface", "surface", "surfaceshader")
+    surface.addInput(CLOSURES[kind], kind).setConnectedNode(node)
+    return surface
+
+
+def _arguments(text: str, start: int) -> list[str]:
+    """Arguments of a call, or parameters of a definition, whose parenthesis opens before `start`."""
+    depth, commas, end = 1, [start - 1], start
+    while depth:
+        depth += (text[end] in "({") - (text[end] in ")}")  # MSL writes structures in braces
+        if text[end] == "," and depth == 1:
+            commas.append(end)
+        end += 1
+    ends = [*commas[1:], end - 1]
+    return [" ".join(text[a + 1 : b].split()) for a, b in zip(commas, ends, strict=True)]

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shader sources that a document brings: read and checked here, and handed to MaterialX as copies.
+
+MaterialX opens whatever a source includes, and what that includes. So mxeon reads the sources of a
+document itself, to any depth, and writes copies into a temporary folder. A copy includes copies, and
+files of the libraries: MaterialX opens no path that a document names.
+"""
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, nullcontext
+from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenShader as mx_gen
+
+from mxeon.errors import DocumentError, InputError
+from mxeon.shaders.document.labels import label, location
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.references import check_inside, folder, foreign_code, library_path
+from mxeon.shaders.source_text import decode_source, included, read_source
+
+UNREAD = "genmdl"  # whose generator makes the name of a module from `file`, and opens nothing
+TOKEN = re.compile(r"\$[a-zA-Z0-9]+")  # word of an include in whose place a generator has a name
+
+
+@contextmanager
+def copied_sources(
+    document: mx.Document,
+    context: mx_gen.GenContext,
+    policy: Policy,
+    tokens: Callable[[], Mapping[str, str]],
+) -> Iterator["Sources"]:
+    """Let the implementations of a document take copies of their sources while the block runs.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+    context : MaterialX.PyMaterialXGenShader.GenContext
+        Of the target; it finds files as the generator will.
+    policy : Policy
+    tokens : callable () -> mapping of str to str
+        What the generator puts in place of words of an include.
+
+    Raises
+    ------
+    DocumentError
+        If a source of that target lies where the document may name no files, is no regular file of
+        text in UTF-8, or exceeds a limit, or one that it includes.
+    """
+    target = context.getShaderGenerator().getTarget()
+    code = [] if target == UNREAD else foreign_code(document)
+    files = [(each, each.getFile()) for each in code if each.hasFile()]
+    with TemporaryDirectory(prefix="mxeon-sources-") if files else nullcontext("") as copies:
+        sources = Sources(document, context, policy, copies, tokens)
+        try:
+            for element, _ in files:
+                used = _is_for(element, target)
+                element.setFile(sources.copy(element) if used else sources.missing())
+            yield sources
+        finally:
+            for element, name in files:
+                element.setFile(name)
+
+
+def _is_for(element: mx.Implementation, target: str) -> bool:
+    """Whether a generator of a target may take an implementation."""
+    targets = element.getDocument().getTargetDef(target).getMatchingTargets()
+    return any(mx.targetStringsMatch(element.getTarget(), each) for each in targets)
+
+
+class Sources:
+    """Copies of the sources of one document, for one target.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+    context : MaterialX.PyMaterialXGenShader.GenContext
+        Finds the files as MaterialX will.
+    policy : Policy
+    copies : path-like
+        Folder of the copies.
+    tokens : callable () -> mapping of str to str
+        What the generator puts in place of words of includes.
+    """
+
+    def __init__(
+        self,
+        document: mx.Document,
+        context: mx_gen.GenContext,
+        policy: Policy,
+        copies: str,
+        tokens: Callable[[], Mapping[str, str]],
+    ) -> None:
+        self._document, self._context, self._policy = document, context, policy
+        self._home, self._folder, self._find_tokens = folder(document), Path(copies), tokens
+        self._copies: dict[str, str] = {}  # by the path that MaterialX would open
+        self._names: dict[str, str] = {}  # of copies, as the document has them
+        self._size = 0  # bytes of all files
+        self._functions = 0  # characters of the sources of functions, with all that they include
+        self._expressions = 0  # of the longest source that is an expression
+
+    def copy(self, element: mx.Implementation) -> str:
+        """Path of the copy of an implementation's source; of a source of a library, its own path."""
+        local = os.path.dirname(element.getActiveSourceUri())
+        depth = 0 if element.hasFunction() else None
+        return self._copy(element.getFile(), local, location(element), depth)
+
+    def missing(self) -> str:
+        """Path of a copy that does not exist, for what the target does not use."""
+        return str(self._folder / "none.txt")
+
+    def in_words(self, reason: str) -> str:
+        """A message of MaterialX with the names that the document has in place of copies."""
+        for copy, name in self._names.items():
+            reason = reason.replace(copy, name)
+        return reason
+
+    def check_limit(self, shaders: int, nodes: int) -> None:
+        """Raise DocumentError if all shaders together may have too much code of the document."""
+        inline = (each.getAttribute("sourcecode") for each in foreign_code(self._document))
+        longest = max(map(len, inline), default=0)
+        total = self._functions * shaders + max(self._expressions, longest) * nodes
+        unit = "characters of its own code in all its shaders"
+        self._policy.check_limit("text", total, f"{label(self._document)}: must have", unit)
+
+    def _copy(self, name: str, local: str, title: str, depth: int | None) -> str:
+        """Path of the copy of a file; depth: how many include each other, None: it is no function."""
+        path = os.path.abspath(self._resolved(name, local))
+        if "\0" in path:  # where the system ends the name, and MaterialX does not
+            return self.missing()
+        if library := library_path(path):
+            return library
+        if path not in self._copies:
+            copy = str(self._folder / f"{len(self._copies)}.txt")
+            self._copies[path], self._names[copy] = copy, name
+            if os.path.lexists(path):  # MaterialX tells what does not exist, if it is used
+                check_inside(path, self._home, self._policy, title)
+                self._write(copy, path, depth)
+        return self._copies[path]
+
+    def _write(self, copy: str, path: str, depth: int | None) -> None:
+        """Check a file, and all that it includes, and write its copy."""
+        rule, title = f"{path}: must", label(self._document)
+        self._policy.check_limit("includes", depth or 0, f"{rule} be included by", "files in a row")
+        try:
+            data = read_source(path, self._policy.size - self._size)
+            self._size += len(data)
+            unit = "bytes, with all sources of its document"
+            self._policy.check_limit("size", self._size, f"{rule} have", unit)
+            text = decode_source(data, path)
+        except InputError as error:
+            raise DocumentError(f"{title}: source {error}") from None
+        if depth is None:
+            self._expressions = max(self._expressions, len(text))
+        else:
+            self._functions += len(text)
+            text = self._rewritten(text, path, depth)
+        Path(copy).write_text(text, encoding="utf-8", newline="")
+
+    def _rewritten(self, text: str, path: str, depth: int) -> str:
+        """A source whose includes are copies."""
+        lines = text.split("\n")
+        for number, line in enumerate(lines):
+            if name := included(line):
+                start, end = line.index('"') + 1, line.rindex('"')
+                copy = self._copy(name, os.path.dirname(path), f"{path}: include", depth + 1)
+                lines[number] = f"{line[:start]}{copy}{line[end:]}"
+        return "\n".join(lines)
+
+    def _resolved(self, name: str, local: str) -> str:
+        """The path that MaterialX would open."""
+        name = TOKEN.sub(lambda token: self._tokens.get(token[0], token[0]), name)
+        return str(self._context.resolveSourceFile(name, local).asString())
+
+    @cached_property
+    def _tokens(self) -> Mapping[str, str]:
+        return self._find_tokens()

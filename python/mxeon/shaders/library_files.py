@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files of a folder that is loaded as a library: text of limited size, and nothing without an end.
+
+A library is trusted, so it may name any file. A pipe, a device or an encoding is still refused in one
+line: MaterialX would wait, fill the memory, or give text that no one can decode.
+"""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+import MaterialX as mx
+
+from mxeon.errors import InputError
+from mxeon.io.files import AnyPath
+from mxeon.shaders.source_text import decode_source, included, read_source
+
+LARGEST = 16 * 2**20  # bytes of a file
+
+
+def check_files(paths: Iterable[AnyPath]) -> None:
+    """Raise InputError unless each is a regular file of text in UTF-8, and no larger than LARGEST."""
+    for path in paths:
+        _text(path)
+
+
+def check_sources(document: mx.Document, library: str) -> None:
+    """Check every source that the implementations of a library name, and all that it includes.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+        Into which the library was loaded.
+    library : str
+        Its folder.
+    """
+    search = mx.getDefaultDataSearchPath()
+    waiting = [
+        (each.getFile(), Path(each.getActiveSourceUri()).parent)
+        for each in document.getImplementations()
+        if each.hasFile() and Path(library) in Path(each.getActiveSourceUri()).parents
+    ]
+    known = set()
+    while waiting:
+        name, local = waiting.pop()
+        path = _find(search, name, local)
+        if path not in known and os.path.lexists(path):  # what is missing is told when it is used
+            known.add(path)
+            names = filter(None, map(included, _text(path).split("\n")))
+            waiting += [(each, Path(path).parent) for each in names]
+
+
+def read_options() -> mx.XmlReadOptions:
+    """Options by which MaterialX reads the documents of a library, and checks what they include."""
+    options = mx.XmlReadOptions()
+    options.readXIncludeFunction = _include
+    return options
+
+
+def _include(document: mx.Document, name: mx.FilePath, path: mx.FileSearchPath, *_: object) -> None:
+    file = path.find(name)
+    _text(file.asString())
+    mx.readFromXmlFile(document, file, path, read_options())
+
+
+def _text(path: AnyPath) -> str:
+    """Text of a file of a library."""
+    data = read_source(path, LARGEST)
+    if len(data) > LARGEST:
+        raise InputError(f"{path}: must have at most {LARGEST} bytes")
+    return decode_source(data, path)
+
+
+def _find(search: mx.FileSearchPath, name: str, local: Path) -> str:
+    """Path that MaterialX finds for a source, or the name."""
+    path = mx.FileSearchPath(str(local))
+    path.append(search)
+    return str(path.find(name).getNormalized().asString())
