@@ -56,7 +56,8 @@ def run(options: argparse.Namespace) -> int:
         else:
             written += _write(result.value, options.outputPath)
     outcome = {"files": written, "errors": list(map(str, errors))}
-    print(json.dumps(outcome) if options.json else "\n".join(written))
+    for line in [json.dumps(outcome)] if options.json else written:
+        print(line)
     return min((fail(*status_of(error)) for error in errors), default=PASSED)
 
 
