@@ -7,14 +7,20 @@ import sys
 
 def main() -> int:
     """Run the command; return its exit status."""
-    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback of the imports at Ctrl-C
+    end_at_interrupt()
     from mxeon import cli
 
     return cli.main()
 
 
+def end_at_interrupt() -> None:
+    """Let Ctrl-C end the process while it imports, without a traceback."""
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 if __name__ == "__main__":
+    end_at_interrupt()
     from mxeon.jobs.processes import forget_working_folder
 
     forget_working_folder()

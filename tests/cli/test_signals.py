@@ -106,3 +106,18 @@ m.main()"""
     process = start(tmp_path, code=code)
     _, errors = process.communicate(timeout=DEADLINE)
     assert (process.returncode, errors) == (-signal.SIGINT, "")
+
+
+# Python's module of processes, whose import is interrupted, since mxeon's first import is of it.
+INTERRUPTED = """
+import os, runpy, signal, sys, types
+module = types.ModuleType("mxeon.jobs.processes")
+module.__getattr__ = lambda name: os.kill(os.getpid(), signal.SIGINT)
+sys.modules[module.__name__] = module
+runpy.run_module("mxeon", run_name="__main__")
+"""
+
+
+def test_an_interrupt_during_the_first_import_shows_no_traceback():
+    done = subprocess.run([sys.executable, "-P", "-c", INTERRUPTED], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, "")
