@@ -3,6 +3,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 
 from mxeon import cli, explorer
 from mxeon.jobs import pool
-from tests.fuzz import pages
+from tests.fuzz import opens, pages
 from tests.fuzz.attack import FAMILIES, cases
 from tests.fuzz.cases import OUT, Case, case
 from tests.fuzz.found import FOUND
@@ -45,6 +46,24 @@ def test_a_slice_of_each_family_of_the_attack_ends_without_fault(family):
 
 def test_a_family_gives_the_same_cases_again():
     assert cases("attributes", 5) == cases("attributes", 5)
+
+
+needs_strace = pytest.mark.skipif(
+    subprocess.run("strace -o /dev/null true", shell=True, capture_output=True).returncode != 0,
+    reason="needs strace, and leave to trace a process",
+)
+
+
+@needs_strace
+def test_materialx_opens_no_file_that_a_document_names():
+    paths = opens.opens(10)
+    assert opens.strangers(paths) == []
+    assert any(opens.COPIES in path for path in paths) and paths.total() > 100
+
+
+@needs_strace
+def test_the_trace_notices_what_materialx_opens():
+    assert any(path.endswith(".glsl") for path in opens.strangers(opens.opens(4, bare=True)))
 
 
 def write(path, text):

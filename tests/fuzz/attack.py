@@ -6,7 +6,8 @@
 Where `python -m tests.fuzz` mutates at random, a family covers its tables evenly: every element kind with
 every type, every attribute with every odd value, every spelling of a number, every encoding, every
 option, every value of a journal, of results and of a kit's description, every argument of the models'
-functions, the explorer's page in Chromium, signals at any time. The figures go to docs/reliability.json under "attack".
+functions, the explorer's page in Chromium, signals at any time, every include. The figures go to
+docs/reliability.json under "attack".
 """
 
 import argparse
@@ -23,7 +24,17 @@ from xml.etree import ElementTree
 from tqdm import tqdm
 
 from mxeon.jobs import pool
-from tests.fuzz import arguments, journals, kits, pages, results, signals, templates
+from tests.fuzz import (
+    arguments,
+    includes,
+    journals,
+    kits,
+    libraries,
+    pages,
+    results,
+    signals,
+    templates,
+)
 from tests.fuzz.__main__ import FIGURES, keep
 from tests.fuzz.cases import COMMANDS, OUT, TARGETS, Case
 from tests.fuzz.documents import originals
@@ -177,6 +188,8 @@ FAMILIES = {
     "explorer documents": Family(pages.document_rows, pages.to_document, 60, pages.shown),
     "explorer addresses": Family(pages.fragment_rows, lambda _, row: row, 500, pages.addressed),
     "signals": Family(signals.rows, lambda _, row: row, 150, signals.struck),
+    "includes": Family(includes.rows, includes.to_case, 1000),
+    "libraries": Family(libraries.rows, libraries.to_case, 500),
 }
 
 

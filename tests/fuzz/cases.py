@@ -48,11 +48,14 @@ class Case:
     files : tuple of (str, bytes)
         Beside `base.mtlx`, in the working folder.
     arguments : tuple of str
+    links : tuple of (str, str)
+        Symbolic links and where they lead; pipes, where that is "".
     """
 
     name: str
     files: tuple[tuple[str, bytes], ...]
     arguments: tuple[str, ...]
+    links: tuple[tuple[str, str], ...] = ()
 
 
 def case(seed, number):

@@ -95,6 +95,8 @@ def _prepared(root, tried):
     for name, data in tried.files:
         (home / name).parent.mkdir(parents=True, exist_ok=True)
         (home / name).write_bytes(data)
+    for name, end in tried.links:
+        (home / name).symlink_to(end) if end else os.mkfifo(home / name)
     return home
 
 
@@ -137,5 +139,6 @@ def _faults(root, named, before, status, out, err):
 
 def _contents(root):
     """All files below a folder; what the link leads to is below it anyway."""
-    files = (Path(each) / name for each, _, names in os.walk(root) for name in names)
+    paths = (Path(each) / name for each, _, names in os.walk(root) for name in names)
+    files = (path for path in paths if path.is_file() and not path.is_symlink())
     return {str(file.relative_to(root)): file.read_bytes() for file in files}

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Documents that bring shader sources, which include what they must not, in every way and depth."""
+
+from itertools import product
+
+from tests.fuzz.cases import OUT, Case
+from tests.support.documents import connected, material
+
+NODE = """<nodedef name="ND_own" node="own"><output name="out" type="color3"/></nodedef>
+<implementation name="IM_own" nodedef="ND_own" file="{}" {}{}/><own name="own" type="color3"/>"""
+FUNCTIONS = {
+    "glsl": "void own(out vec3 result) { result = vec3(0.5); }",
+    "msl": "void own(thread vec3& result) { result = vec3(0.5); }",
+    "slang": "void own(out vec3 result) { result = vec3(0.5); }",
+    "osl": "void own(output color result) { result = color(0.5); }",
+    "mdl": "color own() { return color(0.5); }",
+}
+WAYS = (
+    '#include "{}"',
+    '  #include"{}" // it',
+    '// #include "{}"',
+    'x#include "{}"y',
+    '#include "{}" "',
+    "#include <{}>",
+    "# include '{}'",
+    '#include "{}"\r',
+    '#include "lib/../{}"',
+    '#include "./{}',
+)
+FILES = (
+    "../secret.glsl", "link/secret.glsl", "/proc/self/cwd/../secret.glsl", "linked.glsl", "pipe.glsl",
+    "zero.glsl", "/dev/zero", "/dev/stdin", "/proc/self/mem", "/etc/hostname", "", ".", "textures",
+    "missing.glsl", "own.glsl", "part0.glsl", "latin.glsl", "empty.glsl", "marked.glsl", "null.glsl",
+    "base.mtlx", "textures/brick_color.png", "$fileTransformUv", "lib/$fileTransformUv", "\x00",
+    "../secret.glsl\x00", "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl", "a" * 300, "~", "$",
+    "libraries/stdlib/genglsl/lib/$fileTransformUv", "libraries/../../../../../../../../../etc/hostname",
+    "file:///etc/hostname", "link/documents/part1.glsl",
+)  # fmt: skip
+DEPTHS = (0, 1, 3, 15, 16, 400)
+BROUGHT = ("own.glsl", *FILES)  # files that the implementation itself names
+
+LINKS = (("linked.glsl", "../secret.glsl"), ("zero.glsl", "/dev/zero"), ("pipe.glsl", ""))
+OTHERS = (
+    ("latin.glsl", b"// caf\xe9\nfloat latin;"),
+    ("empty.glsl", b""),
+    ("marked.glsl", b"\xef\xbb\xbffloat marked;"),
+    ("null.glsl", b"float nothing;\0"),
+)
+
+
+def rows():
+    """How a source includes, what, how deep, for which target, and with which function."""
+    for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
+        yield "own.glsl", *row, 'function="own" '
+    for name, target in product(BROUGHT, FUNCTIONS):
+        for function in ('function="own" ', 'function="" ', ""):
+            yield name, WAYS[0], "part0.glsl", 1, target, function
+
+
+def to_case(rng, row):
+    """A document and its sources, each of which includes the next one."""
+    name, way, file, depth, target, function = row
+    links = [WAYS[0].format(f"part{number}.glsl") for number in range(depth)]
+    first, *parts = (f"{line}\n" for line in (*links, way.format(file)))
+    sources = [("own.glsl", first + FUNCTIONS[target])]
+    sources += [(f"part{number}.glsl", text + "float x;\n") for number, text in enumerate(parts)]
+    limited = rng.choice(("", f'target="gen{target}" '))
+    node = NODE.format(name.replace("\0", "\1"), function, limited)
+    document = material(node + connected(color='nodename="own"'))
+    files = [("base.mtlx", document), *sources]
+    encoded = tuple((name, text.encode()) for name, text in files)
+    arguments = ("generate", "base.mtlx", "--target", target, "--outputPath", OUT)
+    if rng.random() < 0.1:
+        arguments = ("render", "base.mtlx", "--size", "4", "--host", "reference", "--allowCode")
+        arguments += ("--output", f"{OUT}/a.png")
+    return Case(f"{way} {file} {depth}", encoded + OTHERS, arguments, LINKS)

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files that MaterialX opens by itself while the cases of the fuzzer are generated.
+
+    python -m tests.fuzz.opens [--cases N] [--bare]
+
+strace sees every file that a process opens, and Python's audit hook those that Python opens, which are
+mxeon's. The others are MaterialX's: they may lie in the libraries and among mxeon's copies, nowhere else.
+With --bare, documents keep the names of their sources, which has to be noticed.
+"""
+
+import argparse
+import codecs
+import contextlib
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+from mxeon.shaders import generation
+from mxeon.shaders.document.references import library_path
+from mxeon.shaders.library import examples_folder
+from tests.fuzz.attack import cases
+from tests.fuzz.cases import case
+from tests.fuzz.trial import trial
+
+ROOT = Path(__file__).resolve().parents[2]
+START, END = "/the cases begin here", "/the cases end here"  # opened in vain around them
+MACHINE = ("/sys/devices/system/cpu/online",)  # what the C library asks for
+ENDLESS = (b"pipe", b"zero", b"/dev/", b"/proc/")  # in documents for which MaterialX might wait
+OPEN = re.compile(rb'open(?:at2?)?\((?:AT_FDCWD, |\d+(?:<[^>]*>)?, )?"((?:[^"\\]|\\.)*)"(.*)')
+COPIES = "/mxeon-sources-"  # in the path of a copy
+SEED = 3
+
+
+def selected(count, bare=False):
+    """Cases whose documents are generated: of the family of includes, and mutated ones."""
+    rng = random.Random(SEED)
+    mutated = (case(SEED, number) for number in range(count))
+    tried = [*cases("includes", count), *mutated]
+    tried = [each for each in tried if each.arguments[0] == "generate"]
+    if bare:
+        tried = [replace(each, links=()) for each in tried]
+        tried = [each for each in tried if not any(word in str(each).encode() for word in ENDLESS)]
+    return rng.sample(tried, min(count, len(tried)))
+
+
+def opens(count, bare=False):
+    """Paths that MaterialX opened by itself, and how often."""
+    with tempfile.TemporaryDirectory(prefix="mxeon-opens-") as folder:
+        log, audit = Path(folder, "strace"), Path(folder, "audit")
+        inner = [sys.executable, "-m", "tests.fuzz.opens", "--cases", str(count)]
+        inner += ["--audit", str(audit), *(["--bare"] if bare else [])]
+        command = ["strace", "-f", "-qq", "-s", "4096", "-e", "trace=open,openat,openat2"]
+        subprocess.run(
+            [*command, "-o", str(log), *inner], cwd=ROOT, check=True, capture_output=True
+        )
+        return _traced(log.read_bytes()) - Counter(audit.read_text().splitlines())
+
+
+def strangers(paths):
+    """Those paths that lie neither in the libraries nor among copies."""
+    others = (path for path in paths if COPIES not in path and path not in MACHINE)
+    return sorted(path for path in others if not library_path(path))
+
+
+def _traced(log):
+    """Files that were opened after the start, as they were named, in one line each."""
+    lines = log.split(START.encode())[1].split(END.encode())[0].splitlines()
+    found = (OPEN.search(line) for line in lines)
+    return Counter(
+        _line(os.fsdecode(codecs.escape_decode(each[1])[0]))
+        for each in found
+        if each and b"O_DIRECTORY" not in each[2]
+    )
+
+
+def _line(path):
+    return ascii(path)[1:-1]
+
+
+def _run(count, audit, bare):
+    """Generate the cases, and write what Python opens meanwhile."""
+    paths = []
+    for target in generation.TARGETS:  # loads what each generator needs once
+        with contextlib.redirect_stderr(None):
+            generation.generate(examples_folder() / "clay.mtlx", target)
+    if bare:
+        generation.copied_sources = _uncopied
+    tried = selected(count, bare)
+    sys.addaudithook(lambda event, seen: event == "open" and paths.append(seen[0]))
+    with contextlib.suppress(OSError):
+        os.open(START, os.O_RDONLY)
+    for each in tried:
+        trial(each)
+    with contextlib.suppress(OSError):
+        os.open(END, os.O_RDONLY)
+    named = (
+        _line(os.fsdecode(path)) for path in paths if isinstance(path, str | bytes | os.PathLike)
+    )
+    Path(audit).write_text("".join(f"{path}\n" for path in named))
+
+
+@contextlib.contextmanager
+def _uncopied(document, context, policy, tokens):
+    """No copies, in place of `copied_sources`."""
+    yield generation.Sources(document, context, policy, "", tokens)
+
+
+def main():
+    """Print what MaterialX opened outside; the exit status is 1 if there is such a file."""
+    parser = argparse.ArgumentParser(prog="tests.fuzz.opens", description=__doc__.splitlines()[0])
+    parser.add_argument("--cases", type=int, default=400)
+    parser.add_argument("--bare", action="store_true", help="let documents name their own sources")
+    parser.add_argument("--audit", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.audit:
+        _run(options.cases, options.audit, options.bare)
+        return 0
+    found = opens(options.cases, options.bare)
+    outside = strangers(found)
+    print(*outside, sep="\n")
+    print(
+        f"{options.cases} cases: {found.total()} opens by MaterialX, {len(outside)} files outside"
+    )
+    return 1 if outside else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
