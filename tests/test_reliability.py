@@ -5,7 +5,8 @@ import itertools
 import re
 from pathlib import Path
 
-from tests.reliability import processors
+from tests.reliability import documents, processors
+from tests.support.documents import lobe, material
 
 REPORT = """<testsuites><testsuite>
   <testcase name="a"/><testcase name="b"><failure/></testcase>
@@ -28,3 +29,18 @@ def test_every_file_of_tests_with_a_tolerance_is_run_or_left_out_by_name():
 
 def test_a_report_is_counted():
     assert processors.counts(REPORT) == {"passed": 1, "failed": ["b", "d"], "skipped": 1}
+
+
+def test_a_document_is_generated_by_materialx_and_by_mxeon_or_the_reason_is_told(tmp_path):
+    texts = {
+        "right": material(lobe()),
+        "infinite": material(lobe(roughness=0.5)).replace('"0.5"', '"inf"'),
+        "empty": '<materialx version="1.39"/>',
+    }
+    for name, text in texts.items():
+        (tmp_path / f"{name}.mtlx").write_text(text)
+    reasons = {name: documents.attempt((str(tmp_path / f"{name}.mtlx"), "msl")) for name in texts}
+    assert reasons["right"] == ("", "", "")
+    plain, stock, eonlib = reasons["infinite"]
+    assert plain == "" and "finite numbers" in stock == eonlib
+    assert all(reasons["empty"])
