@@ -240,6 +240,16 @@ def test_all_sources_of_a_document_are_limited_in_size(home):
     assert message.endswith("raise it with --maxSize")
 
 
+def test_different_includes_of_a_document_are_limited_in_number(home):
+    missing = [f"missing{number}.glsl" for number in range(15)]
+    including(home, *["other.glsl"] * 50, *missing)
+    most = len(["own.glsl", "other.glsl", *missing])
+    refused = refusal(home, Policy(code=True, elements=most - 1))
+    assert f"at most {most - 1} includes in its sources" in refused
+    accepted = refusal(home, Policy(code=True, elements=most))
+    assert accepted.endswith("Could not find include file: 'missing0.glsl'")
+
+
 def test_text_in_all_shaders_is_limited(home):
     including(home, "other.glsl")
     least = len(OTHER) + (home / "own.glsl").stat().st_size

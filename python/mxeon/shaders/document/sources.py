@@ -97,6 +97,7 @@ class Sources:
     ) -> None:
         self._document, self._context, self._policy = document, context, policy
         self._home, self._folder, self._find_tokens = folder(document), Path(copies), tokens
+        self._found: dict[tuple[str, str], str] = {}  # copies by name and the folder it starts from
         self._copies: dict[str, str] = {}  # by the path that MaterialX would open
         self._names: dict[str, str] = {}  # of copies, as the document has them
         self._size = 0  # bytes of all files
@@ -129,6 +130,14 @@ class Sources:
 
     def _copy(self, name: str, local: str, title: str, depth: int | None) -> str:
         """Path of the copy of a file; depth: how many include each other, None: it is no function."""
+        if (name, local) not in self._found:
+            self._found[name, local] = self._new_copy(name, local, title, depth)
+            rule, unit = f"{label(self._document)}: must have", "includes in its sources"
+            self._policy.check_limit("elements", len(self._found), rule, unit)
+        return self._found[name, local]
+
+    def _new_copy(self, name: str, local: str, title: str, depth: int | None) -> str:
+        """Path of the copy of a file that has another name than those before."""
         path = os.path.abspath(self._resolved(name, local))
         if "\0" in path:  # where the system ends the name, and MaterialX does not
             return self.missing()
