@@ -63,9 +63,11 @@ def to_case(rng, row):
     files += [("lib/own.glsl", source.encode())]
     files += [(f"lib/{name}", data) for name, data in OTHERS]
     linked = dict([(name, end) for name, end in LINKS if name.endswith(".glsl")] + list(links))
-    arguments = ("generate", "base.mtlx", "--target", target, "--outputPath", OUT)
-    named = tuple((f"lib/{name}", end) for name, end in linked.items())
-    return Case(folder, tuple(files), (*arguments, "--library", folder), named)
+    arguments = ("generate", "base.mtlx", "--target", target, "--outputPath", OUT, "--library")
+    own = f"lib{rng.randrange(10**9)}"  # a library is loaded once for each name in a process
+    files = [(name.replace("lib/", f"{own}/", 1), data) for name, data in files]
+    named = tuple((f"{own}/{name}", end) for name, end in linked.items())
+    return Case(folder, tuple(files), (*arguments, folder.replace("lib", own)), named)
 
 
 def _encoded(text, encoding):

@@ -340,7 +340,8 @@ def test_the_folder_of_eonlib_is_eonlib():
     )
 
 
-def test_a_folder_with_a_broken_document_is_one_line(tmp_path):
-    (tmp_path / "brick.mtlx").write_text("<materialx")
+@pytest.mark.parametrize("text", ["<materialx", '<materialx version="1.39">text</materialx>'])
+def test_a_folder_with_a_broken_document_is_one_line(tmp_path, text):
+    (tmp_path / "brick.mtlx").write_text(text)
     with pytest.raises(InputError, match=f"^library {tmp_path}: "):
         library.load_library(str(tmp_path))

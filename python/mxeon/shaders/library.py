@@ -207,7 +207,7 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
             document,
             readOptions=read_options(),
         )
-    except (mx.Exception, mx.ExceptionParseError) as error:
+    except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
         raise InputError(f"library {library}: {error}") from None
     if library not in LIBRARIES:
         check_sources(document, library_name(library))
