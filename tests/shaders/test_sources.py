@@ -312,6 +312,14 @@ def test_every_file_of_a_library_is_a_regular_one_of_text(folder, kind, name):
         generate(material(USE), "glsl", library=str(folder))
 
 
+def test_documents_of_a_library_that_include_each_other_are_refused(folder):
+    xinclude = 'xmlns:xi="http://www.w3.org/2001/XInclude"><xi:include href="own.mtlx"/>'
+    text = (folder / "own.mtlx").read_text().replace('"1.39">', f'"1.39" {xinclude}')
+    (folder / "own.mtlx").write_text(text)
+    with pytest.raises(InputError, match="^library .*: XInclude cycle"):
+        load_library(str(folder))
+
+
 def test_files_of_a_library_are_limited_in_size(folder):
     with (folder / "own.glsl").open("a") as file:
         file.truncate(17 * 2**20)

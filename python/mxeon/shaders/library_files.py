@@ -57,10 +57,15 @@ def read_options() -> mx.XmlReadOptions:
     return options
 
 
-def _include(document: mx.Document, name: mx.FilePath, path: mx.FileSearchPath, *_: object) -> None:
+def _include(
+    document: mx.Document,
+    name: mx.FilePath,
+    path: mx.FileSearchPath,
+    options: mx.XmlReadOptions,  # knows the documents that include this one
+) -> None:
     file = path.find(name)
     _text(file.asString())
-    mx.readFromXmlFile(document, file, path, read_options())
+    mx.readFromXmlFile(document, file, path, options)
 
 
 def _text(path: AnyPath) -> str:
