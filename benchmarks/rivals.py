@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from mxeon.conformance.checks import tolerances
+from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.models import albedo, sampling
 from mxeon.models import brdf as models
 

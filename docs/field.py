@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mxeon import report
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
+from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES)
 from mxeon.conformance.results import NOT_RUN
 from mxeon.conformance.run import check
 from mxeon.report.field import read_field

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.conformance.checks.families import PBR_SUBJECTS
-from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.probes.families import PBR_SUBJECTS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.judge import Judge

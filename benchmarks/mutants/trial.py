@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
-from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.results import PASSED, Result
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import CURVE, PICTURE, SOURCE, Task, make_plan

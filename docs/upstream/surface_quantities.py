@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of the page on inputs of surface shaders: which of them their graphs read."""
 
-from mxeon.conformance.checks.surfaces.subjects import SHADERS
+from mxeon.conformance.nodes.surface_shaders import SHADERS
 from mxeon.shaders.library import load_library
 
 HEAD = "| shader | input without effect in GLSL | its graph reads it |\n|---|---|---|\n"

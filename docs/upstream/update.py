@@ -25,7 +25,7 @@ from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.surface_quantities import OF_SURFACES
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
-from mxeon.conformance.checks.values.subjects import UTILITY_SUBJECTS
+from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.known_issues import ISSUES, RENDERERS
 from mxeon.conformance.known_issues.issue import STOCK
 from mxeon.conformance.run.judge import Judge

@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks import engine
-from mxeon.conformance.checks.bsdf.pictures import PICTURES, bsdf_probe_type, materials
-from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
-from mxeon.conformance.checks.bsdf.subjects import BSDFS
-from mxeon.conformance.checks.evaluate import judge_check
-from mxeon.conformance.checks.facet_probes import PROBES
-from mxeon.conformance.checks.native_probes import NativeProbe
-from mxeon.conformance.checks.probes import PairProbe, PictureProbe, PlaneProbe
+from mxeon.conformance.accuracy import engine
+from mxeon.conformance.probes.bsdf_pictures import (PICTURES, bsdf_probe_type, materials)
+from mxeon.conformance.probes.bsdf import BSDF_PROBES
+from mxeon.conformance.nodes.bsdf import BSDFS
+from mxeon.conformance.checks.verdicts import judge_check
+from mxeon.conformance.probes.polyhedron import PROBES
+from mxeon.conformance.probes.renderer_nodes import NativeProbe
+from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe, PlaneProbe)
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.checks.text import sources
-from mxeon.conformance.checks.tolerances import BSDF_RAY, VALUES
+from mxeon.conformance.text import sources
+from mxeon.conformance.accuracy.diffuse import (BSDF_RAY, VALUES)
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 
 ROWS = {check.key: check for check in CHECKS}

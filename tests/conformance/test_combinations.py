@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.bsdf.combinations import COMBINED_NODES
-from mxeon.conformance.checks.bsdf.probes import BSDF_PROBES
-from mxeon.conformance.checks.evaluate import applies, judge_check
+from mxeon.conformance.nodes.combinations import COMBINED_NODES
+from mxeon.conformance.probes.bsdf import BSDF_PROBES
+from mxeon.conformance.checks.verdicts import (applies, judge_check)
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.layering import Bsdf, add, layer, multiply, throughput

@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 from mxeon.conformance import known_issues
-from mxeon.conformance.checks import image
-from mxeon.conformance.checks.batch import GRAZING, PAIRS, Batch
-from mxeon.conformance.checks.bsdf.subjects import BSDFS, KINDS
-from mxeon.conformance.checks.evaluate import judge_subject
-from mxeon.conformance.checks.families import PBR_SUBJECTS
-from mxeon.conformance.checks.functions import FUNCTION_CHECKS, FunctionProbe, judge_functions
-from mxeon.conformance.checks.nodes import SUBJECTS, Subject
-from mxeon.conformance.checks.probes import PairProbe, PictureProbe
-from mxeon.conformance.checks.sky import sky
+from mxeon.conformance.pictures import document_pictures as image
+from mxeon.conformance.samples.batch import (GRAZING, PAIRS, Batch)
+from mxeon.conformance.nodes.bsdf import (BSDFS, KINDS)
+from mxeon.conformance.checks.verdicts import judge_subject
+from mxeon.conformance.probes.families import PBR_SUBJECTS
+from mxeon.conformance.functions.shader_functions import (FUNCTION_CHECKS, FunctionProbe, judge_functions)
+from mxeon.conformance.nodes.diffuse import (SUBJECTS, Subject)
+from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe)
+from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.checks.text import check_texts
-from mxeon.conformance.checks.text.sources import TEXT_ONLY
-from mxeon.conformance.diagnosis import of_value
+from mxeon.conformance.text import check_texts
+from mxeon.conformance.text.sources import TEXT_ONLY
+from mxeon.conformance.diagnosis.candidates import of_value
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.conformance.run import check, judge, plan
 from mxeon.errors import InputError, NotRun, ShaderError

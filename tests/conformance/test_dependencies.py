@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.run import check, plan, read_run
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.journal_lines import NAME

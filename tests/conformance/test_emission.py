@@ -4,23 +4,13 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.batch import RIM, Batch
-from mxeon.conformance.checks.emission.family import (
-    ALL_PROBES,
-    EMISSION_SUBJECTS,
-    emission_probe_type,
-)
-from mxeon.conformance.checks.emission.pictures import MATERIALS
-from mxeon.conformance.checks.emission.subjects import CONE, EDFS, LEAST_FALLOFF
-from mxeon.conformance.checks.emission.tolerances import (
-    POWER_RADIANCE,
-    QUADRATURE,
-    TRANSMITTANCE,
-    cone_roundings,
-    on_engine,
-)
-from mxeon.conformance.checks.evaluate import applies, judge_check
-from mxeon.conformance.checks.probes import PictureProbe
+from mxeon.conformance.samples.batch import (RIM, Batch)
+from mxeon.conformance.probes.emission_family import (ALL_PROBES, EMISSION_SUBJECTS, emission_probe_type)
+from mxeon.conformance.probes.emission_pictures import MATERIALS
+from mxeon.conformance.nodes.emission import (CONE, EDFS, LEAST_FALLOFF)
+from mxeon.conformance.accuracy.emission import (POWER_RADIANCE, QUADRATURE, TRANSMITTANCE, cone_roundings, on_engine)
+from mxeon.conformance.checks.verdicts import (applies, judge_check)
+from mxeon.conformance.probes.pairs import PictureProbe
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.plan import make_plan

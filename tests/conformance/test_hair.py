@@ -4,13 +4,13 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.bsdf import probes
-from mxeon.conformance.checks.bsdf.subjects import HAIR, QUADRATURES
-from mxeon.conformance.checks.evaluate import applies, judge_check
-from mxeon.conformance.checks.hair import probes as hair_probes
-from mxeon.conformance.checks.hair.probes import HairProbe, aimed
-from mxeon.conformance.checks.hair.subjects import HAIRS
-from mxeon.conformance.checks.hair.tolerances import LARGEST
+from mxeon.conformance.probes import bsdf as probes
+from mxeon.conformance.nodes.bsdf import (HAIR, QUADRATURES)
+from mxeon.conformance.checks.verdicts import (applies, judge_check)
+from mxeon.conformance.probes import hair as hair_probes
+from mxeon.conformance.probes.hair import (HairProbe, aimed)
+from mxeon.conformance.nodes.hair import HAIRS
+from mxeon.conformance.accuracy.hair import LARGEST
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.models.hair import ROUGHNESSES, TINTS

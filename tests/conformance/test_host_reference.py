@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.bsdf.tolerances import MICROFACET_VALUE
-from mxeon.conformance.checks.image import judge_document
+from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE
+from mxeon.conformance.pictures.document_pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference import lobes
 from mxeon.conformance.reference.lobes import TAIL, furnace

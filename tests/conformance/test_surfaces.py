@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.evaluate import applies, judge_check
-from mxeon.conformance.checks.families import COMMON_SUBJECTS
-from mxeon.conformance.checks.surfaces.inputs import FREE_PATHS, drawn
-from mxeon.conformance.checks.surfaces.probes import SurfaceProbe
-from mxeon.conformance.checks.surfaces.subjects import SHADERS, WHOLE
+from mxeon.conformance.checks.verdicts import (applies, judge_check)
+from mxeon.conformance.probes.families import COMMON_SUBJECTS
+from mxeon.conformance.nodes.surface_inputs import (FREE_PATHS, drawn)
+from mxeon.conformance.probes.surface_shaders import SurfaceProbe
+from mxeon.conformance.nodes.surface_shaders import (SHADERS, WHOLE)
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.results import FAILED, PASSED

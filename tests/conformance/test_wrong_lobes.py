@@ -5,10 +5,10 @@ import shutil
 
 import pytest
 
-from mxeon.conformance.checks.evaluate import judge_subject
-from mxeon.conformance.checks.families import PBR_SUBJECTS, probe_type_of
-from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.checks.verdicts import judge_subject
+from mxeon.conformance.probes.families import (PBR_SUBJECTS, probe_type_of)
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.shaders.library import data_folder

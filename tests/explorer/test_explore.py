@@ -12,7 +12,7 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.cli.explore import MATERIALS
-from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Result
 from mxeon.errors import MISUSE, NotRun
 from mxeon.errors import PASSED as PASSED_STATUS

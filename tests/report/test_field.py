@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.results import (
     FAILED,
     NOT_RUN,

@@ -9,10 +9,10 @@ import pytest
 
 from docs.upstream import repairs
 from docs.upstream import update as ledger
-from mxeon.conformance.checks import tolerances
-from mxeon.conformance.checks.evaluate import judge_check
-from mxeon.conformance.checks.native_probes import ExactProbe
-from mxeon.conformance.checks.nodes import NATIVE
+from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.checks.verdicts import judge_check
+from mxeon.conformance.probes.renderer_nodes import ExactProbe
+from mxeon.conformance.nodes.diffuse import NATIVE
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.known_issues.issue import OWN

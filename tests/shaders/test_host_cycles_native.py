@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mxeon.conformance.checks import nodes
+from mxeon.conformance.nodes import diffuse as nodes
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run import check
 from mxeon.shaders.hosts import open_host

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.evaluate import judge_subject
-from mxeon.conformance.checks.facet_probes import PROBES, facet_pairs
-from mxeon.conformance.checks.nodes import NATIVE
-from mxeon.conformance.checks.tolerances import COARSE_FACETS, FACET_PAIRS, FACETS
+from mxeon.conformance.checks.verdicts import judge_subject
+from mxeon.conformance.probes.polyhedron import (PROBES, facet_pairs)
+from mxeon.conformance.nodes.diffuse import NATIVE
+from mxeon.conformance.accuracy.diffuse import (COARSE_FACETS, FACET_PAIRS, FACETS)
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.known_issues.issue import OWN
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED

@@ -9,9 +9,9 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.checks.batch import directions
-from mxeon.conformance.checks.bsdf.tolerances import MICROFACET_VALUE
-from mxeon.conformance.checks.probes import picture_pairs
+from mxeon.conformance.samples.batch import directions
+from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE
+from mxeon.conformance.probes.pairs import picture_pairs
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.document.policy import Policy

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from docs.upstream import repairs
-from mxeon.conformance.checks.evaluate import judge_check
-from mxeon.conformance.checks.facet_probes import FacetPairProbe
-from mxeon.conformance.checks.nodes import NATIVE
+from mxeon.conformance.checks.verdicts import judge_check
+from mxeon.conformance.probes.polyhedron import FacetPairProbe
+from mxeon.conformance.nodes.diffuse import NATIVE
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.known_issues.issue import OWN

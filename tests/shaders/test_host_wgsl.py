@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.errors import NotRun
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts import fragment, vulkan, wgsl

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.bsdf.probes import BsdfProbe
-from mxeon.conformance.checks.bsdf.subjects import BSDFS
-from mxeon.conformance.checks.nodes import SUBJECTS
-from mxeon.conformance.checks.probes import PairProbe
+from mxeon.conformance.probes.bsdf import BsdfProbe
+from mxeon.conformance.nodes.bsdf import BSDFS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.errors import ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import generate

@@ -4,7 +4,7 @@
 from dataclasses import replace
 
 from mxeon.conformance import run
-from mxeon.conformance.checks.families import PBR_SUBJECTS
+from mxeon.conformance.probes.families import PBR_SUBJECTS
 
 
 def keep_checks(patch, *keys):

@@ -4,9 +4,9 @@
 Those of quantities that the conformance checks judge too are theirs.
 """
 
-from mxeon.conformance.checks import tolerances as checks
-from mxeon.conformance.checks.bsdf.tolerances import RINGS
-from mxeon.conformance.checks.image import PLAIN
+from mxeon.conformance.accuracy import diffuse as checks
+from mxeon.conformance.accuracy.bsdf import RINGS
+from mxeon.conformance.pictures.document_pictures import PLAIN
 
 # Unit roundoff of float64.
 ROUNDING = 2.0**-53

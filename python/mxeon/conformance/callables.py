@@ -11,17 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import mxeon
-from mxeon.conformance.checks.batch import (
-    PAIRS,
-    SEED,
-    Array,
-    Batch,
-    directions,
-    random_inputs,
-)
-from mxeon.conformance.checks.evaluate import judge_check
-from mxeon.conformance.checks.nodes import CHANGES, Changes, OfModel
-from mxeon.conformance.checks.special import diffuse_edges, special_directions, special_inputs
+from mxeon.conformance.samples.batch import (PAIRS, SEED, Array, Batch, directions, random_inputs)
+from mxeon.conformance.checks.verdicts import judge_check
+from mxeon.conformance.nodes.diffuse import (CHANGES, Changes, OfModel)
+from mxeon.conformance.samples.edge_cases import (diffuse_edges, special_directions, special_inputs)
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.results import PASSED, Run
 from mxeon.errors import InputError

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mxeon.conformance.diagnosis import sentence
+from mxeon.conformance.diagnosis.candidates import sentence
 from mxeon.kit.expected import expected
 from mxeon.kit.noise import ratio, tiles
 from mxeon.models import table as reference

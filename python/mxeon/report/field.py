@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, OwnNode, Subject, Surface
+from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES, OwnNode, Subject, Surface)
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.errors import InputError
 from mxeon.models import table as reference

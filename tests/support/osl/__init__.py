@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from mxeon.conformance.checks.nodes import SUBJECTS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.shaders.generation import generate
 from mxeon.shaders.hosts.testrender import Host, planes
 from mxeon.shaders.hosts.testrender.programs import VARIABLES, find_program

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.checks.batch import Batch
+from mxeon.conformance.samples.batch import Batch
 
 Array = NDArray[np.float64]
 Control = Callable[[Any], "Altered"]

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.checks.batch import Array, Batch
-from mxeon.conformance.checks.sky import sky_map
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.samples.uneven_environment import sky_map
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.shaders.hosts import front_lit_only

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.batch import SEED, Array, Batch
+from mxeon.conformance.samples.batch import (SEED, Array, Batch)
 from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
 from mxeon.models.sampling.cltc import eon_cltc_pdf
 

@@ -6,20 +6,20 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.checks.documents import CLAIM as DOCUMENT_CLAIM
-from mxeon.conformance.checks.documents import generate_document
-from mxeon.conformance.checks.evaluate import judge_curve, judge_subject
-from mxeon.conformance.checks.facet_probes import PROBES
-from mxeon.conformance.checks.families import PBR_SUBJECTS, probe_type_of
-from mxeon.conformance.checks.functions import FunctionProbe, judge_functions
-from mxeon.conformance.checks.image import MATCH, judge_document
-from mxeon.conformance.checks.inversion import InversionProbe, judge_inversion
-from mxeon.conformance.checks.native_probes import ExactProbe
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES
-from mxeon.conformance.checks.portraits import portraits
-from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
+from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
+from mxeon.conformance.pictures.documents import generate_document
+from mxeon.conformance.checks.verdicts import (judge_curve, judge_subject)
+from mxeon.conformance.probes.polyhedron import PROBES
+from mxeon.conformance.probes.families import (PBR_SUBJECTS, probe_type_of)
+from mxeon.conformance.functions.shader_functions import (FunctionProbe, judge_functions)
+from mxeon.conformance.pictures.document_pictures import (MATCH, judge_document)
+from mxeon.conformance.functions.inversion import (InversionProbe, judge_inversion)
+from mxeon.conformance.probes.renderer_nodes import ExactProbe
+from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES)
+from mxeon.conformance.pictures.node_pictures import portraits
+from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.checks.text import check_definitions, check_texts
+from mxeon.conformance.text import (check_definitions, check_texts)
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Picture, Result

@@ -18,14 +18,14 @@ import numpy as np
 import OpenImageIO as oiio
 
 import mxeon
-from mxeon.conformance.checks import functions
-from mxeon.conformance.checks.evaluate import applies
-from mxeon.conformance.checks.facet_probes import probe_type
-from mxeon.conformance.checks.families import COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of
-from mxeon.conformance.checks.native_probes import NativeProbe
-from mxeon.conformance.checks.nodes import NATIVE, SUBJECTS, SURFACES, Subject
-from mxeon.conformance.checks.probes import PairProbe
-from mxeon.conformance.checks.surface_probes import SURFACE_PROBES
+from mxeon.conformance.functions import shader_functions as functions
+from mxeon.conformance.checks.verdicts import applies
+from mxeon.conformance.probes.polyhedron import probe_type
+from mxeon.conformance.probes.families import (COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of)
+from mxeon.conformance.probes.renderer_nodes import NativeProbe
+from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES, Subject)
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues.issue import OWN
 from mxeon.conformance.results import Curve, Picture, Result

@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tolerances of the checks of the other BSDF nodes of pbrlib, by kind of probe."""
+
+import math
+
+from mxeon.conformance.checks.bsdf_measures import (LEAST_ALPHA, LEAST_COSINE)
+from mxeon.conformance.nodes.bsdf import (CLOSED, COMBINED, FILM, FITTED, HAIR, KINDS, MICROFACET, MICROFACET_KINDS, NESTED, QUADRATURES, SCHLICK, SHEEN)
+from mxeon.conformance.accuracy.hair import (HAIR_ALBEDO, HAIR_FRAME, HAIR_VALUE)
+from mxeon.conformance.checks.measures import absolute, scaled
+from mxeon.conformance.samples.edge_cases import (LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED)
+from mxeon.conformance.samples.tolerance import (ROUNDING, SCALED, Tolerance, rounded_up)
+
+# Largest errors of the fits that shaders are held to, each found by its script in fits/.
+ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
+FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
+LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
+DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
+CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
+SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
+LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
+
+
+def sum_of(directions: int) -> float:
+    """Error of a sum over so many directions of an environment, drawn for a microfacet lobe.
+
+    Measured on pictures of brushed metal in a furnace: 2.5e-2 of 64 directions, 5.1e-3 of 256, 1.4e-3 of
+    1024.
+    """
+    return SUM_OF_DIRECTIONS / directions
+
+
+DIFFUSE_VALUE = Tolerance(
+    rounded_up((2 * 17 + 7) * ROUNDING),
+    SCALED,
+    scaled,
+    "41 roundings of float32, 2^-24 each, of the value or of 1: 17 in each factor of Burley's, ten of "
+    "them in the cosine of the half vector, and seven in the products; rounded up",
+)
+ZELTNER_VALUE = Tolerance(
+    rounded_up(48 * ROUNDING),
+    SCALED,
+    scaled,
+    "48 roundings of float32, 2^-24 each, of the value or of 1: an inverse fourth power takes the 8 of "
+    "a length four times, and 16 beside them; rounded up",
+)
+CONTY_KULLA_VALUE = Tolerance(
+    rounded_up((32 + 4 * 0.5 / LEAST_SHEEN) * ROUNDING),
+    SCALED,
+    scaled,
+    "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
+    "the inverse of the roughness, at least 0.01; rounded up",
+)
+COMPENSATION = (ESS_FIT + FRESNEL_FIT * (1.0 - LEAST_ESS)) / LEAST_ESS  # its error, relative
+MICROFACET_VALUE = Tolerance(
+    rounded_up(COMPENSATION),
+    SCALED,
+    scaled,
+    "the fits of E_ss, 5e-4, and of F_ss, 3.6e-4, as they enter 1 + F_ss (1 - E_ss) / E_ss where E_ss "
+    "is least, 1 - ln 2 = 0.31; rounded up",
+)
+CLOSED_ALBEDO = Tolerance(
+    rounded_up(32 * ROUNDING),
+    "albedo",
+    scaled,
+    "32 roundings of float32, 2^-24 each, of the albedo or of 1: 20 in the exponent of a Gaussian, "
+    "times the largest t exp(-t^2 / 2), 0.6, and 20 beside it; rounded up",
+)
+CONTY_KULLA_ALBEDO = Tolerance(
+    CONTY_KULLA_FIT + CLOSED_ALBEDO.value,
+    "albedo",
+    absolute,
+    "the fit's 1.5e-3, and the roundings of an albedo in closed form",
+)
+MICROFACET_ALBEDO = Tolerance(
+    rounded_up(LOBE_FIT + ESS_FIT / LEAST_ESS),
+    "albedo",
+    absolute,
+    "the fit of the lobe's albedo, 3.2e-3, and that of E_ss in its compensation, 5e-4 over the least "
+    "E_ss, 0.31; rounded up",
+)
+SCHLICK_THROUGHPUT = Tolerance(
+    rounded_up(LOBE_FIT + (1.0 - LEAST_COLOR82) * DIP_FIT + ESS_FIT / LEAST_ESS),
+    "albedo",
+    absolute,
+    "the fit of the lobe's albedo, 3.2e-3, half of that of the dip at 82 degrees, 5.9e-3, and that of "
+    "E_ss in its compensation, 5e-4 over the least E_ss, 0.31; rounded up",
+)
+ANISOTROPIC_ALBEDO = Tolerance(
+    MICROFACET_ALBEDO.value + sum_of(1024),
+    "albedo",
+    scaled,
+    "the fits, and the error of a sum over the directions of an environment",
+)
+FLAT_FRAME = Tolerance(
+    rounded_up(3 * 5 / TURNED[0] * ROUNDING),
+    SCALED,
+    scaled,
+    "five roundings in each of three cosines, 2^-24 each, over the least, 1/4; rounded up",
+)
+MICROFACET_FRAME = Tolerance(
+    rounded_up(4 * 5 * ROUNDING / (TURNED[0] * LEAST_TURNED)),
+    SCALED,
+    scaled,
+    "five roundings of a half vector, 2^-24 each, over the least cosine, 1/4, and the least alpha, "
+    "0.1, times the fourth power of the distribution; rounded up",
+)
+SHAPE = Tolerance(
+    rounded_up(2 * 64 * ROUNDING),
+    "relative",
+    absolute,
+    "two values of 64 roundings of float32 each, 2^-24: the half vector of exact directions has no "
+    "others; rounded up",
+)
+RETROREFLECTION = Tolerance(
+    DIFFUSE_VALUE.value,
+    SCALED,
+    scaled,
+    "one function of the same numbers but for signs: the 41 roundings of a value",
+)
+ANISOTROPY = Tolerance(
+    rounded_up(4 * 2 * ROUNDING / (LEAST_COSINE * LEAST_ALPHA)),
+    SCALED,
+    scaled,
+    "two roundings of a turned direction, 2^-24 each, over the least cosine, 0.1, and the least "
+    "alpha, 0.05, times the fourth power of the distribution; rounded up",
+)
+
+RINGS = Tolerance(
+    0.02,
+    "pi f cos",
+    absolute,
+    "eight circles for each of the two exponentials of the profile, against their integral: 1.8e-2 at "
+    "most, away from the light, at a mean free path of a fifth of the sphere's radius; rounded up",
+)
+COMBINED_VALUE = Tolerance(
+    rounded_up(2 * ZELTNER_VALUE.value + CLOSED_ALBEDO.value),
+    SCALED,
+    scaled,
+    "two values, and a throughput between them",
+)
+COMBINED_ALBEDO = Tolerance(
+    rounded_up(3 * CLOSED_ALBEDO.value),
+    "albedo",
+    scaled,
+    "two albedos, and a throughput between them; of a sum in a mix over a base too, since the slopes of "
+    "its albedo by the two are at most 1 and 2",
+)
+NESTED_VALUE = Tolerance(
+    COMBINED_VALUE.value + ZELTNER_VALUE.value + CLOSED_ALBEDO.value,
+    SCALED,
+    scaled,
+    "three values, of which a throughput of two albedos multiplies one",
+)
+# Largest errors of the shader's thin film, for cosines from 0.1 on: fits/thin_film.py measures each.
+FILM_ORDERS = 6.1e-3  # six orders and a geometric series, relative to the largest channel
+FILM_AVERAGE = 6.3e-3  # F_ss in six cosines
+FILM_VISIBLE = 2.3e-2  # mean over the visible facets in nine of them
+FILM_SEEN = 8.8e-3  # the same for alpha from 0.3 on and films of up to 150 nm
+FILM_HEIGHTS = (
+    1.3e-3  # sum of the sensitivities' heights, which the text gives in five digits, over 1
+)
+FILM_VALUE = Tolerance(
+    rounded_up(
+        0.5 * (ESS_FIT + FILM_AVERAGE * (1.0 - LEAST_ESS)) / LEAST_ESS + FILM_ORDERS,
+    ),
+    SCALED,
+    scaled,
+    "the sum of six orders, 6.1e-3 of the film's reflectance, and the fit of E_ss, 5e-4, and F_ss in "
+    "six cosines, 6.3e-3, as they enter the compensation where E_ss is least, 0.31: at alpha 1, where "
+    "pi f cos without F is at most 1/2; rounded up",
+)
+FILM_ALBEDO = Tolerance(
+    rounded_up(FILM_VISIBLE + FILM_AVERAGE * (1.0 - LEAST_ESS) + ESS_FIT),
+    "albedo",
+    absolute,
+    "the mean over nine visible facets, 2.3e-2, and F_ss in six cosines, 6.3e-3, times the light that "
+    "is lost, at most 0.69; and the fit of E_ss, 5e-4: the fit of a lobe's albedo has no part in a "
+    "film's; rounded up",
+)
+FILM_MEAN = Tolerance(
+    rounded_up(FILM_AVERAGE),
+    "reflectance",
+    absolute,
+    "F_ss in six cosines, 6.3e-3; rounded up",
+)
+FILM_STEEP = Tolerance(
+    rounded_up(FILM_SEEN),
+    "reflectance",
+    absolute,
+    "the mean over nine visible facets of rough lobes under films of up to 150 nm, 8.8e-3; rounded up",
+)
+FILM_LIMIT = Tolerance(
+    rounded_up(FILM_HEIGHTS + 0.5 * FRESNEL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS),
+    SCALED,
+    scaled,
+    "the sensitivities, whose heights add up to 1 within 1.3e-3, and the fit of F_ss without a film, "
+    "3.6e-4, as it enters the compensation at alpha 1, where pi f cos without F is at most 1/2; E_ss is "
+    "the same with a film and without; rounded up",
+)
+FILM_ENERGY = Tolerance(
+    MICROFACET_VALUE.value,
+    SCALED,
+    scaled,
+    "the fits of the compensation, of which a mirror has another share than a film",
+)
+
+# By kind of probe.
+VALUES = {
+    CLOSED: DIFFUSE_VALUE,
+    SHEEN: ZELTNER_VALUE,
+    FITTED: CONTY_KULLA_VALUE,
+    MICROFACET: MICROFACET_VALUE,
+    SCHLICK: MICROFACET_VALUE,
+    COMBINED: COMBINED_VALUE,
+    NESTED: NESTED_VALUE,
+    HAIR: HAIR_VALUE,
+    FILM: FILM_VALUE,
+}
+ALBEDOS = {
+    CLOSED: CLOSED_ALBEDO,
+    SHEEN: CLOSED_ALBEDO,
+    FITTED: CONTY_KULLA_ALBEDO,
+    MICROFACET: MICROFACET_ALBEDO,
+    SCHLICK: MICROFACET_ALBEDO,
+    COMBINED: COMBINED_ALBEDO,
+    NESTED: COMBINED_ALBEDO,
+    HAIR: HAIR_ALBEDO,
+    FILM: FILM_ALBEDO,
+}
+THROUGHPUTS = {**ALBEDOS, SCHLICK: SCHLICK_THROUGHPUT}
+FRAMES = {
+    CLOSED: FLAT_FRAME,
+    SHEEN: FLAT_FRAME,
+    FITTED: FLAT_FRAME,
+    MICROFACET: MICROFACET_FRAME,
+    SCHLICK: MICROFACET_FRAME,
+    HAIR: HAIR_FRAME,
+}
+INTEGRALS = {
+    kind: Tolerance(
+        rounded_up(VALUES[kind].value + quadrature),
+        "albedo",
+        absolute,
+        f"an average of values, each within {VALUES[kind].value:.2g}, and the error of the quadrature on "
+        f"the equations, {quadrature:.0e}; rounded up",
+    )
+    for kind, quadrature in QUADRATURES.items()
+}
+WHITE_FURNACE = Tolerance(
+    4e-3,
+    "light",
+    absolute,
+    "the light that a repaired layer over white may gain or lose, of which the quadrature takes 6e-4",
+)
+LAYERS = {
+    kind: Tolerance(
+        rounded_up(INTEGRALS[kind].value + THROUGHPUTS[kind].value),
+        "light",
+        absolute,
+        f"an albedo within {INTEGRALS[kind].value:.2g}, and a throughput within "
+        f"{THROUGHPUTS[kind].value:.2g}; rounded up",
+    )
+    for kind in KINDS
+}
+LAYERS |= dict.fromkeys(MICROFACET_KINDS, WHITE_FURNACE)
+TRANSMITTED = {  # by kind of probe of transmission
+    "transmission pairs": MICROFACET_ALBEDO,
+    "Schlick transmission pairs": SCHLICK_THROUGHPUT,
+}
+CLEAR = {
+    kind: Tolerance(
+        rounded_up(MICROFACET_ALBEDO.value + passed.value),
+        "light",
+        absolute,
+        f"a reflected albedo within {MICROFACET_ALBEDO.value:.2g}, and light that passes within "
+        f"{passed.value:.2g}; rounded up",
+    )
+    for kind, passed in TRANSMITTED.items()
+}

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tolerances of the checks of nodes that emit light, by kind of probe, with those of the engine's own functions."""
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (RIM, SEED)
+from mxeon.conformance.nodes.emission import (CLOSED, CONE, EXPONENTS, LEAST_FALLOFF, MEDIUM, PICTURES, POWER)
+from mxeon.conformance.checks.measures import scaled
+from mxeon.conformance.samples.tolerance import (ROUNDING, Tolerance, rounded_up)
+from mxeon.models.emission import cone_cosine, cone_width
+from mxeon.shaders.hosts.base import Host
+
+UNIT = "radiance"
+QUADRATURE = 1e-6  # of the weighted sum on the equations
+COUNT = 1 << 14
+FUNCTIONS = """float mxeon_power(float x, float y)
+{
+    return pow(x, y);
+}
+float mxeon_exponential(float x, float y)
+{
+    return exp(-x) + 0.0 * y;
+}
+"""
+
+
+def cone_roundings() -> float:
+    """Largest error of a cone's radiance, in roundings: a smoothstep has the slope 3/2 over its width.
+
+    A cosine is 1 - 2 sin^2, with twelve roundings of the second term; seven are of the view's cosine
+    and of differences, and eight of the step itself. The falloff has at least LEAST_FALLOFF degrees,
+    and some of it lies above the horizon.
+    """
+    inner = np.linspace(0.0, 180.0, 181)
+    outer = inner + LEAST_FALLOFF
+    sines = 1.0 - cone_cosine(inner) + 1.0 - cone_cosine(outer)
+    return float((1.5 * (12.0 * sines + 7.0) / cone_width(inner, outer)).max()) + 8.0
+
+
+UNIFORM_RADIANCE = Tolerance(
+    rounded_up(6 * ROUNDING),
+    UNIT,
+    scaled,
+    "six roundings of float32, 2^-24 each: three of each emission and its factor; rounded up",
+)
+POWER_RADIANCE = Tolerance(
+    rounded_up((8 + EXPONENTS[1]) * ROUNDING),
+    UNIT,
+    scaled,
+    "eight roundings of float32, 2^-24 each, and one to the power of 8; and the error of the engine's "
+    "own power; rounded up",
+)
+CONE_RADIANCE = Tolerance(
+    rounded_up(cone_roundings() * ROUNDING),
+    UNIT,
+    scaled,
+    "at most 720 roundings of float32, 2^-24 each: twelve of the cosine of each angle and seven beside "
+    "them, times the slope of a smoothstep over 20 degrees, 3/2 over its width in cosine, and eight of "
+    "the step; rounded up",
+)
+PICTURE_RADIANCE = Tolerance(
+    rounded_up(5 * 6 * ROUNDING / RIM + 8 * ROUNDING),
+    UNIT,
+    scaled,
+    "three roundings of 2^-23 in the position of a pixel's point, over the smallest cosine judged, 0.05, "
+    "times the largest slope of the materials' radiance, 5; and eight roundings beside; rounded up",
+)
+TRANSMITTANCE = Tolerance(
+    rounded_up(12 * ROUNDING),
+    "transmittance",
+    scaled,
+    "twelve roundings of float32, 2^-24 each: of the exponential of a rounded sum, of a product and of "
+    "the quotient of two such values; and twice the error of the engine's own exponential, and of its power "
+    "where two media are combined; rounded up",
+)
+OPACITY = Tolerance(
+    rounded_up(3 * ROUNDING),
+    UNIT,
+    scaled,
+    "a product and two sums with 0 of float32, 2^-24 each; rounded up",
+)
+RADIANCES = {CLOSED: UNIFORM_RADIANCE, POWER: POWER_RADIANCE, CONE: CONE_RADIANCE}
+EXITANCES = {
+    kind: Tolerance(
+        rounded_up(tolerance.value + QUADRATURE),
+        "exitance / pi",
+        scaled,
+        f"an average of radiances, each within {tolerance.value:.2g}, and the error of the quadrature "
+        f"on the equations, {QUADRATURE:.0e}; rounded up",
+    )
+    for kind, tolerance in RADIANCES.items()
+}
+FRONTS = {**RADIANCES, PICTURES: PICTURE_RADIANCE}
+
+
+def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
+    """Tolerance of an emission on a probe's host, with the errors of the engine's own functions."""
+    if probe.kind == POWER:
+        return replace(tolerance, value=rounded_up(tolerance.value + power_error(probe.host)))
+    if probe.kind == MEDIUM:
+        error = 2.0 * exponential_error(probe.host)
+        if probe.subject.combined:
+            error += 2.0 * power_error(probe.host)
+        return replace(tolerance, value=rounded_up(tolerance.value + error))
+    return tolerance
+
+
+@lru_cache(maxsize=16)
+def power_error(host: Host) -> float:
+    """Error of the engine's own power of numbers in [0, 1], beside its rounding."""
+    rng = np.random.default_rng(SEED)
+    base, exponent = (
+        each.astype(np.float32).astype(np.float64)
+        for each in (rng.random(COUNT), rng.uniform(*EXPONENTS, COUNT))
+    )
+    return _beside(base**exponent, host.execute(FUNCTIONS, "mxeon_power", base, exponent)[:, 0])
+
+
+@lru_cache(maxsize=16)
+def exponential_error(host: Host) -> float:
+    """Error of the engine's own exp(-x) for x in [0, 8], beside its rounding."""
+    depth = np.linspace(0.0, 8.0, COUNT).astype(np.float32).astype(np.float64)
+    return _beside(np.exp(-depth), host.execute(FUNCTIONS, "mxeon_exponential", depth, depth)[:, 0])
+
+
+def _beside(exact: Any, values: Any) -> float:
+    """Largest error beside one rounding of 1."""
+    return max(float(np.abs(values - exact).max()) - ROUNDING, 0.0)

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of an engine's own functions, measured on the host, and the tolerances that take them in."""
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import SEED
+from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
+from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.accuracy.diffuse import power_of
+from mxeon.shaders.hosts.base import Host
+
+COUNT = 1 << 14
+POWER = """float mxeon_power(float x, float y)
+{
+    return pow(x, y);
+}
+"""
+
+
+def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
+    """Tolerance of values on a probe's host: wider for a sheen of powers, by the engine's own."""
+    if probe.kind != "fitted pairs":
+        return tolerance
+    measured = power_of(power_error(probe.host), 1.0 / LEAST_SHEEN)
+    return max(tolerance, measured, key=lambda each: each.value)
+
+
+@lru_cache(maxsize=16)
+def power_error(host: Host) -> float:
+    """Error of the Conty-Kulla sheen by the engine's own power, relative where the sheen exceeds 1.
+
+    The sheen, as pi f cos, is at most (2 + n) / 8 times a sine to the power of n, 1 / roughness.
+    """
+    rng = np.random.default_rng(SEED)
+    exponent = LEAST_SHEEN ** -rng.random(COUNT)
+    sine = rng.random(COUNT) ** (1.0 / exponent)  # uniform powers
+    sine, exponent = (each.astype(np.float32).astype(np.float64) for each in (sine, exponent))
+    power = sine**exponent
+    error = np.abs(host.execute(POWER, "mxeon_power", sine, exponent)[:, 0] - power)
+    factor = (2.0 + exponent) / 8.0
+    return float((factor * error / np.maximum(1.0, factor * power)).max())

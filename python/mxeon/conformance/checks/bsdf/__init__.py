@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: Apache-2.0
-"""The BSDF nodes of pbrlib beside the rough diffuse ones: subjects, probes, measurements, tolerances."""

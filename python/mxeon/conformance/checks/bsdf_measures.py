@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements of the other BSDF nodes of pbrlib: energy, layering, and their frames."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch, rounded)
+from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
+
+FEW = 1 << 12
+ROUNDED = 1e-9  # difference of two albedos that are the same
+LEAST_INDEX = 1.2  # of a dielectric whose values are divided
+LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
+LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
+LEAST_COSINE = 0.1  # of the same
+LIGHT = ("direct", "environment")  # branches that light a base from above
+
+
+def layering(probe: Any, metric: Metric) -> Measurement:
+    """Throughput of a layer against 1 - E, in the branches that light a base from above."""
+    return worst_of(metric, layering_cases(probe))
+
+
+def layering_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `layering`."""
+    for branch in LIGHT:
+        yield from _throughput_cases(probe, branch)
+
+
+def passing(probe: Any, metric: Metric) -> Measurement:
+    """Throughput of a combination against 1 - E, where it is negative as `layer` takes it: 0."""
+    cases = (
+        case._replace(measured=np.maximum(case.measured, 0.0)) for case in layering_cases(probe)
+    )
+    return worst_of(metric, cases)
+
+
+def transmission(probe: Any, metric: Metric) -> Measurement:
+    """Throughput of a layer against 1 - E, in the branch of light through the base."""
+    return worst_of(metric, transmission_cases(probe))
+
+
+def transmission_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `transmission`."""
+    return _throughput_cases(probe, "transmission")
+
+
+def _throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
+    for batch, albedo in zip(probe.cosines, probe.albedos, strict=True):
+        yield Case(batch, probe.throughput(batch, branch), np.maximum(1.0 - albedo, 0.0))
+
+
+def layer(probe: Any, metric: Metric) -> Measurement:
+    """Light that a lobe reflects and light that it passes to a white base, against all of it."""
+    views, albedo = _integral(probe)
+    total = albedo + probe.throughput(views, "direct")
+    # Where the equations gain energy by themselves, no throughput makes up for it.
+    sound = (probe.integrals <= probe.subject.albedo(views) + ROUNDED).all(axis=1)
+    return worst_of(metric, [Case(views.where(sound), total[sound], np.ones((1, 3)))])
+
+
+def energy(probe: Any, metric: Metric) -> Measurement:
+    """Albedos above 1, and above what the node's own equations have."""
+    views, albedo = _integral(probe)
+    allowed = np.maximum(1.0, probe.integrals)
+    return worst_of(metric, [Case(views, np.maximum(albedo, allowed), allowed)])
+
+
+def lossless(probe: Any, metric: Metric) -> Measurement:
+    """Albedo of a lobe that reflects all light, integrated from the host's values, against 1."""
+    batch, weights = probe.integrated
+    mirror = batch.altered(**probe.subject.row.mirror)
+    views, albedo = _summed(probe, mirror, weights)
+    return worst_of(metric, [Case(views, albedo, np.ones_like(albedo))])
+
+
+def shape(probe: Any, metric: Metric) -> Measurement:
+    """Ratio of two values of one view against that of the equations: compensation cancels."""
+    batch, other = (_clear(each.first(FEW)) for each in probe.mirrored)
+    first, second = probe.subject.expected(batch), probe.subject.expected(other)
+    lit = (np.minimum(first, second) > LEAST_VALUE).any(axis=1)
+    lit &= np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2])) >= LEAST_COSINE
+    scale = (first * second).max(axis=1, keepdims=True)
+    with np.errstate(invalid="ignore"):
+        measured = probe.direct(batch) * second / scale
+        expected = probe.direct(other) * first / scale
+    return worst_of(metric, [Case(batch.where(lit), measured[lit], expected[lit])])
+
+
+def _clear(batch: Batch) -> Batch:
+    """A batch without curves of which float32 cannot hold F: its terms cancel.
+
+    These are dielectrics whose index is near 1, and deep dips at 82 degrees, which turn F negative.
+    """
+    changes: dict[str, Any] = {}
+    if np.ndim(batch.inputs.get("ior", 0.0)) == 1:
+        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
+    if "color82" in batch.inputs:
+        changes["color82"] = np.maximum(batch.inputs["color82"], LEAST_COLOR82)
+    return batch.altered(**changes)
+
+
+def retroreflection(probe: Any, metric: Metric) -> Measurement:
+    """Values in retroreflective mode against those of the mirrored view."""
+    cases = []
+    for batch in probe.few:
+        mirrored = replace(batch, wo=batch.wo * [-1.0, -1.0, 1.0])
+        measured = probe.direct(batch.altered(retroreflective=True))
+        cases.append(Case(batch, measured, probe.direct(mirrored.altered(retroreflective=False))))
+    return worst_of(metric, cases)
+
+
+def stretched(probe: Any, metric: Metric) -> Measurement:
+    """The environment branch of anisotropic materials against the integrals of their values."""
+    return worst_of(metric, [stretched_case(probe)])
+
+
+def stretched_case(probe: Any) -> Case:
+    """The case of `stretched`."""
+    batch, expected = probe.stretched
+    return Case(batch, probe.albedo(batch), expected)
+
+
+def anisotropy(probe: Any, metric: Metric) -> Measurement:
+    """Values with a turned tangent against those of directions turned the other way."""
+    batch = probe.mirrored[0].first(FEW)
+    batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_COSINE)
+    batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_ALPHA))
+    angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
+    cosine, sine, zero = np.cos(angle), np.sin(angle), np.zeros(len(angle))
+    tangent = rounded([cosine, sine, zero])
+    turned = replace(
+        batch.altered(tangent=(1.0, 0.0, 0.0)),
+        wo=_turned_back(batch.wo, tangent),
+        wi=_turned_back(batch.wi, tangent),
+    )
+    measured = probe.direct(batch.altered(tangent=tangent))
+    return worst_of(metric, [Case(batch, measured, probe.direct(turned))])
+
+
+def _turned_back(w: Array, tangent: Array) -> Array:
+    """Directions in the frame of a tangent in the surface."""
+    along = w[:, 0] * tangent[:, 0] + w[:, 1] * tangent[:, 1]
+    across = w[:, 1] * tangent[:, 0] - w[:, 0] * tangent[:, 1]
+    return rounded([along, across, w[:, 2]])
+
+
+def integral(probe: Any, metric: Metric) -> Measurement:
+    """Directional albedo, integrated from the host's values, against that of the equations."""
+    views, albedo = _integral(probe)
+    return worst_of(metric, [Case(views, albedo, probe.integrals)])
+
+
+def _integral(probe: Any) -> tuple[Batch, Array]:
+    """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
+    return _summed(probe, *probe.integrated)
+
+
+def _summed(probe: Any, batch: Batch, weights: Array) -> tuple[Batch, Array]:
+    """Views of materials in many directions of light, and their albedos, (N, 3)."""
+    count, nodes = weights.shape
+    values = probe.direct(batch).reshape(count, nodes, 3)
+    albedo = (weights[..., np.newaxis] * values).sum(axis=1)
+    return batch.where(np.arange(count) * nodes), albedo

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the nodes that combine two lobes."""
+
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.checks import measures
+from mxeon.conformance.checks import bsdf_measures
+from mxeon.conformance.accuracy import bsdf as tolerances
+from mxeon.conformance.nodes.bsdf import (COMBINED, NESTED)
+from mxeon.conformance.checks.controls import pass_all, shifted
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.names import COMBINATION
+
+CHECKS = (
+    Check(
+        "combination",
+        "The value of two lobes together is that of the node's equation.",
+        COMBINATION,
+        measures.value,
+        "each pair has the inputs of another",
+        shifted,
+        {COMBINED: tolerances.COMBINED_VALUE, NESTED: tolerances.NESTED_VALUE},
+    ),
+    Check(
+        "combined_albedo",
+        "The environment branch of two lobes together gives their albedo.",
+        COMBINATION,
+        measures.environment,
+        "each pair has the inputs of another",
+        shifted,
+        dict.fromkeys((COMBINED, NESTED), tolerances.COMBINED_ALBEDO),
+        diagnose=diagnosis.of_albedo,
+    ),
+    Check(
+        "combined_throughput",
+        "Two lobes together pass what they do not scatter, as the layer equation asks.",
+        COMBINATION,
+        bsdf_measures.passing,
+        "all light passes",
+        pass_all,
+        dict.fromkeys((COMBINED, NESTED), tolerances.COMBINED_ALBEDO),
+        diagnose=diagnosis.of_throughput,
+        open=True,
+    ),
+)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the nodes that emit light."""
+
+from dataclasses import replace
+from typing import Any
+
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.checks.controls import gray, offset, scale, shifted, with_inputs
+from mxeon.conformance.checks import emission_measures as measures
+from mxeon.conformance.accuracy import emission as tolerances
+from mxeon.conformance.nodes.emission import (ABSENT, KINDS, MEDIUM, PICTURES, SURFACES, UNIMPLEMENTED)
+from mxeon.conformance.checks.measures import value
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.names import (EMITTER, MEDIUM_NAMES)
+from mxeon.conformance.accuracy.diffuse import count_of
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+
+
+def unimplemented(probe: Any) -> Any:
+    """A control that asks for a node that its document defines, and that nothing implements."""
+    return replace(probe, subject=UNIMPLEMENTED)
+
+
+def of_missing(probe: Any) -> Diagnosis:
+    """The node that the target lacks."""
+    return Diagnosis(f"{probe.host.target} has no implementation of {probe.subject.title}")
+
+
+def of_opacity(probe: Any) -> Diagnosis:
+    """Whether the opacity is dropped."""
+    full = max(
+        tolerances.OPACITY.metric(
+            case.measured, probe.expected(case.batch.altered(opacity=1.0))
+        ).max()
+        for case in measures.opacity_cases(probe)
+    )
+    return Diagnosis("the opacity is ignored" if full <= tolerances.OPACITY.value else "")
+
+
+CHECKS = (
+    Check(
+        "implemented",
+        "The target has an implementation of the node.",
+        (*EMITTER, *MEDIUM_NAMES, ABSENT),
+        measures.implemented,
+        "a node is asked for that nothing implements",
+        unimplemented,
+        dict.fromkeys((*KINDS, PICTURES, MEDIUM, ABSENT), count_of("nodes")),
+        diagnose=of_missing,
+    ),
+    Check(
+        "radiance",
+        "The radiance is that of the node's equation for every view from the front.",
+        EMITTER,
+        value,
+        "every channel gets the mean color",
+        gray,
+        tolerances.FRONTS,
+        diagnose=diagnosis.of_radiance,
+        adapt=tolerances.on_engine,
+    ),
+    Check(
+        "back",
+        "The back of the surface emits what the equation has for it.",
+        EMITTER,
+        measures.back,
+        "a thousandth is added to every value",
+        offset,
+        tolerances.RADIANCES,
+        diagnose=diagnosis.of_back,
+        open=True,
+        adapt=tolerances.on_engine,
+    ),
+    Check(
+        "exitance",
+        "The radiance integrates to the power that the equation has.",
+        EMITTER,
+        measures.exitance,
+        "the radiance is 0.99 times as large",
+        scale(0.99),
+        tolerances.EXITANCES,
+        diagnose=diagnosis.of_radiance,
+        adapt=tolerances.on_engine,
+    ),
+    Check(
+        "transmittance",
+        "A medium passes what its coefficients leave over one meter.",
+        MEDIUM_NAMES,
+        measures.transmittance,
+        "each view has the coefficients of another",
+        shifted,
+        {MEDIUM: tolerances.TRANSMITTANCE},
+        diagnose=diagnosis.of_medium,
+        adapt=tolerances.on_engine,
+    ),
+    Check(
+        "opacity",
+        "The light that a surface emits is scaled by its opacity.",
+        (SURFACES,),
+        measures.opacity,
+        "the opacity is 1",
+        with_inputs(opacity=1.0),
+        {SURFACES: tolerances.OPACITY},
+        diagnose=of_opacity,
+    ),
+)

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements and controls of microfacets under a thin film."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.checks.controls import Altered
+from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.diagnosis.candidates import (NEAR, Diagnosis, of_albedo)
+from mxeon.models.ggx_formulas import smith_lambda
+
+Values = Callable[[Batch], Array]
+TURNED = (-1.0, -1.0, 1.0)
+ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
+RIGHT = "every value is right by itself"  # of an explanation that found nothing
+LEAST_F = 0.01  # of a curve by which its averages are divided
+NEXT_TO_NOTHING = 1e-3  # thickness in nm of a film that changes nothing
+LEAST_INDEX = 1.05  # of a substrate whose lobe is compared
+
+
+def film_limit(probe: Any, metric: Metric) -> Measurement:
+    """Values under a film of index 1, and under one next to nothing, against those without."""
+    batch = _compared(probe)
+    bare = probe.direct(batch.altered(thinfilm_thickness=0.0))
+    cases = [Case(batch, probe.direct(batch.altered(thinfilm_ior=1.0)), bare)]
+    if "color0" not in batch.inputs:  # whose curve is taken at another angle under a film
+        thin = batch.altered(thinfilm_thickness=NEXT_TO_NOTHING)
+        cases.append(Case(batch, probe.direct(thin), bare))
+    return worst_of(metric, cases)
+
+
+def film_average(probe: Any, metric: Metric) -> Measurement:
+    """F_ss of a film, from values at two roughnesses, against that of the equations."""
+    return worst_of(metric, [average_case(probe)])
+
+
+def average_case(probe: Any) -> Case:
+    """The case of `film_average`."""
+    batch: Batch = probe.steep
+    (_, measured), (F, expected) = (_averages(probe, each, batch) for each in _sides(probe))
+    bright = F.min(axis=1) > LEAST_F
+    return Case(batch.where(bright), measured[bright], expected[bright])
+
+
+def film_visible(probe: Any, metric: Metric) -> Measurement:
+    """A film's mean over the visible facets, from its albedo, against that of the equations."""
+    batch, *_ = average_case(probe)
+    albedos = (
+        lambda each: probe.albedo(each) / probe.albedo(_mirror(probe, each)),
+        probe.subject.albedo,
+    )
+    measured, expected = (
+        _visible(probe, direct, albedo, batch)
+        for direct, albedo in zip(_sides(probe), albedos, strict=True)
+    )
+    return worst_of(metric, [Case(batch, measured, expected)])
+
+
+def of_average(probe: Any) -> Diagnosis:
+    """Whether F at one cosine stands in the place of its average."""
+    batch, measured, expected = average_case(probe)
+    direct, model = _sides(probe)
+    slanted = replace(batch, wo=view_at(2.0 / 3.0, batch), wi=view_at(2.0 / 3.0, batch) * TURNED)
+    others = {
+        "at the half vector": _averages(probe, direct, batch)[0],
+        "at the cosine 2/3": _averages(probe, model, slanted)[0],
+    }
+    errors = {words: np.sqrt(np.mean((measured - each) ** 2)) for words, each in others.items()}
+    words = min(errors, key=errors.__getitem__)
+    if not errors[words] < NEAR * np.sqrt(np.mean((measured - expected) ** 2)):
+        return Diagnosis("the compensation has another average of the film's curve")
+    text = f"the compensation has F {words} in place of its average"
+    return Diagnosis(text, permitted=words == "at the half vector")
+
+
+def of_visible(probe: Any) -> Diagnosis:
+    """The explanation of a film's albedo, or the weights of the facets where that is right."""
+    explained = of_albedo(probe)
+    if RIGHT not in explained.text:
+        return explained
+    return Diagnosis("the visible facets are not weighted by masking and shadowing")
+
+
+def view_at(mu: float, batch: Batch) -> Array:
+    """Views of one cosine, (N, 3)."""
+    return np.broadcast_to([np.sqrt(1.0 - mu * mu), 0.0, mu], batch.wo.shape)
+
+
+def _sides(probe: Any) -> tuple[Values, Values]:
+    """Values of the host, and of the equations."""
+    return probe.direct, probe.subject.expected
+
+
+def _averages(probe: Any, direct: Values, batch: Batch) -> tuple[Array, Array]:
+    """F at the half vector of mirrored lights, and F_ss, (N, 3) each, from values at two roughnesses.
+
+    A value over that of facets that reflect everything is F (1 + F_ss k), k = (1 - E_ss) / E_ss, in
+    which a lobe that reflects everything has F = F_ss = 1.
+    """
+    (first, k), (second, other_k) = (
+        _parts(probe, direct, batch.altered(roughness=(alpha, alpha))) for alpha in ROUGHNESSES
+    )
+    F = (second * k - first * other_k) / (k - other_k)
+    return F, (first - second) / (k - other_k) / np.maximum(F, 0.5 * LEAST_F)
+
+
+def _parts(probe: Any, direct: Values, batch: Batch) -> tuple[Array, Array]:
+    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each."""
+    alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
+    facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
+    return direct(batch) / facets, direct(_mirror(probe, batch)) / facets - 1.0
+
+
+def _visible(probe: Any, direct: Values, albedo: Values, batch: Batch) -> Array:
+    """F_o of an albedo E_ss F_o (1 + F_ss k) over that of a mirror, E_ss (1 + k) = 1, (N, 3)."""
+    _, F_ss = _averages(probe, direct, batch)
+    _, k = _parts(probe, direct, batch)
+    return np.asarray(albedo(batch) * (1.0 + k) / (1.0 + F_ss * k))
+
+
+def _mirror(probe: Any, batch: Batch) -> Batch:
+    """The same pairs with a lobe that reflects everything."""
+    return batch.altered(thinfilm_thickness=0.0, **probe.subject.row.mirror)
+
+
+def thicker(probe: Any) -> Altered:
+    """A control whose film is a quarter thicker."""
+    return Altered(
+        probe,
+        batch=lambda batch: batch.altered(
+            thinfilm_thickness=1.25 * np.asarray(batch.inputs["thinfilm_thickness"])
+        ),
+    )
+
+
+def brighter(probe: Any) -> Altered:
+    """A control whose values under a film are 100 times as large."""
+
+    def values(batch: Batch, values: Array) -> Array:
+        return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
+
+    return Altered(probe, values=values)
+
+
+def film_energy(probe: Any, metric: Metric) -> Measurement:
+    """Values under a film, where they exceed those of a lobe that reflects all light."""
+    cases = []
+    for batch in probe.few[::2]:  # a mirror of index 0 is another check where directions are exact
+        mirror = batch.altered(thinfilm_thickness=0.0, **probe.subject.row.mirror)
+        most = probe.direct(mirror)
+        cases.append(Case(batch, np.maximum(probe.direct(batch), most), most))
+    return worst_of(metric, cases)
+
+
+def _compared(probe: Any) -> Batch:
+    """Random pairs with a film, whose substrate float32 can tell from vacuum."""
+    batch: Batch = probe.few[0]
+    changes: dict[str, Any] = {"thinfilm_thickness": 300.0}
+    if "tint" in batch.inputs:
+        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
+    return batch.altered(**changes)

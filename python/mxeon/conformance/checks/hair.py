@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the hair node alone: its lobes apart, where they are wide, narrow, or seen straight."""
+
+from collections.abc import Callable
+from typing import Any
+
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.nodes.bsdf import HAIR
+from mxeon.conformance.checks.controls import Altered, with_inputs
+from mxeon.conformance.nodes.hair_regions import REGIONS
+from mxeon.conformance.accuracy.hair import HAIR_REGIONS
+from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.models.hair.defects import FORMS, TILTED
+from mxeon.models.pbrlib.hair import HAIR_NODE
+
+CLAIMS = {
+    "each_lobe": "R, TT, and TRT with all beyond, each apart, are those of the equations.",
+    "narrow_lobes": "R and TT are right where they are narrow.",
+    "tilted_lobes": "R and TT are right for every tilt of the cuticle.",
+    "wide_lobes": "R and TT are right where they are wider than a roughness of 1.",
+    "straight_views": "R and TT are right for a view along the normal.",
+}
+
+
+def _case(probe: Any, key: str) -> Case:
+    """Values of a region, and the expected ones."""
+    batch = probe.region(key)
+    return Case(batch, probe.direct(batch), probe.subject.expected(batch))
+
+
+def _measure(key: str) -> Callable[[Any, Metric], Measurement]:
+    """Values of a region against those of the equations."""
+    return lambda probe, metric: worst_of(metric, [_case(probe, key)])
+
+
+def _diagnose(key: str) -> Callable[[Any], Diagnosis]:
+    """The explanation of the values of a region."""
+
+    def diagnose(probe: Any) -> Diagnosis:
+        others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
+        candidates = [each for each in probe.subject.value_candidates if each.title not in others]
+        return diagnosis.of_case(probe, _case(probe, key), candidates, HAIR_REGIONS[key])
+
+    return diagnose
+
+
+def without_offset(probe: Any) -> Altered:
+    """A control that sees the fiber turned about itself: its normal is off by a tenth."""
+    return with_inputs(normal=(0.0, 0.1, 0.995))(probe)
+
+
+CHECKS = tuple(
+    Check(
+        key,
+        claim,
+        (HAIR_NODE.name,),
+        _measure(key),
+        "the normal is turned about the fiber by a tenth",
+        without_offset,
+        {HAIR: HAIR_REGIONS[key]},
+        diagnose=_diagnose(key),
+        open=True,
+    )
+    for key, claim in CLAIMS.items()
+)

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of a lobe: its values and albedos, its frame, its inputs and its edges."""
+
+from typing import Any
+
+from mxeon.conformance.diagnosis import (candidates as diagnosis, inputs as wiring)
+from mxeon.conformance.checks import (measures, sampling_measures)
+from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
+from mxeon.conformance.nodes.bsdf import (BSDFS, CLOSED, COMBINED, FITTED, HAIR, KINDS, NESTED, SHEEN)
+from mxeon.conformance.nodes.subsurface import (ON_SPHERES, SUBSURFACES, sphere_cases)
+from mxeon.conformance.checks.controls import (
+    drop_changes,
+    gray,
+    offset,
+    scale_cosine,
+    take_response,
+    with_inputs,
+)
+from mxeon.conformance.nodes.emission import KINDS as EMISSION_KINDS
+from mxeon.conformance.nodes.emission import (MEDIUM, PICTURES)
+from mxeon.conformance.accuracy.engine import on_engine
+from mxeon.conformance.nodes.hair import HAIRS
+from mxeon.conformance.nodes.diffuse import (OwnNode, Surface)
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.names import (COMBINATION, EMITTER, FRAMED, MEDIUM_NAMES, OTHERS)
+from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.models.pbrlib import NODES
+from mxeon.models.pbrlib.hair import HAIR_NODE
+from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE
+from mxeon.shaders.hosts import front_lit_only
+from mxeon.shaders.nodes import FLAG
+
+EON = ("eon", "eon_fitted")
+ANY = (*EON, "qon")
+OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name, SUBSURFACE_NODE.name)
+BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS, *SUBSURFACES) if subject.black)
+# Nodes that look an environment up at a normal, beside the rough diffuse ones.
+SHEENS = tuple(row.name for row in NODES if row.category == "sheen_bsdf")
+LOOKED_UP = ("burley", "translucent", *SHEENS, HAIR_NODE.name, SUBSURFACE_NODE.name)
+RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
+SMOOTH = ("lambert",)
+ROUGH = (*ANY, "fon")
+
+
+def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
+    kinds = (*KINDS, HAIR) + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
+    return dict.fromkeys(kinds, tolerance)
+
+
+def of_sphere(probe: Any) -> Diagnosis:
+    """The explanation of light on a sphere."""
+    cases = list(sphere_cases(probe))
+    return diagnosis.of_cases(probe, cases, ON_SPHERES, bsdf_tolerances.RINGS)
+
+
+def has_flag(subject: Any, host: str) -> bool:
+    """Whether a node has the flag that switches the model."""
+    return FLAG in subject.inputs
+
+
+def is_lobe(subject: Any, host: str) -> bool:
+    """Whether a subject is the lobe of a surface shader, or a renderer's own Lambert."""
+    return isinstance(subject, Surface) or subject.model == "lambert"
+
+
+def is_alone(subject: Any, host: str) -> bool:
+    """Whether no other lobe lies beside the diffuse one."""
+    return not (isinstance(subject, OwnNode) and subject.others)
+
+
+def is_sampled(subject: Any, host: str) -> bool:
+    """Whether a renderer's own sampling of the subject can be called."""
+    return isinstance(subject, OwnNode) and subject.sampled
+
+
+def has_environment(subject: Any, host: str) -> bool:
+    """Whether a host has the subject's model for all pairs, as an environment needs."""
+    return not front_lit_only(host, subject.model)
+
+
+CHECKS = (
+    Check(
+        "value",
+        "The value is the model's for every pair of directions, back-lit and grazing ones included.",
+        (*ROUGH, *OTHERS),
+        measures.value,
+        "every channel gets the mean color",
+        gray,
+        tolerances.VALUES,
+        open=True,
+        adapt=on_engine,
+    ),
+    Check(
+        "lobe",
+        "The diffuse lobe of the surface shader is the model's.",
+        (*ANY, *SMOOTH),
+        measures.value,
+        "every channel gets the mean color",
+        gray,
+        tolerances.LOBES,
+        is_lobe,
+    ),
+    Check(
+        "environment",
+        "The environment branch gives the directional albedo.",
+        (*ROUGH, *OTHERS, *SMOOTH),
+        measures.environment,
+        "every channel gets the mean color",
+        gray,
+        tolerances.ALBEDOS,
+        has_environment,
+        diagnosis.of_albedo,
+        open=True,
+    ),
+    Check(
+        "albedo",
+        "Values integrate to the colored directional albedo.",
+        ANY,
+        measures.quadrature,
+        "every channel gets the mean color",
+        gray,
+        {"pairs": tolerances.INTEGRAL},
+    ),
+    Check(
+        "furnace",
+        "A white surface in a white environment cannot be seen.",
+        EON,
+        measures.furnace,
+        "reflectance is 0.99",
+        with_inputs(color=(0.99, 0.99, 0.99)),
+        tolerances.ALBEDOS,
+        has_environment,
+        diagnosis.of_albedo,
+    ),
+    Check(
+        "black",
+        "A black surface scatters nothing.",
+        (*ROUGH, *BLACK, *SMOOTH),
+        measures.black,
+        "a thousandth is added to every value",
+        offset,
+        {
+            "pairs": tolerances.ZERO,
+            "pictures": tolerances.ZERO,
+            "planes": tolerances.ZERO,
+            **of_bsdfs(tolerances.ZERO, pictures=True),
+            "exact": tolerances.ZERO,
+            "facets": tolerances.ZERO,
+            "coarse facets": tolerances.ZERO,
+            "facet pairs": tolerances.ZERO,
+        },
+        is_alone,
+    ),
+    Check(
+        "density",
+        "The density of drawn directions is that of the paper's sampling.",
+        EON,
+        sampling_measures.density,
+        "roughness is dropped",
+        with_inputs(roughness=0.0),
+        {"facet pairs": tolerances.OWN_DENSITY},
+        is_sampled,
+        lambda probe: Diagnosis("the density is not that of the paper's listings"),
+    ),
+    Check(
+        "samples",
+        "Directions are drawn with the density that is returned for them.",
+        EON,
+        sampling_measures.samples,
+        "the density is that of roughness 0",
+        with_inputs(roughness=0.0),
+        {"facet pairs": tolerances.CHI_SQUARE},
+        is_sampled,
+        lambda probe: Diagnosis("the drawn directions do not have the density"),
+    ),
+    Check(
+        "frame",
+        "The value depends on the directions in the surface's frame, turned to the viewer.",
+        (*ANY, *FRAMED),
+        measures.frame,
+        "the node's normal is dropped",
+        with_inputs(normal=(0.0, 0.0, 1.0)),
+        tolerances.FRAMES,
+        diagnose=wiring.of_frame,
+    ),
+    Check(
+        "surroundings",
+        "An uneven environment is looked up at the normal, which is turned to the viewer, or behind it.",
+        (*ANY, *LOOKED_UP),
+        measures.surroundings,
+        "the node's normal is dropped",
+        with_inputs(normal=(0.0, 0.0, 1.0)),
+        dict.fromkeys(("pairs", CLOSED, SHEEN, FITTED, HAIR), tolerances.SURROUNDINGS),
+        diagnose=wiring.of_surroundings,
+    ),
+    Check(
+        "sphere",
+        "On a sphere the diffusion profile spreads light, by the radius and the anisotropy.",
+        (SUBSURFACE_NODE.name,),
+        lambda probe, metric: measures.worst_of(metric, sphere_cases(probe)),
+        "the mean free path is 0.3 in every channel",
+        with_inputs(radius=(0.3, 0.3, 0.3)),
+        {CLOSED: bsdf_tolerances.RINGS},
+        diagnose=of_sphere,
+    ),
+    Check(
+        "throughput",
+        "No light from below passes: the throughput is 0 in every branch and for every weight.",
+        (*ANY, *OPAQUE),
+        measures.throughput,
+        "the response is taken for the throughput",
+        take_response,
+        {"pairs": tolerances.OPAQUE, **of_bsdfs(tolerances.OPAQUE)},
+        diagnose=wiring.of_throughput,
+    ),
+    Check(
+        "reciprocity",
+        "Exchanging the two directions does not change the BRDF.",
+        (*ROUGH, *RECIPROCAL, *SMOOTH),
+        measures.reciprocity,
+        "the value carries cos(theta_o) once more",
+        scale_cosine(1),
+        {
+            "pairs": tolerances.RECIPROCITY,
+            **bsdf_tolerances.VALUES,
+            "facet pairs": tolerances.FACET_PAIRS,
+        },
+    ),
+    Check(
+        "lambert",
+        "Roughness 0 is Lambert.",
+        ANY,
+        measures.lambert,
+        "roughness is 0.1",
+        with_inputs(roughness=0.1),
+        {
+            "pairs": tolerances.LAMBERT,
+            "pictures": tolerances.CYCLES_RAY,
+            "planes": tolerances.TESTRENDER,
+            "exact": tolerances.EXACT,
+            "facets": tolerances.FACETS,
+        },
+    ),
+    Check(
+        "flag",
+        "energy_compensation changes the value by as much as the models differ.",
+        ANY,
+        measures.flag,
+        "the flag is dropped",
+        with_inputs(**{FLAG: True}),
+        {
+            "pairs": tolerances.difference_of(tolerances.VALUE),
+            "pictures": tolerances.difference_of(tolerances.CYCLES_RAY),
+            "planes": tolerances.difference_of(tolerances.TESTRENDER),
+        },
+        has_flag,
+        wiring.of_flag,
+    ),
+    Check(
+        "inputs",
+        "Every input of the node changes the value.",
+        (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION, *EMITTER, *MEDIUM_NAMES),
+        measures.inputs,
+        "every change is dropped",
+        drop_changes,
+        {
+            "pairs": tolerances.count_of("inputs"),
+            "pictures": tolerances.count_of("inputs"),
+            "planes": tolerances.count_of("inputs"),
+            **of_bsdfs(tolerances.count_of("inputs"), pictures=True),
+            "exact": tolerances.count_of("inputs"),
+            "facets": tolerances.count_of("inputs"),
+            "coarse facets": tolerances.count_of("inputs"),
+            "facet pairs": tolerances.count_of("inputs"),
+            **dict.fromkeys((COMBINED, NESTED), tolerances.count_of("inputs")),
+            **dict.fromkeys((*EMISSION_KINDS, MEDIUM, PICTURES), tolerances.count_of("inputs")),
+        },
+        diagnose=wiring.of_inputs,
+    ),
+    Check(
+        "finite",
+        "No value at the edges of the domain is infinite or not a number.",
+        (*ANY, *OTHERS),
+        measures.finite,
+        "the value is divided by cos(theta_o)",
+        scale_cosine(-1),
+        {"pairs": tolerances.count_of("values"), **of_bsdfs(tolerances.count_of("values"))},
+        diagnose=wiring.of_finite,
+    ),
+)

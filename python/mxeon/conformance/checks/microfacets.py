@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of lobes of microfacets alone."""
+
+from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.checks import bsdf_measures as measures
+from mxeon.conformance.accuracy import bsdf as tolerances
+from mxeon.conformance.nodes.bsdf import (MICROFACET, MICROFACET_KINDS)
+from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
+
+MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
+
+
+def of_microfacets(tolerance: Tolerance) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of microfacets."""
+    return dict.fromkeys(MICROFACET_KINDS, tolerance)
+
+
+CHECKS = (
+    Check(
+        "lossless",
+        "A lobe that reflects all light returns all of it, at every roughness.",
+        MICROFACETS,
+        measures.lossless,
+        "values are 2 % too large",
+        scale(1.02),
+        of_microfacets(tolerances.INTEGRALS[MICROFACET]),
+    ),
+    Check(
+        "shape",
+        "Two lights of one view give values in the ratio of D F G2.",
+        MICROFACETS,
+        measures.shape,
+        "the roughness is a tenth larger",
+        rougher,
+        of_microfacets(tolerances.SHAPE),
+        open=True,
+    ),
+    Check(
+        "retroreflection",
+        "The retroreflective lobe is the mirror lobe of the mirrored view.",
+        MICROFACETS,
+        measures.retroreflection,
+        "the flag is dropped",
+        with_inputs(retroreflective=False),
+        of_microfacets(tolerances.RETROREFLECTION),
+        diagnose=wiring.of_retroreflection,
+    ),
+    Check(
+        "anisotropy",
+        "The lobe turns with the tangent.",
+        MICROFACETS,
+        measures.anisotropy,
+        "the tangent is dropped",
+        with_inputs(tangent=(1.0, 0.0, 0.0)),
+        of_microfacets(tolerances.ANISOTROPY),
+        diagnose=wiring.of_tangent,
+    ),
+    Check(
+        "anisotropic_albedo",
+        "The environment branch of an anisotropic lobe gives the integral of its values.",
+        MICROFACETS,
+        measures.stretched,
+        "the roughness is the same in both directions",
+        isotropic,
+        of_microfacets(tolerances.ANISOTROPIC_ALBEDO),
+        diagnose=wiring.of_stretched,
+    ),
+)

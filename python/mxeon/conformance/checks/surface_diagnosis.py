@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Diagnosis of a surface shader's failures: the lobe without which they vanish."""
+
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import Batch
+from mxeon.conformance.checks.measures import scaled
+from mxeon.conformance.checks.surface_measures import misplaced
+from mxeon.conformance.accuracy.surface_shaders import VALUE
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+
+WORST = 32  # pairs that are looked at
+# Inputs that take a lobe away, by its name.
+LOBES = {
+    "coat": ("coat", "coat_weight", "clearcoat"),
+    "sheen": ("sheen", "fuzz_weight", "sheen_color"),
+    "metal": ("metalness", "base_metalness", "metallic"),
+    "specular reflection": ("specular", "specular_weight"),
+}
+
+
+def of_lobes(probe: Any) -> Diagnosis:
+    """The lobe whose absence leaves the smallest error of the worst pairs."""
+    [batch], [expected] = probe.batches, probe.expected
+    worst = np.argsort(scaled(probe.direct(batch), expected))[-WORST:]
+    pairs = batch.where(worst)
+    errors = {}
+    for lobe, inputs in LOBES.items():
+        if names := tuple(name for name in inputs if name in batch.inputs):
+            errors[lobe] = _error(probe, pairs, names)
+    lobe = min(errors, key=errors.__getitem__)
+    if errors[lobe] <= VALUE.value:
+        return Diagnosis(f"the layer equation holds without the {lobe}")
+    least = " and ".join(sorted(errors, key=errors.__getitem__)[:2])
+    return Diagnosis(f"no lobe alone explains it; the error is least without {least}")
+
+
+def _error(probe: Any, pairs: Batch, names: tuple[str, ...]) -> float:
+    """Largest error of pairs whose materials lack a lobe."""
+    plain = pairs.altered(**{name: np.zeros_like(pairs.inputs[name]) for name in names})
+    return float(scaled(probe.direct(plain), probe.expected_of(plain)).max())
+
+
+def of_sum(probe: Any) -> Diagnosis:
+    """Where the lobes are judged."""
+    return Diagnosis("the checks of each lobe and of `layer` say why")
+
+
+def of_reach(probe: Any) -> Diagnosis:
+    """The inputs."""
+    names = misplaced(probe)
+    silent = [name for name in names if name not in probe.subject.table.silent]
+    heard = [name for name in names if name in probe.subject.table.silent]
+    texts = [
+        f"{', '.join(group)} {verb}"
+        for group, verb in ((silent, "changes nothing"), (heard, "changes something"))
+        if group
+    ]
+    return Diagnosis("; ".join(texts))

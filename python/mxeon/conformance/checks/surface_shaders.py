@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of surface shaders as a whole."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.checks import measures
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.checks.controls import Altered, scale, shifted
+from mxeon.conformance.checks import surface_diagnosis as diagnosis
+from mxeon.conformance.accuracy import surface_shaders as tolerances
+from mxeon.conformance.checks import surface_measures
+from mxeon.conformance.nodes.surface_shaders import (SHADERS, WHOLE)
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.accuracy.diffuse import count_of
+
+MODELS = tuple(shader.model for shader in SHADERS)
+
+
+@dataclass(frozen=True)
+class _Deaf(Altered):
+    """A probe whose host sees the first pair only."""
+
+    def response(self, batch: Batch, branch: str) -> Array:
+        return np.repeat(self.probe.response(batch.first(1), branch), len(batch.wo), axis=0)
+
+
+def _deaf(probe: Any) -> Altered:
+    return _Deaf(probe)
+
+
+CHECKS = (
+    Check(
+        "lobes",
+        "Direct light is that of all lobes by the layer equation.",
+        MODELS,
+        surface_measures.value,
+        "each pair has the inputs of another",
+        shifted,
+        {WHOLE: tolerances.VALUE},
+        diagnose=diagnosis.of_lobes,
+    ),
+    Check(
+        "lobes_albedo",
+        "The environment branch gives the albedo of all lobes by the layer equation.",
+        MODELS,
+        measures.environment,
+        "each view has the inputs of another",
+        shifted,
+        {WHOLE: tolerances.ALBEDO},
+        diagnose=diagnosis.of_sum,
+    ),
+    Check(
+        "lobes_furnace",
+        "A white material of many lobes in a white environment cannot be seen.",
+        MODELS,
+        surface_measures.furnace,
+        "every value is a tenth lower",
+        scale(0.9),
+        {WHOLE: tolerances.ALBEDO},
+        diagnose=diagnosis.of_sum,
+    ),
+    Check(
+        "lobes_energy",
+        "No material of these lobes reflects and transmits more light than it gets.",
+        MODELS,
+        surface_measures.energy,
+        "every value is half as high again",
+        scale(1.5),
+        {WHOLE: tolerances.ALBEDO},
+        diagnose=diagnosis.of_sum,
+    ),
+    Check(
+        "reach",
+        "An input changes a value, unless its page says that it does not.",
+        MODELS,
+        surface_measures.reach,
+        "every change is dropped",
+        _deaf,
+        {WHOLE: count_of("inputs")},
+        diagnose=diagnosis.of_reach,
+    ),
+)

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of checks: a claim, how it is measured, how wrong it may be, and what it must catch.
+
+A check passes at error <= tolerance. Its control is the same probe made wrong on purpose, on the same
+host; the check has to fail on it. Every tolerance is the expression that its derivation describes.
+"""
+
+from mxeon.conformance.checks import (combinations, emission, energy, hair, layers, lobes, microfacets, surface_shaders as surfaces, thin_films, transmission, utilities)
+from mxeon.conformance.checks.check import Check
+
+__all__ = ["CHECKS", "Check"]
+
+CHECKS = (
+    *lobes.CHECKS,
+    *layers.CHECKS,
+    *energy.CHECKS,
+    *microfacets.CHECKS,
+    *combinations.CHECKS,
+    *emission.CHECKS,
+    *hair.CHECKS,
+    *transmission.CHECKS,
+    *thin_films.CHECKS,
+    *utilities.CHECKS,
+    *surfaces.CHECKS,
+)

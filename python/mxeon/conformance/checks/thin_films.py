@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of microfacets under a thin film."""
+
+from mxeon.conformance.diagnosis import (candidates as diagnosis, inputs as wiring)
+from mxeon.conformance.checks import measures
+from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.checks import bsdf_measures
+from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
+from mxeon.conformance.nodes.bsdf import FILM
+from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.film_measures import (brighter, film_average, film_energy, film_limit, film_visible, of_average, of_visible, thicker)
+from mxeon.conformance.nodes.thin_films import (FILM_MODELS, LAYERED)
+
+CHECKS = (
+    Check(
+        "film",
+        "The value under a thin film has the film's Airy reflectance.",
+        FILM_MODELS,
+        measures.value,
+        "the film is a quarter thicker",
+        thicker,
+        {FILM: bsdf_tolerances.FILM_VALUE},
+        open=True,
+    ),
+    Check(
+        "film_limit",
+        "A film of index 1, and one next to nothing, leave the lobe as it is.",
+        FILM_MODELS,
+        film_limit,
+        "every film has an index of 1.5",
+        with_inputs(thinfilm_ior=1.5),
+        {FILM: bsdf_tolerances.FILM_LIMIT},
+        open=True,
+    ),
+    Check(
+        "film_energy",
+        "No film reflects more than a lobe that reflects everything.",
+        FILM_MODELS,
+        film_energy,
+        "values are 100 times as large",
+        brighter,
+        {FILM: bsdf_tolerances.FILM_ENERGY},
+    ),
+    Check(
+        "film_environment",
+        "The environment branch has the film's directional albedo.",
+        FILM_MODELS,
+        measures.environment,
+        "the film is a quarter thicker",
+        thicker,
+        {FILM: bsdf_tolerances.FILM_ALBEDO},
+        diagnose=diagnosis.of_albedo,
+        open=True,
+    ),
+    Check(
+        "film_average",
+        "The compensation has the average of the film's curve over the hemisphere.",
+        FILM_MODELS,
+        film_average,
+        "the film is a quarter thicker",
+        thicker,
+        {FILM: bsdf_tolerances.FILM_MEAN},
+        diagnose=of_average,
+        open=True,
+    ),
+    Check(
+        "film_visible",
+        "The albedo has the mean of the film's curve over the facets that are seen and lit.",
+        FILM_MODELS,
+        film_visible,
+        "the film is a quarter thicker",
+        thicker,
+        {FILM: bsdf_tolerances.FILM_STEEP},
+        diagnose=of_visible,
+        open=True,
+    ),
+    Check(
+        "film_throughput",
+        "The throughput of a layer under a film is 1 - E of the film.",
+        LAYERED,
+        bsdf_measures.layering,
+        "all light passes",
+        pass_all,
+        {FILM: bsdf_tolerances.FILM_ALBEDO},
+        diagnose=diagnosis.of_throughput,
+    ),
+    Check(
+        "film_finite",
+        "No value of a film at the edges of the domain is infinite or not a number.",
+        FILM_MODELS,
+        measures.finite,
+        "the value is divided by cos(theta_o)",
+        scale_cosine(-1),
+        {FILM: tolerances.count_of("values")},
+        diagnose=wiring.of_finite,
+    ),
+)

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of light that microfacets transmit, in the branch that looks up an environment."""
+
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.accuracy import bsdf as tolerances
+from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
+from mxeon.conformance.checks.measures import Case
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.accuracy.diffuse import (SURROUNDINGS, count_of)
+from mxeon.conformance.checks import transmission_measures as measures
+from mxeon.conformance.nodes.transmission import (TRANSMISSION_KINDS, TRANSMITTING)
+from mxeon.conformance.diagnosis.candidates import (NEAR, Diagnosis, not_finite)
+
+MODELS = tuple(subject.model for subject in TRANSMITTING)
+BOTH = tuple(subject.model for subject in TRANSMITTING if subject.reflects)
+UNSHADOWED = "the mean of 1 - F over the normals seen, divided by G_1 of the view"
+
+
+def of_all(tolerance: Tolerance) -> dict[str, Tolerance]:
+    """The same tolerance for every kind of probe of transmission."""
+    return dict.fromkeys(TRANSMISSION_KINDS, tolerance)
+
+
+def infinite(probe: Any) -> Altered:
+    """A control whose values are divided by 0."""
+
+    def divided(batch: Any, values: Any) -> Any:
+        return np.full_like(values, np.inf)
+
+    return Altered(probe, values=divided)
+
+
+def of_transmitted(probe: Any) -> Diagnosis:
+    """Whether the light is divided by G_1, as MaterialX does for reflection; and where it is no number."""
+    cases = measures.transmitted_cases(probe)
+    near, far = (
+        np.sqrt(np.mean(np.concatenate([_squares(case, found(case)) for case in cases])))
+        for found in (
+            lambda case: measures.over_masking(probe.subject, case.batch),
+            lambda case: case.expected,
+        )
+    )
+    words = (UNSHADOWED if near < NEAR * far else "", not_finite(cases))
+    return Diagnosis("; ".join(filter(None, words)))
+
+
+def _squares(case: Case, expected: Array) -> Array:
+    """Squared errors of the values that are finite."""
+    known = np.isfinite(case.measured)
+    squares: Array = (case.measured - expected)[known] ** 2
+    return squares
+
+
+def of_inputs(probe: Any) -> Diagnosis:
+    """The inputs that change nothing, or that change what they must not."""
+    return Diagnosis(
+        f"without effect, or with a wrong one: {', '.join(measures.wrong_inputs(probe))}"
+    )
+
+
+def of_finite(probe: Any) -> Diagnosis:
+    """Where values at the edges are not finite."""
+    return Diagnosis(not_finite([measures.finite_case(probe)]))
+
+
+def unknown(probe: Any) -> Diagnosis:
+    """No explanation."""
+    return Diagnosis(wiring.UNKNOWN)
+
+
+CHECKS = (
+    Check(
+        "transmitted",
+        "A uniform environment shines through with what the BTDF passes, up to all that is not reflected.",
+        MODELS,
+        measures.transmitted,
+        "values are twice as large",
+        scale(2.0),
+        tolerances.TRANSMITTED,
+        diagnose=of_transmitted,
+    ),
+    Check(
+        "clear",
+        "A white lobe that reflects and transmits returns all light of a uniform environment.",
+        BOTH,
+        measures.clear,
+        "values are 5 % too large",
+        scale(1.05),
+        tolerances.CLEAR,
+        diagnose=of_transmitted,
+    ),
+    Check(
+        "kept",
+        "Mode RT reflects and passes to its base what mode R does; mode T reflects nothing.",
+        MODELS,
+        measures.kept,
+        "a thousandth is added to every value",
+        offset,
+        of_all(tolerances.RETROREFLECTION),
+        diagnose=unknown,
+    ),
+    Check(
+        "critical",
+        "A smooth surface passes 1 - F of its angle, and nothing beyond the critical one.",
+        MODELS,
+        measures.critical,
+        "the index is another",
+        with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
+        tolerances.TRANSMITTED,
+        diagnose=of_transmitted,
+    ),
+    Check(
+        "refraction",
+        "An uneven environment is looked up where a solid sphere refracts the view.",
+        MODELS,
+        measures.refraction,
+        "the index is another",
+        with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
+        of_all(SURROUNDINGS),
+        diagnose=unknown,
+    ),
+    Check(
+        "transmitted_finite",
+        "No light through the surface is infinite or not a number, at the edges of the domain.",
+        MODELS,
+        measures.finite,
+        "values are divided by 0",
+        infinite,
+        of_all(count_of("values")),
+        diagnose=of_finite,
+    ),
+    Check(
+        "transmitted_inputs",
+        "Every input of the node but retroreflective changes the light through the surface.",
+        MODELS,
+        measures.inputs,
+        "every change is dropped",
+        drop_changes,
+        of_all(count_of("inputs")),
+        diagnose=of_inputs,
+    ),
+)

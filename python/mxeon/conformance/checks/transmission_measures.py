@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements of light through microfacets: its share, its place, and what it leaves alone."""
+
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.checks.measures import Case, Measurement, Metric, point_of, worst_of
+from mxeon.conformance.samples.uneven_environment import (sky, sky_map)
+from mxeon.models.ggx import smith_g1
+from mxeon.models.transmission.refraction import refraction_direction
+
+BRANCHES = ("direct", "environment", "transmission")
+COUNT = 1 << 9  # views of smooth surfaces
+FEW = 1 << 6  # views whose inputs are changed
+LEAST_VIEW = 0.05  # cosine of them
+CRITICAL = 0.05  # distance from the critical angle, in its cosine: F has an infinite slope there
+LEAST_PASSED = 0.01  # light of which the place is asked
+NORMAL = (0.0, 0.0, 1.0)
+ONE = np.ones((1, 3))
+
+
+def transmitted(probe: Any, metric: Metric) -> Measurement:
+    """Light of a uniform environment through the surface, against the limits of the equations."""
+    return worst_of(metric, transmitted_cases(probe))
+
+
+def transmitted_cases(probe: Any) -> list[Case]:
+    """The cases of `transmitted`: what is expected is the nearest value inside the limits.
+
+    One is what the BTDF passes, without compensation; the other all that is not reflected. The first is
+    the larger for some colors of Schlick's curve, of which the text compensates too much.
+    """
+    cases = []
+    for batch in probe.cosines:
+        measured = probe.transmitted(batch)
+        cases.append(Case(batch, measured, np.clip(measured, *limits(probe.subject, batch))))
+    return cases
+
+
+def limits(subject: Any, batch: Batch) -> tuple[Array, Array]:
+    """Least and most light that passes, with tint and weight, (N, 3) each.
+
+    The most exceeds 1 where the node's own curve is below 0.
+    """
+    functions = subject.functions
+    rest = functions.tint(batch.inputs) * (1.0 - functions.reflected(batch.wo, batch.inputs))
+    rest, passed = np.maximum(rest, 0.0), functions.passed(batch.wo, batch.inputs, True)
+    return batch.strength * np.minimum(rest, passed), batch.strength * np.maximum(rest, passed)
+
+
+def over_masking(subject: Any, batch: Batch) -> Array:
+    """The mean of 1 - F over the normals seen, divided by G_1 of the view, (N, 3)."""
+    seen = subject.functions.passed(batch.wo, batch.inputs, False)
+    G_1 = smith_g1(batch.wo, batch.inputs["roughness"])
+    value: Array = batch.strength * seen / G_1[:, np.newaxis]
+    return value
+
+
+def clear(probe: Any, metric: Metric) -> Measurement:
+    """Light of a uniform environment that a white lobe reflects and transmits, against all of it."""
+    cases = []
+    for batch in probe.cosines:
+        white = batch.altered(tint=(1.0, 1.0, 1.0), weight=1.0)
+        cases.append(Case(white, probe.albedo(white) + probe.transmitted(white), ONE))
+    return worst_of(metric, cases)
+
+
+def kept(probe: Any, metric: Metric) -> Measurement:
+    """Reflection beside transmission, against that of the node that only reflects, or none."""
+    cases = []
+    for batch in probe.cosines:
+        for output in ("direct", "albedo"):
+            cases.append(
+                Case(batch, getattr(probe, output)(batch), _reflection(probe, output, batch))
+            )
+        for branch in BRANCHES if probe.subject.reflects else BRANCHES[:2]:
+            expected = probe.reflection.throughput(batch, branch) if probe.subject.reflects else ONE
+            cases.append(Case(batch, probe.throughput(batch, branch), expected))
+    return worst_of(metric, cases)
+
+
+def _reflection(probe: Any, output: str, batch: Batch) -> Array:
+    """A value of the node that only reflects; 0 where the mode has no reflection."""
+    if not probe.subject.reflects:
+        return 0.0 * ONE
+    value: Array = getattr(probe.reflection, output)(batch)
+    return value
+
+
+def critical(probe: Any, metric: Metric) -> Measurement:
+    """Light through smooth surfaces against 1 - F, and against none beyond the critical angle."""
+    batch = _smooth(probe)
+    functions, mu = probe.subject.functions, np.minimum(batch.wo[:, 2], 1.0)
+    index = functions.ior(batch.inputs)
+    edge = np.sqrt(np.maximum(1.0 - index * index, 0.0))
+    batch, mu = (batch.where(np.abs(mu - edge) > CRITICAL), mu[np.abs(mu - edge) > CRITICAL])
+    passed = functions.tint(batch.inputs) * (1.0 - functions.fresnel(mu, batch.inputs))
+    return worst_of(metric, [Case(batch, probe.transmitted(batch), batch.strength * passed)])
+
+
+def refraction(probe: Any, metric: Metric) -> Measurement:
+    """An uneven environment through smooth surfaces, over a uniform one, against its place."""
+    return worst_of(metric, [refraction_case(probe)])
+
+
+def refraction_case(probe: Any) -> Case:
+    """The case of `refraction`."""
+    batch = _smooth(probe)
+    level = probe.transmitted(batch)
+    bright = level.min(axis=1) > LEAST_PASSED
+    batch, level = batch.where(bright), level[bright]
+    index = probe.subject.functions.ior(batch.inputs)
+    measured = probe.transmitted(batch, sky_map()) / level
+    return Case(batch, measured, sky(through_sphere(batch.wo, index)))
+
+
+def through_sphere(wo: Array, index: Array) -> Array:
+    """Direction of a view that a solid sphere has refracted twice, (N, 3).
+
+    At the far side the ray meets the surface at the same angle: it turns twice by the same amount.
+    """
+    inner = refraction_direction(wo, NORMAL, index)
+    far = inner * (2.0 * inner[:, 2:]) - np.array(NORMAL)  # towards the inside
+    cosine = -np.sum(inner * far, axis=1, keepdims=True)
+    n = index[:, np.newaxis]
+    out = np.sqrt(np.maximum(1.0 - n * n * (1.0 - cosine * cosine), 0.0))
+    direction: Array = n * inner + (n * cosine - out) * far
+    return direction
+
+
+def _smooth(probe: Any) -> Batch:
+    """Views of smooth surfaces of all indices, with the node's colors."""
+    batch: Batch = probe.few[0].first(COUNT)
+    batch = batch.where(batch.wo[:, 2] >= LEAST_VIEW)
+    return batch.altered(roughness=(0.0, 0.0))
+
+
+def finite(probe: Any, _: Metric) -> Measurement:
+    """Number of values at the edges of the domain that are not finite."""
+    batch, values, _expected = finite_case(probe)
+    bad = ~np.isfinite(values).all(axis=1)
+    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+
+
+def finite_case(probe: Any) -> Case:
+    """The case of `finite`, of every fifth pair: each costs a sum over directions."""
+    batch: Batch = probe.edges
+    batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
+    values = probe.transmitted(batch)
+    return Case(batch, values, np.zeros_like(values))
+
+
+def inputs(probe: Any, _: Metric) -> Measurement:
+    """Number of inputs that change no light through the surface, and of those that must not."""
+    wrong = wrong_inputs(probe)
+    return Measurement(len(wrong), {name: [0.0] for name in wrong})
+
+
+def wrong_inputs(probe: Any) -> list[str]:
+    """The inputs of `inputs`: the retroreflective mode is of the reflection alone."""
+    batch, wrong = probe.few[0].first(FEW), []
+    plain = probe.transmitted(batch, sky_map())
+    for name, (without, change) in probe.subject.changes.items():
+        before = probe.transmitted(batch.altered(**without), sky_map()) if without else plain
+        after = probe.transmitted(batch.altered(**change), sky_map())
+        if np.array_equal(before, after, equal_nan=True) != (name == "retroreflective"):
+            wrong.append(name)
+    return wrong

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements of the utility nodes: their values in units in which roundings are alike."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.checks.measures import Case, Measurement, Metric, point_of, worst_of
+from mxeon.conformance.accuracy.utilities import utility_tolerance
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.models.artistic_ior import normal_reflectance
+from mxeon.models.pbrlib.utilities import LARGEST_REFLECTIVITY
+
+
+def value(probe: Any, metric: Metric) -> Measurement:
+    """Outputs against those of the equations."""
+    return worst_of(metric, cases(probe))
+
+
+def cases(probe: Any) -> Iterator[Case]:
+    """The cases of `value`."""
+    unit = UNITS.get(probe.subject.title, _as_it_is)
+    for batch in probe.batches:
+        measured, expected = probe.direct(batch), probe.subject.expected(batch)
+        yield Case(batch, unit(measured, batch), unit(expected, batch))
+
+
+def explained(probe: Any) -> Diagnosis:
+    """The explanation of a probe's outputs."""
+    unit = UNITS.get(probe.subject.title, _as_it_is)
+    candidates = [
+        replace(each, values=partial(_in_unit, unit, each.values))
+        for each in probe.subject.value_candidates
+    ]
+    tolerance = utility_tolerance(None, probe)
+    return diagnosis.of_cases(probe, list(cases(probe)), candidates, tolerance)
+
+
+def finite(probe: Any, _: Metric) -> Measurement:
+    """Number of outputs that are not finite, at the ends of the ranges and beyond."""
+    batch = probe.edges
+    bad = ~np.isfinite(probe.direct(batch)).all(axis=1)
+    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+
+
+def explained_finite(probe: Any) -> Diagnosis:
+    """The explanation of outputs that are not finite: a bound that an input of each exceeds."""
+    batch = probe.edges
+    bad = ~np.isfinite(probe.direct(batch)).all(axis=1)
+    if not bad.any():
+        return Diagnosis()
+    share = f"{int(bad.sum())} of {len(bad)} outputs are not finite"
+    for name, values in batch.inputs.items():
+        rows = np.reshape(values, (len(bad), -1))
+        low, high = rows.min(axis=1), rows.max(axis=1)
+        if low[bad].max() <= 0.0:
+            return Diagnosis(f"{share}, all of them with {name} {low[bad].max():g} or below")
+        if high[bad].min() >= 1.0:
+            return Diagnosis(f"{share}, all of them with {name} {high[bad].min():g} or above")
+    return Diagnosis(share)
+
+
+def round_trip(probe: Any, metric: Metric) -> Measurement:
+    """Reflectance at normal incidence of an artistic index, against the reflectivity asked for."""
+    extinction = probe.other("extinction")
+    measured = []
+    for batch in probe.batches:
+        reflectance = normal_reflectance(probe.direct(batch), extinction.direct(batch))
+        asked = np.minimum(batch.inputs["reflectivity"], LARGEST_REFLECTIVITY)
+        measured.append(Case(batch, reflectance, asked))
+    return worst_of(metric, measured)
+
+
+def _in_unit(
+    unit: Callable[[Array, Batch], Array], values: Callable[[Batch], Array], batch: Batch
+) -> Array:
+    return np.asarray(unit(values(batch), batch))
+
+
+def _as_it_is(values: Array, batch: Batch) -> Array:
+    return values
+
+
+def _of_index(values: Array, batch: Batch) -> Array:
+    """n (1 - sqrt(r))^2: a rounding of 1 - sqrt(r) is divided by it in n."""
+    root = np.sqrt(_reflectivity(batch))
+    return np.asarray(values * np.square(1.0 - root))
+
+
+def _of_extinction(values: Array, batch: Batch) -> Array:
+    """k^2 (1 - r) / (n_max + 1)^2: k^2 is a difference of terms that large, over 1 - r."""
+    r = _reflectivity(batch)
+    largest = 2.0 / (1.0 - np.sqrt(r))  # n_max + 1
+    return np.asarray(np.square(values) * (1.0 - r) / np.square(largest))
+
+
+def _reflectivity(batch: Batch) -> Array:
+    return np.asarray(np.clip(batch.inputs["reflectivity"], 0.0, LARGEST_REFLECTIVITY))
+
+
+# Of outputs in which a rounding grows, by title.
+UNITS: Mapping[str, Callable[[Array, Batch], Array]] = {
+    "artistic_ior, ior": _of_index,
+    "artistic_ior, extinction": _of_extinction,
+}

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The diagnosis of a failure: the known model, defect or fault that explains it, or its place."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache, partial
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (FEW, Array, Batch, Candidate)
+from mxeon.conformance.checks.bsdf_measures import (layering_cases, transmission_cases)
+from mxeon.conformance.checks.emission_measures import (back_cases, transmittance_cases)
+from mxeon.conformance.nodes.emission import MEDIUM
+from mxeon.conformance.accuracy.emission import (FRONTS, TRANSMITTANCE)
+from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.accuracy.diffuse import (ALBEDOS, LOBES, THROUGHPUTS, VALUES)
+from mxeon.conformance.diagnosis.faults import (DIRECT, ENVIRONMENT, Fault, scaled_by)
+from mxeon.conformance.diagnosis.regions import (Mask, smallest)
+from mxeon.models import table as reference
+from mxeon.shaders.nodes import FLAG
+
+# Share of the distance to any other explanation up to which one explains all, and up to which it is
+# called the nearest.
+SAME, NEAR = 0.03, 0.3
+INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
+LIT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The explanation of some values.
+
+    Attributes
+    ----------
+    text : str
+        The model, defect or fault that explains them; or where they are wrong.
+    distances : dict of str to float
+        Root-mean-square distance to every model and defect, by title, in units of pi f cos.
+    permitted : bool
+        Whether a function that the specification leaves open gives all values.
+    """
+
+    text: str = ""
+    distances: dict[str, float] = field(default_factory=dict)
+    permitted: bool = False
+
+
+def sentence(distances: Sequence[tuple[str, float]]) -> str:
+    """The nearest model and the second nearest, in words.
+
+    Parameters
+    ----------
+    distances : sequence of (str, float)
+        Title and root-mean-square distance of two models or more, nearest first.
+
+    Examples
+    --------
+    >>> sentence([("Lambert", 0.001), ("EON", 0.25)])
+    'nearest known model: Lambert (rms 0.001), then EON (0.25)'
+    """
+    (first, least), (second, next_least) = distances[:2]
+    return f"nearest known model: {first} (rms {least:.2g}), then {second} ({next_least:.2g})"
+
+
+@lru_cache(maxsize=2)  # several checks of a subject fail for one reason
+def of_value(probe: Any) -> Diagnosis:
+    """The explanation of the probe's values for pairs of directions."""
+    candidates = probe.subject.value_candidates
+    return _explained(
+        probe, list(value_cases(probe)), candidates, DIRECT, _tolerance(probe, VALUES)
+    )
+
+
+def of_case(
+    probe: Any, case: Case, candidates: Sequence[Candidate], tolerance: Tolerance
+) -> Diagnosis:
+    """The explanation of values of one case, for pairs of directions, by candidates."""
+    return _explained(probe, [case], candidates, DIRECT, tolerance)
+
+
+@lru_cache(maxsize=2)
+def of_albedo(probe: Any) -> Diagnosis:
+    """The explanation of the probe's environment branch."""
+    candidates = probe.subject.albedo_candidates
+    cases = list(albedo_cases(probe))
+    return _explained(probe, cases, candidates, ENVIRONMENT, _tolerance(probe, ALBEDOS))
+
+
+@lru_cache(maxsize=2)
+def of_throughput(probe: Any) -> Diagnosis:
+    """The explanation of the throughput of a layer for light from above."""
+    return _of_rest(probe, list(layering_cases(probe)))
+
+
+@lru_cache(maxsize=2)
+def of_transmission(probe: Any) -> Diagnosis:
+    """The explanation of the throughput of a layer for light through the base."""
+    return _of_rest(probe, list(transmission_cases(probe)))
+
+
+@lru_cache(maxsize=2)
+def of_radiance(probe: Any) -> Diagnosis:
+    """The explanation of what an emission is from the front."""
+    return _of_emission(probe, list(value_cases(probe)))
+
+
+def of_back(probe: Any) -> Diagnosis:
+    """The explanation of what an emission is from the back."""
+    return _of_emission(probe, list(back_cases(probe)))
+
+
+def of_medium(probe: Any) -> Diagnosis:
+    """The explanation of the transmittance of a medium."""
+    return _of_emission(probe, list(transmittance_cases(probe)))
+
+
+def _of_emission(probe: Any, cases: Sequence[Case]) -> Diagnosis:
+    """The explanation of radiances and transmittances."""
+    tolerance = {**FRONTS, MEDIUM: TRANSMITTANCE}[probe.kind]
+    return _explained(probe, cases, probe.subject.value_candidates, (), tolerance)
+
+
+def of_cases(
+    probe: Any, cases: Sequence[Case], candidates: Sequence[Candidate], tolerance: Tolerance
+) -> Diagnosis:
+    """The explanation of cases by candidates, the own one first."""
+    return _explained(probe, cases, candidates, (), tolerance)
+
+
+def _of_rest(probe: Any, cases: Sequence[Case]) -> Diagnosis:
+    """The explanation of throughputs, by albedos or by none."""
+    *albedos, nothing = probe.subject.albedo_candidates
+    candidates = [Candidate(each.title, partial(_rest, each), each.permitted) for each in albedos]
+    candidates.append(Candidate("all light passes", partial(_rest, nothing)))
+    return _explained(probe, cases, candidates, (), _tolerance(probe, THROUGHPUTS))
+
+
+def _rest(candidate: Candidate, batch: Batch) -> Array:
+    """The light that a candidate's albedo leaves."""
+    return np.maximum(1.0 - candidate.values(batch), 0.0)
+
+
+def _tolerance(probe: Any, tolerances: Mapping[str, Tolerance]) -> Tolerance:
+    """The tolerance of a probe's kind; that of a lobe where it is one below others."""
+    return {**LOBES, **tolerances}[probe.kind]
+
+
+def _explained(
+    probe: Any,
+    cases: Sequence[Case],
+    candidates: Sequence[Candidate],
+    faults: Sequence[Fault],
+    tolerance: Tolerance,
+) -> Diagnosis:
+    """The explanation of cases, by candidates and by faults on the way to the first, the own one."""
+    unbounded = not_finite(cases)
+    if unbounded:
+        return Diagnosis(unbounded)
+    few = getattr(probe, "diagnosed", FEW)
+    short = [Case(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
+    own = candidates[0]
+    models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
+    ranking = sorted(models.items(), key=lambda item: item[1])
+    if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
+        faults = (*faults, scaled_by(_factor(short)))
+        distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
+        text = _fault(distances, models, own.title, tolerance.value)
+        if text:
+            return Diagnosis(text, models)
+    text = _model(probe, cases, ranking, own.title, tolerance)
+    return Diagnosis(text, models, _permitted(cases, candidates, ranking[0][0], tolerance))
+
+
+def _permitted(
+    cases: Sequence[Case], candidates: Sequence[Candidate], title: str, tolerance: Tolerance
+) -> bool:
+    """Whether the candidate of a title is permitted, and every value is its."""
+    candidate = next(each for each in candidates if each.title == title)
+    return candidate.permitted and all(
+        tolerance.metric(case.measured, candidate.values(case.batch)).max() <= tolerance.value
+        for case in cases
+    )
+
+
+def _distance(
+    cases: Sequence[Case], candidate: Candidate, fault: Fault, tolerance: Tolerance
+) -> float:
+    """Root-mean-square distance of the measured values from those of a candidate with a fault.
+
+    A roughness above 1 is left out, which not every model takes; and light up to LIT. Where the
+    tolerance is that of a mean, values have noise and means are compared.
+    """
+    errors = []
+    for case in cases:
+        values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
+        kept = case.batch.rough <= 1.0
+        if "albedo" not in tolerance.unit:
+            kept &= np.abs(case.batch.wi[:, 2]) > LIT
+        error = ((case.measured - values) / tolerance.scale(case.expected))[kept]
+        errors.append(error.mean(axis=0, keepdims=True) if tolerance.metric is of_mean else error)
+    return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
+
+
+def _factor(cases: Sequence[Case]) -> float:
+    """The factor by which the expected values come nearest to the measured ones."""
+    scaled = [(case, np.maximum(1.0, np.abs(case.expected)) ** 2) for case in cases]
+    squares = sum(float(np.sum(case.expected**2 / scale)) for case, scale in scaled)
+    products = sum(float(np.sum(case.expected * case.measured / scale)) for case, scale in scaled)
+    return products / squares if squares else 1.0
+
+
+def _fault(faults: dict[str, float], models: dict[str, float], own: str, enough: float) -> str:
+    """The one fault that explains all, up to a distance that is enough; "" if there is none."""
+    (text, least), *others = sorted(faults.items(), key=lambda item: item[1])
+    rival = min([*models.values(), *(distance for _, distance in others)])
+    if least > SAME * models[own] or least > max(SAME * rival, enough):
+        return ""
+    return f"fault: {text} (rms {least:.2g})"
+
+
+def _flag(probe: Any, title: str) -> str:
+    """Words on the flag, where the title is that of the model with the other one."""
+    for subject in SUBJECTS:
+        other = subject.node == getattr(probe.subject, "node", None) and subject != probe.subject
+        if other and reference.model(subject.model).title == title:
+            return f", as with {FLAG} {str(subject.flag).lower()}"
+    return ""
+
+
+def _model(
+    probe: Any,
+    cases: Sequence[Case],
+    ranking: Sequence[tuple[str, float]],
+    own: str,
+    tolerance: Tolerance,
+) -> str:
+    """The nearest model, the region that is wrong, or that no model is near."""
+    errors = [tolerance.metric(case.measured, case.expected) for case in cases]
+    wrong: list[Mask] = [error > tolerance.value for error in errors]
+    (first, least), (_, rival) = ranking[:2]
+    if first != own and least <= max(tolerance.value, SAME * rival):
+        return sentence(ranking) + _flag(probe, first)
+    place = region([case.batch for case in cases], wrong)
+    if place or not any(map(np.any, wrong)):
+        return place or "every value is right by itself"
+    if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
+        return f"the model is right, {own} (rms {least:.2g}), but not as exact as it has to be"
+    if first != own and least <= NEAR * rival:
+        return sentence(ranking)
+    share = 100.0 * np.concatenate(wrong).mean()
+    if first == own and share < 50.0:
+        return f"right but for {share:.3g} % of the pairs; most {_worst_place(cases, tolerance)}"
+    return (
+        f"no known model is near: {first} has the distance rms {least:.2g}; "
+        f"{share:.3g} % of the pairs are wrong, most {_worst_place(cases, tolerance)}"
+    )
+
+
+def _worst_place(cases: Sequence[Case], tolerance: Tolerance) -> str:
+    """Cosines of the pair with the largest error, in words."""
+    errors = [tolerance.metric(case.measured, case.expected) for case in cases]
+    index = int(np.argmax([error.max() for error in errors]))
+    row, batch = int(errors[index].argmax()), cases[index].batch
+    light = "" if "albedo" in tolerance.unit else f" and L {batch.wi[row, 2]:.2g}"
+    return f"where V has the cosine {batch.wo[row, 2]:.2g}{light}"
+
+
+def region(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
+    """The share of the pairs that are wrong and the region of all of them; "" without a region."""
+    name = smallest(batches, wrong) if any(map(np.any, wrong)) else ""
+    count, total = sum(map(np.count_nonzero, wrong)), sum(map(len, wrong))
+    return f"right but for {count} of {total} pairs, all of them {name}" if name else ""
+
+
+def not_finite(cases: Sequence[Case]) -> str:
+    """Where values are not finite; "" if all are."""
+    wrong = [np.asarray(~np.isfinite(case.measured).all(axis=1)) for case in cases]
+    if not any(map(np.any, wrong)):
+        return ""
+    name = smallest([case.batch for case in cases], wrong)
+    return f"values that are not finite {name}" if name else "values that are not finite"

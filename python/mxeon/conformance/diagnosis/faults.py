@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Known faults of the way from a node's inputs to a model, whatever the model, to name them by."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch)
+
+CHANNELS = ("red", "green", "blue")
+CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # roughness that may be wired in
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault, as it changes what a model gives: its batch on the way in, its values on the way out.
+
+    Attributes
+    ----------
+    text : str
+        The fault in words.
+    batch : callable (batch) -> batch
+    values : callable (batch, values) -> values
+    """
+
+    text: str
+    batch: Callable[[Batch], Batch] = lambda batch: batch
+    values: Callable[[Batch, Array], Array] = lambda batch, values: values
+
+
+def _input(name: str, change: Callable[[Array], Any]) -> Callable[[Batch], Batch]:
+    """A change of an input, where the batch has it."""
+
+    def batch(batch: Batch) -> Batch:
+        if name not in batch.inputs:
+            return batch
+        return batch.altered(**{name: change(np.asarray(batch.inputs[name], np.float64))})
+
+    return batch
+
+
+def _channels(order: Sequence[int]) -> Callable[[Batch], Batch]:
+    """A change of the color to channels in this order."""
+    return _input("color", lambda color: color[..., list(order)])
+
+
+def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
+    """A change of values by a factor for each pair; 0 where the factor has no value."""
+
+    def values(batch: Batch, values: Array) -> Array:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            factor = np.reshape(scale(batch), (-1, 1))
+        return values * np.where(np.isfinite(factor), factor, 0.0)
+
+    return values
+
+
+def _column(name: str) -> Callable[[Batch], Array]:
+    return lambda batch: np.asarray(batch.inputs.get(name, 1.0))
+
+
+def _of_colors() -> Iterator[Fault]:
+    for order in permutations(range(3)):
+        words = ", ".join(CHANNELS[channel] for channel in order)
+        yield Fault(f"the color channels are exchanged: they come as {words}", _channels(order))
+    for channel, name in enumerate(CHANNELS):
+        yield Fault(f"every channel takes the {name} of the color", _channels([channel] * 3))
+    yield Fault(
+        "every channel takes the mean of the color",
+        _input("color", lambda color: color.mean(axis=-1, keepdims=True) * np.ones(3)),
+    )
+    yield Fault(
+        "the color is ignored: 0.18 takes its place",
+        _input("color", lambda color: np.full_like(color, 0.18)),
+    )
+    yield Fault("the color is squared", _input("color", np.square))
+    yield Fault("the color is replaced by its square root", _input("color", np.sqrt))
+
+
+def _of_roughness() -> Iterator[Fault]:
+    yield Fault("the roughness is squared", _input("roughness", np.square))
+    yield Fault("the roughness is replaced by its square root", _input("roughness", np.sqrt))
+    yield Fault("the roughness is halved", _input("roughness", lambda roughness: 0.5 * roughness))
+    for constant in CONSTANTS:
+        change = partial(np.full_like, fill_value=constant)
+        yield Fault(
+            f"the roughness is ignored: {constant:g} takes its place", _input("roughness", change)
+        )
+
+
+def _of_weight() -> Iterator[Fault]:
+    occlusion = _input("occlusion", np.ones_like)
+    ways: tuple[tuple[str, Callable[[Array], Any]], ...] = (
+        ("", np.ones_like),
+        (" but for 0 and below", lambda weight: (weight > 0.0) * 1.0),
+    )
+    for but, change in ways:
+        weight = _input("weight", change)
+        yield Fault(f"the weight is ignored{but}", weight)
+        yield Fault(
+            f"the occlusion is ignored, and the weight{but}",
+            lambda batch, weight=weight: weight(occlusion(batch)),  # type: ignore[misc]
+        )
+    yield Fault("the weight is applied twice", values=_scaled(_column("weight")))
+
+
+COMMON = (
+    *_of_weight(),
+    Fault("the weight is applied twice", values=_scaled(_column("weight"))),
+    *_of_colors(),
+    *_of_roughness(),
+)
+
+DIRECT = (
+    *COMMON,
+    Fault("the occlusion is ignored", _input("occlusion", np.ones_like)),
+    Fault("the occlusion is applied twice", values=_scaled(_column("occlusion"))),
+    Fault("the cosine of the light is missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
+    Fault("the cosine of the light is there twice", values=_scaled(lambda batch: batch.wi[:, 2])),
+    Fault(
+        "the cosine is the viewer's in place of the light's: the directions are exchanged",
+        values=_scaled(lambda batch: batch.wo[:, 2] / batch.wi[:, 2]),
+    ),
+    Fault(
+        "the light is mirrored at the normal: s has the other sign",
+        lambda batch: replace(batch, wi=batch.wi * [-1.0, -1.0, 1.0]),
+    ),
+    Fault(
+        "light from below the horizon is reflected as if it came from above",
+        lambda batch: replace(batch, wi=np.where([False, False, True], abs(batch.wi), batch.wi)),
+    ),
+)
+
+ENVIRONMENT = (
+    *COMMON,
+    Fault(
+        "the occlusion is applied, as the caller does once more",
+        values=_scaled(_column("occlusion")),
+    ),
+    Fault(
+        "the albedo is that at normal incidence",
+        lambda batch: replace(batch, wo=np.broadcast_to([0.0, 0.0, 1.0], batch.wo.shape)),
+    ),
+)
+
+
+def scaled_by(factor: float) -> Fault:
+    """The fault of values that carry a factor."""
+    text = f"every value is {factor:.7g} times the right one"
+    if np.isclose(factor, np.pi, rtol=1e-5):
+        text = "the factor 1/pi is missing"
+    if np.isclose(factor, 1.0 / np.pi, rtol=1e-5):
+        text = "the factor 1/pi is there twice"
+    return Fault(text, values=lambda batch, values: factor * values)
+
+
+def normal_ignored(batch: Batch) -> Batch:
+    """The pairs of a batch in turned frames as a node sees them that uses the surface's normal, +z."""
+    wo, wi = batch.world(batch.wo), batch.world(batch.wi)
+    side = np.where(wo[:, 2:] < 0.0, -1.0, 1.0)
+    return replace(batch, wo=wo * side, wi=wi * side, frame=None)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Diagnoses of what surrounds a model: the flag, the throughput, the frame and the environment."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.checks.bsdf_measures import stretched_case
+from mxeon.conformance.checks.measures import (
+    BRANCHES,
+    absolute,
+    dead_inputs,
+    edge_case,
+    frame_cases,
+    surroundings_case,
+    throughput_cases,
+)
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.samples.uneven_environment import (sky, sky_behind)
+from mxeon.conformance.accuracy.diffuse import (FRAMES, OPAQUE, SURROUNDINGS)
+from mxeon.conformance.diagnosis.candidates import (NEAR, Diagnosis, not_finite, of_value, region)
+from mxeon.conformance.diagnosis.faults import normal_ignored
+from mxeon.conformance.diagnosis.regions import smallest
+from mxeon.shaders.nodes import FLAG
+
+UNKNOWN = "no known fault explains it"
+UP = (0.0, 0.0, 1.0)
+
+# The irradiance that a wrong look-up finds, by what it does.
+LOOKUPS: dict[str, Callable[[Batch], Array]] = {
+    "at the opposite of the normal": lambda batch: sky(-batch.normal),
+    "at the direction to the viewer": lambda batch: sky(batch.world(batch.wo)),
+    "at the opposite of the direction to the viewer": lambda batch: sky(-batch.world(batch.wo)),
+    "at the direction to the light": lambda batch: sky(batch.world(batch.wi)),
+    "at the mirror direction": lambda batch: sky(batch.world(batch.wo * [-1.0, -1.0, 1.0])),
+    "at the surface's normal, not the node's": lambda batch: sky(_constant(batch, UP)),
+    "at the surface's normal, turned to the viewer, not at the node's": lambda batch: sky(
+        np.where(batch.world(batch.wo)[:, 2:] < 0.0, -1.0, 1.0) * _constant(batch, UP)
+    ),
+    "at a normal that is not turned to the viewer": lambda batch: sky(batch.inputs["normal"]),
+    "in the map of radiances": lambda batch: np.ones_like(batch.wo),
+    "nowhere: it is black": lambda batch: np.zeros_like(batch.wo),
+}
+
+
+def of_flag(probe: Any) -> Diagnosis:
+    """The explanation of the values with the flag and of those without it."""
+    states: dict[str, list[str]] = {}
+    for subject in SUBJECTS:
+        if subject.node == probe.subject.node:
+            other = probe if subject == probe.subject else replace(probe, subject=subject)
+            text = of_value(other).text
+            states.setdefault(text, []).append(str(subject.flag).lower())
+    texts = (f"{FLAG} {' and '.join(flags)}: {text}" for text, flags in states.items())
+    return Diagnosis("; ".join(texts), of_value(probe).distances)
+
+
+def of_inputs(probe: Any) -> Diagnosis:
+    """The inputs that change nothing."""
+    return Diagnosis(f"without effect: {', '.join(dead_inputs(probe))}")
+
+
+def of_finite(probe: Any) -> Diagnosis:
+    """Where values at the edges are not finite."""
+    return Diagnosis(not_finite([edge_case(probe)]))
+
+
+def of_throughput(probe: Any) -> Diagnosis:
+    """The branches whose throughput is not 0, with its value."""
+    branches: dict[str, list[str]] = {}
+    for branch in BRANCHES:
+        cases = list(throughput_cases(probe, branch))
+        wrong = [absolute(case.measured, case.expected) > OPAQUE.value for case in cases]
+        values = np.concatenate(
+            [case.measured[bad] for case, bad in zip(cases, wrong, strict=True)]
+        )
+        if len(values):
+            number = f"{values.flat[0]:.3g}" if np.ptp(values) == 0.0 else "not 0"
+            place = smallest([case.batch for case in cases], wrong)
+            branches.setdefault(f"{number} {place}".rstrip(), []).append(branch)
+    return Diagnosis(
+        "; ".join(
+            f"throughput {text} (branches: {', '.join(names)})" for text, names in branches.items()
+        )
+    )
+
+
+def of_frame(probe: Any) -> Diagnosis:
+    """Whether the normal is dropped or not turned, in the first branch that is wrong."""
+    for case, branch in zip(frame_cases(probe), ("direct", "environment"), strict=True):
+        tolerance = FRAMES[probe.kind]
+        wrong = tolerance.metric(case.measured, case.expected) > tolerance.value
+        if not wrong.any():
+            continue
+        subject = probe.subject
+        expected = subject.expected if branch == "direct" else subject.albedo
+        dropped = expected(normal_ignored(case.batch))
+        if tolerance.metric(case.measured, dropped).max() <= tolerance.value:
+            text = "the node's normal is ignored: the surface's takes its place"
+        else:
+            text = not_finite([case]) or region([case.batch], [wrong])
+            text = text or without_effect(probe, "tangent")
+            text = text or without_effect(probe, "curve_direction") or UNKNOWN
+        return Diagnosis(f"branch {branch}: {text}")
+    return Diagnosis(UNKNOWN)
+
+
+def of_tangent(probe: Any) -> Diagnosis:
+    """Whether the tangent is dropped."""
+    return Diagnosis(without_effect(probe, "tangent") or of_value(probe).text)
+
+
+def of_retroreflection(probe: Any) -> Diagnosis:
+    """Whether the flag is dropped."""
+    return Diagnosis(without_effect(probe, "retroreflective") or of_value(probe).text)
+
+
+def without_effect(probe: Any, name: str) -> str:
+    """Words on an input that changes nothing; "" if it does, or there is none."""
+    dead = name in probe.subject.changes and name in dead_inputs(probe)
+    return f"{name} is ignored" if dead else ""
+
+
+def of_stretched(probe: Any) -> Diagnosis:
+    """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
+    case = stretched_case(probe)
+    view, alpha = case.batch.wo, case.batch.inputs["roughness"]
+    mu2, mean2 = view[:, 2] ** 2, alpha.prod(axis=1)
+    drawn = np.sqrt((alpha**2 * view[:, :2] ** 2).sum(axis=1) + mu2)
+    factor = (view[:, 2] + np.sqrt(mean2 + (1.0 - mean2) * mu2)) / (view[:, 2] + drawn)
+    errors = (
+        np.sqrt(np.mean((case.measured - scale * case.expected) ** 2))
+        for scale in (factor[:, np.newaxis], 1.0)
+    )
+    if next(errors) < NEAR * next(errors):
+        return Diagnosis("anisotropic visible normals are weighted by G_1 at the mean alpha")
+    return Diagnosis(UNKNOWN)
+
+
+def of_surroundings(probe: Any) -> Diagnosis:
+    """The direction at which the environment is looked up."""
+    case = surroundings_case(probe)
+    for words, found in LOOKUPS.items():
+        if np.sqrt(np.mean((case.measured - found(case.batch)) ** 2)) <= SURROUNDINGS.value:
+            return Diagnosis(f"the environment is looked up {words}")
+    if np.sqrt(np.mean((case.measured - sky_behind(case.expected)) ** 2)) <= SURROUNDINGS.value:
+        return Diagnosis("the environment is looked up on the other side of the surface")
+    wrong = absolute(case.measured, case.expected) > SURROUNDINGS.value
+    return Diagnosis(not_finite([case]) or region([case.batch], [wrong]) or UNKNOWN)
+
+
+def _constant(batch: Batch, vector: tuple[float, float, float]) -> Array:
+    return np.broadcast_to(vector, batch.wo.shape)

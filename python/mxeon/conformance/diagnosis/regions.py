@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Named sets of pairs and inputs, to say of a shader that is wrong for some of them for which."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.conformance.samples.batch import (Array, Batch)
+
+Mask = NDArray[np.bool_]
+
+COLORS = ("color", "tint", "color0")  # inputs of which one is the color of a node
+INDICES = {"ior": "an index of refraction", "extinction": "an extinction"}
+LARGEST = 0.6  # share of the pairs that a region may have to be worth its name
+DENSITY = 0.1  # least share of a region's pairs that have to be wrong
+UPRIGHT = 1e-3  # tangent of a half vector along the normal: its cosine rounds to about 1
+COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
+
+
+def smallest(batches: Sequence[Batch], wrong: Sequence[Mask]) -> str:
+    """Name of the smallest region that holds all wrong pairs; "" if there is none worth a name.
+
+    Parameters
+    ----------
+    batches : sequence of Batch
+    wrong : sequence of ndarray of bool
+        One mask for each batch.
+    """
+    count = sum(map(len, wrong))
+    bad = np.concatenate(wrong)
+    sizes: dict[str, int] = {}
+    for regions in zip(*map(_regions, batches), strict=True):
+        name = regions[0][0]
+        mask = np.concatenate([mask for _, mask in regions])
+        if mask[bad].all() and bad[mask].mean() >= DENSITY and mask.sum() <= LARGEST * count:
+            sizes[name] = int(mask.sum())
+    return min(sizes, key=lambda name: sizes[name], default="")
+
+
+def _regions(batch: Batch) -> Iterator[tuple[str, Mask]]:
+    """Names and masks, narrow ones first."""
+    yield from _directions(batch)
+    yield from _inputs(batch)
+
+
+def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
+    wo, wi = batch.wo, batch.wi
+    mu_o, mu_i = wo[:, 2], wi[:, 2]
+    dot = (wo * wi).sum(axis=1)
+    s = dot - mu_o * mu_i
+    yield "with dot(N, V) above 1 by a rounding", mu_o > 1.0
+    yield "with dot(N, L) above 1 by a rounding", mu_i > 1.0
+    yield "with both directions on the horizon", (mu_o == 0.0) & (mu_i == 0.0)
+    yield "in exact retro-reflection (L = V)", _equal(wo, wi)
+    yield "in the mirror direction", _equal(wo * [-1.0, -1.0, 1.0], wi)
+    yield "with the half vector along the normal", _upright(wo, wi)
+    for name, mu in (("viewer", mu_o), ("light", mu_i)):
+        yield f"with the {name} along the normal", mu >= 1.0
+        yield f"with the {name}'s cosine above 0.99", mu > 0.99
+        yield f"with the {name} on the horizon", mu == 0.0
+        for limit in COSINES:
+            yield f"with the {name}'s cosine in [0, {limit:g}]", (mu >= 0.0) & (mu <= limit)
+    for limit in COSINES:
+        yield (
+            f"with both cosines in [0, {limit:g}]",
+            (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit),
+        )
+    yield "with light from below the horizon", mu_i < 0.0
+    yield "with dot(V, L) above 0.999", dot > 0.999
+    yield "with dot(V, L) above 0.99", dot > 0.99
+    yield "with dot(V, L) below 0", dot < 0.0
+    yield "with s below 0", s < 0.0
+    yield "with s above 0", s > 0.0
+
+
+def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
+    count = len(batch.wo)
+    roughness = batch.rough
+    weight, occlusion = (
+        np.broadcast_to(batch.inputs.get(name, 1.0), count) for name in ("weight", "occlusion")
+    )
+    colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
+    color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
+    yield "with a negative weight", weight < 0.0
+    yield "with weight 0", weight == 0.0
+    yield "with weight 0 or below", weight <= 0.0
+    yield "with a weight in (0, 0.01]", (weight > 0.0) & (weight <= 0.01)
+    yield "with a weight in (0, 0.5]", (weight > 0.0) & (weight <= 0.5)
+    yield "with a weight other than 1", weight != 1.0
+    yield "with occlusion 0", occlusion == 0.0
+    yield "with an occlusion other than 1", occlusion != 1.0
+    yield "with roughness 0", roughness == 0.0
+    yield "with a roughness in [0, 0.01]", roughness <= 0.01
+    yield "with a roughness in (0, 0.01]", (roughness > 0.0) & (roughness <= 0.01)
+    yield "with the largest roughness", roughness >= 0.999999 * roughness.max()
+    yield "with a roughness above 1", roughness > 1.0
+    yield "with a roughness above 0", roughness > 0.0
+    for name, words in INDICES.items():
+        index = _rows(batch.inputs.get(name, 1.0), count)
+        yield f"with {words} of 0", _any(index == 0.0)
+    if "cuticle_angle" in batch.inputs:
+        yield "with a tilted cuticle", _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
+    yield "with a white color", (color == 1.0).all(axis=1)
+    yield "with a gray color", (color == color[:, :1]).all(axis=1)
+    yield "with a color channel at 0", _any(color == 0.0)
+    yield "with a color channel in [0, 0.001]", _any(color <= 1e-3)
+    yield "with a color channel at 1", _any(color == 1.0)
+    yield "with a color channel above 0.99", _any(color > 0.99)
+    yield "where the normal faces away from the viewer", _faces_away(batch)
+
+
+def _rows(values: Any, count: int) -> Array:
+    """Values of an input with a row for each pair: of numbers or colors, or one for all pairs."""
+    array = np.asarray(values, np.float64)
+    if array.shape[:1] == (count,):
+        return array.reshape(count, -1)
+    return np.broadcast_to(array.reshape(1, -1), (count, array.size))
+
+
+def _equal(one: Array, other: Array) -> Mask:
+    return np.asarray((one == other).all(axis=1))
+
+
+def _upright(wo: Array, wi: Array) -> Mask:
+    """Mask of the pairs whose half vector is the normal, but for some roundings of float32."""
+    half = wo + wi
+    return np.asarray(np.abs(half[:, :2]).max(axis=1) <= UPRIGHT * half[:, 2])
+
+
+def _any(channels: Mask) -> Mask:
+    return np.asarray(channels.any(axis=1))
+
+
+def _faces_away(batch: Batch) -> Mask:
+    normal = np.broadcast_to(batch.inputs.get("normal", batch.normal), batch.wo.shape)
+    return np.asarray((normal * batch.normal).sum(axis=1) < 0.0)

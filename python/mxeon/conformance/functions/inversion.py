@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the inversion nodes: generated code on a host against `mxeon.inversion`.
+
+The code of a node is the function that the generator writes for its nodegraph, with those that it
+calls. It is taken from a generated shader unchanged, and called with random colors.
+"""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (SEED, Array)
+from mxeon.conformance.checks.verdicts import (judge_measurements, not_measured)
+from mxeon.conformance.checks.measures import Measurement, absolute
+from mxeon.conformance.text.syntax import braces
+from mxeon.conformance.accuracy.diffuse import (INVERSION, ROUND_TRIP)
+from mxeon.conformance.diagnosis.candidates import (SAME, Diagnosis, sentence)
+from mxeon.conformance.results import Result
+from mxeon.errors import NotRun, ShaderError
+from mxeon.models import albedo, inversion
+from mxeon.shaders.hosts.base import Host
+from mxeon.shaders.nodes import (
+    INVERSIONS,
+    OREN_NAYAR,
+    SURFACE,
+    document_text,
+    input_text,
+    node_text,
+)
+
+CHECK = "inversion"
+POINTS = 4096
+VARIANT = "roughness is 5 % off"
+FUNCTION = re.compile(r"^\w+ (\w+)\([^()]*\)\s*(?=\{)", re.MULTILINE)
+# Its variables must not be those of a nodegraph.
+NAME = "mxeon_node"
+VALUE = re.compile(
+    rf"(?:vec3|float3) {NAME}_out = [^;]*;(?:\s*\w+\([^;]*\b{NAME}_out\);)?", re.MULTILINE
+)
+WRAPPER = f"""
+vec3 {NAME}(vec3 {NAME}_color, float {NAME}_roughness)
+{{{{
+    {{value}}
+    return {NAME}_out;
+}}}}
+"""
+
+
+@dataclass(frozen=True)
+class InversionProbe:
+    """An inversion node of a library on a host.
+
+    Attributes
+    ----------
+    host : Host
+    node, library : str
+    """
+
+    host: Host
+    node: str
+    library: str
+
+    @cached_property
+    def inputs(self) -> tuple[Array, Array]:
+        """Random colors and roughnesses, an eighth of each on either end of its range."""
+        rng = np.random.default_rng(SEED)
+        columns = np.clip(1.25 * rng.random((POINTS, 4)) - 0.125, 0.0, 1.0)
+        columns = columns.astype(np.float32).astype(np.float64)
+        return columns[:, :3], columns[:, 3]
+
+    @cached_property
+    def code(self) -> str:
+        """Functions of the generated shader that the node consists of, and one that calls them."""
+        ports = input_text("color", "color3", (0.2, 0.5, 0.8)) + input_text(
+            "roughness", "float", 0.5
+        )
+        color = f'    <input name="color" type="color3" nodename="{NAME}" />\n'
+        nodes = node_text(self.node, "color3", NAME, ports)
+        nodes += node_text(OREN_NAYAR, "BSDF", "lobe", color)
+        shader = self.host.compile(document_text(nodes + SURFACE), library=self.library)[0]
+        text = shader.stages["pixel"]
+        value = VALUE.search(text)
+        if value is None:
+            raise NotRun(f"the code of {self.node} is not a function of its inputs alone")
+        return _functions(text, value[0]) + WRAPPER.format(value=value[0])
+
+    def values(self, scale: float = 1.0) -> Array:
+        """Reflectances of the node, (N, 3), its roughness times a factor."""
+        color, roughness = self.inputs
+        values = self.host.execute(self.code, NAME, color, scale * roughness)
+        return values.astype(np.float64)
+
+
+def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
+    """Results of the checks of an inversion node on a host."""
+    rows: tuple[tuple[str, str, Any, Any], ...] = (
+        (
+            CHECK,
+            "The node gives the reflectance of the NumPy function of its name.",
+            INVERSION,
+            _value,
+        ),
+        (
+            "round_trip",
+            "EON with the reflectance that the node gives has the color as its albedo.",
+            ROUND_TRIP,
+            _round_trip,
+        ),
+    )
+    return tuple(_judge(probe, *row) for row in rows)
+
+
+def _judge(
+    probe: InversionProbe,
+    key: str,
+    claim: str,
+    tolerance: Any,
+    measure: Callable[[InversionProbe, Array], Array],
+) -> Result:
+    fields = {
+        "check": key,
+        "claim": claim,
+        "subject": probe.node,
+        "host": probe.host.name,
+        "library": probe.library,
+    }
+    try:
+        values, wrong = probe.values(), probe.values(0.95)
+    except (NotRun, ShaderError) as error:
+        return not_measured(fields, error)
+    right = _worst(probe, values, measure(probe, values))
+    control = _worst(probe, wrong, measure(probe, wrong))
+    diagnosis = Diagnosis() if right.error <= tolerance.value else _nearest(probe, values)
+    return judge_measurements(fields, tolerance, right, VARIANT, control, diagnosis)
+
+
+def _value(probe: InversionProbe, values: Array) -> Array:
+    """Errors of the reflectance."""
+    return absolute(values, getattr(inversion, probe.node)(*probe.inputs))
+
+
+def _round_trip(probe: InversionProbe, values: Array) -> Array:
+    """Errors of the albedo that the reflectance leads to."""
+    color, roughness = probe.inputs
+    finite = np.asarray(np.isfinite(values).all(axis=1))
+    rho = np.where(finite[:, None], np.clip(values, 0.0, 1.0), 0.0)
+    if probe.node == INVERSIONS[0]:
+        reached = albedo.eon_albedo_dir(1.0, rho, roughness)
+    else:
+        reached = albedo.eon_albedo_avg(rho, roughness)
+    return np.where(finite, absolute(reached, color), np.inf)
+
+
+def _worst(probe: InversionProbe, values: Array, errors: Array) -> Measurement:
+    color, roughness = probe.inputs
+    row = int(errors.argmax())
+    worst: Mapping[str, Any] = {"color": color, "roughness": roughness, "measured": values}
+    point = {name: np.ravel(each[row]).tolist() for name, each in worst.items()}
+    return Measurement(float(errors[row]), point)
+
+
+def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
+    """The other inversion that the values are, if any; the color itself is one."""
+    color, roughness = probe.inputs
+    known = {"the color itself": color} | {
+        name: function(color, roughness)
+        for name, function in vars(inversion).items()
+        if name.startswith("eon_rho_from")
+    }
+    if not np.isfinite(values).all():
+        return Diagnosis("values that are not finite")
+    distances = {
+        name: float(np.sqrt(np.mean((values - each) ** 2))) for name, each in known.items()
+    }
+    ranking = sorted(distances.items(), key=lambda item: item[1])
+    (first, least), (_, rival) = ranking[:2]
+    if first != probe.node and least <= SAME * rival:
+        return Diagnosis(sentence(ranking), distances)
+    text = f"off by rms {distances[probe.node]:.2g}; no other known function is near"
+    return Diagnosis(text, distances)
+
+
+def _functions(text: str, use: str) -> str:
+    """Functions of a text that a piece of it calls, directly or through others, in their order."""
+    bodies = {
+        match[1]: f"{match[0]}{{{braces(text, match.end())}}}\n"
+        for match in FUNCTION.finditer(text)
+    }
+    needed: set[str] = set()
+    waiting = [use]
+    while waiting:
+        words = set(re.findall(r"\w+", waiting.pop())) & bodies.keys() - needed
+        needed |= words
+        waiting += [bodies[word] for word in words]
+    return "\n".join(body for name, body in bodies.items() if name in needed)

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of the shader functions of a library, each against the NumPy one, on a host.
+
+The host compiles one program for all of them, with one function more that calls each by its number.
+"""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.functions import numpy_functions as twins
+from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.checks.verdicts import (judge_measurements, not_measured)
+from mxeon.conformance.checks.measures import Measurement, absolute, relative
+from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.accuracy.diffuse import (DENSITY, LOSS, PART, VALUE, direction_of)
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.results import Result
+from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders import functions
+from mxeon.shaders.hosts.base import Host
+
+SUBJECT = "shader twins"  # the name in reports
+KINDS = ("pairs", "pictures", "planes")  # of probes whose hosts evaluate functions
+ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
+SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
+DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")
+STEP = 2.0**-22  # of the arguments by which a function's condition is measured
+ENGINE = """float mxeon_engine(float u)
+{
+    return max(abs(cos(6.28318530718 * u)), abs(sin(6.28318530718 * u)));
+}
+"""
+
+
+@dataclass(frozen=True)
+class FunctionProbe:
+    """The shader functions of a library on a host.
+
+    Attributes
+    ----------
+    host : Host
+    library : str
+        One that brings such functions.
+    """
+
+    host: Host
+    library: str
+
+    @cached_property
+    def text(self) -> str:
+        """The functions' text, in the host's language."""
+        return functions.source(self.host.language, library=self.library)
+
+    @cached_property
+    def strangers(self) -> tuple[str, ...]:
+        """Functions of eonlib that the library lacks, or has with other parameters."""
+        own = functions.signatures(self.text)
+        ours = functions.signatures(functions.source(self.host.language))
+        return tuple(name for name in ours if own.get(name) != ours[name])
+
+    @cached_property
+    def values(self) -> Mapping[str, Array]:
+        """Values of every function of eonlib that the library has."""
+        return self._values(1.0)
+
+    @cached_property
+    def wrong_values(self) -> Mapping[str, Array]:
+        """The same where the last argument is 5 % off."""
+        return self._values(0.95)
+
+    @cached_property
+    def sine_error(self) -> float:
+        """Error of the engine's own cosine and sine over a turn, of which samples are made."""
+        u = twins.random_columns()["u2"]
+        exact = np.maximum(np.abs(np.cos(2.0 * np.pi * u)), np.abs(np.sin(2.0 * np.pi * u)))
+        return float(np.abs(self.host.execute(ENGINE, "mxeon_engine", u)[:, 0] - exact).max())
+
+    def _values(self, scale: float) -> Mapping[str, Array]:
+        """Values of the functions, in one call; each of them has POINTS rows."""
+        language = self.host.language
+        names = [name for name in functions.names(language) if name not in self.strangers]
+        text = functions.dispatched(self.text, names, language)
+        slots = functions.parameters(text, functions.EACH)
+        count = twins.POINTS
+        rows = {
+            name: np.zeros((count * len(names), 1 if kind == "float" else 3))
+            for kind, name in slots
+        }
+        for number, name in enumerate(names):
+            block = slice(number * count, (number + 1) * count)
+            rows["which"][block] = number
+            kinds = [kind for kind, _ in functions.signature(language, name)]
+            *others, last = twins.arguments(name, twins.random_columns())
+            for slot, values in zip(
+                functions.slot_names(kinds), [*others, scale * last], strict=True
+            ):
+                rows[slot][block] = values.reshape(count, -1)
+        columns = [rows[name] if kind != "float" else rows[name][:, 0] for kind, name in slots]
+        values = self.host.execute(text, functions.EACH, *columns).astype(np.float64)
+        return dict(zip(names, np.split(values, len(names)), strict=True))
+
+
+@dataclass(frozen=True)
+class FunctionCheck:
+    """A row of the table: what is asked of some of the shader functions.
+
+    Attributes
+    ----------
+    key, claim : str
+        One word, and a sentence.
+    holds : callable (str) -> bool
+        Whether a function of a name is asked; the first row that asks it takes it.
+    error : callable (str, values) -> float
+        Largest error of a function's values.
+    tolerance : callable (FunctionProbe) -> Tolerance
+    """
+
+    key: str
+    claim: str
+    holds: Callable[[str], bool]
+    error: Callable[[str, Array], float]
+    tolerance: Callable[[FunctionProbe], Tolerance]
+
+
+def value_error(function: str, values: Array) -> float:
+    """Largest error of a model, in pi f cos, or of an albedo."""
+    columns = twins.random_columns()
+    scale = np.pi * columns["mu_i"][:, None] if "_brdf" in function else 1.0
+    return float(absolute(scale * (values - _expected(function)), 0.0).max())
+
+
+def loss_error(function: str, values: Array) -> float:
+    """Largest relative error."""
+    return float(relative(values, _expected(function)).max())
+
+
+def part_error(function: str, values: Array) -> float:
+    """Largest error, over 1, the value, and the change that a change of an argument makes."""
+    error = absolute(values - _expected(function), 0.0)
+    return float((error / _condition(function)).max())
+
+
+FUNCTION_CHECKS = (
+    FunctionCheck(
+        "twins",
+        "The shader functions of models and albedos are the NumPy models.",
+        lambda name: "_brdf" in name or "_albedo_" in name,
+        value_error,
+        lambda probe: VALUE,
+    ),
+    FunctionCheck(
+        "loss",
+        "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
+        lambda name: name == "fon_loss",
+        loss_error,
+        lambda probe: LOSS,
+    ),
+    FunctionCheck(
+        "samples",
+        "The shader functions that sample directions give NumPy's.",
+        lambda name: bool(SAMPLES.fullmatch(name)),
+        part_error,
+        lambda probe: direction_of(probe.sine_error),
+    ),
+    FunctionCheck(
+        "densities",
+        "The densities of samples, and the matrix of linearly transformed cosines, are NumPy's.",
+        lambda name: bool(DENSITIES.fullmatch(name)),
+        part_error,
+        lambda probe: DENSITY,
+    ),
+    FunctionCheck(
+        "parts",
+        "The functions that models and samples are made of are those of NumPy.",
+        lambda name: True,
+        part_error,
+        lambda probe: PART,
+    ),
+)
+VARIANT = "the last argument is 5 % off"
+
+
+def row_of(function: str) -> FunctionCheck:
+    """The row that judges a shader function."""
+    return next(row for row in FUNCTION_CHECKS if row.holds(function))
+
+
+def judge_functions(
+    probe: FunctionProbe, checks: Sequence[FunctionCheck] = FUNCTION_CHECKS
+) -> tuple[Result, ...]:
+    """Results of the checks of the shader functions of a library on a host."""
+    return tuple(_judge_check(check, probe) for check in checks)
+
+
+def _judge_check(check: FunctionCheck, probe: FunctionProbe) -> Result:
+    fields = {
+        "check": check.key,
+        "claim": check.claim,
+        "subject": SUBJECT,
+        "host": probe.host.name,
+        "library": probe.library,
+    }
+    try:
+        tolerance = check.tolerance(probe)
+        right, wrong = (
+            _measure(check, probe, values) for values in (probe.values, probe.wrong_values)
+        )
+        wrong_functions = _diagnosis(check, probe) if right.error > tolerance.value else ""
+    except (NotRun, ShaderError) as error:
+        return not_measured(fields, error)
+    diagnosis = Diagnosis(wrong_functions)
+    return judge_measurements(fields, tolerance, right, VARIANT, wrong, diagnosis)
+
+
+def _measure(
+    check: FunctionCheck, probe: FunctionProbe, values: Mapping[str, Array]
+) -> Measurement:
+    """The function of a row that is furthest from its NumPy version."""
+    errors = {
+        name: check.error(name, each) for name, each in values.items() if row_of(name) is check
+    }
+    errors |= {name: np.inf for name in probe.strangers if row_of(name) is check}
+    name = max(errors, key=lambda function: errors[function])
+    return Measurement(errors[name], {name: [errors[name]]})
+
+
+def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
+    """The functions that are wrong by themselves, and those of the row that use them."""
+    errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
+    wrong = {name: error for name, error in errors.items() if error > _allowed(name, probe)}
+    uses = functions.uses(probe.text)
+    causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
+    affected = [name for name in wrong if row_of(name) is check]
+    own = [
+        name for name in causes if name in affected or any(name in uses[each] for each in affected)
+    ]
+    users = [name for name in affected if name not in own]
+    parts = [f"{name} is not defined as eonlib has it" for name in probe.strangers]
+    parts += [f"{name} is off by {errors[name]:.2g}" for name in own]
+    parts += [f"with it {', '.join(users)}"] if users else []
+    return "; ".join(parts)
+
+
+def _allowed(function: str, probe: FunctionProbe) -> float:
+    return row_of(function).tolerance(probe).value
+
+
+@cache
+def _expected(function: str) -> Array:
+    return twins.expected(function, twins.random_columns())
+
+
+@cache
+def _condition(function: str) -> Array:
+    """1, or the value if larger, and by how much it changes with each of its numbers, (N,)."""
+    columns, exact = twins.random_columns(), _expected(function)
+    total: Any = np.maximum(1.0, np.abs(exact).max(axis=1))
+    for name in twins.numbers(function):
+        moved = twins.expected(function, twins.moved(columns, name, STEP))
+        total = total + np.abs(moved - exact).max(axis=1) / STEP
+    return np.asarray(total)

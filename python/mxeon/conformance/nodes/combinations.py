@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subjects of the checks: the nodes of pbrlib that combine two lobes, or a sum of them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.nodes.bsdf import (COMBINED, NESTED, BsdfSubject)
+from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
+from mxeon.models.pbrlib import combinations
+from mxeon.models.pbrlib.combinations import AMOUNT, AMOUNT_ABOVE, COMBINATIONS, FACTOR, ROUGHNESS
+from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
+
+
+def _node(category: str, name: str = "lobe", value: str = "", **lobes: str) -> str:
+    """XML of a node over other nodes, by port; a value is what an evaluation sets."""
+    ports = "".join(
+        f'    <input name="{port}" type="BSDF" nodename="{lobe}" />\n'
+        for port, lobe in lobes.items()
+    )
+    return node_text(category, "BSDF", name, ports + value)
+
+
+TOP, BASE = (lobe_text("sheen_bsdf", {"mode": "zeltner"}, name) for name in ("top", "base"))
+SUM = TOP + BASE + _node("add", "sum", in1="top", in2="base")
+HALF, ONE = input_text("mix", "float", 0.5), input_text("in2", "float", 1.0)
+WHITE = input_text("in2", "color3", (1.0, 1.0, 1.0))
+NODES = {  # XML of each row
+    "layer": TOP + BASE + _node("layer", top="top", base="base"),
+    "mix": TOP + BASE + _node("mix", value=HALF, fg="top", bg="base"),
+    "add": TOP + BASE + _node("add", in1="top", in2="base"),
+    "multiply_float": TOP + _node("multiply", value=ONE, in1="top"),
+    "multiply_color3": TOP + _node("multiply", value=WHITE, in1="top"),
+    "multiply_sum": SUM + _node("multiply", value=WHITE, in1="sum"),
+    "mix_sum": SUM + _node("mix", value=HALF, fg="sum", bg="top"),
+    "layer_sum": SUM
+    + _node("mix", "mixed", HALF, fg="sum", bg="top")
+    + _node("layer", top="mixed", base="base"),
+    "mix_layer": SUM
+    + _node("layer", "layered", top="sum", base="base")
+    + _node("mix", value=HALF, fg="layered", bg="top"),
+}
+TITLES = {
+    "multiply_float": "multiply, in2 float",
+    "multiply_color3": "multiply, in2 color3",
+    "multiply_sum": "multiply, of a sum",
+    "mix_sum": "mix, of a sum",
+    "layer_sum": "layer, under a mix of a sum",
+    "mix_layer": "mix, of a layer under a sum",
+}
+SINGLE = ("multiply_float", "multiply_color3")  # rows of `top` alone
+COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
+
+
+@dataclass(frozen=True)
+class CombinedSubject(BsdfSubject):
+    """A node of `mxeon.models.pbrlib.combinations`."""
+
+    @property
+    def title(self) -> str:
+        """Name in reports."""
+        return TITLES.get(self.model, self.node)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Paths of the inputs that its values depend on."""
+        return (ROUGHNESS[0], FACTOR) if self.model in SINGLE else self.row.inputs
+
+    @property
+    def kind(self) -> str:
+        """Kind of its probe."""
+        return NESTED if self.model in combinations.NESTED else COMBINED
+
+    @property
+    def anisotropic(self) -> bool:
+        """Whether the roughness has a direction: never."""
+        return False
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        """For each input: inputs without and with a change of it alone."""
+        factor: Any = (0.9, 0.1, 0.6) if self._colored else 0.3
+        amounts = dict.fromkeys((AMOUNT, AMOUNT_ABOVE), 0.3)
+        values = {**dict.fromkeys(ROUGHNESS, 0.4), **amounts, FACTOR: factor}
+        return {name: ({}, {name: values[name]}) for name in self.inputs}
+
+    def document(self, inputs: Any = None) -> str:
+        """MaterialX text of a material that is this node over sheens."""
+        return document_text(NODES[self.model] + SURFACE)
+
+    def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
+        colored = name == FACTOR and self._colored
+        values = np.clip(1.25 * rng.random((count, 3) if colored else count) - 0.125, 0.0, 1.0)
+        if name in ROUGHNESS:
+            values = np.maximum(values, LEAST_SHEEN)
+        return values.astype(np.float32).astype(np.float64)
+
+    @property
+    def _colored(self) -> bool:
+        return self.model in COLORED
+
+
+COMBINED_NODES = tuple(CombinedSubject(row) for row in COMBINATIONS)

@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subjects of the checks: the rough diffuse nodes, each with the model it has to be."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch, Candidate, random_inputs)
+from mxeon.conformance.samples.uneven_environment import sky
+from mxeon.conformance.samples.edge_cases import special_inputs
+from mxeon.models import table as reference
+from mxeon.models.table import OTHERS, Model
+from mxeon.shaders.nodes import (
+    EON,
+    FLAG,
+    INPUT_TYPES,
+    OREN_NAYAR,
+    document_text,
+    input_text,
+    material_text,
+    node_text,
+)
+
+
+class OfModel:
+    """What a subject has that has to be one of the diffuse models."""
+
+    model: str
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """Its model, known defects, and the other models, by their values."""
+        rows = {row.brdf: row for row in self._others + reference.KNOWN_DEFECTS + reference.MODELS}
+        rows[reference.model(self.model).brdf] = reference.model(self.model)
+        return self._candidates(rows.values(), Batch.expected)
+
+    @property
+    def albedo_candidates(self) -> tuple[Candidate, ...]:
+        """Its model, the other models, and known defects, by their albedos."""
+        rows = reference.MODELS + reference.KNOWN_DEFECTS + self._others
+        rows = tuple(row for row in rows if row.albedo_dir)
+        return self._candidates(rows, Batch.albedo)
+
+    @property
+    def black(self) -> dict[str, Any]:
+        """Inputs with which it reflects nothing."""
+        return {"color": (0.0, 0.0, 0.0)}
+
+    def expected(self, batch: Batch) -> Array:
+        """pi f cos(theta_i) of the model, (N, 3)."""
+        return batch.expected(self.model)
+
+    def albedo(self, batch: Batch) -> Array:
+        """Directional albedo of the model, (N, 3)."""
+        return batch.albedo(self.model)
+
+    def sky(self, batch: Batch) -> Array:
+        """Mean of the uneven sky that it scatters, (N, 3): of the viewer's side."""
+        return sky(batch.normal)
+
+    def passed(self, batch: Batch) -> Array:
+        """Throughput, (N, 3): an opaque node lets nothing through."""
+        return np.zeros((len(batch.wo), 3))
+
+    @property
+    def _others(self) -> tuple[Model, ...]:
+        """Models beside the common ones that it may have."""
+        return ()
+
+    def _candidates(
+        self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
+    ) -> tuple[Candidate, ...]:
+        """Candidates of rows, the own one first."""
+        ordered = sorted(rows, key=lambda row: row.name != self.model)
+        return tuple(Candidate(row.title, partial(_limited, row, output)) for row in ordered)
+
+
+def _limited(row: Model, output: Callable[[Batch, str], Array], batch: Batch) -> Array:
+    """Output of a model where no roughness exceeds its largest."""
+    roughness = np.minimum(batch.inputs["roughness"], row.largest)
+    return output(batch.altered(roughness=roughness), row.name)
+
+
+Changes: TypeAlias = tuple[dict[str, Any], dict[str, Any]]  # inputs before and after
+CHANGES = {
+    "weight": 0.5,
+    "color": (0.9, 0.1, 0.6),
+    "roughness": 0.3,
+    "normal": (0.0, 0.6, 0.8),
+}
+
+
+@dataclass(frozen=True)
+class Subject(OfModel):
+    """A node with its flag and the model it has to be.
+
+    Attributes
+    ----------
+    node : str
+        Node category.
+    flag : bool or None
+        energy_compensation, or None where the node has no such input.
+    model : str
+        Name of a row of `mxeon.models.table.MODELS`.
+    names : tuple of str
+        Inputs that it may have; the flag counts only where it is not None.
+    """
+
+    node: str
+    flag: bool | None
+    model: str
+    names: tuple[str, ...] = tuple(INPUT_TYPES)
+
+    @property
+    def title(self) -> str:
+        """Name in reports."""
+        flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
+        return self.node + flag
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the node's inputs."""
+        return tuple(name for name in self.names if self.flag is not None or name != FLAG)
+
+    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Inputs with the subject's flag, unless they set it."""
+        return inputs if self.flag is None else {FLAG: self.flag, **inputs}
+
+    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+        """MaterialX text of a material that is this node alone, with these inputs."""
+        return material_text(self.node, self.with_flag(inputs or {}), self.node)
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        """For each input: inputs without and with a change of it alone, which must be seen."""
+        values = {**CHANGES, FLAG: not self.flag}
+        return {name: ({}, {name: values[name]}) for name in self.inputs}
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random colors and roughnesses; see `mxeon.conformance.samples.batch.random_inputs`."""
+        return random_inputs(rng, count, reference.model(self.model))
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Colors and roughnesses of which half lie on an edge."""
+        return special_inputs(rng, count, reference.model(self.model))
+
+
+SUBJECTS = (
+    Subject(OREN_NAYAR, True, "eon"),
+    Subject(OREN_NAYAR, False, "qon"),
+    Subject(EON, None, "eon"),
+)
+
+
+@dataclass(frozen=True)
+class Surface(OfModel):
+    """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
+
+    What lies over the lobe depends on the directions alone, so that pictures of other colors
+    tell the lobe apart; see `mxeon.conformance.probes.diffuse_lobes.SurfaceProbe`.
+
+    Attributes
+    ----------
+    title, node, model : str
+        Name in reports, node category, and the model that its specification asks for.
+    color, roughness : str
+        Names of the inputs of the lobe; "" for no roughness.
+    fixed : tuple of (str, str, str)
+        Name, type and value of further inputs.
+    libraries : tuple of str
+        The libraries with which it is judged; () for all.
+    """
+
+    title: str
+    node: str
+    model: str
+    color: str
+    roughness: str
+    fixed: tuple[tuple[str, str, str], ...] = ()
+    libraries: tuple[str, ...] = ()
+
+    inputs: ClassVar[tuple[str, ...]] = ()
+
+    def document(self, inputs: Mapping[str, Any]) -> str:
+        """MaterialX text of a material that is this shader alone."""
+        values = [(self.color, "color3", inputs["color"]), *self.fixed]
+        if self.roughness:
+            values.append((self.roughness, "float", inputs["roughness"]))
+        ports = "".join(input_text(name, kind, value) for name, kind, value in values)
+        return document_text(node_text(self.node, "surfaceshader", "shading", ports))
+
+
+# OpenPBR asks for EON, Standard Surface for Oren-Nayar, USD Preview Surface and glTF for Lambert.
+# The thin-walled lobe is MaterialX's own whatever the library, so it is judged once.
+THIN_WALLED = (
+    ("geometry_thin_walled", "boolean", "true"),
+    ("subsurface_weight", "float", "1.0"),
+)
+SURFACES = (
+    Surface("open_pbr_surface", "open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"),
+    Surface(
+        "open_pbr_surface, thin-walled",
+        "open_pbr_surface",
+        "eon",
+        "subsurface_color",
+        "base_diffuse_roughness",
+        THIN_WALLED,
+        ("stock",),
+    ),
+    Surface(
+        "standard_surface",
+        "standard_surface",
+        "qon",
+        "base_color",
+        "diffuse_roughness",
+        (("base", "float", "1.0"),),
+    ),
+    Surface("UsdPreviewSurface", "UsdPreviewSurface", "lambert", "diffuseColor", ""),
+    Surface("gltf_pbr", "gltf_pbr", "lambert", "base_color", "", (("metallic", "float", "0.0"),)),
+)
+
+
+@dataclass(frozen=True)
+class OwnNode(Subject):
+    """A node of a renderer's own, and the model that its documentation claims.
+
+    Attributes
+    ----------
+    forms : tuple of str
+        Forms of the model that its paper publishes, if there are several. The one that is nearest to
+        what is measured is judged.
+    others : bool
+        Whether other lobes lie beside the diffuse one, which do not depend on the color.
+    sampled : bool
+        Whether its renderer draws directions for it by a function that can be called.
+    """
+
+    forms: tuple[str, ...] = ()
+    others: bool = False
+    sampled: bool = False
+
+    @property
+    def _others(self) -> tuple[Model, ...]:
+        """Models of renderers' own nodes; Burley's with the albedo that the node's own has."""
+        name = self.model if self.model.startswith("burley") else "burley"
+        left_out = {"burley", "burley_lambert"} - {name}
+        return tuple(row for row in OTHERS if row.name not in left_out)
+
+
+def _own(model: str, *nodes: str, forms: tuple[str, ...] = ()) -> tuple[OwnNode, ...]:
+    """Nodes of a renderer's own with a color and a roughness, which claim a model."""
+    return tuple(OwnNode(node, None, model, ("color", "roughness"), forms) for node in nodes)
+
+
+# The paper prints EON with the exact albedo and with a quartic for it.
+PUBLISHED = ("eon", "eon_fitted")
+
+# Nodes that a renderer has of its own, by the name of the host, with the models that their
+# documentation claims. OpenPBR asks for EON, Standard Surface for Oren-Nayar.
+NATIVE = {
+    "cycles-native": _own("eon", "Diffuse BSDF", "Principled BSDF"),
+    "three": (
+        *_own(
+            "eon",
+            "MeshPhysicalMaterial, WebGLRenderer",
+            "MeshPhysicalMaterial, WebGPURenderer",
+            "open_pbr_surface, MaterialXLoader",
+            forms=PUBLISHED,
+        ),
+        *_own("qon", "standard_surface, MaterialXLoader"),
+    ),
+    "babylon": (
+        *_own(
+            "eon",
+            "PBRMaterial E_OREN_NAYAR, WebGL2",
+            "PBRMaterial E_OREN_NAYAR, WebGPU",
+            "OpenPBRMaterial, WebGL2",
+            "OpenPBRMaterial, WebGPU",
+            forms=PUBLISHED,
+        ),
+        *_own("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
+        *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
+        *(
+            OwnNode(f"PBRMaterial LAMBERT, {engine}", None, "lambert", ("color",))
+            for engine in ("WebGL2", "WebGPU")
+        ),
+    ),
+    "three-gpu-pathtracer": (
+        *(
+            replace(each, sampled=True)
+            for each in _own("eon", "WebGPUPathTracer, eonBrdf", forms=PUBLISHED)
+        ),
+        *_own("fon", "WebGPUPathTracer, fonBrdf"),
+        *_own("burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"),
+    ),
+    "mitsuba": (OwnNode("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
+    # Its manual has the roughness of both nodes for Cycles only.
+    "eevee": tuple(
+        OwnNode(node, None, "lambert", ("color",)) for node in ("Diffuse BSDF", "Principled BSDF")
+    ),
+    "luxcore": (
+        OwnNode("matte", None, "lambert", ("color",)),
+        *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),
+        OwnNode("disney", None, "burley", ("color", "roughness"), others=True),
+    ),
+}

@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subjects of the checks: the EDF nodes of pbrlib, and those that combine EDFs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch, Candidate)
+from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.models.pbrlib.emissions import (
+    AMOUNT,
+    BASE,
+    COMBINED_EMISSIONS,
+    EMISSIONS,
+    FACTOR,
+    Emission,
+    Value,
+)
+from mxeon.shaders.nodes import document_text, input_text, node_text
+
+# Kinds of probes; see `mxeon.conformance.probes.emission`.
+CLOSED, POWER, CONE = KINDS = ("emission views", "power views", "cone views")
+MEDIUM = "media"
+PICTURES = "emission pictures"
+SURFACES = "emitting surfaces"
+ABSENT = "absent nodes"  # of a node that no target of the standard library has
+
+EMITTER = """  <surface name="shading" type="surfaceshader">
+    <input name="edf" type="EDF" nodename="emission" />
+  </surface>
+"""
+PORT = '    <input name="{}" type="EDF" nodename="{}" />\n'
+LEAST_FALLOFF = 20.0  # degrees of full angle between the cones: what rounds is divided by it
+EXPONENTS = (1.0, 8.0)
+TYPES = {  # of inputs that are no colors, by the last word of their path
+    "exponent": "float",
+    "inner_angle": "float",
+    "outer_angle": "float",
+    "mix": "float",
+    "normal": "vector3",
+}
+CHANGES: dict[str, Any] = {
+    "exponent": 2.0,
+    "inner_angle": 20.0,
+    "outer_angle": 150.0,
+    "normal": (0.0, 0.6, 0.8),
+    AMOUNT: 0.3,
+}
+DARK = Candidate("nothing at all", lambda batch: np.zeros((len(batch.wo), 3)))
+
+
+@dataclass(frozen=True)
+class EmissionSubject:
+    """A row of `mxeon.models.pbrlib.emissions`.
+
+    Attributes
+    ----------
+    row : Emission
+    ports : str
+        XML of the ports of the node that are connected.
+    sources : tuple of str
+        Names of the uniform emissions that it takes.
+    """
+
+    row: Emission
+    ports: str = ""
+    sources: tuple[str, ...] = ()
+
+    flag = None
+    libraries: tuple[str, ...] = field(default=(), init=False)
+
+    @property
+    def closure(self) -> bool:
+        """Whether eonlib leaves it to the closures of a renderer, in OSL."""
+        return self.row.name != "conical"
+
+    @property
+    def title(self) -> str:
+        """Name in reports."""
+        if not self.combined:
+            return self.node
+        scaled = f", in2 {self._kind(FACTOR)}" if FACTOR in self.row.inputs else ""
+        return f"{self.node}, EDF{scaled}"
+
+    @property
+    def node(self) -> str:
+        """Category of the node."""
+        return self.row.category
+
+    @property
+    def model(self) -> str:
+        """Name of its row."""
+        return self.row.name
+
+    @property
+    def combined(self) -> bool:
+        """Whether it combines emissions."""
+        return self.row in COMBINED_EMISSIONS
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Paths of the inputs that its radiance depends on."""
+        return (*self.row.inputs, *(("normal",) if self.row.name == "conical" else ()))
+
+    @property
+    def kind(self) -> str:
+        """Kind of its probe."""
+        return {"conical": CONE, "schlick_emission": POWER}.get(self.row.name, CLOSED)
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        """For each input: inputs without and with a change of it alone, which must be seen."""
+        return {name: ({}, {name: self._changed(name)}) for name in self.inputs}
+
+    def _changed(self, name: str) -> Any:
+        return CHANGES.get(name, 0.3 if self._kind(name) == "float" else (0.9, 0.1, 0.6))
+
+    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The inputs."""
+        return inputs
+
+    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+        """MaterialX text of a surface that emits by this node alone, with these inputs."""
+        return document_text(self.emission_text(inputs) + EMITTER, "look")
+
+    def emission_text(self, inputs: Mapping[str, Any] | None = None) -> str:
+        """XML of the node and of those that it takes, with a value of each input."""
+        values = {name: self._default(name) for name in self.row.inputs} | dict(inputs or {})
+        ports = {name: "" for name in ("emission", *self.sources)}
+        axis = ""
+        for path, value in values.items():
+            node, _, name = path.rpartition("/")
+            if name == "normal":  # of which MaterialX ignores a value
+                axis = node_text(
+                    "constant", "vector3", "axis", input_text("value", "vector3", value)
+                )
+                ports["emission"] += '    <input name="normal" type="vector3" nodename="axis" />\n'
+            else:
+                ports[node or "emission"] += input_text(name, self._kind(path), value)
+        nodes = (node_text("uniform_edf", "EDF", name, ports[name]) for name in self.sources)
+        return (
+            axis
+            + "".join(nodes)
+            + node_text(self.node, "EDF", "emission", ports["emission"] + self.ports)
+        )
+
+    def _default(self, path: str) -> Any:
+        return {"inner_angle": 60.0, "outer_angle": 90.0, "exponent": 5.0, AMOUNT: 0.5}.get(
+            path, 1.0 if self._kind(path) == "float" else (1.0, 1.0, 1.0)
+        )
+
+    def _kind(self, path: str) -> str:
+        if path == FACTOR:
+            return "float" if self.row.name.endswith("_float") else "color3"
+        return TYPES.get(path.rsplit("/", 1)[-1], "color3")
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random values of the inputs of the row, float32 numbers."""
+        inputs = {}
+        for name in self.row.inputs:
+            kind = self._kind(name)
+            values = np.clip(
+                1.25 * rng.random((count, 3)[: 1 + (kind == "color3")]) - 0.125, 0.0, 1.0
+            )
+            if name == "exponent":
+                values = EXPONENTS[0] + (EXPONENTS[1] - EXPONENTS[0]) * values
+            inputs[name] = _float32(values)
+        if self.row.name == "conical":
+            inputs |= random_cones(rng, count)
+        return inputs
+
+    def expected(self, batch: Batch) -> Array:
+        """Radiance towards each view, (N, 3)."""
+        return _radiance(self.row.value, batch)
+
+    def exitance(self, batch: Batch) -> Array:
+        """Radiant exitance with the inputs of each view, (N, 3)."""
+        return self.row.exitance(view_rows(batch))
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """The row's own radiance, and its variants."""
+        own = Candidate(self.row.title, self.expected)
+        others = (
+            Candidate(each.title, partial(_radiance, each.value), each.permitted)
+            for each in self.row.variants
+        )
+        return (own, *others, DARK)
+
+
+@dataclass(frozen=True)
+class AbsentSubject:
+    """A node of which it is only asked whether the target has an implementation.
+
+    Attributes
+    ----------
+    title, node : str
+        Name in reports, and category.
+    text : str
+        XML of a document's nodes that use it.
+    """
+
+    title: str
+    node: str
+    text: str
+
+    flag = None
+    kind = model = ABSENT
+    libraries = ("stock",)  # no library of ours has one
+
+    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+        """MaterialX text that uses the node."""
+        return document_text(self.text)
+
+
+# A node that its document defines, without an implementation: a surface that is not lit.
+UNIMPLEMENTED = AbsentSubject(
+    "a node without an implementation",
+    "mxeon_absent",
+    """  <nodedef name="ND_mxeon_absent" node="mxeon_absent">
+    <output name="out" type="EDF" />
+  </nodedef>
+"""
+    + node_text("mxeon_absent", "EDF", "emission")
+    + EMITTER,
+)
+
+
+def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
+    """Angles of cones: half of them with a falloff, of at least LEAST_FALLOFF degrees."""
+    inner, wide = 360.0 * rng.random(count), rng.random(count) < 0.5
+    inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
+    more = LEAST_FALLOFF + (360.0 - LEAST_FALLOFF - inner) * rng.random(count)
+    outer = np.where(wide, inner + more, inner * rng.random(count))
+    return {"inner_angle": _float32(inner), "outer_angle": _float32(outer)}
+
+
+def _float32(values: Array) -> Array:
+    return values.astype(np.float32).astype(np.float64)
+
+
+def _radiance(value: Value, batch: Batch) -> Array:
+    """Radiance of a function of views and inputs, (N, 3)."""
+    return value(_unit(batch.wo), view_rows(batch))
+
+
+def _unit(wo: Array) -> Array:
+    """Directions whose cosines do not exceed 1 by a rounding."""
+    return np.clip(wo, -1.0, 1.0)
+
+
+def view_rows(batch: Batch) -> dict[str, Array]:
+    """The inputs with a row for each view."""
+    count = len(batch.wo)
+    return {
+        name: np.broadcast_to(values, (count, *np.shape(values)[-1:]))
+        if np.shape(values)[:1] != (count,)
+        else np.asarray(values)
+        for name, values in batch.inputs.items()
+    }
+
+
+BOTH = ("first", "second")
+_MIX, _ADD, *_SCALED = COMBINED_EMISSIONS
+_CURVED = PORT.format("base", "base")
+EDFS = tuple(
+    EmissionSubject(row, *((_CURVED, ("base",)) if BASE in row.inputs else ())) for row in EMISSIONS
+)
+COMBINED_EDFS = (
+    EmissionSubject(_MIX, PORT.format("fg", "first") + PORT.format("bg", "second"), BOTH),
+    EmissionSubject(_ADD, PORT.format("in1", "first") + PORT.format("in2", "second"), BOTH),
+    *(EmissionSubject(row, PORT.format("in1", "first"), BOTH[:1]) for row in _SCALED),
+)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The subject `chiang_hair_bsdf`: its inputs, its values and what may stand in their place."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch, Candidate)
+from mxeon.conformance.nodes.bsdf import (HAIR, NOTHING, BsdfSubject, whole)
+from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.samples.uneven_environment import sky
+from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
+from mxeon.models.pbrlib.hair import HAIR_NODE
+from mxeon.models.pbrlib.node import Inputs
+from mxeon.shaders.nodes import input_types
+
+COLOR = (0.9, 0.1, 0.6)
+LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # of random pairs
+MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # which the node of artistic roughness reaches
+ABSORPTION, INDEX = (0.0, 4.0), (1.1, 2.5)
+ROUGH_EDGES = (0.0, 1e-3, 1.0, 100.0)
+CHANGES: dict[str, Any] = {
+    **dict.fromkeys((*TINTS, "absorption_coefficient"), COLOR),
+    **dict.fromkeys(ROUGHNESSES, (0.3, 0.7)),
+    "ior": 1.3,
+    "cuticle_angle": 0.55,
+    "normal": (0.0, 0.6, 0.8),
+}
+FRONT = (
+    1.0,
+    0.0,
+    1.0,
+    0.5,
+)  # share of R, TT, TRT and TRRT+ that takes light from the viewer's side
+# The variable of the default of `curve_direction` is the surface's tangent.
+DIRECTION = {"tangent": (0.6, 0.8, 0.0)}
+
+
+@dataclass(frozen=True)
+class HairSubject(BsdfSubject):
+    """The hair node. Light comes from the whole sphere, and its values take no cosine."""
+
+    @property
+    def kind(self) -> str:
+        """Kind of its probe."""
+        return HAIR
+
+    @property
+    def anisotropic(self) -> bool:
+        """Whether the roughness has a direction: its lobes have one of their own."""
+        return False
+
+    @property
+    def changes(self) -> dict[str, Changes]:
+        """For each input: inputs without and with a change of it alone, which must be seen."""
+        changes: dict[str, Changes] = {name: ({}, {name: each}) for name, each in CHANGES.items()}
+        return {**changes, "curve_direction": ({}, dict(DIRECTION))}
+
+    @property
+    def black(self) -> dict[str, Any]:
+        """Inputs with which it scatters no light."""
+        return dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Values of which half of the roughnesses and the indices lie on an edge."""
+        inputs = self.random_inputs(rng, count)
+        for name in ROUGHNESSES:
+            inputs[name] = _mixed(rng, inputs[name], ROUGH_EDGES)
+        inputs["ior"] = _mixed(rng, inputs["ior"], (1.0, 1.55))
+        inputs["absorption_coefficient"] = _mixed(rng, inputs["absorption_coefficient"], (0.0,))
+        return inputs
+
+    def expected(self, batch: Batch) -> Array:
+        """pi f with occlusion, (N, 3)."""
+        return _expected(self.row.value, batch)
+
+    def albedo(self, batch: Batch) -> Array:
+        """Integral of f over all lights, of a cuticle without tilt, (N, 3)."""
+        return self.row.albedo(batch.wo, whole(batch))
+
+    integral = albedo
+
+    def sky(self, batch: Batch) -> Array:
+        """Mean of the uneven sky that it scatters, (N, 3).
+
+        R and TRT leave on the side where light comes in, TT on the other one, and what is beyond
+        spreads over both.
+        """
+        inputs = whole(batch)
+        A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
+        shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
+        front = shares @ FRONT / shares.sum(axis=-1)
+        return np.asarray(front * sky(batch.normal) + (1.0 - front) * sky(-batch.normal))
+
+    def passed(self, batch: Batch) -> Array:
+        """Throughput, (N, 3): the node cannot be layered."""
+        return np.zeros((len(batch.wo), 3))
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """The model, and its variants."""
+        own = Candidate(self.row.title, partial(_expected, self.row.value))
+        others = (
+            Candidate(each.title, partial(_expected, each.value), each.permitted)
+            for each in self.row.variants
+            if each.value
+        )
+        return (own, *others, NOTHING)
+
+    def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
+        components = {"float": (), "vector2": (2,)}.get(input_types(self.node)[name], (3,))
+        values = rng.random((count, *components))
+        if name in ROUGHNESSES:
+            least = np.array([LEAST_VARIANCE, LEAST_SCALE])
+            values = least * (np.array([MOST_VARIANCE, MOST_SCALE]) / least) ** values
+        elif name == "cuticle_angle":
+            values[::2] = 0.5
+        else:
+            low, high = {"ior": INDEX, "absorption_coefficient": ABSORPTION}.get(name, (0.0, 1.0))
+            values = low + (high - low) * np.clip(1.25 * values - 0.125, 0.0, 1.0)
+        return values.astype(np.float32).astype(np.float64)
+
+
+def _mixed(rng: np.random.Generator, values: Array, edges: tuple[float, ...]) -> Array:
+    """Values of which half are replaced by random edges, as float32 numbers."""
+    picked = rng.choice(edges, values.shape)
+    mixed: Array = np.where(rng.random(values.shape) < 0.5, picked, values)
+    return mixed.astype(np.float32).astype(np.float64)
+
+
+def _expected(value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:
+    """pi f of a function of `wo, wi, inputs`, with occlusion."""
+    occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+    return np.asarray(np.pi * value(batch.wo, batch.wi, whole(batch)) * occlusion)
+
+
+HAIRS = (HairSubject(HAIR_NODE),)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subjects of the checks: surface shaders, each with all of its lobes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Candidate)
+from mxeon.conformance.nodes.surface_inputs import (GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs, drawn)
+from mxeon.shaders.nodes import document_text, node_text
+
+WHOLE = "surface pairs"  # kind of probe
+
+
+@dataclass(frozen=True)
+class SurfaceShader:
+    """A surface shader with every lobe on.
+
+    Attributes
+    ----------
+    node : str
+        Category.
+    table : Inputs
+        Its inputs.
+    """
+
+    node: str
+    table: Inputs
+
+    flag = None
+
+    @property
+    def title(self) -> str:
+        """Name in reports."""
+        return f"{self.node}, every lobe"
+
+    @property
+    def model(self) -> str:
+        """Name of its equations: its own."""
+        return self.node
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs that its lobes may depend on."""
+        return tuple(self.table.changed)
+
+    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The inputs."""
+        return inputs
+
+    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+        """MaterialX text of a material that is this shader alone."""
+        return document_text(node_text(self.node, "surfaceshader", "shading"))
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random values of the inputs whose lobes have a reference, float32 numbers."""
+        return drawn(rng, count, self.table.judged)
+
+    def every_input(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random values of all inputs of its lobes."""
+        return drawn(rng, count, {**self.table.judged, **self.table.others})
+
+    @property
+    def value_candidates(self) -> tuple[Candidate, ...]:
+        """None: a sum of so many lobes is explained by the checks of each."""
+        return ()
+
+    albedo_candidates = value_candidates
+
+
+SHADERS = (
+    SurfaceShader("standard_surface", STANDARD),
+    SurfaceShader("open_pbr_surface", OPEN_PBR),
+    SurfaceShader("gltf_pbr", GLTF),
+    SurfaceShader("UsdPreviewSurface", PREVIEW),
+)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subjects of the checks: microfacet nodes under a thin film."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.nodes.bsdf import (FILM, BsdfSubject)
+from mxeon.models.pbrlib.thin_films import FILM_NODES
+
+THICK, OILS = (0.0, 1.0, 100.0, 1e4), (1.0, 1.5)  # special thicknesses and indices
+
+
+@dataclass(frozen=True)
+class FilmSubject(BsdfSubject):
+    """A microfacet node under a thin film."""
+
+    @property
+    def title(self) -> str:
+        """Name in reports."""
+        return f"{self.row.category}, thin film"
+
+    @property
+    def kind(self) -> str:
+        """Kind of its probe."""
+        return FILM
+
+    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Random values; a dielectric below 1 counts as 1, a film in air.
+
+        From below 1 on, total reflection gives the curve a kink, which no short average sees.
+        """
+        inputs = super().random_inputs(rng, count)
+        if "tint" in inputs:
+            inputs["ior"] = np.maximum(inputs["ior"], 1.0)
+        return inputs
+
+    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
+        """Values of which half lie on an edge; of half the films the index is the substrate's."""
+        inputs = super().special_inputs(rng, count)
+        for name, edges in (("thinfilm_thickness", THICK[:-1]), ("thinfilm_ior", OILS)):
+            picked = rng.choice(edges, count)
+            inputs[name] = np.where(rng.random(count) < 0.5, picked, inputs[name])
+        if "tint" in inputs:
+            same = rng.random(count) < 0.25
+            inputs["thinfilm_ior"] = np.where(same, inputs["ior"], inputs["thinfilm_ior"])
+        return inputs
+
+
+FILMS = tuple(FilmSubject(row) for row in FILM_NODES)
+# The limit of a Schlick substrate is that of the index alone.
+FILM_MODELS = tuple(row.name for row in FILM_NODES)
+LAYERED = tuple(row.name for row in FILM_NODES if row.layerable)

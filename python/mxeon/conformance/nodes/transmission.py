@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subjects of the checks: the nodes that transmit through microfacets, scatter modes T and RT."""
+
+from dataclasses import dataclass, replace
+
+from mxeon.conformance.nodes.bsdf import (SCHLICK, BsdfSubject)
+from mxeon.models.pbrlib.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
+
+# Kinds of probes.
+TRANSMITTED, SCHLICK_TRANSMITTED = TRANSMISSION_KINDS = (
+    "transmission pairs",
+    "Schlick transmission pairs",
+)
+
+
+@dataclass(frozen=True)
+class TransmissionSubject(BsdfSubject):
+    """A node of `mxeon.models.pbrlib.transmissions`."""
+
+    @property
+    def kind(self) -> str:
+        """Kind of its probe."""
+        return SCHLICK_TRANSMITTED if super().kind == SCHLICK else TRANSMITTED
+
+    @property
+    def functions(self) -> Transmission:
+        """Functions of its transmission."""
+        return TRANSMISSIONS[self.node]
+
+    @property
+    def reflects(self) -> bool:
+        """Whether it reflects as well."""
+        return self.row.fixed["scatter_mode"] == "RT"
+
+    @property
+    def reflection(self) -> BsdfSubject:
+        """The node where it only reflects."""
+        return BsdfSubject(replace(self.row, fixed={"scatter_mode": "R"}))
+
+
+TRANSMITTING = tuple(TransmissionSubject(row) for row in TRANSMISSION_NODES)

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Materials from documents: their pictures on a host against the reference's, pixel by pixel."""
+
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import MaterialX as mx
+import numpy as np
+from numpy.typing import NDArray
+
+import mxeon
+from mxeon.conformance.accuracy.bsdf import (MICROFACET_VALUE, sum_of)
+from mxeon.conformance.checks.measures import absolute
+from mxeon.conformance.probes.pairs import picture_pairs
+from mxeon.conformance.accuracy import surface_shaders as surfaces
+from mxeon.conformance.samples.tolerance import (ROUNDING, Tolerance)
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
+from mxeon.errors import NotRun, OutsideModel, ShaderError
+from mxeon.models.pbrlib import NODES
+from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
+from mxeon.shaders.hosts import host_row
+from mxeon.shaders.hosts.base import Host
+from mxeon.shaders.nodes import BSDF_INPUTS
+from mxeon.shaders.scene import Scene, sphere
+
+# Nodes whose shaders take an albedo from a fit.
+FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
+
+Pixels: TypeAlias = NDArray[Any]
+Case: TypeAlias = tuple[Scene, Pixels, Pixels]  # with the host's picture and the reference's
+
+# Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
+UNIT = "pi f cos, times cos(theta_o)"
+PLAIN = Tolerance(
+    48 * ROUNDING,
+    UNIT,
+    absolute,
+    "16 roundings of float32, 2^-24 each, in the position of a pixel's point, and 32 in the value",
+)
+TEXTURED = Tolerance(
+    2.0**-8,
+    UNIT,
+    absolute,
+    "a filter's weights have 8 bits after the point, the least OpenGL asks for, and texels differ "
+    "by 1 at most",
+)
+
+FITTED = Tolerance(
+    MICROFACET_VALUE.value + sum_of(256),
+    "pi f cos, relative above 1, times cos(theta_o)",
+    absolute,
+    "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "
+    "environment",
+)
+
+SHADED = Tolerance(
+    surfaces.ALBEDO.value + sum_of(256),
+    FITTED.unit,
+    absolute,
+    "the errors of all lobes of a surface shader, 2.3e-2, and that of a sum over 256 directions of an "
+    "environment",
+)
+
+MATCH = "The picture is the reference's in every pixel."
+FINITE = "No pixel is infinite or not a number."
+
+
+def judge_document(
+    file: Path, host: Host, judge: Host, library: str, policy: Policy = DEFAULT
+) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[tuple[str, str], ...]]:
+    """Pictures of every material of a document on a host, judged against the reference's.
+
+    Parameters
+    ----------
+    file : Path
+    host, judge : Host
+        The host to judge, and the reference.
+    library : str
+        Name of the data library.
+    policy : Policy
+        Limits of the document: the files it may name, and its size.
+
+    Returns
+    -------
+    tuple of Result, tuple of Picture, tuple of (str, str)
+        The last are notes and their locations, such as what the host approximates.
+
+    Raises
+    ------
+    DocumentError
+        If no shader can be made from the document.
+    """
+    with warnings.catch_warnings(record=True) as records:
+        warnings.simplefilter("always")
+        warnings.simplefilter("error", MissingFileWarning)
+        shaders = host.compile(file, library=library, policy=policy)
+    messages = [record.message for record in records]
+    approximations = {
+        message.element: message.approximation
+        for message in messages
+        if isinstance(message, ApproximationWarning)
+    }
+    results: list[Result] = []
+    pictures: list[Picture] = []
+    for shader in shaders:
+        front_lit = shader.element in approximations
+        result, images = _judge_material(file, shader, host, judge, library, front_lit)
+        results.append(result)
+        pictures += images
+    notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
+    notes += [
+        (text, f"{file.name}: {shader.element}")
+        for shader in shaders
+        for text in _picture_notes(shader, host)
+    ]
+    others = (CodeWarning, DocumentWarning)
+    notes += [(str(message), file.name) for message in messages if isinstance(message, others)]
+    return tuple(results), tuple(pictures), tuple(notes)
+
+
+def _judge_material(
+    file: Path, shader: Shader, host: Host, judge: Host, library: str, front_lit: bool
+) -> tuple[Result, tuple[Picture, ...]]:
+    """One material; `front_lit` where the host has its model for s >= 0 only."""
+    scenes = host_row(host.name).scenes
+    subject = f"{file.name}: {shader.element}"
+    fields: dict[str, Any] = {"subject": subject, "host": host.name, "library": library}
+    try:
+        images = [host.picture(shader, scene) for scene in scenes]
+    except NotRun as reason:
+        return Result("picture", MATCH, **fields, verdict=NOT_RUN, reason=str(reason)), ()
+    except ShaderError as error:
+        return Result("picture", MATCH, **fields, verdict=FAILED, diagnosis=str(error)), ()
+    references: list[Pixels | None] = [None] * len(scenes)
+    try:
+        _assert_judged(shader, host)
+        expected = [judge.picture(shader, scene) for scene in scenes]
+    except OutsideModel as reason:
+        return Result("picture", MATCH, **fields, verdict=NOT_RUN, reason=str(reason)), ()
+    except NotRun as reason:
+        result = _judge_finite(fields, images, str(reason))
+    else:
+        references = [*expected]
+        cases = list(zip(scenes, images, expected, strict=True))
+        result = _judge_match(fields, cases, _tolerance(shader), front_lit)
+    return result, tuple(
+        _picture(file, shader, host, library, case)
+        for case in zip(scenes, images, references, strict=True)
+    )
+
+
+def _picture_notes(shader: Shader, host: Host) -> tuple[str, ...]:
+    """Why a host's pictures of a material cannot be right, each reason once."""
+    scenes = host_row(host.name).scenes
+    reasons = (text for scene in scenes for text in host.approximations(shader, scene))
+    return tuple(dict.fromkeys(reasons))
+
+
+def _picture(
+    file: Path,
+    shader: Shader,
+    host: Host,
+    library: str,
+    case: tuple[Scene, Pixels, Pixels | None],
+) -> Picture:
+    """The record of a picture, with its origin."""
+    scene, image, reference = case
+    identity = host.identity()
+    metadata = {
+        "version": mxeon.__version__,
+        "host": f"{host.name} {identity.version}",
+        "device": identity.device,
+        "library": library,
+        "document": str(file),
+        "element": shader.element,
+        "scene": scene.name,
+    }
+    names = (file.name, shader.element, host.name, library, scene.name)
+    return Picture(*names, image, reference, metadata)
+
+
+def _assert_judged(shader: Shader, host: Host) -> None:
+    """Raise NotRun where the host has closures of its own, which are judged by themselves."""
+    own = sorted(_categories(_inner(shader)) & set(BSDF_INPUTS))
+    if own and host.language == "osl":
+        raise NotRun(
+            f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown, and "
+            "only has to be finite"
+        )
+
+
+def _tolerance(shader: Shader) -> Tolerance:
+    """Tolerance of a material's pictures."""
+    if _categories(shader.document.traverseTree()) & FITTED_NODES:
+        return FITTED
+    if _categories(_inner(shader)) & FITTED_NODES:
+        return SHADED
+    return TEXTURED if _textured(shader) else PLAIN
+
+
+def _categories(elements: Iterable[Any]) -> set[str]:
+    """Categories of nodes."""
+    return {each.getCategory() for each in elements}
+
+
+def _inner(shader: Shader) -> Iterator[Any]:
+    """Nodes of a shader's document, and those of the graphs that define them."""
+    waiting, seen = [shader.document], set()
+    while waiting:
+        for each in waiting.pop().traverseTree():
+            yield each
+            graph = each.getImplementation() if each.isA(mx.Node) else None
+            if graph and graph.isA(mx.NodeGraph) and graph.getNamePath() not in seen:
+                seen.add(graph.getNamePath())
+                waiting.append(graph)
+
+
+def _textured(shader: Shader) -> bool:
+    """Whether a shader reads an image."""
+    return any(port.type == "filename" and port.value for port in shader.inputs)
+
+
+def _judge_finite(fields: dict[str, Any], images: Sequence[Pixels], reason: str) -> Result:
+    """Result for a material that the models do not cover: its pixels have to be numbers."""
+    control = [np.where(np.arange(3) == 0, np.nan, images[0])]
+    error, control_error = _not_finite(images), _not_finite(control)
+    return Result(
+        "finite",
+        FINITE,
+        **fields,
+        verdict=PASSED if error == 0 < control_error else FAILED,
+        error=error,
+        unit="pixels",
+        tolerance=0,
+        derivation="a count",
+        diagnosis=reason,
+        control=Control("one channel is not a number", control_error, control_error > 0),
+    )
+
+
+def _not_finite(images: Sequence[Pixels]) -> float:
+    """Number of pixels that are infinite or not a number."""
+    return float(sum((~np.isfinite(image)).any(axis=-1).sum() for image in images))
+
+
+def _judge_match(
+    fields: dict[str, Any], cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
+) -> Result:
+    """Result for a material that the models cover: its pixels have to be the reference's."""
+    scaled = tolerance.unit == FITTED.unit
+    errors = [(*_worst_pixel(case, front_lit, scaled), case[0].name) for case in cases]
+    error, worst, scene = max(errors, key=lambda entry: entry[0])
+    first, image, expected = cases[0]
+    brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
+    control_error, _ = _worst_pixel((first, brighter, expected), front_lit, scaled)
+    caught = control_error > tolerance.value
+    return Result(
+        "picture",
+        MATCH,
+        **fields,
+        verdict=PASSED if error <= tolerance.value and caught else FAILED,
+        error=error,
+        unit=tolerance.unit,
+        tolerance=tolerance.value,
+        derivation=tolerance.derivation,
+        worst=worst,
+        diagnosis="" if error <= tolerance.value else f"most in the picture of the scene {scene}",
+        control=Control("the picture is brighter by three tolerances", control_error, caught),
+    )
+
+
+def _worst_pixel(case: Case, front_lit: bool, scaled: bool) -> tuple[float, dict[str, list[float]]]:
+    """Largest error times cos(theta_o), and its pixel; relative above 1 if scaled."""
+    scene, image, reference = case
+    mask = sphere(scene.size).mask
+    wo, wi, _ = picture_pairs(scene)
+    error = absolute(image[mask], reference[mask]) * wo[:, 2]
+    if scaled:
+        error /= np.maximum(1.0, np.abs(reference[mask]).max(axis=-1))
+    if front_lit:
+        error = np.where((wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0, error, 0.0)
+    worst = int(error.argmax())
+    row, column = np.argwhere(mask)[worst]
+    return float(error[worst]), {
+        "row": [float(row)],
+        "column": [float(column)],
+        "measured": image[row, column].astype(float).tolist(),
+        "expected": reference[row, column].tolist(),
+    }

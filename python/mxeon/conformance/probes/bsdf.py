@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of the other BSDF nodes of pbrlib, with the pairs and the quadratures that they need."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
+from mxeon.conformance.nodes.bsdf import (CLOSED, COMBINED, FITTED, MICROFACET, NESTED, SCHLICK, SHEEN, BsdfSubject)
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.samples.edge_cases import (LEAST_COLOR82, LEAST_TURNED, outside_directions, special_directions)
+from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
+
+PAIRS = 1 << 12
+FEW = 1 << 10
+ALBEDOS = 1 << 7  # directions of view whose albedo is asked
+MATERIALS = 64  # whose values are integrated
+FIT_COSINE = 1e-4  # least cosine of the domain of the fits
+LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
+LEAST_VIEW = 0.02  # cosine of their views
+NODES = 48  # of a quadrature, in cosine and in azimuth
+
+
+@dataclass(frozen=True, eq=False)
+class BsdfProbe(PairProbe):
+    """A node of pbrlib on a host that evaluates any pairs."""
+
+    kind: ClassVar[str] = CLOSED
+    diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
+
+    least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
+
+    subject: BsdfSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """PAIRS random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        rng = np.random.default_rng(SEED)
+        pairs = directions(rng, PAIRS), directions(rng, PAIRS)
+        return (
+            self._batch(rng, self._lit(pairs), self.subject.random_inputs),
+            self._batch(rng, self._lit(special_directions(rng)), self.subject.special_inputs),
+            self._batch(rng, self._lit(outside_directions(rng)), self.subject.random_inputs),
+        )
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of the random pairs and the special ones."""
+        pairs, special, *_ = self.batches
+        return pairs.first(FEW), special
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """Directions of view for albedos, which do not depend on `wi`."""
+        pairs, special, *_ = self.batches
+        return tuple(
+            batch.where(batch.wo[:, 2] >= self.least_cosine).first(ALBEDOS)
+            for batch in (pairs, special)
+        )
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Exact directions and inputs on their edges, roughness and index 0 among them."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = self._lit(special_directions(rng))
+        inputs = self.subject.special_inputs(rng, len(wo))
+        for name, start, step in (("roughness", 0, 4), ("ior", 0, 3), ("extinction", 1, 6)):
+            if name in inputs:
+                inputs[name][start::step] = 0.0
+        return Batch(wo, wi, inputs)
+
+    @cached_property
+    def turned(self) -> Batch:
+        """Pairs in frames of their own, with the light on the side of the node's."""
+        batch = super().turned
+        return replace(batch, wi=batch.wi * [1.0, 1.0, self._side])
+
+    @cached_property
+    def integrated(self) -> tuple[Batch, Array]:
+        """MATERIALS materials in each NODES^2 directions of light, and the weights of their values.
+
+        The weighted sum of pi f cos over a material's directions is its directional albedo.
+        """
+        rng = np.random.default_rng(SEED)
+        mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(MATERIALS)
+        radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(MATERIALS)
+        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+        inputs = self.subject.random_inputs(rng, MATERIALS)
+        inputs = self._integrable(inputs)
+        wi, weights = self._nodes(wo, inputs)
+        each = np.repeat(np.arange(MATERIALS), wi.shape[1])
+        spread = {name: values[each] for name, values in inputs.items()}
+        return Batch(wo[each], wi.reshape(-1, 3), spread), weights
+
+    @cached_property
+    def integrals(self) -> Array:
+        """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
+        batch, weights = self.integrated
+        return self.subject.integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
+
+    def _lit(self, pairs: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Pairs with the light on the side from which the node scatters it."""
+        wo, wi = pairs
+        return wo, wi * [1.0, 1.0, self._side]
+
+    @property
+    def _side(self) -> float:
+        return -1.0 if self.subject.row.transmits else 1.0
+
+    def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        """Inputs whose values are integrated."""
+        return inputs
+
+    def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
+        """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
+        x, w = np.polynomial.legendre.leggauss(NODES)
+        t = 0.5 * (x + 1.0)
+        mu = t * t * (3.0 - 2.0 * t)  # dense at the horizon and around the normal
+        slope = 6.0 * t * (1.0 - t) * 0.5 * w
+        azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
+        phi = azimuth + 2.0 * np.pi * (np.arange(NODES) + 0.5) / NODES
+        radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
+        columns = (
+            radius * np.cos(phi),
+            radius * np.sin(phi),
+            self._side * mu[:, np.newaxis] + 0.0 * phi,
+        )
+        wi = rounded(columns).reshape(len(wo), -1, 3)
+        weights = np.repeat(slope * 2.0 / NODES, NODES)
+        return wi, np.broadcast_to(weights, wi.shape[:2])
+
+
+@dataclass(frozen=True, eq=False)
+class SheenProbe(BsdfProbe):
+    """A sheen, whose value has high powers."""
+
+    kind: ClassVar[str] = SHEEN
+
+
+@dataclass(frozen=True, eq=False)
+class FittedProbe(BsdfProbe):
+    """A sheen whose albedo a shader takes from a fit."""
+
+    kind: ClassVar[str] = FITTED
+    least_cosine: ClassVar[float] = FIT_COSINE
+
+
+@dataclass(frozen=True, eq=False)
+class MicrofacetProbe(BsdfProbe):
+    """A node of microfacets, whose values are large near the mirror direction."""
+
+    kind: ClassVar[str] = MICROFACET
+    least_cosine: ClassVar[float] = FIT_COSINE
+    diagnosed: ClassVar[int] = 1 << 8  # their references take long
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Those of any node, and pairs near the mirror direction."""
+        return (*super().batches, self.mirrored[0])
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of the random pairs, the special ones, and FEW near the mirror direction."""
+        return (*super().few, self.mirrored[0].first(FEW))
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """Directions of view for albedos, with simple inputs."""
+        return tuple(replace(batch, inputs=simple(batch.inputs)) for batch in super().cosines)
+
+    @cached_property
+    def stretched(self) -> tuple[Batch, Array]:
+        """Views of materials whose roughness has a direction, and the integrals of their values."""
+        rng = np.random.default_rng(SEED)
+        inputs = simple(self.subject.random_inputs(rng, MATERIALS))
+        inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, MATERIALS)))
+        batch = Batch(directions(rng, MATERIALS), directions(rng, MATERIALS), inputs)
+        batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
+        return batch, self.subject.integral(batch)
+
+    @cached_property
+    def turned(self) -> Batch:
+        """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain."""
+        batch = super().turned
+        return batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TURNED))
+
+    @cached_property
+    def mirrored(self) -> tuple[Batch, Batch]:
+        """Two lights near the mirror direction of each view, by normals that the view sees."""
+        rng = np.random.default_rng(SEED)
+        count = 2 * FEW
+        wo, inputs = directions(rng, count), self.subject.random_inputs(rng, count)
+        first, second = (
+            reflected(wo, inputs["roughness"], rng.random(count), rng.random(count))
+            for _ in range(2)
+        )
+        above = (np.minimum(first[:, 2], second[:, 2]) > 0.0) & (wo[:, 2] > 0.0)
+        pair = Batch(wo, first, inputs).where(above), Batch(wo, second, inputs).where(above)
+        return pair
+
+    def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        return simple(inputs)
+
+    def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
+        """Directions and weights of a quadrature over the normals that each view sees."""
+        x, w = np.polynomial.legendre.leggauss(NODES)
+        height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(NODES) + 0.5) / NODES)
+        count = height.size
+        views, alpha = (np.repeat(each, count, axis=0) for each in (wo, inputs["roughness"]))
+        u = np.tile(height.ravel(), len(wo)), np.tile(around.ravel(), len(wo))
+        wi = reflected(views, alpha, *u)
+        lit = wi[:, 2] > 0.0
+        wi[~lit] = (0.0, 0.0, 1.0)
+        density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
+        weights = np.tile(np.meshgrid(0.5 * w, np.ones(NODES))[0].ravel() / NODES, len(wo))
+        return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
+
+
+@dataclass(frozen=True, eq=False)
+class SchlickProbe(MicrofacetProbe):
+    """A node of microfacets whose curve may dip at 82 degrees."""
+
+    kind: ClassVar[str] = SCHLICK
+
+
+def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Inputs whose albedo is that of the lobe and can be integrated.
+
+    The roughness is the same in both directions. The index of a dielectric is at least 1: the fits of
+    shaders end there, and NODES^2 directions do not resolve a critical angle. Deep dips at 82
+    degrees, which turn F negative, are left out.
+    """
+    changed = dict(inputs)
+    changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
+    if np.ndim(inputs.get("ior", ())) == 1 and np.size(inputs.get("ior", ())):
+        changed["ior"] = np.maximum(inputs["ior"], 1.0)
+    if "color82" in inputs:
+        changed["color82"] = np.maximum(inputs["color82"], LEAST_COLOR82)
+    return changed
+
+
+def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
+    """Mirror images of views about normals that they see, float32 numbers, (N, 3)."""
+    return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
+
+
+@dataclass(frozen=True, eq=False)
+class CombinedProbe(BsdfProbe):
+    """A node that combines two lobes, whose weights stay 1."""
+
+    kind: ClassVar[str] = COMBINED
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Random pairs and special ones; those outside are asked of the lobes."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
+        special = special_directions(rng)
+        return (
+            Batch(wo, wi, self.subject.random_inputs(rng, PAIRS)),
+            Batch(*special, self.subject.random_inputs(rng, len(special[0]))),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class NestedProbe(CombinedProbe):
+    """A node that combines a sum of two lobes."""
+
+    kind: ClassVar[str] = NESTED
+
+
+PROBES = (
+    BsdfProbe,
+    SheenProbe,
+    FittedProbe,
+    MicrofacetProbe,
+    SchlickProbe,
+    CombinedProbe,
+    NestedProbe,
+)
+BSDF_PROBES = {probe.kind: probe for probe in PROBES}

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of the diffuse lobe of surface shaders, whose other lobes cannot be switched off."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (LOBE_RIM, Array, Batch)
+from mxeon.conformance.nodes.diffuse import Surface
+from mxeon.conformance.probes.pairs import (PICTURE_INPUTS, PICTURE_SIZE, Mask, PairProbe, PictureProbe, PlaneProbe)
+from mxeon.shaders.generation import Shader
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceProbe(PictureProbe):
+    """The diffuse lobe of a surface shader, told apart from what lies over it.
+
+    A black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
+    model, shows how much of the light reaches the lobe and comes back.
+    """
+
+    kind: ClassVar[str] = "lobes"
+    size: ClassVar[int] = PICTURE_SIZE // 4  # the shaders are long
+
+    subject: Surface
+
+    def _mask(self, wo: Array, wi: Array) -> Mask:
+        """Mask of the pairs far from the rim, where an error in position is divided twice."""
+        mask: Mask = np.minimum(wo[:, 2], wi[:, 2]) >= LOBE_RIM
+        return mask
+
+    def _picture(self, batch: Batch) -> Array:
+        picture = super()._picture
+        others = picture(batch.altered(color=(0.0, 0.0, 0.0)))
+        lambert = picture(batch.altered(color=(1.0, 1.0, 1.0), roughness=0.0)) - others
+        return (picture(batch) - others) / lambert * batch.wi[:, 2:]
+
+    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
+        """One shader for all inputs: long as it is, it is compiled once."""
+        shader = super()._shader(PICTURE_INPUTS[0])
+        values = {self.subject.color: inputs["color"], self.subject.roughness: inputs["roughness"]}
+        ports = (
+            replace(port, value=values.get(port.path.rsplit("/", 1)[-1], port.value))
+            for port in shader.inputs
+        )
+        return replace(shader, inputs=tuple(ports))
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePlaneProbe(SurfaceProbe, PlaneProbe):
+    """The diffuse lobe of a surface shader on a plane."""
+
+    kind: ClassVar[str] = "plane lobes"
+
+    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
+        return PictureProbe._shader(self, inputs)
+
+
+# Of surface shaders, by the class for nodes.
+SURFACE_PROBES: dict[type[PairProbe] | type[PictureProbe], type[SurfaceProbe]] = {
+    PairProbe: SurfaceProbe,
+    PlaneProbe: SurfacePlaneProbe,
+}

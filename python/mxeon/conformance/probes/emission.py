@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of the EDF nodes: views of an emitting surface, from the front and from the back."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
+from mxeon.conformance.nodes.emission import (CLOSED, CONE, POWER, EmissionSubject)
+from mxeon.conformance.samples.edge_cases import (GRID, turned_directions, turned_frames)
+from mxeon.errors import DocumentError, NotRun
+from mxeon.models.emission import cone_cosine
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts.base import Host
+
+VIEWS = 1 << 12
+FEW = 1 << 10
+MATERIALS = 128  # whose radiance is integrated
+NODES = 16  # of a quadrature on each smooth piece
+EDGE = 1e-3  # cosine from a hard edge: within it the engine's own cosine decides
+CONES = ("inner", "outer")
+NO_IMPLEMENTATION = "Could not find a matching implementation"
+
+
+def implementation(host: Host, text: str, library: str) -> Shader | None:
+    """Shader of a document; None where the target has no implementation of one of its nodes."""
+    try:
+        return host.compile(text, library=library)[0]
+    except DocumentError as error:
+        if NO_IMPLEMENTATION not in str(error):
+            raise
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class NodeProbe:
+    """A node of which a host is asked whether it has it."""
+
+    kind: ClassVar[str]
+
+    host: Host
+    subject: Any
+    library: str
+
+    @property
+    def few(self) -> tuple[Batch, ...]:
+        """Nothing: a control needs no views."""
+        return ()
+
+    def missing(self, text: str) -> bool:
+        """Whether the target has no implementation of a node of a document."""
+        return implementation(self.host, text, self.library) is None
+
+    @cached_property
+    def shader(self) -> Shader:
+        """Shader of the subject's document.
+
+        Raises
+        ------
+        NotRun
+            If the target has no implementation of the node.
+        """
+        shader = implementation(self.host, self.subject.document(), self.library)
+        if shader is None:
+            raise NotRun(f"{self.host.target}: no implementation of {self.subject.node}")
+        return shader
+
+
+@dataclass(frozen=True, eq=False)
+class EmissionProbe(NodeProbe):
+    """An EDF node on a host that evaluates its radiance for any view."""
+
+    kind: ClassVar[str] = CLOSED
+
+    subject: EmissionSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Random views from the front, and cosines from 1 to grazing."""
+        rng = np.random.default_rng(SEED)
+        mu = np.repeat(GRID, 64)
+        radius = np.sqrt(1.0 - mu * mu)
+        special = rounded([radius, 0.0 * mu, mu])
+        return self._views(rng, directions(rng, VIEWS)), self._views(rng, special)
+
+    @property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of the random views."""
+        return (self.batches[0].first(FEW),)
+
+    @cached_property
+    def backs(self) -> Batch:
+        """FEW views from the back."""
+        rng = np.random.default_rng(SEED)
+        return self._views(rng, directions(rng, FEW) * [1.0, 1.0, -1.0])
+
+    @cached_property
+    def integrated(self) -> tuple[Batch, Array]:
+        """MATERIALS emissions at the nodes of a quadrature, and weights of their radiance.
+
+        The weighted sum over the views of a material is its exitance over pi.
+        """
+        rng = np.random.default_rng(SEED)
+        inputs = self.subject.random_inputs(rng, MATERIALS)
+        mu, weights = _nodes(self._stops(inputs))
+        azimuth = 2.0 * np.pi * rng.random(mu.shape)
+        radius = np.sqrt(1.0 - mu * mu)
+        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu]).reshape(-1, 3)
+        each = np.repeat(np.arange(MATERIALS), mu.shape[1])
+        return Batch(wo, wo, {name: value[each] for name, value in inputs.items()}), weights
+
+    def direct(self, batch: Batch) -> Array:
+        """Radiance towards each view, (N, 3)."""
+        wo = batch.world(batch.wo)
+        evaluate = self.host.evaluate
+        values = evaluate(self.shader, wo, wo, batch.inputs, "emission", output="radiance")
+        return np.asarray(values, np.float64)
+
+    def _views(self, rng: np.random.Generator, wo: Array) -> Batch:
+        return Batch(wo, wo, self.subject.random_inputs(rng, len(wo)))
+
+    def _stops(self, inputs: dict[str, Array]) -> Array:
+        """Cosines between which the radiance is smooth, (MATERIALS, 1 + pieces)."""
+        return np.broadcast_to([0.0, 1.0], (MATERIALS, 2))
+
+
+@dataclass(frozen=True, eq=False)
+class PowerProbe(EmissionProbe):
+    """An emission with a power in it."""
+
+    kind: ClassVar[str] = POWER
+
+
+@dataclass(frozen=True, eq=False)
+class ConeProbe(EmissionProbe):
+    """An emission inside a cone, whose axis is an input."""
+
+    kind: ClassVar[str] = CONE
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Those of any emission; views near both edges; and views of turned axes."""
+        rng = np.random.default_rng(SEED)
+        return (*super().batches, self._at_edges(rng), self._turned(rng))
+
+    def _views(self, rng: np.random.Generator, wo: Array) -> Batch:
+        return _away(super()._views(rng, wo))
+
+    def _at_edges(self, rng: np.random.Generator) -> Batch:
+        """Views a little inside and outside of the cones."""
+        inputs = self.subject.random_inputs(rng, FEW)
+        angle = np.where(np.arange(FEW) % 2, inputs["inner_angle"], inputs["outer_angle"])
+        step = np.where(rng.random(FEW) < 0.5, -2.0, 2.0) * EDGE
+        mu = np.clip(cone_cosine(angle) + step, 0.0, 1.0)
+        wo = rounded([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])
+        return _away(Batch(wo, wo, inputs))
+
+    def _turned(self, rng: np.random.Generator) -> Batch:
+        """Views in frames whose normals are the axes."""
+        frames = turned_frames(rng, FEW)
+        wo = turned_directions(rng, len(frames))
+        inputs = self.subject.random_inputs(rng, len(frames))
+        inputs["normal"] = rounded(frames[:, :, 2].T)
+        return _away(Batch(wo, wo, inputs, frame=frames))
+
+    def _stops(self, inputs: dict[str, Array]) -> Array:
+        inner, outer = (np.clip(cone_cosine(inputs[f"{name}_angle"]), 0.0, 1.0) for name in CONES)
+        ends = np.zeros((MATERIALS, 2)) + [0.0, 1.0]
+        return np.sort(np.column_stack([ends, inner, np.minimum(inner, outer)]), axis=1)
+
+
+def _away(batch: Batch) -> Batch:
+    """Views of a batch that are not at the hard edge of a cone."""
+    hard = batch.inputs["outer_angle"] <= batch.inputs["inner_angle"]
+    edge = cone_cosine(batch.inputs["inner_angle"])
+    return batch.where(~hard | (np.abs(np.maximum(batch.wo[:, 2], 0.0) - edge) >= EDGE))
+
+
+def _nodes(stops: Array) -> tuple[Array, Array]:
+    """Cosines and weights, (M, K), of integrals of 2 mu over the pieces between stops."""
+    x, w = np.polynomial.legendre.leggauss(NODES)
+    low, high = stops[:, :-1, np.newaxis], stops[:, 1:, np.newaxis]
+    t = 0.5 * (x + 1.0)  # high - mu = t^2 (high - low): dense at the upper end, where powers root
+    mu = high - t * t * (high - low)
+    mu = mu.astype(np.float32).astype(np.float64)
+    weights = 2.0 * mu * (high - low) * w * t
+    return mu.reshape(len(stops), -1), weights.reshape(len(stops), -1)
+
+
+PROBES = {probe.kind: probe for probe in (EmissionProbe, PowerProbe, ConeProbe)}

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probe of the hair node: pairs of the whole sphere, pairs in its lobes, and lobes apart."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
+from mxeon.conformance.probes.bsdf import (FEW, NODES, PAIRS, BsdfProbe)
+from mxeon.conformance.nodes.bsdf import HAIR
+from mxeon.conformance.nodes.hair_regions import REGIONS
+from mxeon.conformance.nodes.hair import HairSubject
+from mxeon.conformance.samples.edge_cases import (LEAST_TURNED, special_directions)
+from mxeon.models.hair import ROUGHNESSES
+from mxeon.models.hair.formulas import SCALE, section
+
+WIDE = (0.05, 0.3)  # least variance and scale of values that are integrated
+
+
+@dataclass(frozen=True, eq=False)
+class HairProbe(BsdfProbe):
+    """The hair node on a host that evaluates any pairs."""
+
+    kind: ClassVar[str] = HAIR
+    diagnosed: ClassVar[int] = 1 << 9
+
+    subject: HairSubject
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """PAIRS random pairs, as many in the lobes, and special ones, with roughness above 0."""
+        rng = np.random.default_rng(SEED)
+        wo, inputs = directions(rng, PAIRS), self.subject.random_inputs(rng, PAIRS)
+        free = directions(rng, PAIRS) * _sides(rng, PAIRS)
+        special = special_directions(rng)
+        count = len(special[0])
+        return (
+            Batch(wo, free, {**inputs, "occlusion": np.round(rng.random(PAIRS), 2)}),
+            Batch(wo, aimed(rng, wo, inputs), inputs),
+            Batch(
+                special[0],
+                special[1] * _sides(rng, count),
+                self.subject.random_inputs(rng, count),
+            ),
+        )
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of the random pairs, and of those in the lobes."""
+        return tuple(batch.first(FEW) for batch in self.batches[:2])
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """Views of fibers without tilt, whose albedo has a closed form."""
+        return tuple(batch.altered(cuticle_angle=0.5) for batch in super().cosines)
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Exact directions, those along the fiber among them, and inputs on their edges."""
+        rng = np.random.default_rng(SEED)
+        along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+        pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
+        wo, wi = (np.concatenate(each) for each in zip(special_directions(rng), pairs, strict=True))
+        wi = wi * _sides(rng, len(wi))
+        return Batch(wo, wi, self.subject.special_inputs(rng, len(wo)))
+
+    @cached_property
+    def turned(self) -> Batch:
+        """Pairs in frames of their own, none with a narrow lobe, whose place would be uncertain."""
+        batch = super().turned
+        wide = {
+            name: np.maximum(batch.inputs[name], [LEAST_TURNED**2, LEAST_TURNED])
+            for name in ROUGHNESSES
+        }
+        sides = _sides(np.random.default_rng(SEED), len(batch.wi))
+        return replace(batch.altered(**wide), wi=batch.wi * sides)
+
+    def region(self, key: str) -> Batch:
+        """FEW pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
+        rng, row = np.random.default_rng(SEED), REGIONS[key]
+        sine = 0.9 * (2.0 * rng.random(FEW) - 1.0)
+        low, high = row.azimuths
+        azimuth = (low + (high - low) * rng.random(FEW)) * rng.choice([-1.0, 1.0], FEW)
+        cosine = np.sqrt(1.0 - sine * sine)
+        wo = rounded([sine, cosine * np.sin(azimuth), cosine * np.cos(azimuth)])
+        inputs = self.subject.random_inputs(rng, FEW)
+        inputs["cuticle_angle"] = 0.5 + 2.0 * row.tilt * (inputs["cuticle_angle"] - 0.5)
+        for name in ROUGHNESSES:
+            inputs[name] = rounded(
+                low * (high / low) ** rng.random(FEW) for low, high in (row.variances, row.scales)
+            )
+        return Batch(wo, aimed(rng, wo, inputs), {**inputs, **row.tints})
+
+    def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        """Wide lobes without tilt."""
+        wide = {name: np.maximum(inputs[name], WIDE) for name in ROUGHNESSES}
+        return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
+
+    def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
+        """Directions (M, K, 3) and weights (M, K) of a quadrature over all lights."""
+        x, w = np.polynomial.legendre.leggauss(NODES)
+        phi = 2.0 * np.pi * (np.arange(2 * NODES) + 0.5) / (2 * NODES)
+        sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
+        cosine = np.sqrt(1.0 - sine * sine)
+        wi = rounded([sine, cosine * np.cos(angle), cosine * np.sin(angle)])
+        weights = np.tile(w, 2 * NODES) / NODES
+        shape = (len(wo), *wi.shape)
+        return np.broadcast_to(wi, shape), np.broadcast_to(weights, shape[:2])
+
+
+def _sides(rng: np.random.Generator, count: int) -> Array:
+    """Factors of directions, (count, 3), by which half change the side of the surface."""
+    return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
+
+
+def aimed(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
+    """Directions of light in one of the lobes R, TT and TRT of each view, float32 numbers, (N, 3)."""
+    count = len(wo)
+    lobe, chosen = rng.integers(0, 3, count), np.arange(count)
+    v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T
+    view, _ = section(wo.T, inputs["ior"])
+    tilt = (2.0 - 3.0 * lobe) * np.pi * (inputs["cuticle_angle"] - 0.5)
+    theta = -np.arcsin(np.clip(view.sin_o, -1.0, 1.0)) - tilt
+    theta = theta + np.sqrt(np.minimum(v, 1.0)) * rng.standard_normal(count)
+    u = 1e-3 + 0.998 * rng.random(count)
+    exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi
+    phi = np.arctan2(wo[:, 2], wo[:, 1]) + exit_angle + SCALE * s * np.log(u / (1.0 - u))
+    cosine = np.abs(np.cos(theta))
+    return rounded([np.sin(theta), cosine * np.cos(phi), cosine * np.sin(phi)])

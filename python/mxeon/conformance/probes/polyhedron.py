@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of renderers that show their own nodes on a polyhedron, and the table of all probes."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (RIM, SEED, Array, Batch, directions)
+from mxeon.conformance.checks.measures import BLACK
+from mxeon.conformance.probes.renderer_nodes import (ExactProbe, NativeProbe)
+from mxeon.conformance.probes.pairs import (PICTURE_INPUTS, PICTURE_SIZE, PairProbe, Pairs, PictureProbe, PlaneProbe, scene_of)
+from mxeon.conformance.samples.edge_cases import (outside_directions, special_directions)
+from mxeon.shaders.facets import facet_points
+from mxeon.shaders.hosts import host_row
+from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions
+
+SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
+OWN_PAIRS = 1 << 13  # random ones: a renderer's own function is called for each
+
+
+@dataclass(frozen=True, eq=False)
+class FacetProbe(ExactProbe):
+    """A node of a renderer's own on a polyhedron, with noise under an environment."""
+
+    kind: ClassVar[str] = "facets"
+    size: ClassVar[int] = PICTURE_SIZE
+
+    @cached_property
+    def cosines(self) -> tuple[Batch, ...]:
+        """The points in a white environment, for two of the inputs: they take long."""
+        scene = replace(FURNACE, size=self.size)
+        names = ("color", "roughness")
+        return tuple(
+            self._batch(scene, {name: inputs[name] for name in names}) for inputs in PICTURE_INPUTS
+        )
+
+    def albedo(self, batch: Batch) -> Array:
+        """Pictures of an environment, (N, 3)."""
+        return self._picture(batch)
+
+    def points(self, scene: Scene) -> Pairs:
+        return facet_pairs(scene)
+
+    def _picture(self, batch: Batch) -> Array:
+        """Values at the points of a batch, without those of a black lobe where others lie beside it."""
+        values = self._node(batch)
+        if self.subject.others:
+            values = values - self._node(batch.altered(color=BLACK))
+        return values
+
+    def _node(self, batch: Batch) -> Array:
+        scene, inputs = scene_of(batch), batch.inputs
+        image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
+        values = image[facet_points(scene.size).mask]
+        return values[facet_pairs(scene)[2]].astype(np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class CoarseFacetProbe(FacetProbe):
+    """A node on the polyhedron, by a renderer that keeps light in a few bits."""
+
+    kind: ClassVar[str] = "coarse facets"
+
+
+@dataclass(frozen=True, eq=False)
+class FacetPairProbe(FacetProbe):
+    """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
+
+    kind: ClassVar[str] = "facet pairs"
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        rng, subject = np.random.default_rng(SEED), self.subject
+        random = directions(rng, OWN_PAIRS), directions(rng, OWN_PAIRS)
+        special = Batch(*special_directions(rng), {})
+        half = np.linalg.norm(special.wo + special.wi, axis=1)
+        special = special.where((special.wo[:, 2] > 0.0) & (half >= SHORTEST))
+        outside = Batch(*outside_directions(rng), {})
+        return (
+            Batch(*random, subject.random_inputs(rng, OWN_PAIRS)),
+            special.altered(**subject.special_inputs(rng, len(special.wo))),
+            outside.altered(**subject.random_inputs(rng, len(outside.wo))),
+        )
+
+    @property
+    def few(self) -> tuple[Batch, ...]:
+        """Those above the horizon."""
+        return self.batches[:2]
+
+    def direct(self, batch: Batch) -> Array:
+        """pi f cos(theta_i), (N, 3)."""
+        count = len(batch.wo)
+        color = np.broadcast_to(batch.inputs["color"], (count, 3))
+        roughness = np.broadcast_to(batch.inputs["roughness"], count)
+        values = self.host.pairs(self.subject.node, batch.wo, batch.wi, color, roughness)
+        return np.pi * values.astype(np.float64)
+
+    def density(self, batch: Batch) -> Array:
+        """Density in solid angle of the directions that the renderer draws, (N,)."""
+        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
+        return self.host.density(batch.wo, batch.wi, roughness).astype(np.float64)
+
+    def sample(self, batch: Batch, u: Array) -> Array:
+        """Directions that the renderer draws, (N, 3)."""
+        roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
+        return self.host.sample(batch.wo, u, roughness).astype(np.float64)
+
+
+PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
+    "pairs": PairProbe,
+    "pictures": PictureProbe,
+    "planes": PlaneProbe,
+    "native": NativeProbe,
+    "exact": ExactProbe,
+    "facets": FacetProbe,
+    "coarse facets": CoarseFacetProbe,
+    "facet pairs": FacetPairProbe,
+}
+
+
+def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
+    """Class of the probes of the host of a name, or None where only text is checked."""
+    return PROBES.get(host_row(host).probe)
+
+
+@lru_cache(maxsize=8)
+def facet_pairs(scene: Scene) -> Pairs:
+    """Directions at the points of the polyhedron, and the mask of the points to judge.
+
+    Returns
+    -------
+    wo, wi : ndarray, shape (N, 3)
+        One row per pixel within a facet; wi is wo where there is no distant light.
+    mask : ndarray of bool, shape (N,)
+        True where both cosines are at least RIM.
+    """
+    points = facet_points(scene.size)
+    normal = points.normal[points.mask]
+    wo = local_directions(normal, VIEW)
+    wi = wo if scene.light is None else local_directions(normal, scene.light)
+    return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of nodes that a renderer has of its own, by its pictures of a sphere."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.nodes.diffuse import OwnNode
+from mxeon.conformance.probes.pairs import (PICTURE_SIZE, PictureProbe, picture_pairs, scene_of)
+from mxeon.models import table as reference
+from mxeon.shaders.scene import sphere
+
+EXACT_INPUTS: tuple[dict[str, Any], ...] = (
+    {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
+    {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
+    {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
+    {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
+    {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
+)
+
+
+@dataclass(frozen=True, eq=False)
+class NativeProbe(PictureProbe):
+    """A node that a renderer has of its own, on a sphere."""
+
+    subject: OwnNode
+
+    @property
+    def claims(self) -> dict[str, str]:
+        """Titles of the model that the node claims, and of the form of it that is judged."""
+        claimed, *_ = self.subject.forms or (self.subject.model,)
+        names = {"claimed": claimed, "model": self.subject.model}
+        return {key: reference.model(name).title for key, name in names.items()}
+
+    def _picture(self, batch: Batch) -> Array:
+        scene, inputs = scene_of(batch), batch.inputs
+        image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
+        values = image[sphere(scene.size).mask]
+        return values[picture_pairs(scene)[2]].astype(np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class ExactProbe(NativeProbe):
+    """A node of a renderer's own, on a sphere whose points and light have no error but rounding."""
+
+    kind: ClassVar[str] = "exact"
+    size: ClassVar[int] = PICTURE_SIZE // 2
+
+    @property
+    def _inputs(self) -> list[dict[str, Any]]:
+        """EXACT_INPUTS, from dark to white and from rough to smooth."""
+        return [dict(inputs) for inputs in EXACT_INPUTS]
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """The first for each light."""
+        return self.batches[:: len(EXACT_INPUTS)]
+
+    def nearest_form(self) -> "ExactProbe":
+        """The probe of the published form of the model that is nearest to what is measured."""
+        if not self.subject.forms:
+            return self
+        batch = self.batches[0]
+        values = self.direct(batch)
+        errors = {
+            form: float(np.abs(values - batch.expected(form)).max()) for form in self.subject.forms
+        }
+        return replace(
+            self, subject=replace(self.subject, model=min(errors, key=errors.__getitem__))
+        )

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of surface shaders as a whole, on hosts that evaluate any pairs."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions)
+from mxeon.conformance.probes.bsdf import (LEAST_VIEW, reflected)
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.nodes.surface_shaders import (WHOLE, SurfaceShader)
+from mxeon.conformance.reference import Host as Reference
+from mxeon.shaders.generation import Shader, generate
+from mxeon.shaders.hosts.calls import NORMAL, TANGENT
+
+PAIRS = 256  # of directions, each with a material of its own
+VIEWS = 64  # whose albedo is asked
+MATERIALS = 1 << 11  # whose energy is
+CHANGED = 8  # pairs that a change of an input has to show in
+SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
+STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceProbe(PairProbe):
+    """A surface shader on a host that evaluates any pairs."""
+
+    kind: ClassVar[str] = WHOLE
+
+    subject: SurfaceShader  # type: ignore[assignment]  # evaluated by the same verbs
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """Random pairs, half of them near the mirror direction, with random materials."""
+        rng = np.random.default_rng(SEED)
+        wo, wi = self._views(rng, PAIRS), directions(rng, PAIRS)
+        alpha = np.full((PAIRS, 2), SPREAD)
+        near = reflected(wo, alpha, rng.random(PAIRS), rng.random(PAIRS))
+        kept = (np.arange(PAIRS) % 2 == 0) & (near[:, 2] > 0.0)
+        wi = np.where(kept[:, np.newaxis], near, wi)
+        return (Batch(wo, wi, self.subject.random_inputs(rng, PAIRS)),)
+
+    @property
+    def few(self) -> tuple[Batch, ...]:
+        """The same: they are few."""
+        return self.batches
+
+    @cached_property
+    def cosines(self) -> tuple[Batch, ...]:
+        """Views of isotropic materials."""
+        [batch] = self.batches
+        return (_isotropic(batch.first(VIEWS)),)
+
+    @cached_property
+    def albedos(self) -> tuple[Array, ...]:
+        """Albedos by the layer equation."""
+        return tuple(self._reference(batch, "environment") for batch in self.cosines)
+
+    @cached_property
+    def expected(self) -> tuple[Array, ...]:
+        """Values by the layer equation of `batches`."""
+        return tuple(map(self.expected_of, self.batches))
+
+    @cached_property
+    def materials(self) -> Batch:
+        """Views of isotropic materials in which every lobe takes part."""
+        rng = np.random.default_rng(SEED)
+        wo = self._views(rng, MATERIALS)
+        return _isotropic(Batch(wo, wo, self.subject.every_input(rng, MATERIALS)))
+
+    @cached_property
+    def white(self) -> Batch:
+        """Views of the material that loses no light."""
+        [batch] = self.cosines
+        return replace(batch, inputs=self.subject.table.white)
+
+    @cached_property
+    def changed(self) -> Batch:
+        """A few views for each input: of the material with every lobe, then with a change of it."""
+        table = self.subject.table
+        rows = []
+        for name in self.subject.inputs:
+            before = {**table.seen, **table.needs.get(name, {})}
+            rows += [before, {**before, name: table.changed[name]}]
+        [batch] = self.batches
+        few = batch.first(CHANGED)
+        defaults = self._defaults
+        names = sorted({name for row in rows for name in row})
+        inputs = {
+            name: np.repeat(
+                [np.asarray(row.get(name, defaults[name]), float) for row in rows], CHANGED, 0
+            )
+            for name in names
+        }
+        return Batch(np.tile(few.wo, (len(rows), 1)), np.tile(few.wi, (len(rows), 1)), inputs)
+
+    @property
+    def _defaults(self) -> dict[str, Any]:
+        """Values of the inputs that a document does not set."""
+        vectors = {name: TANGENT if "tangent" in name else NORMAL for name in self.subject.inputs}
+        ports = {port.path.rsplit("/", 1)[-1]: port.value for port in self._shader.inputs}
+        return vectors | ports
+
+    def response(self, batch: Batch, branch: str) -> Array:
+        """Values in any branch, (N, 3)."""
+        return self._evaluate(batch, branch)
+
+    def expected_of(self, batch: Batch) -> Array:
+        """Values by the layer equation, (N, 3)."""
+        return np.pi * self._reference(batch, "direct")
+
+    def _views(self, rng: np.random.Generator, count: int) -> Array:
+        """Random directions, none so grazing that a sheen's own equations gain energy."""
+        wo = directions(rng, count)
+        return (
+            np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo).astype(np.float32).astype(float)
+        )
+
+    @cached_property
+    def _document(self) -> Shader:
+        """The document, as a shader of any target."""
+        [shader] = generate(self.subject.document(), "glsl", library=self.library)
+        return shader
+
+    def _reference(self, batch: Batch, branch: str) -> Array:
+        """Values of the reference for the same document, (N, 3)."""
+        return Reference().evaluate(self._document, batch.wo, batch.wi, batch.inputs, branch)
+
+
+def _isotropic(batch: Batch) -> Batch:
+    """The same pairs with lobes that are not stretched."""
+    return batch.altered(
+        **{name: np.zeros(len(batch.wo)) for name in batch.inputs if STRETCHED in name}
+    )

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of microfacets under a thin film."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
+from mxeon.conformance.probes.bsdf import (MicrofacetProbe, simple)
+from mxeon.conformance.nodes.bsdf import FILM
+from mxeon.conformance.samples.edge_cases import special_directions
+from mxeon.conformance.nodes.thin_films import THICK
+
+PAIRS = 1 << 8  # random ones, and special ones; each average over a film's curve takes long
+ALBEDOS = 24
+FEW = 1 << 6  # pairs of a control
+VIEWS = 16  # whose averages are judged by themselves
+HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
+STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 150.0)}  # see `steep`
+LEAST_OIL = 1.2  # index of these films, or there is none to see
+LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
+
+
+@dataclass(frozen=True, eq=False)
+class FilmProbe(MicrofacetProbe):
+    """A microfacet node under a thin film on a host that evaluates any pairs."""
+
+    kind: ClassVar[str] = FILM
+    diagnosed: ClassVar[int] = 1 << 5
+    least_cosine: ClassVar[float] = LEAST_FACET
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """PAIRS random pairs and special ones whose facets are not at grazing, and mirrored ones."""
+        rng = np.random.default_rng(SEED)
+        special = special_directions(rng)
+        picked = rng.permutation(len(special[0]))[:PAIRS]
+        pairs = (
+            self._batch(
+                rng, (directions(rng, PAIRS), directions(rng, PAIRS)), self.subject.random_inputs
+            ),
+            self._batch(rng, (special[0][picked], special[1][picked]), self.subject.special_inputs),
+            self.mirrored[0].first(PAIRS),
+        )
+        return tuple(batch.where(_steep(batch)) for batch in pairs)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of each."""
+        return tuple(batch.first(FEW) for batch in self.batches)
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """ALBEDOS views of the random pairs, and as many where few facets stand for all the least."""
+        batch = super(MicrofacetProbe, self).cosines[0].first(ALBEDOS)
+        return replace(batch, inputs=simple(batch.inputs)), self._views(ALBEDOS, HARD)
+
+    @cached_property
+    def steep(self) -> Batch:
+        """Views of rough films, of which masking takes the facets whose curve is another."""
+        return self._views(VIEWS, STEEP)
+
+    def _views(self, count: int, ranges: Mapping[str, tuple[float, float]]) -> Batch:
+        """Views of films with a roughness, a cosine and a thickness in ranges, and mirrored lights."""
+        rng = np.random.default_rng(SEED)
+        alpha, mu, thickness = (
+            low + (high - low) * rng.random(count) for low, high in ranges.values()
+        )
+        azimuth, radius = 2.0 * np.pi * rng.random(count), np.sqrt(1.0 - mu * mu)
+        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+        inputs = simple(self.subject.random_inputs(rng, count))
+        inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
+        inputs["roughness"] = rounded([alpha, alpha])
+        inputs["thinfilm_thickness"] = rounded([thickness])[:, 0]
+        if "tint" in inputs:
+            inputs["tint"] = np.ones((count, 3))
+        return Batch(wo, wo * [-1.0, -1.0, 1.0], inputs)
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Pairs and inputs at the edges of the domain, films next to vacuum and vast ones."""
+        rng = np.random.default_rng(SEED)
+        special = special_directions(rng)
+        picked = rng.permutation(len(special[0]))[: 2 * PAIRS]
+        wo, wi = (each[picked] for each in special)
+        inputs = self.subject.special_inputs(rng, len(wo))
+        inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
+        inputs["thinfilm_ior"][::16] = 0.0
+        return Batch(wo, wi, inputs)
+
+
+def _steep(batch: Batch) -> Array:
+    """Pairs whose half vector is not at grazing to either."""
+    half = batch.wo + batch.wi
+    length = np.linalg.norm(half, axis=1)
+    cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)
+    return np.asarray(cosine >= LEAST_FACET)

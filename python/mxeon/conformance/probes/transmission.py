@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of the nodes that transmit through microfacets."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.probes.bsdf import MicrofacetProbe
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.nodes.transmission import (SCHLICK_TRANSMITTED, TRANSMITTED, TransmissionSubject)
+
+
+@dataclass(frozen=True, eq=False)
+class TransmissionProbe(MicrofacetProbe):
+    """A node that transmits, on a host that evaluates any pairs."""
+
+    kind: ClassVar[str] = TRANSMITTED
+
+    subject: TransmissionSubject
+
+    def transmitted(self, batch: Batch, radiance: Array | None = None) -> Array:
+        """Light of an environment through the surface, (N, 3); it is uniform unless given."""
+        return self._evaluate(batch, "transmission", irradiance=radiance)
+
+    @cached_property
+    def reflection(self) -> MicrofacetProbe:
+        """The probe of the node where it only reflects."""
+        return MicrofacetProbe(self.host, self.subject.reflection, self.library)
+
+
+@dataclass(frozen=True, eq=False)
+class SchlickTransmissionProbe(TransmissionProbe):
+    """A node that transmits by Schlick's curve."""
+
+    kind: ClassVar[str] = SCHLICK_TRANSMITTED
+
+
+def transmission_probe_type(
+    subject: TransmissionSubject, probe: type[Any]
+) -> type[TransmissionProbe] | None:
+    """Class of a subject's probes on a host that has probes of a class; None if it has none.
+
+    A picture of a solid shows light that enters and leaves it, which no equation of the node has.
+    """
+    if probe is not PairProbe:
+        return None
+    return SchlickTransmissionProbe if subject.kind == SCHLICK_TRANSMITTED else TransmissionProbe

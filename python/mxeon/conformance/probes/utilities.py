@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of the utility nodes: their outputs for many inputs at once."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from mxeon.conformance.samples.batch import (SEED, Array, Batch)
+from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe)
+from mxeon.conformance.nodes.utilities import (OSL_VALUES, VALUES, UtilitySubject)
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.hosts.base import Host
+from mxeon.shaders.hosts.calls import GRAPH
+
+COUNT = 1 << 12
+FEW = 1 << 9
+
+
+@dataclass(frozen=True, eq=False)
+class UtilityProbe:
+    """An output of a utility node on a host that evaluates a shader's graph."""
+
+    kind: ClassVar[str] = VALUES
+    diagnosed: ClassVar[int] = FEW
+
+    host: Host
+    subject: UtilitySubject
+    library: str
+
+    @cached_property
+    def _shader(self) -> Shader:
+        return self.host.compile(self.subject.document(), library=self.library)[0]
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """COUNT random inputs, and as many of which half lie on edges."""
+        rng = np.random.default_rng(SEED)
+        return (
+            _batch(self.subject.random_inputs(rng, COUNT)),
+            _batch(self.subject.special_inputs(rng, COUNT)),
+        )
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """FEW of both."""
+        return tuple(batch.first(FEW) for batch in self.batches)
+
+    @property
+    def edges(self) -> Batch:
+        """Inputs at the ends of their ranges and beyond."""
+        rng = np.random.default_rng(SEED)
+        return _batch(self.subject.outside_inputs(rng, COUNT))
+
+    def direct(self, batch: Batch) -> Array:
+        """The output as a color, (N, 3)."""
+        values = self.host.evaluate(self._shader, batch.wo, batch.wi, batch.inputs, GRAPH)
+        return values.astype(np.float64)
+
+    def other(self, output: str) -> "UtilityProbe":
+        """The probe of another output of the node."""
+        return replace(self, subject=replace(self.subject, output=output))
+
+
+@dataclass(frozen=True, eq=False)
+class UtilityOslProbe(UtilityProbe):
+    """An output of a utility node on a renderer with OSL, which has mathematics of its own."""
+
+    kind: ClassVar[str] = OSL_VALUES
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """All inputs together: a shader is compiled for each batch."""
+        batches = super().batches
+        names = batches[0].inputs
+        together = {name: np.concatenate([each.inputs[name] for each in batches]) for name in names}
+        return (_batch(together),)
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """The same."""
+        return self.batches
+
+
+def _batch(inputs: Mapping[str, Array]) -> Batch:
+    """A batch of inputs, whose directions mean nothing."""
+    count = len(next(iter(inputs.values())))
+    up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
+    return Batch(up, up, inputs)
+
+
+# By the hosts' own probes.
+PROBES: dict[type[Any], type[UtilityProbe]] = {
+    PairProbe: UtilityProbe,
+    PictureProbe: UtilityOslProbe,
+}
+
+
+def utility_probe_type(subject: UtilitySubject, probe: type[Any]) -> type[UtilityProbe] | None:
+    """Class of a subject's probes on a host that has probes of a class; None if it has none."""
+    return PROBES.get(probe)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of text: definitions of nodes, generated sources and functions, none of them executed."""
+
+from collections.abc import Iterable
+
+from mxeon.conformance.nodes.bsdf import BSDFS
+from mxeon.conformance.nodes.diffuse import Subject
+from mxeon.conformance.text.closures import check_closures
+from mxeon.conformance.text.definitions import check_definitions
+from mxeon.conformance.text.languages import check_languages
+from mxeon.conformance.text.sources import (check_calls, check_sources)
+from mxeon.conformance.results import Result
+
+__all__ = ["check_definitions", "check_texts"]
+
+
+def check_texts(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]:
+    """Results of all checks of generated text and of functions for the nodes of a library.
+
+    Parameters
+    ----------
+    subjects : iterable of Subject
+        The nodes that it has.
+    library : str
+
+    Returns
+    -------
+    tuple of Result
+    """
+    subjects = tuple(subjects)
+    return (
+        *check_sources(subjects, library),
+        *check_closures(subjects, library),
+        *check_languages(library),
+        *check_calls(BSDFS, library),
+    )
