@@ -9,7 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mxeon import report
-from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES)
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
+from mxeon.conformance.nodes.renderer_nodes import NATIVE
 from mxeon.conformance.results import NOT_RUN
 from mxeon.conformance.run import check
 from mxeon.report.field import read_field

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.conformance.probes.families import PBR_SUBJECTS
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.known_issues import ISSUES
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.probes.families import PBR_SUBJECTS
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan

@@ -6,9 +6,9 @@ from xml.parsers import expat
 import MaterialX as mx
 import numpy as np
 
-from mxeon.conformance.samples.batch import Batch
-from mxeon.conformance.probes.bsdf import MicrofacetProbe
 from mxeon.conformance.nodes.bsdf import BSDFS
+from mxeon.conformance.probes.bsdf import MicrofacetProbe
+from mxeon.conformance.samples.batch import Batch
 from mxeon.models import conductor_brdf
 from mxeon.models.burley import burley_albedo_dir
 from mxeon.models.fresnel import fresnel_schlick

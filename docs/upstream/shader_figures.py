@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import Batch
-from mxeon.conformance.probes.bsdf import SchlickProbe
 from mxeon.conformance.nodes.bsdf import BSDFS
+from mxeon.conformance.probes.bsdf import SchlickProbe
+from mxeon.conformance.samples.batch import Batch
 from mxeon.models.subsurface import diffusion_blur
 from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import data_folder

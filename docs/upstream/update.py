@@ -25,9 +25,9 @@ from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.surface_quantities import OF_SURFACES
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
-from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.known_issues import ISSUES, RENDERERS
 from mxeon.conformance.known_issues.issue import STOCK
+from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
 from mxeon.io.files import write_text

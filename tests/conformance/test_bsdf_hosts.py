@@ -7,17 +7,18 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.accuracy import engine
-from mxeon.conformance.probes.bsdf_pictures import (PICTURES, bsdf_probe_type, materials)
-from mxeon.conformance.probes.bsdf import BSDF_PROBES
+from mxeon.conformance.accuracy.diffuse import BSDF_RAY, VALUES
+from mxeon.conformance.checks.application import judge_check
+from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.checks.verdicts import judge_check
+from mxeon.conformance.probes.bsdf import BSDF_PROBES
+from mxeon.conformance.probes.bsdf_pictures import PICTURES, bsdf_probe_type, materials
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
 from mxeon.conformance.probes.polyhedron import PROBES
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
-from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe, PlaneProbe)
-from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.text import sources
-from mxeon.conformance.accuracy.diffuse import (BSDF_RAY, VALUES)
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+from mxeon.conformance.text import sources
 
 ROWS = {check.key: check for check in CHECKS}
 SUBJECTS = {subject.model: subject for subject in BSDFS}

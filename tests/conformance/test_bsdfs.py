@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 
+from mxeon.conformance.accuracy.bsdf import LEAST_ESS
+from mxeon.conformance.checks.application import applies, judge_check
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.nodes.bsdf import BSDFS, QUADRATURES, RANGES
 from mxeon.conformance.probes import bsdf as bsdf_probes
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
-from mxeon.conformance.nodes.bsdf import (BSDFS, QUADRATURES, RANGES)
-from mxeon.conformance.accuracy.bsdf import LEAST_ESS
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
-from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.ggx_albedo import ggx_albedo_dir
 from mxeon.shaders.library import standard_folders

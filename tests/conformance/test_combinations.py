@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mxeon.conformance.checks.application import applies, judge_check
+from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
-from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.layering import Bsdf, add, layer, multiply, throughput
 from mxeon.shaders.library import data_folder

@@ -8,21 +8,26 @@ import numpy as np
 import pytest
 
 from mxeon.conformance import known_issues
-from mxeon.conformance.pictures import document_pictures as image
-from mxeon.conformance.samples.batch import (GRAZING, PAIRS, Batch)
-from mxeon.conformance.nodes.bsdf import (BSDFS, KINDS)
-from mxeon.conformance.checks.verdicts import judge_subject
-from mxeon.conformance.probes.families import PBR_SUBJECTS
-from mxeon.conformance.functions.shader_functions import (FUNCTION_CHECKS, FunctionProbe, judge_functions)
-from mxeon.conformance.nodes.diffuse import (SUBJECTS, Subject)
-from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe)
-from mxeon.conformance.samples.uneven_environment import sky
+from mxeon.conformance.checks.application import judge_subject
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.text import check_texts
-from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.conformance.diagnosis.candidates import of_value
+from mxeon.conformance.functions.shader_functions import (
+    FUNCTION_CHECKS,
+    FunctionProbe,
+    judge_functions,
+)
+from mxeon.conformance.nodes.bsdf import BSDFS, KINDS
+from mxeon.conformance.nodes.diffuse import SUBJECTS, DiffuseSubject
+from mxeon.conformance.pictures import document_pictures as image
+from mxeon.conformance.probes.families import PBR_SUBJECTS
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.conformance.run import check, judge, plan
+from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
+from mxeon.conformance.samples.uneven_environment import sky
+from mxeon.conformance.text import check_texts
+from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
@@ -421,7 +426,7 @@ def test_the_bundled_examples_leave_out_what_stock_lacks():
 
 
 def test_a_subject_writes_a_document_with_its_flag():
-    text = Subject("oren_nayar_diffuse_bsdf", True, "eon").document({"roughness": 0.5})
+    text = DiffuseSubject("oren_nayar_diffuse_bsdf", True, "eon").document({"roughness": 0.5})
     assert 'name="energy_compensation" type="boolean" value="true"' in text
     assert 'name="roughness" type="float" value="0.5"' in text
 

@@ -4,16 +4,22 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.samples.batch import (RIM, Batch)
-from mxeon.conformance.probes.emission_family import (ALL_PROBES, EMISSION_SUBJECTS, emission_probe_type)
-from mxeon.conformance.probes.emission_pictures import MATERIALS
-from mxeon.conformance.nodes.emission import (CONE, EDFS, LEAST_FALLOFF)
-from mxeon.conformance.accuracy.emission import (POWER_RADIANCE, QUADRATURE, TRANSMITTANCE, cone_roundings, on_engine)
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
-from mxeon.conformance.probes.pairs import PictureProbe
+from mxeon.conformance.accuracy.emission import (
+    POWER_RADIANCE,
+    QUADRATURE,
+    TRANSMITTANCE,
+    cone_roundings,
+    on_engine,
+)
+from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.nodes.emission import CONE, EDFS, LEAST_FALLOFF
+from mxeon.conformance.probes.emission_pictures import MATERIALS
+from mxeon.conformance.probes.families import ALL_PROBES, EMISSION_SUBJECTS, emission_probe_type
+from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.samples.batch import RIM, Batch
 from mxeon.shaders.library import data_folder
 from tests.conformance.test_bsdfs import wrong_library
 

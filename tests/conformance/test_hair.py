@@ -4,14 +4,14 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.probes import bsdf as probes
-from mxeon.conformance.nodes.bsdf import (HAIR, QUADRATURES)
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
-from mxeon.conformance.probes import hair as hair_probes
-from mxeon.conformance.probes.hair import (HairProbe, aimed)
-from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.accuracy.hair import LARGEST
+from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.nodes.bsdf import HAIR, QUADRATURES
+from mxeon.conformance.nodes.hair import HAIRS
+from mxeon.conformance.probes import bsdf as probes
+from mxeon.conformance.probes import hair as hair_probes
+from mxeon.conformance.probes.hair import HairProbe, aimed
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.models.hair import ROUGHNESSES, TINTS
 from mxeon.shaders.library import data_folder

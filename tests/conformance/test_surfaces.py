@@ -4,13 +4,13 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
-from mxeon.conformance.probes.families import COMMON_SUBJECTS
-from mxeon.conformance.nodes.surface_inputs import (FREE_PATHS, drawn)
-from mxeon.conformance.probes.surface_shaders import SurfaceProbe
-from mxeon.conformance.nodes.surface_shaders import (SHADERS, WHOLE)
+from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.nodes.surface_inputs import FREE_PATHS, drawn
+from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
+from mxeon.conformance.probes.families import COMMON_SUBJECTS
+from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.plan import make_plan, node_names
 from mxeon.shaders.library import load_library
@@ -23,7 +23,7 @@ STOCK = {"lobes", "lobes_albedo", "lobes_energy"}  # what fails there, beside th
 
 def judged(host, shader, library, keys=tuple(ROWS)):
     """Results of checks of a surface shader."""
-    probe = SurfaceProbe(host, shader, library)
+    probe = SurfaceShaderProbe(host, shader, library)
     assert all(applies(ROWS[key], shader, WHOLE, host.name) for key in keys)
     return {key: with_page(judge_check(ROWS[key], probe)) for key in keys}
 
@@ -59,7 +59,7 @@ def test_a_wrong_lobe_is_named():
         def direct(self, batch):
             return self.probe.expected_of(batch.altered(coat=np.zeros(len(batch.wo))))
 
-    probe = Coated(SurfaceProbe(None, SHADERS[0], "eonlib"))
+    probe = Coated(SurfaceShaderProbe(None, SHADERS[0], "eonlib"))
     assert ROWS["lobes"].diagnose(probe).text == "the layer equation holds without the coat"
 
 

@@ -8,12 +8,12 @@ import pytest
 
 from fits import thin_film as fit
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
+from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.thin_films import CHECKS
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.probes import thin_films
 from mxeon.conformance.probes.thin_films import FilmProbe
-from mxeon.conformance.nodes.thin_films import FILMS
-from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.shaders.library import data_folder
 

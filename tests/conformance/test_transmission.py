@@ -4,13 +4,14 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.probes import bsdf as bsdf_probes
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
-from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe)
+from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.transmission_measures import through_sphere
-from mxeon.conformance.probes.transmission import transmission_probe_type
 from mxeon.conformance.nodes.transmission import TRANSMITTING
+from mxeon.conformance.probes import bsdf as bsdf_probes
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import PictureProbe
+from mxeon.conformance.probes.transmission import transmission_probe_type
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.models.transmission import refraction
 from mxeon.shaders.hosts import raster

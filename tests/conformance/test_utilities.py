@@ -4,15 +4,15 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.samples.batch import Batch
-from mxeon.conformance.checks.verdicts import (applies, judge_check)
+from mxeon.conformance.accuracy.utilities import BLACKBODY, BLACKBODY_FIT
+from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.probes import utilities as probes
 from mxeon.conformance.checks.utility_measures import UNITS
-from mxeon.conformance.probes.utilities import (UtilityOslProbe, UtilityProbe)
-from mxeon.conformance.nodes.utilities import (BASE, RANGES, UTILITY_SUBJECTS)
-from mxeon.conformance.accuracy.utilities import (BLACKBODY, BLACKBODY_FIT)
+from mxeon.conformance.nodes.utilities import BASE, RANGES, UTILITY_SUBJECTS
+from mxeon.conformance.probes import utilities as probes
+from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.conformance.samples.batch import Batch
 from mxeon.errors import Unsupported
 from mxeon.models.pbrlib.utilities import UTILITIES
 from mxeon.shaders.hosts import open_host

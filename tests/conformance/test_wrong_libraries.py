@@ -7,17 +7,22 @@ from pathlib import Path
 
 import pytest
 
-from mxeon.conformance.functions.shader_functions import (FUNCTION_CHECKS, FunctionProbe, judge_functions, row_of)
-from mxeon.conformance.functions.inversion import (InversionProbe, judge_inversion)
+from mxeon.conformance.functions.inversion import InversionProbe, judge_inversion
+from mxeon.conformance.functions.numpy_functions import expected, random_columns
+from mxeon.conformance.functions.shader_functions import (
+    FUNCTION_CHECKS,
+    FunctionProbe,
+    judge_functions,
+    row_of,
+)
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.text.closures import check_closures
-from mxeon.conformance.text.definitions import check_definitions
-from mxeon.conformance.text.languages import check_languages
-from mxeon.conformance.functions.numpy_functions import (expected, random_columns)
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import Task, make_plan
+from mxeon.conformance.text.closures import check_closures
+from mxeon.conformance.text.definitions import check_definitions
+from mxeon.conformance.text.languages import check_languages
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.functions import names

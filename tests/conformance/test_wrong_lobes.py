@@ -5,11 +5,11 @@ import shutil
 
 import pytest
 
-from mxeon.conformance.checks.verdicts import judge_subject
-from mxeon.conformance.probes.families import (PBR_SUBJECTS, probe_type_of)
-from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.checks.application import judge_subject
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.shaders.library import data_folder
 

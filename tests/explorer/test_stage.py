@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.pictures.document_pictures import (PLAIN, TEXTURED)
-from mxeon.conformance.accuracy.diffuse import (ENVIRONMENT, VALUE)
+from mxeon.conformance.accuracy.diffuse import ENVIRONMENT, VALUE
+from mxeon.conformance.pictures.document_pictures import PLAIN, TEXTURED
 from mxeon.explorer import documents
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model

@@ -24,8 +24,8 @@ from mxeon.conformance.results import (
     FAILED,
     NOT_RUN,
     PASSED,
+    AlbedoCurve,
     Control,
-    Curve,
     Picture,
     Result,
     Run,
@@ -83,7 +83,7 @@ def made_picture(element, host="gl", **changes):
 def made_curve(rho):
     mu = np.linspace(0.0, 1.0, 5)
     expected = np.outer(1.0 - 0.1 * mu, rho)
-    return Curve(HOSTILE, "gl", "eonlib", rho, 1.0, mu, expected + 0.001, expected)
+    return AlbedoCurve(HOSTILE, "gl", "eonlib", rho, 1.0, mu, expected + 0.001, expected)
 
 
 @pytest.fixture(scope="module")

@@ -10,12 +10,12 @@ import pytest
 from docs.upstream import repairs
 from docs.upstream import update as ledger
 from mxeon.conformance.accuracy import diffuse as tolerances
-from mxeon.conformance.checks.verdicts import judge_check
-from mxeon.conformance.probes.renderer_nodes import ExactProbe
-from mxeon.conformance.nodes.diffuse import NATIVE
+from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import ISSUES
-from mxeon.conformance.known_issues.issue import OWN
+from mxeon.conformance.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun
 from mxeon.shaders.hosts import browser, open_host
@@ -47,7 +47,7 @@ def judged(host, check, title):
     """Result of a check of a node of a host's own."""
     [subject] = [each for each in NATIVE[host.name] if each.title == title]
     [row] = [each for each in CHECKS if each.key == check]
-    return judge_check(row, ExactProbe(host, subject, OWN).nearest_form())
+    return judge_check(row, ExactProbe(host, subject, RENDERER_NODES).nearest_form())
 
 
 @pytest.mark.parametrize("renderer", ["WebGLRenderer", "WebGPURenderer"])

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.checks.verdicts import judge_subject
-from mxeon.conformance.probes.polyhedron import (PROBES, facet_pairs)
-from mxeon.conformance.nodes.diffuse import NATIVE
-from mxeon.conformance.accuracy.diffuse import (COARSE_FACETS, FACET_PAIRS, FACETS)
+from mxeon.conformance.accuracy.diffuse import COARSE_FACETS, FACET_PAIRS, FACETS
+from mxeon.conformance.checks.application import judge_subject
 from mxeon.conformance.known_issues import with_page
-from mxeon.conformance.known_issues.issue import OWN
+from mxeon.conformance.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.probes.polyhedron import PROBES, facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
@@ -38,7 +38,7 @@ def judged(name):
         results = [
             with_page(result)
             for subject in NATIVE[name]
-            for result in judge_subject(probe(host, subject, OWN))
+            for result in judge_subject(probe(host, subject, RENDERER_NODES))
         ]
     return {(each.check, each.subject): each for each in results}
 

@@ -9,10 +9,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.samples.batch import directions
 from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE
-from mxeon.conformance.probes.pairs import picture_pairs
+from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.samples.batch import directions
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader, generate

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from docs.upstream import repairs
-from mxeon.conformance.checks.verdicts import judge_check
-from mxeon.conformance.probes.polyhedron import FacetPairProbe
-from mxeon.conformance.nodes.diffuse import NATIVE
+from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import ISSUES
-from mxeon.conformance.known_issues.issue import OWN
+from mxeon.conformance.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.probes.polyhedron import FacetPairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.errors import NotRun
 from mxeon.models.sampling.cltc import eon_cltc_sample
@@ -28,7 +28,7 @@ def judged(host, check, title):
     """Result of a check of one of the package's functions."""
     [subject] = [each for each in NATIVE[NAME] if each.title == title]
     [row] = [each for each in CHECKS if each.key == check]
-    return judge_check(row, FacetPairProbe(host, subject, OWN).nearest_form())
+    return judge_check(row, FacetPairProbe(host, subject, RENDERER_NODES).nearest_form())
 
 
 @pytest.fixture(scope="module")

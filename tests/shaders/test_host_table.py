@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.run import check
 from mxeon.errors import Unsupported
 from mxeon.models import table

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import tests.support.osl as osl
+from mxeon.conformance.accuracy.diffuse import TESTRENDER
 from mxeon.conformance.functions.shader_functions import FUNCTION_CHECKS
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.pairs import PlaneProbe
-from mxeon.conformance.accuracy.diffuse import TESTRENDER
+from mxeon.conformance.probes.pictures import PlaneProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.probes.bsdf import BsdfProbe
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.probes.bsdf import BsdfProbe
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.errors import ShaderError
 from mxeon.models import table as reference

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from mxeon.conformance.results import FAILED, Control, Curve, Picture, Result
+from mxeon.conformance.results import FAILED, AlbedoCurve, Control, Picture, Result
 from mxeon.conformance.run.journal import Journal
 from mxeon.conformance.run.plan import Findings, Plan, Task
 from mxeon.shaders.hosts.base import Identity
@@ -29,7 +29,9 @@ FINDINGS = Findings(
     ),
     pictures=(Picture("d", "e", "gl", "eonlib", "side", PIXELS, None, {"version": "1"}),),
     curves=(
-        Curve("a", "gl", "eonlib", (1.0, 0.5, 0.0), 0.5, np.arange(2.0), PIXELS[0], PIXELS[1]),
+        AlbedoCurve(
+            "a", "gl", "eonlib", (1.0, 0.5, 0.0), 0.5, np.arange(2.0), PIXELS[0], PIXELS[1]
+        ),
     ),
     notes=(("text", "place"),),
     errors=("broken",),

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import mxeon
-from mxeon.conformance.samples.batch import (PAIRS, SEED, Array, Batch, directions, random_inputs)
-from mxeon.conformance.checks.verdicts import judge_check
-from mxeon.conformance.nodes.diffuse import (CHANGES, Changes, OfModel)
-from mxeon.conformance.samples.edge_cases import (diffuse_edges, special_directions, special_inputs)
+from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS, Check
+from mxeon.conformance.nodes.diffuse import CHANGES, Changes, ModelSubject
 from mxeon.conformance.results import PASSED, Run
+from mxeon.conformance.samples.batch import PAIRS, SEED, Array, Batch, directions, random_inputs
+from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
 from mxeon.errors import InputError
 from mxeon.models import table as reference
 from mxeon.shaders.hosts.base import Identity
@@ -29,7 +29,7 @@ Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # of wo, wi, rho, roug
 
 
 @dataclass(frozen=True)
-class Function:
+class CallableHost:
     """The function to judge, in place of a host.
 
     Attributes
@@ -43,7 +43,7 @@ class Function:
 
 
 @dataclass(frozen=True)
-class Claim(OfModel):
+class ClaimedModel(ModelSubject):
     """The model that a function has to be, in place of a node.
 
     Attributes
@@ -69,8 +69,8 @@ class CallableProbe:
     kind = "pairs"
     library = LIBRARY
 
-    host: Function
-    subject: Claim
+    host: CallableHost
+    subject: ClaimedModel
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -189,7 +189,9 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
 
 def _probe(brdf: Brdf, model: str, name: str | None) -> CallableProbe:
     title = name or str(getattr(brdf, "__name__", type(brdf).__name__))
-    return CallableProbe(Function(title, brdf), Claim(reference.model(model).title, model))
+    return CallableProbe(
+        CallableHost(title, brdf), ClaimedModel(reference.model(model).title, model)
+    )
 
 
 def _checks(model: str) -> tuple[Check, ...]:

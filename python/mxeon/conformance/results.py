@@ -244,7 +244,7 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Curve:
+class AlbedoCurve:
     """Directional albedo over the cosine, measured on a host beside its closed form.
 
     Attributes
@@ -294,7 +294,7 @@ class Run:
     hosts: tuple[Identity, ...]
     results: tuple[Result, ...]
     pictures: tuple[Picture, ...] = ()
-    curves: tuple[Curve, ...] = ()
+    curves: tuple[AlbedoCurve, ...] = ()
     notes: tuple[str, ...] = ()
     errors: tuple[str, ...] = ()
     documents: tuple[Path, ...] = ()

@@ -3,10 +3,10 @@
 
 from functools import lru_cache
 
+from mxeon.conformance.accuracy.diffuse import VALUE
+from mxeon.conformance.diagnosis.candidates import INEXACT, of_albedo, of_value
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.accuracy.diffuse import VALUE
-from mxeon.conformance.diagnosis.candidates import (INEXACT, of_albedo, of_value)
 from mxeon.errors import NotRun
 from mxeon.explorer.data import Models
 from mxeon.models.table import KNOWN_DEFECTS, MODELS

@@ -54,7 +54,7 @@ def to_json(run: Run) -> str:
         - pictures: objects of document, element, host, library, scene; exr and png, paths
           beside the JSON file; reference, that of the reference's EXR file, and largest_difference
           from it, or null without one.
-        - curves: objects with the fields of `mxeon.conformance.results.Curve`.
+        - curves: objects with the fields of `mxeon.conformance.results.AlbedoCurve`.
     """
     summary = run.summary
     data = {

@@ -9,7 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES, OwnNode, Subject, Surface)
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseLobe, DiffuseSubject
+from mxeon.conformance.nodes.renderer_nodes import NATIVE, RendererNode
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.errors import InputError
 from mxeon.models import table as reference
@@ -150,7 +151,11 @@ def _reports(folder: Path) -> list[Path]:
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
     """Entries of a report, in its order."""
-    nodes: tuple[Subject | Surface, ...] = (*SUBJECTS, *SURFACES, *chain(*NATIVE.values()))
+    nodes: tuple[DiffuseSubject | DiffuseLobe, ...] = (
+        *SUBJECTS,
+        *SURFACES,
+        *chain(*NATIVE.values()),
+    )
     claims = {each.title: claim(each) for each in nodes}
     places: dict[Place, dict[str, Result]] = {}
     for result in report.results:
@@ -173,9 +178,9 @@ def _identity(report: Report, host: str) -> tuple[str, str]:
     return found.get(host, ("", ""))
 
 
-def claim(subject: Subject | Surface) -> str:
+def claim(subject: DiffuseSubject | DiffuseLobe) -> str:
     """Title of the model that a node claims: of its first published form, if there are several."""
-    forms = subject.forms if isinstance(subject, OwnNode) else ()
+    forms = subject.forms if isinstance(subject, RendererNode) else ()
     return reference.model((*forms, subject.model)[0]).title
 
 

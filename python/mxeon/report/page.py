@@ -20,7 +20,7 @@ from mxeon.conformance.results import (
     FAILED,
     NOT_RUN,
     PASSED,
-    Curve,
+    AlbedoCurve,
     Picture,
     Result,
     Run,
@@ -204,11 +204,11 @@ def _panel(
     return {"host": "", "library": ""} | common | more
 
 
-def plots(curves: Sequence[Curve]) -> list[dict[str, Any]]:
+def plots(curves: Sequence[AlbedoCurve]) -> list[dict[str, Any]]:
     """One plot with all hosts for each subject, library, rho and roughness."""
     hosts = list(dict.fromkeys(curve.host for curve in curves))
     marks = {host: MARKERS[row % len(MARKERS)] for row, host in enumerate(hosts)}
-    groups: dict[tuple[Any, ...], list[Curve]] = {}
+    groups: dict[tuple[Any, ...], list[AlbedoCurve]] = {}
     for curve in curves:
         key = (curve.subject, curve.library, tuple(curve.rho), curve.roughness)
         groups.setdefault(key, []).append(curve)
@@ -216,7 +216,7 @@ def plots(curves: Sequence[Curve]) -> list[dict[str, Any]]:
 
 
 def _plot(
-    curves: Sequence[Curve], marks: Mapping[str, tuple[str, str]], prefix: str
+    curves: Sequence[AlbedoCurve], marks: Mapping[str, tuple[str, str]], prefix: str
 ) -> dict[str, Any]:
     svg = albedo_plot(curves, [marks[curve.host][0] for curve in curves], prefix)
     legend = [

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imsave
 from numpy.typing import NDArray
 
-from mxeon.conformance.results import Curve
+from mxeon.conformance.results import AlbedoCurve
 from mxeon.io.images import NOT_FINITE
 
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
@@ -88,12 +88,12 @@ def difference_gradient(stops: int = 9) -> str:
     return f"linear-gradient(to right, {', '.join(colors)})"
 
 
-def albedo_plot(curves: Sequence[Curve], markers: Sequence[str], prefix: str) -> str:
+def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: str) -> str:
     """Directional albedo over the cosine, as SVG text: lines expected, markers measured.
 
     Parameters
     ----------
-    curves : sequence of mxeon.conformance.results.Curve
+    curves : sequence of mxeon.conformance.results.AlbedoCurve
         The same quantity on different hosts; the first one's expectation is drawn.
     markers : sequence of str
         Matplotlib's name of each curve's marker.
@@ -122,7 +122,7 @@ def albedo_plot(curves: Sequence[Curve], markers: Sequence[str], prefix: str) ->
 
 
 def _draw_channel(
-    axes: Axes, curves: Sequence[Curve], markers: Sequence[str], channel: int, color: str
+    axes: Axes, curves: Sequence[AlbedoCurve], markers: Sequence[str], channel: int, color: str
 ) -> None:
     axes.plot(curves[0].mu, curves[0].expected[:, channel], color=color, linewidth=1.2)
     for curve, marker in zip(curves, markers, strict=True):

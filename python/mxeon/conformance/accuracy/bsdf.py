@@ -3,12 +3,27 @@
 
 import math
 
-from mxeon.conformance.checks.bsdf_measures import (LEAST_ALPHA, LEAST_COSINE)
-from mxeon.conformance.nodes.bsdf import (CLOSED, COMBINED, FILM, FITTED, HAIR, KINDS, MICROFACET, MICROFACET_KINDS, NESTED, QUADRATURES, SCHLICK, SHEEN)
-from mxeon.conformance.accuracy.hair import (HAIR_ALBEDO, HAIR_FRAME, HAIR_VALUE)
-from mxeon.conformance.checks.measures import absolute, scaled
-from mxeon.conformance.samples.edge_cases import (LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED)
-from mxeon.conformance.samples.tolerance import (ROUNDING, SCALED, Tolerance, rounded_up)
+from mxeon.conformance.accuracy.hair import HAIR_ALBEDO, HAIR_FRAME, HAIR_VALUE
+from mxeon.conformance.nodes.bsdf import (
+    CLOSED,
+    COMBINED,
+    FILM,
+    FITTED,
+    HAIR,
+    KINDS,
+    MICROFACET,
+    MICROFACET_KINDS,
+    NESTED,
+    QUADRATURES,
+    SCHLICK,
+    SHEEN,
+)
+from mxeon.conformance.samples.edge_cases import LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED
+from mxeon.conformance.samples.measurement import absolute, scaled
+from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
+
+LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
+LEAST_COSINE = 0.1  # of the same
 
 # Largest errors of the fits that shaders are held to, each found by its script in fits/.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss

@@ -6,12 +6,12 @@ The tests and the benchmarks that judge the same quantities import them.
 
 import math
 
-from mxeon.conformance.samples.batch import (LOBE_RIM, RIM)
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
-from mxeon.conformance.checks.measures import absolute, of_mean, relative, scaled
-from mxeon.conformance.samples.uneven_environment import (ROWS, SLOPE)
+from mxeon.conformance.samples.batch import LOBE_RIM, RIM
 from mxeon.conformance.samples.edge_cases import TURNED
-from mxeon.conformance.samples.tolerance import (ROUNDING, SCALED, Tolerance, rounded_up)
+from mxeon.conformance.samples.measurement import absolute, mean_error, relative, scaled
+from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
+from mxeon.conformance.samples.uneven_environment import ROWS, SLOPE
 from mxeon.shaders.facets import NARROWEST
 from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
@@ -175,14 +175,14 @@ TESTRENDER = Tolerance(
 TESTRENDER_NOISE = Tolerance(
     rounded_up(4.0 * 0.0125 / math.sqrt(PLANE_PIXELS)),
     "mean albedo",
-    of_mean,
+    mean_error,
     "four standard errors of the mean of a picture's 16 384 pixels, each of 64 paths: measured, a "
     "pixel is off by 0.0125 rms at roughness 1 and reflectance 1; rounded up",
 )
 CYCLES_NOISE = Tolerance(
     mean_noise(12_836),
     "mean albedo",
-    of_mean,
+    mean_error,
     "four standard errors of the mean of a picture's 12 836 pixels: 1.3e-3 a pixel with 256 samples, "
     "and 1.4 times as much as independent pixels have (both measured over seeds); rounded up",
 )
@@ -221,7 +221,7 @@ COARSE_FACETS = Tolerance(
 FACET_NOISE = Tolerance(
     rounded_up(4.0 * 0.0716 / math.sqrt(FACET_PIXELS)),
     "mean albedo",
-    of_mean,
+    mean_error,
     "four standard errors of the mean of a picture's 7169 pixels, each of 64 paths: measured over 12 "
     "seeds, a pixel is off by 0.0716 rms in Mitsuba and 0.0625 in LuxCoreRender; rounded up",
 )
@@ -266,13 +266,13 @@ BSDF_PLANE = Tolerance(
 BSDF_NOISE = Tolerance(
     mean_noise(3212),
     "mean albedo",
-    of_mean,
+    mean_error,
     "that of Cycles' pictures, for the 3212 pixels of a smaller one",
 )
 BSDF_PLANE_NOISE = Tolerance(
     2.0 * TESTRENDER_NOISE.value,
     "mean albedo",
-    of_mean,
+    mean_error,
     "that of testrender's pictures, for a quarter of their pixels",
 )
 BSDF_PICTURE_KINDS = ("bsdf pictures", "microfacet pictures", "bsdf planes", "microfacet planes")

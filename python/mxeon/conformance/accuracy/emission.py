@@ -7,10 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (RIM, SEED)
-from mxeon.conformance.nodes.emission import (CLOSED, CONE, EXPONENTS, LEAST_FALLOFF, MEDIUM, PICTURES, POWER)
-from mxeon.conformance.checks.measures import scaled
-from mxeon.conformance.samples.tolerance import (ROUNDING, Tolerance, rounded_up)
+from mxeon.conformance.nodes.emission import (
+    CLOSED,
+    CONE,
+    EXPONENTS,
+    LEAST_FALLOFF,
+    MEDIUM,
+    PICTURES,
+    POWER,
+)
+from mxeon.conformance.samples.batch import RIM, SEED
+from mxeon.conformance.samples.measurement import scaled
+from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
 from mxeon.models.emission import cone_cosine, cone_width
 from mxeon.shaders.hosts.base import Host
 

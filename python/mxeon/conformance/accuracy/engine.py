@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from mxeon.conformance.accuracy.diffuse import power_of
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.conformance.accuracy.diffuse import power_of
 from mxeon.shaders.hosts.base import Host
 
 COUNT = 1 << 14
@@ -20,7 +20,7 @@ POWER = """float mxeon_power(float x, float y)
 """
 
 
-def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
+def widen_for_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
     """Tolerance of values on a probe's host: wider for a sheen of powers, by the engine's own."""
     if probe.kind != "fitted pairs":
         return tolerance

@@ -5,11 +5,11 @@ import math
 
 import numpy as np
 
-from mxeon.conformance.nodes.hair_regions import (REGIONS, Region)
-from mxeon.conformance.nodes.hair import (LEAST_SCALE, LEAST_VARIANCE)
-from mxeon.conformance.checks.measures import absolute, scaled
+from mxeon.conformance.nodes.hair import LEAST_SCALE, LEAST_VARIANCE
+from mxeon.conformance.nodes.hair_regions import REGIONS, Region
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED
-from mxeon.conformance.samples.tolerance import (ROUNDING, Tolerance, rounded_up)
+from mxeon.conformance.samples.measurement import absolute, scaled
+from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
 from mxeon.models.hair.formulas import SCALE, azimuthal, bessel_scaled
 
 UNIT = "pi f, relative above 1"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tolerances of surface shaders: the sums of those of their lobes."""
 
-from mxeon.conformance.accuracy.bsdf import (CONTY_KULLA_ALBEDO, MICROFACET_ALBEDO, MICROFACET_VALUE)
-from mxeon.conformance.checks.measures import absolute, scaled
-from mxeon.conformance.samples.tolerance import (SCALED, Tolerance)
+from mxeon.conformance.accuracy.bsdf import CONTY_KULLA_ALBEDO, MICROFACET_ALBEDO, MICROFACET_VALUE
+from mxeon.conformance.samples.measurement import absolute, scaled
+from mxeon.conformance.samples.tolerance import SCALED, Tolerance
 
 # At most two lobes of microfacets lie over each other, each in a layer, with a sheen in another.
 LAYERS = 2 * MICROFACET_ALBEDO.value + CONTY_KULLA_ALBEDO.value

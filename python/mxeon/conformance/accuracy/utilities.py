@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import SEED
-from mxeon.conformance.checks.measures import absolute, scaled
-from mxeon.conformance.samples.tolerance import (ROUNDING, Tolerance, rounded_up)
 from mxeon.conformance.nodes.utilities import VALUES
+from mxeon.conformance.samples.batch import SEED
+from mxeon.conformance.samples.measurement import absolute, scaled
+from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
 from mxeon.shaders.hosts.base import Host
 
 COUNT = 1 << 12

@@ -1,34 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of the other BSDF nodes of pbrlib: energy, layering, and their frames."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch, rounded)
-from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
+from mxeon.conformance.probes.cases import layering_cases, stretched_case, transmission_cases
+from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 
 FEW = 1 << 12
 ROUNDED = 1e-9  # difference of two albedos that are the same
 LEAST_INDEX = 1.2  # of a dielectric whose values are divided
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
-LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
-LEAST_COSINE = 0.1  # of the same
-LIGHT = ("direct", "environment")  # branches that light a base from above
 
 
 def layering(probe: Any, metric: Metric) -> Measurement:
     """Throughput of a layer against 1 - E, in the branches that light a base from above."""
     return worst_of(metric, layering_cases(probe))
-
-
-def layering_cases(probe: Any) -> Iterator[Case]:
-    """The cases of `layering`."""
-    for branch in LIGHT:
-        yield from _throughput_cases(probe, branch)
 
 
 def passing(probe: Any, metric: Metric) -> Measurement:
@@ -42,16 +34,6 @@ def passing(probe: Any, metric: Metric) -> Measurement:
 def transmission(probe: Any, metric: Metric) -> Measurement:
     """Throughput of a layer against 1 - E, in the branch of light through the base."""
     return worst_of(metric, transmission_cases(probe))
-
-
-def transmission_cases(probe: Any) -> Iterator[Case]:
-    """The cases of `transmission`."""
-    return _throughput_cases(probe, "transmission")
-
-
-def _throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
-    for batch, albedo in zip(probe.cosines, probe.albedos, strict=True):
-        yield Case(batch, probe.throughput(batch, branch), np.maximum(1.0 - albedo, 0.0))
 
 
 def layer(probe: Any, metric: Metric) -> Measurement:
@@ -117,12 +99,6 @@ def retroreflection(probe: Any, metric: Metric) -> Measurement:
 def stretched(probe: Any, metric: Metric) -> Measurement:
     """The environment branch of anisotropic materials against the integrals of their values."""
     return worst_of(metric, [stretched_case(probe)])
-
-
-def stretched_case(probe: Any) -> Case:
-    """The case of `stretched`."""
-    batch, expected = probe.stretched
-    return Case(batch, probe.albedo(batch), expected)
 
 
 def anisotropy(probe: Any, metric: Metric) -> Measurement:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.checks.measures import Measurement, Metric
-from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.samples.measurement import Measurement, Metric
+from mxeon.conformance.samples.tolerance import Tolerance
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that combine two lobes."""
 
-from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.checks import measures
-from mxeon.conformance.checks import bsdf_measures
 from mxeon.conformance.accuracy import bsdf as tolerances
-from mxeon.conformance.nodes.bsdf import (COMBINED, NESTED)
-from mxeon.conformance.checks.controls import pass_all, shifted
+from mxeon.conformance.checks import bsdf_measures, measures
 from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import pass_all, shifted
 from mxeon.conformance.checks.names import COMBINATION
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.nodes.bsdf import COMBINED, NESTED
 
 CHECKS = (
     Check(

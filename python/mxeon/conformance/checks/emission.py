@@ -4,16 +4,23 @@
 from dataclasses import replace
 from typing import Any
 
-from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.checks.controls import gray, offset, scale, shifted, with_inputs
-from mxeon.conformance.checks import emission_measures as measures
 from mxeon.conformance.accuracy import emission as tolerances
-from mxeon.conformance.nodes.emission import (ABSENT, KINDS, MEDIUM, PICTURES, SURFACES, UNIMPLEMENTED)
-from mxeon.conformance.checks.measures import value
-from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.names import (EMITTER, MEDIUM_NAMES)
 from mxeon.conformance.accuracy.diffuse import count_of
+from mxeon.conformance.checks import emission_measures as measures
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import gray, offset, scale, shifted, with_inputs
+from mxeon.conformance.checks.measures import value
+from mxeon.conformance.checks.names import EMITTER, MEDIUM_NAMES
+from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.emission import (
+    ABSENT,
+    KINDS,
+    MEDIUM,
+    PICTURES,
+    SURFACES,
+    UNIMPLEMENTED,
+)
 
 
 def unimplemented(probe: Any) -> Any:

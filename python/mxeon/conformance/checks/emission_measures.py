@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.probes.cases import back_cases, transmittance_cases
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 
 
 def implemented(probe: Any, _: Metric) -> Measurement:
@@ -17,12 +18,6 @@ def implemented(probe: Any, _: Metric) -> Measurement:
 def back(probe: Any, metric: Metric) -> Measurement:
     """Radiance towards views from the back."""
     return worst_of(metric, back_cases(probe))
-
-
-def back_cases(probe: Any) -> Iterator[Case]:
-    """The cases of `back`."""
-    batch = probe.backs
-    yield Case(batch, probe.direct(batch), probe.subject.expected(batch))
 
 
 def exitance(probe: Any, metric: Metric) -> Measurement:
@@ -38,14 +33,6 @@ def exitance(probe: Any, metric: Metric) -> Measurement:
 def transmittance(probe: Any, metric: Metric) -> Measurement:
     """Light through a medium and the throughput of a surface over it, against its transmittance."""
     return worst_of(metric, transmittance_cases(probe))
-
-
-def transmittance_cases(probe: Any) -> Iterator[Case]:
-    """The cases of `transmittance`."""
-    (batch,) = probe.batches
-    expected = probe.subject.expected(batch)
-    yield Case(batch, probe.direct(batch), expected)
-    yield Case(batch, probe.through, expected)
 
 
 def opacity(probe: Any, metric: Metric) -> Measurement:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the light that a lobe scatters in all."""
 
-from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.accuracy import bsdf as tolerances
-from mxeon.conformance.checks.controls import scale
+from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import scale
 from mxeon.conformance.checks.names import OTHERS
 
 CHECKS = (

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch)
 from mxeon.conformance.checks.controls import Altered
-from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
-from mxeon.conformance.diagnosis.candidates import (NEAR, Diagnosis, of_albedo)
+from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, of_albedo
+from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.models.ggx_formulas import smith_lambda
 
 Values = Callable[[Batch], Array]
@@ -18,7 +18,7 @@ TURNED = (-1.0, -1.0, 1.0)
 ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
 RIGHT = "every value is right by itself"  # of an explanation that found nothing
 LEAST_F = 0.01  # of a curve by which its averages are divided
-NEXT_TO_NOTHING = 1e-3  # thickness in nm of a film that changes nothing
+THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 LEAST_INDEX = 1.05  # of a substrate whose lobe is compared
 
 
@@ -28,7 +28,7 @@ def film_limit(probe: Any, metric: Metric) -> Measurement:
     bare = probe.direct(batch.altered(thinfilm_thickness=0.0))
     cases = [Case(batch, probe.direct(batch.altered(thinfilm_ior=1.0)), bare)]
     if "color0" not in batch.inputs:  # whose curve is taken at another angle under a film
-        thin = batch.altered(thinfilm_thickness=NEXT_TO_NOTHING)
+        thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
         cases.append(Case(batch, probe.direct(thin), bare))
     return worst_of(metric, cases)
 

@@ -4,14 +4,14 @@
 from collections.abc import Callable
 from typing import Any
 
-from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.nodes.bsdf import HAIR
-from mxeon.conformance.checks.controls import Altered, with_inputs
-from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.accuracy.hair import HAIR_REGIONS
-from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
 from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import Altered, with_inputs
+from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.bsdf import HAIR
+from mxeon.conformance.nodes.hair_regions import REGIONS
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.models.hair.defects import FORMS, TILTED
 from mxeon.models.pbrlib.hair import HAIR_NODE
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of what a lobe lets through to the one below it."""
 
-from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.accuracy import bsdf as tolerances
-from mxeon.conformance.checks.controls import pass_all
+from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import pass_all
+from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.models.pbrlib import NODES
 
 LAYERS = tuple(row.name for row in NODES if row.layerable)

@@ -3,12 +3,11 @@
 
 from typing import Any
 
-from mxeon.conformance.diagnosis import (candidates as diagnosis, inputs as wiring)
-from mxeon.conformance.checks import (measures, sampling_measures)
-from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
-from mxeon.conformance.nodes.bsdf import (BSDFS, CLOSED, COMBINED, FITTED, HAIR, KINDS, NESTED, SHEEN)
-from mxeon.conformance.nodes.subsurface import (ON_SPHERES, SUBSURFACES, sphere_cases)
+from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.accuracy.engine import widen_for_engine
+from mxeon.conformance.checks import measures, sampling_measures
+from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import (
     drop_changes,
     gray,
@@ -17,15 +16,19 @@ from mxeon.conformance.checks.controls import (
     take_response,
     with_inputs,
 )
-from mxeon.conformance.nodes.emission import KINDS as EMISSION_KINDS
-from mxeon.conformance.nodes.emission import (MEDIUM, PICTURES)
-from mxeon.conformance.accuracy.engine import on_engine
-from mxeon.conformance.nodes.hair import HAIRS
-from mxeon.conformance.nodes.diffuse import (OwnNode, Surface)
-from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.names import (COMBINATION, EMITTER, FRAMED, MEDIUM_NAMES, OTHERS)
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.checks.names import COMBINATION, EMITTER, FRAMED, MEDIUM_NAMES, OTHERS
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.diagnosis import inputs as wiring
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.bsdf import BSDFS, CLOSED, COMBINED, FITTED, HAIR, KINDS, NESTED, SHEEN
+from mxeon.conformance.nodes.diffuse import DiffuseLobe
+from mxeon.conformance.nodes.emission import KINDS as EMISSION_KINDS
+from mxeon.conformance.nodes.emission import MEDIUM, PICTURES
+from mxeon.conformance.nodes.hair import HAIRS
+from mxeon.conformance.nodes.renderer_nodes import RendererNode
+from mxeon.conformance.nodes.subsurface import SUBSURFACES
+from mxeon.conformance.probes.subsurface import ON_SPHERES, sphere_cases
+from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.models.pbrlib import NODES
 from mxeon.models.pbrlib.hair import HAIR_NODE
 from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE
@@ -63,17 +66,17 @@ def has_flag(subject: Any, host: str) -> bool:
 
 def is_lobe(subject: Any, host: str) -> bool:
     """Whether a subject is the lobe of a surface shader, or a renderer's own Lambert."""
-    return isinstance(subject, Surface) or subject.model == "lambert"
+    return isinstance(subject, DiffuseLobe) or subject.model == "lambert"
 
 
 def is_alone(subject: Any, host: str) -> bool:
     """Whether no other lobe lies beside the diffuse one."""
-    return not (isinstance(subject, OwnNode) and subject.others)
+    return not (isinstance(subject, RendererNode) and subject.others)
 
 
 def is_sampled(subject: Any, host: str) -> bool:
     """Whether a renderer's own sampling of the subject can be called."""
-    return isinstance(subject, OwnNode) and subject.sampled
+    return isinstance(subject, RendererNode) and subject.sampled
 
 
 def has_environment(subject: Any, host: str) -> bool:
@@ -91,7 +94,7 @@ CHECKS = (
         gray,
         tolerances.VALUES,
         open=True,
-        adapt=on_engine,
+        adapt=widen_for_engine,
     ),
     Check(
         "lobe",

@@ -1,73 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of the checks: the worst error of a probe, and its point."""
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples.batch import (Array, Batch)
-from mxeon.conformance.samples.uneven_environment import sky_map
+from mxeon.conformance.probes.cases import (
+    BRANCHES,
+    WHITE,
+    albedo_cases,
+    dead_inputs,
+    edge_case,
+    frame_cases,
+    surroundings_case,
+    throughput_cases,
+    value_cases,
+)
+from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples.measurement import (
+    Case,
+    Measurement,
+    Metric,
+    absolute,
+    point_of,
+    worst_of,
+)
 from mxeon.models import table as reference
 from mxeon.models.quadrature import albedo_dir_quadrature
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.nodes import FLAG
 
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
-BRANCHES = ("direct", "environment", "transmission", "emission")
-WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
-LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one is asked
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
-
-Metric = Callable[[Array, Any], Array]  # of measured and expected values: error of each row
-
-
-class Case(NamedTuple):
-    """A batch with measured and expected values."""
-
-    batch: Batch
-    measured: Array
-    expected: Array
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """The worst error of a check, and its point.
-
-    Attributes
-    ----------
-    error : float
-    worst : dict of str to list of float
-        Inputs and values at the worst point, by name.
-    """
-
-    error: float
-    worst: dict[str, list[float]]
-
-
-def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
-    """Largest difference of each row; infinity for what is not a number."""
-    error = np.abs(np.subtract(measured, expected)).max(axis=-1)
-    return np.where(np.isfinite(error), error, np.inf)
-
-
-def scaled(measured: Array, expected: Array) -> Array:
-    """Largest difference of each row, relative to its largest expected value where that exceeds 1."""
-    scale = np.maximum(1.0, np.abs(expected).max(axis=-1, keepdims=True))
-    return absolute(measured / scale, expected / scale)
-
-
-def relative(measured: Array, expected: Array) -> Array:
-    """Largest difference of each row, relative to the expected value."""
-    return absolute(measured / expected, 1.0)
-
-
-def of_mean(measured: Array, expected: Array) -> Array:
-    """Difference of the means over all rows, for every row: noise averages out."""
-    return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
 def value(probe: Any, metric: Metric) -> Measurement:
@@ -75,21 +42,9 @@ def value(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, value_cases(probe))
 
 
-def value_cases(probe: Any) -> Iterator[Case]:
-    """The cases of `value`."""
-    for batch in probe.batches:
-        yield Case(batch, probe.direct(batch), probe.subject.expected(batch))
-
-
 def environment(probe: Any, metric: Metric) -> Measurement:
     """The environment branch against the closed form of the directional albedo."""
     return worst_of(metric, albedo_cases(probe))
-
-
-def albedo_cases(probe: Any) -> Iterator[Case]:
-    """The cases of `environment`."""
-    for batch, expected in zip(probe.cosines, probe.albedos, strict=True):
-        yield Case(batch, probe.albedo(batch), expected)
 
 
 def frame(probe: Any, metric: Metric) -> Measurement:
@@ -97,31 +52,9 @@ def frame(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, frame_cases(probe))
 
 
-def frame_cases(probe: Any) -> Iterator[Case]:
-    """The cases of `frame`."""
-    batch = probe.turned
-    local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
-    for output in (probe.direct, probe.albedo):
-        yield Case(batch, output(batch), output(local))
-
-
 def surroundings(probe: Any, metric: Metric) -> Measurement:
     """The environment branch under an uneven sky, over that in a uniform one, against the sky."""
     return worst_of(metric, [surroundings_case(probe)])
-
-
-def surroundings_case(probe: Any) -> Case:
-    """The case of `surroundings`."""
-    batch = probe.turned
-    if "color" in probe.subject.inputs:
-        batch = batch.altered(color=WHITE)
-    level = probe.albedo(batch)
-    bright = level.min(axis=1) > LEAST_LIGHT
-    if bright.any():  # or what is dark is wrong
-        batch, level = batch.where(bright), level[bright]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        measured = probe.albedo(batch, sky_map()) / level
-    return Case(batch, measured, probe.subject.sky(batch))
 
 
 def quadrature(probe: Any, metric: Metric) -> Measurement:
@@ -168,12 +101,6 @@ def throughput(probe: Any, metric: Metric) -> Measurement:
     return worst_of(
         metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch))
     )
-
-
-def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
-    """The cases of `throughput` in one of BRANCHES."""
-    for batch in probe.few:
-        yield Case(batch, probe.throughput(batch, branch), np.zeros((len(batch.wo), 3)))
 
 
 def furnace(probe: Any, metric: Metric) -> Measurement:
@@ -226,55 +153,8 @@ def inputs(probe: Any, _: Metric) -> Measurement:
     return Measurement(len(dead), {name: [0.0] for name in dead})
 
 
-def dead_inputs(probe: Any) -> list[str]:
-    """The inputs of `inputs`."""
-    batch = probe.few[0]
-    plain = probe.direct(batch)  # most changes are of the batch as it is
-    dead = []
-    for name, (before, after) in probe.subject.changes.items():
-        one = probe.direct(batch.altered(**before)) if before else plain
-        other = probe.direct(batch.altered(**after))
-        if np.array_equal(one, other, equal_nan=True):
-            dead.append(name)
-    return dead
-
-
 def finite(probe: Any, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
     batch, values, _expected = edge_case(probe)
     bad = ~np.isfinite(values).all(axis=1)
     return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
-
-
-def edge_case(probe: Any) -> Case:
-    """Values and albedos at the edges of the domain, beside 0."""
-    batch = probe.edges
-    values = np.concatenate([probe.direct(batch), probe.albedo(batch)], axis=1)
-    return Case(batch, values, np.zeros_like(values))
-
-
-def worst_of(metric: Metric, cases: Iterable[Case]) -> Measurement:
-    """The worst row of (batch, measured, expected) cases."""
-    worst = Measurement(-1.0, {})
-    for batch, measured, expected in cases:
-        errors = metric(measured, expected)
-        row = int(np.argmax(errors))
-        if errors[row] > worst.error:
-            expected = np.broadcast_to(expected, measured.shape)
-            values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
-            worst = Measurement(float(errors[row]), {**point_of(batch, row), **values})
-    return worst
-
-
-def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
-    """Directions and inputs of one row of a batch."""
-    columns: dict[str, Any] = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
-    return {
-        name: np.ravel(_row(values, row, len(batch.wo))).astype(float).tolist()
-        for name, values in columns.items()
-    }
-
-
-def _row(values: Any, row: int, count: int) -> Any:
-    """One row of values, or the values that hold for all rows."""
-    return values[row] if np.shape(values) and len(values) == count else values

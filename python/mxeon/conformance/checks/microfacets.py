@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of lobes of microfacets alone."""
 
-from mxeon.conformance.diagnosis import inputs as wiring
-from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.accuracy import bsdf as tolerances
-from mxeon.conformance.nodes.bsdf import (MICROFACET, MICROFACET_KINDS)
-from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
+from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
+from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.nodes.bsdf import MICROFACET, MICROFACET_KINDS
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch)
-from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.batch import SEED, Array, Batch
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.models.sampling.cltc import eon_cltc_pdf
 
 COSINES = (0.05, 0.3, 0.7, 0.99)  # of the viewer

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import Batch
-from mxeon.conformance.checks.measures import scaled
-from mxeon.conformance.checks.surface_measures import misplaced
 from mxeon.conformance.accuracy.surface_shaders import VALUE
+from mxeon.conformance.checks.surface_measures import misplaced
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.samples.batch import Batch
+from mxeon.conformance.samples.measurement import scaled
 
 WORST = 32  # pairs that are looked at
 # Inputs that take a lobe away, by its name.

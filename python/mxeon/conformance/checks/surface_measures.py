@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks.measures import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 
 BRANCHES = ("direct", "environment", "transmission")
 

@@ -6,15 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.checks import measures
-from mxeon.conformance.samples.batch import (Array, Batch)
-from mxeon.conformance.checks.controls import Altered, scale, shifted
-from mxeon.conformance.checks import surface_diagnosis as diagnosis
 from mxeon.conformance.accuracy import surface_shaders as tolerances
-from mxeon.conformance.checks import surface_measures
-from mxeon.conformance.nodes.surface_shaders import (SHADERS, WHOLE)
-from mxeon.conformance.checks.check import Check
 from mxeon.conformance.accuracy.diffuse import count_of
+from mxeon.conformance.checks import measures, surface_measures
+from mxeon.conformance.checks import surface_diagnosis as diagnosis
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import Altered, scale, shifted
+from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
+from mxeon.conformance.samples.batch import Array, Batch
 
 MODELS = tuple(shader.model for shader in SHADERS)
 

@@ -5,7 +5,19 @@ A check passes at error <= tolerance. Its control is the same probe made wrong o
 host; the check has to fail on it. Every tolerance is the expression that its derivation describes.
 """
 
-from mxeon.conformance.checks import (combinations, emission, energy, hair, layers, lobes, microfacets, surface_shaders as surfaces, thin_films, transmission, utilities)
+from mxeon.conformance.checks import (
+    combinations,
+    emission,
+    energy,
+    hair,
+    layers,
+    lobes,
+    microfacets,
+    thin_films,
+    transmission,
+    utilities,
+)
+from mxeon.conformance.checks import surface_shaders as surfaces
 from mxeon.conformance.checks.check import Check
 
 __all__ = ["CHECKS", "Check"]

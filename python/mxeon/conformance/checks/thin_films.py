@@ -1,16 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of microfacets under a thin film."""
 
-from mxeon.conformance.diagnosis import (candidates as diagnosis, inputs as wiring)
-from mxeon.conformance.checks import measures
-from mxeon.conformance.accuracy import diffuse as tolerances
-from mxeon.conformance.checks import bsdf_measures
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
-from mxeon.conformance.nodes.bsdf import FILM
-from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
+from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.checks import bsdf_measures, measures
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.film_measures import (brighter, film_average, film_energy, film_limit, film_visible, of_average, of_visible, thicker)
-from mxeon.conformance.nodes.thin_films import (FILM_MODELS, LAYERED)
+from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
+from mxeon.conformance.checks.film_measures import (
+    brighter,
+    film_average,
+    film_energy,
+    film_limit,
+    film_visible,
+    of_average,
+    of_visible,
+    thicker,
+)
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.nodes.bsdf import FILM
+from mxeon.conformance.nodes.thin_films import FILM_MODELS, LAYERED
 
 CHECKS = (
     Check(

@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.diagnosis import inputs as wiring
-from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.accuracy import bsdf as tolerances
-from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
-from mxeon.conformance.checks.measures import Case
-from mxeon.conformance.checks.check import Check
-from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.conformance.accuracy.diffuse import (SURROUNDINGS, count_of)
+from mxeon.conformance.accuracy.diffuse import SURROUNDINGS, count_of
 from mxeon.conformance.checks import transmission_measures as measures
-from mxeon.conformance.nodes.transmission import (TRANSMISSION_KINDS, TRANSMITTING)
-from mxeon.conformance.diagnosis.candidates import (NEAR, Diagnosis, not_finite)
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
+from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
+from mxeon.conformance.nodes.transmission import TRANSMISSION_KINDS, TRANSMITTING
+from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.samples.measurement import Case
+from mxeon.conformance.samples.tolerance import Tolerance
 
 MODELS = tuple(subject.model for subject in TRANSMITTING)
 BOTH = tuple(subject.model for subject in TRANSMITTING if subject.reflects)

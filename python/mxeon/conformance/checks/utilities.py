@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the utility nodes, which compute numbers and colors that feed the lobes."""
 
-from mxeon.conformance.diagnosis import inputs as wiring
-from mxeon.conformance.checks import measures
-from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
-from mxeon.conformance.checks.check import Check
-from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.checks import utility_measures as value_measures
 from mxeon.conformance.accuracy import utilities as tolerances
-from mxeon.conformance.nodes.utilities import (OSL_VALUES, VALUES)
+from mxeon.conformance.accuracy.diffuse import count_of
+from mxeon.conformance.checks import measures
+from mxeon.conformance.checks import utility_measures as value_measures
+from mxeon.conformance.checks.check import Check
+from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
+from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES
 from mxeon.models.pbrlib.utilities import UTILITIES
 
 NAMES = tuple(row.category for row in UTILITIES)

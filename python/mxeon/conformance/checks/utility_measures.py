@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.samples.batch import (Array, Batch)
-from mxeon.conformance.checks.measures import Case, Measurement, Metric, point_of, worst_of
 from mxeon.conformance.accuracy.utilities import utility_tolerance
+from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, point_of, worst_of
 from mxeon.models.artistic_ior import normal_reflectance
 from mxeon.models.pbrlib.utilities import LARGEST_REFLECTIVITY
 

@@ -8,17 +8,23 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (FEW, Array, Batch, Candidate)
-from mxeon.conformance.checks.bsdf_measures import (layering_cases, transmission_cases)
-from mxeon.conformance.checks.emission_measures import (back_cases, transmittance_cases)
-from mxeon.conformance.nodes.emission import MEDIUM
-from mxeon.conformance.accuracy.emission import (FRONTS, TRANSMITTANCE)
-from mxeon.conformance.checks.measures import Case, albedo_cases, of_mean, value_cases
+from mxeon.conformance.accuracy.diffuse import ALBEDOS, LOBES, THROUGHPUTS, VALUES
+from mxeon.conformance.accuracy.emission import FRONTS, TRANSMITTANCE
+from mxeon.conformance.diagnosis.faults import DIRECT, ENVIRONMENT, Fault, scaled_by
+from mxeon.conformance.diagnosis.regions import Mask, smallest
 from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.nodes.emission import MEDIUM
+from mxeon.conformance.probes.cases import (
+    albedo_cases,
+    back_cases,
+    layering_cases,
+    transmission_cases,
+    transmittance_cases,
+    value_cases,
+)
+from mxeon.conformance.samples.batch import FEW, Array, Batch, Candidate
+from mxeon.conformance.samples.measurement import Case, mean_error
 from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.conformance.accuracy.diffuse import (ALBEDOS, LOBES, THROUGHPUTS, VALUES)
-from mxeon.conformance.diagnosis.faults import (DIRECT, ENVIRONMENT, Fault, scaled_by)
-from mxeon.conformance.diagnosis.regions import (Mask, smallest)
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
@@ -200,7 +206,9 @@ def _distance(
         if "albedo" not in tolerance.unit:
             kept &= np.abs(case.batch.wi[:, 2]) > LIT
         error = ((case.measured - values) / tolerance.scale(case.expected))[kept]
-        errors.append(error.mean(axis=0, keepdims=True) if tolerance.metric is of_mean else error)
+        errors.append(
+            error.mean(axis=0, keepdims=True) if tolerance.metric is mean_error else error
+        )
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
 
 

@@ -7,23 +7,23 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch)
-from mxeon.conformance.checks.bsdf_measures import stretched_case
-from mxeon.conformance.checks.measures import (
+from mxeon.conformance.accuracy.diffuse import FRAMES, OPAQUE, SURROUNDINGS
+from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite, of_value, region
+from mxeon.conformance.diagnosis.faults import normal_ignored
+from mxeon.conformance.diagnosis.regions import smallest
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.probes.cases import (
     BRANCHES,
-    absolute,
     dead_inputs,
     edge_case,
     frame_cases,
+    stretched_case,
     surroundings_case,
     throughput_cases,
 )
-from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.samples.uneven_environment import (sky, sky_behind)
-from mxeon.conformance.accuracy.diffuse import (FRAMES, OPAQUE, SURROUNDINGS)
-from mxeon.conformance.diagnosis.candidates import (NEAR, Diagnosis, not_finite, of_value, region)
-from mxeon.conformance.diagnosis.faults import normal_ignored
-from mxeon.conformance.diagnosis.regions import smallest
+from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples.measurement import absolute
+from mxeon.conformance.samples.uneven_environment import sky, sky_behind
 from mxeon.shaders.nodes import FLAG
 
 UNKNOWN = "no known fault explains it"

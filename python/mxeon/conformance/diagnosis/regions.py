@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.samples.batch import Array, Batch
 
 Mask = NDArray[np.bool_]
 

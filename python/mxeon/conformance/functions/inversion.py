@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array)
-from mxeon.conformance.checks.verdicts import (judge_measurements, not_measured)
-from mxeon.conformance.checks.measures import Measurement, absolute
-from mxeon.conformance.text.syntax import braces
-from mxeon.conformance.accuracy.diffuse import (INVERSION, ROUND_TRIP)
-from mxeon.conformance.diagnosis.candidates import (SAME, Diagnosis, sentence)
+from mxeon.conformance.accuracy.diffuse import INVERSION, ROUND_TRIP
+from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
+from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.results import Result
+from mxeon.conformance.samples.batch import SEED, Array
+from mxeon.conformance.samples.measurement import Measurement, absolute
+from mxeon.conformance.text.syntax import braces
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models import albedo, inversion
 from mxeon.shaders.hosts.base import Host

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (GRAZING, SEED, Array, directions)
+from mxeon.conformance.samples.batch import GRAZING, SEED, Array, directions
 from mxeon.models import albedo, formulas, sampling
 from mxeon.models.sampling import cltc, eon, hemisphere, ltc
 from mxeon.shaders import functions

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.functions import numpy_functions as twins
-from mxeon.conformance.samples.batch import Array
-from mxeon.conformance.checks.verdicts import (judge_measurements, not_measured)
-from mxeon.conformance.checks.measures import Measurement, absolute, relative
-from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.conformance.accuracy.diffuse import (DENSITY, LOSS, PART, VALUE, direction_of)
+from mxeon.conformance.accuracy.diffuse import DENSITY, LOSS, PART, VALUE, direction_of
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
+from mxeon.conformance.functions import numpy_functions as twins
 from mxeon.conformance.results import Result
+from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.samples.measurement import Measurement, absolute, relative
+from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, ShaderError
 from mxeon.shaders import functions
 from mxeon.shaders.hosts.base import Host

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 STOCK = "stock"
-OWN = "its own nodes"  # in the place of a library
+RENDERER_NODES = "its own nodes"  # in the place of a library
 
 
 @dataclass(frozen=True)

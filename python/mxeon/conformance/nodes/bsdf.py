@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch, Candidate)
 from mxeon.conformance.nodes.diffuse import Changes
-from mxeon.conformance.samples.uneven_environment import sky
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
+from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models import pbrlib
 from mxeon.models.pbrlib.node import Inputs, PbrNode
 from mxeon.shaders.nodes import input_types, material_text
@@ -234,15 +234,15 @@ def _wrong_side(row: PbrNode) -> Iterator[Candidate]:
             return row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
 
         def reflection(batch: Batch) -> Array:
-            whole = batch.altered(occlusion=1.0)  # as of light through the base
-            return _expected(replace(row, transmits=False), mirrored, whole)
+            broadcast_inputs = batch.altered(occlusion=1.0)  # as of light through the base
+            return _expected(replace(row, transmits=False), mirrored, broadcast_inputs)
 
         yield Candidate("a reflection in its place", reflection)
 
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
     """A directional albedo with weight, (N, 3)."""
-    return batch.strength * albedo(batch.wo, whole(batch))
+    return batch.strength * albedo(batch.wo, broadcast_inputs(batch))
 
 
 def _expected(row: PbrNode, value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:
@@ -252,10 +252,10 @@ def _expected(row: PbrNode, value: Callable[[Array, Array, Inputs], Array], batc
     occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
     factor = batch.strength * (1.0 if row.transmits else occlusion)
     lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
-    return np.asarray(np.pi * value(batch.wo, wi, whole(batch)) * lit * factor)
+    return np.asarray(np.pi * value(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
 
 
-def whole(batch: Batch) -> dict[str, Array]:
+def broadcast_inputs(batch: Batch) -> dict[str, Array]:
     """The inputs with a row for each pair."""
     count = len(batch.wo)
     return {

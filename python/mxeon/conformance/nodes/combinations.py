@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import Array
-from mxeon.conformance.nodes.bsdf import (COMBINED, NESTED, BsdfSubject)
+from mxeon.conformance.nodes.bsdf import COMBINED, NESTED, BsdfSubject
 from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.models.pbrlib import combinations
 from mxeon.models.pbrlib.combinations import AMOUNT, AMOUNT_ABOVE, COMBINATIONS, FACTOR, ROUGHNESS

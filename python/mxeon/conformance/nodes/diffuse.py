@@ -2,17 +2,17 @@
 """Subjects of the checks: the rough diffuse nodes, each with the model it has to be."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch, Candidate, random_inputs)
-from mxeon.conformance.samples.uneven_environment import sky
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, random_inputs
 from mxeon.conformance.samples.edge_cases import special_inputs
+from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models import table as reference
-from mxeon.models.table import OTHERS, Model
+from mxeon.models.table import Model
 from mxeon.shaders.nodes import (
     EON,
     FLAG,
@@ -25,7 +25,7 @@ from mxeon.shaders.nodes import (
 )
 
 
-class OfModel:
+class ModelSubject:
     """What a subject has that has to be one of the diffuse models."""
 
     model: str
@@ -94,7 +94,7 @@ CHANGES = {
 
 
 @dataclass(frozen=True)
-class Subject(OfModel):
+class DiffuseSubject(ModelSubject):
     """A node with its flag and the model it has to be.
 
     Attributes
@@ -149,18 +149,18 @@ class Subject(OfModel):
 
 
 SUBJECTS = (
-    Subject(OREN_NAYAR, True, "eon"),
-    Subject(OREN_NAYAR, False, "qon"),
-    Subject(EON, None, "eon"),
+    DiffuseSubject(OREN_NAYAR, True, "eon"),
+    DiffuseSubject(OREN_NAYAR, False, "qon"),
+    DiffuseSubject(EON, None, "eon"),
 )
 
 
 @dataclass(frozen=True)
-class Surface(OfModel):
+class DiffuseLobe(ModelSubject):
     """The diffuse lobe of a surface shader, whose other lobes cannot be switched off.
 
     What lies over the lobe depends on the directions alone, so that pictures of other colors
-    tell the lobe apart; see `mxeon.conformance.probes.diffuse_lobes.SurfaceProbe`.
+    tell the lobe apart; see `mxeon.conformance.probes.diffuse_lobes.DiffuseLobeProbe`.
 
     Attributes
     ----------
@@ -200,8 +200,10 @@ THIN_WALLED = (
     ("subsurface_weight", "float", "1.0"),
 )
 SURFACES = (
-    Surface("open_pbr_surface", "open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"),
-    Surface(
+    DiffuseLobe(
+        "open_pbr_surface", "open_pbr_surface", "eon", "base_color", "base_diffuse_roughness"
+    ),
+    DiffuseLobe(
         "open_pbr_surface, thin-walled",
         "open_pbr_surface",
         "eon",
@@ -210,7 +212,7 @@ SURFACES = (
         THIN_WALLED,
         ("stock",),
     ),
-    Surface(
+    DiffuseLobe(
         "standard_surface",
         "standard_surface",
         "qon",
@@ -218,92 +220,8 @@ SURFACES = (
         "diffuse_roughness",
         (("base", "float", "1.0"),),
     ),
-    Surface("UsdPreviewSurface", "UsdPreviewSurface", "lambert", "diffuseColor", ""),
-    Surface("gltf_pbr", "gltf_pbr", "lambert", "base_color", "", (("metallic", "float", "0.0"),)),
+    DiffuseLobe("UsdPreviewSurface", "UsdPreviewSurface", "lambert", "diffuseColor", ""),
+    DiffuseLobe(
+        "gltf_pbr", "gltf_pbr", "lambert", "base_color", "", (("metallic", "float", "0.0"),)
+    ),
 )
-
-
-@dataclass(frozen=True)
-class OwnNode(Subject):
-    """A node of a renderer's own, and the model that its documentation claims.
-
-    Attributes
-    ----------
-    forms : tuple of str
-        Forms of the model that its paper publishes, if there are several. The one that is nearest to
-        what is measured is judged.
-    others : bool
-        Whether other lobes lie beside the diffuse one, which do not depend on the color.
-    sampled : bool
-        Whether its renderer draws directions for it by a function that can be called.
-    """
-
-    forms: tuple[str, ...] = ()
-    others: bool = False
-    sampled: bool = False
-
-    @property
-    def _others(self) -> tuple[Model, ...]:
-        """Models of renderers' own nodes; Burley's with the albedo that the node's own has."""
-        name = self.model if self.model.startswith("burley") else "burley"
-        left_out = {"burley", "burley_lambert"} - {name}
-        return tuple(row for row in OTHERS if row.name not in left_out)
-
-
-def _own(model: str, *nodes: str, forms: tuple[str, ...] = ()) -> tuple[OwnNode, ...]:
-    """Nodes of a renderer's own with a color and a roughness, which claim a model."""
-    return tuple(OwnNode(node, None, model, ("color", "roughness"), forms) for node in nodes)
-
-
-# The paper prints EON with the exact albedo and with a quartic for it.
-PUBLISHED = ("eon", "eon_fitted")
-
-# Nodes that a renderer has of its own, by the name of the host, with the models that their
-# documentation claims. OpenPBR asks for EON, Standard Surface for Oren-Nayar.
-NATIVE = {
-    "cycles-native": _own("eon", "Diffuse BSDF", "Principled BSDF"),
-    "three": (
-        *_own(
-            "eon",
-            "MeshPhysicalMaterial, WebGLRenderer",
-            "MeshPhysicalMaterial, WebGPURenderer",
-            "open_pbr_surface, MaterialXLoader",
-            forms=PUBLISHED,
-        ),
-        *_own("qon", "standard_surface, MaterialXLoader"),
-    ),
-    "babylon": (
-        *_own(
-            "eon",
-            "PBRMaterial E_OREN_NAYAR, WebGL2",
-            "PBRMaterial E_OREN_NAYAR, WebGPU",
-            "OpenPBRMaterial, WebGL2",
-            "OpenPBRMaterial, WebGPU",
-            forms=PUBLISHED,
-        ),
-        *_own("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
-        *_own("burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"),
-        *(
-            OwnNode(f"PBRMaterial LAMBERT, {engine}", None, "lambert", ("color",))
-            for engine in ("WebGL2", "WebGPU")
-        ),
-    ),
-    "three-gpu-pathtracer": (
-        *(
-            replace(each, sampled=True)
-            for each in _own("eon", "WebGPUPathTracer, eonBrdf", forms=PUBLISHED)
-        ),
-        *_own("fon", "WebGPUPathTracer, fonBrdf"),
-        *_own("burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"),
-    ),
-    "mitsuba": (OwnNode("diffuse", None, "lambert", ("color",)), *_own("burley", "principled")),
-    # Its manual has the roughness of both nodes for Cycles only.
-    "eevee": tuple(
-        OwnNode(node, None, "lambert", ("color",)) for node in ("Diffuse BSDF", "Principled BSDF")
-    ),
-    "luxcore": (
-        OwnNode("matte", None, "lambert", ("color",)),
-        *_own("qon", "roughmatte", "roughmatte, sigma in degrees"),
-        OwnNode("disney", None, "burley", ("color", "roughness"), others=True),
-    ),
-}

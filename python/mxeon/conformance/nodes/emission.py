@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch, Candidate)
 from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.emissions import (
     AMOUNT,
     BASE,

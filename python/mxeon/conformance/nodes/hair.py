@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch, Candidate)
-from mxeon.conformance.nodes.bsdf import (HAIR, NOTHING, BsdfSubject, whole)
+from mxeon.conformance.nodes.bsdf import HAIR, NOTHING, BsdfSubject, broadcast_inputs
 from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.pbrlib.hair import HAIR_NODE
@@ -79,7 +79,7 @@ class HairSubject(BsdfSubject):
 
     def albedo(self, batch: Batch) -> Array:
         """Integral of f over all lights, of a cuticle without tilt, (N, 3)."""
-        return self.row.albedo(batch.wo, whole(batch))
+        return self.row.albedo(batch.wo, broadcast_inputs(batch))
 
     integral = albedo
 
@@ -89,7 +89,7 @@ class HairSubject(BsdfSubject):
         R and TRT leave on the side where light comes in, TT on the other one, and what is beyond
         spreads over both.
         """
-        inputs = whole(batch)
+        inputs = broadcast_inputs(batch)
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
         front = shares @ FRONT / shares.sum(axis=-1)
@@ -134,7 +134,7 @@ def _mixed(rng: np.random.Generator, values: Array, edges: tuple[float, ...]) ->
 def _expected(value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:
     """pi f of a function of `wo, wi, inputs`, with occlusion."""
     occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
-    return np.asarray(np.pi * value(batch.wo, batch.wi, whole(batch)) * occlusion)
+    return np.asarray(np.pi * value(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
 
 HAIRS = (HairSubject(HAIR_NODE),)

@@ -3,19 +3,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import Any, ClassVar
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch, Candidate, directions)
-from mxeon.conformance.probes.emission import NodeProbe
-from mxeon.conformance.nodes.emission import (MEDIUM, view_rows)
 from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.nodes.emission import MEDIUM, view_rows
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 
-VIEWS = 1 << 8
 LARGEST = 4.0  # coefficient, 1/m
 INTERFACE = """  <dielectric_bsdf name="top" type="BSDF">
     <input name="weight" type="float" value="1.0" />
@@ -132,48 +130,6 @@ class MediumSubject:
 def _transmittance(value: Any, batch: Batch) -> Array:
     """Transmittance of a function of coefficients, (N, 3)."""
     return np.asarray(value(view_rows(batch)))
-
-
-@dataclass(frozen=True, eq=False)
-class MediumProbe(NodeProbe):
-    """A VDF node on a host that evaluates what a surface over it lets through."""
-
-    kind: ClassVar[str] = MEDIUM
-
-    subject: MediumSubject
-
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        """Random views and coefficients, of which an eighth is 0."""
-        rng = np.random.default_rng(SEED)
-        wo = directions(rng, VIEWS)
-        inputs = self.subject.random_inputs(rng, VIEWS)
-        return (Batch(wo, wo * [1.0, 1.0, -1.0], inputs),)
-
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """The same: they are few."""
-        return self.batches
-
-    def direct(self, batch: Batch) -> Array:
-        """Share of the light from below that passes a surface without weight, (N, 3)."""
-        return self._evaluate(batch.altered(**{"top/weight": 0.0}), "throughput")
-
-    @cached_property
-    def through(self) -> Array:
-        """Light that comes through the media of the batch, over that without them, (N, 3)."""
-        (batch,) = self.batches
-        coefficients = (each for each in self.subject.inputs if np.shape(batch.inputs[each])[1:])
-        clear = batch.altered(**dict.fromkeys(coefficients, (0.0, 0.0, 0.0)))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return self._evaluate(batch, "response") / self._evaluate(clear, "response")
-
-    def _evaluate(self, batch: Batch, output: str) -> Array:
-        evaluate = self.host.evaluate
-        values = evaluate(
-            self.shader, batch.wo, batch.wi, batch.inputs, "transmission", output=output
-        )
-        return np.asarray(values, np.float64)
 
 
 MEDIUM_NODES = tuple(MediumSubject(row) for row in (*MEDIA, *COMBINED_MEDIA))

@@ -1,32 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node `subsurface_bsdf` on a host that evaluates pairs of directions: on a plane, and on a sphere."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from mxeon.conformance.samples.batch import (Array, Batch, Candidate)
-from mxeon.conformance.probes.bsdf import BsdfProbe
-from mxeon.conformance.nodes.bsdf import (BsdfSubject, whole)
-from mxeon.conformance.checks.measures import Case
+from mxeon.conformance.nodes.bsdf import BsdfSubject, broadcast_inputs
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE, circle_blur
-from mxeon.models.subsurface import diffusion_blur
-from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
 
 LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
 LONGEST = 2.0  # mean free path of random pairs
 UNSEEN = ("radius", "anisotropy")  # inputs that change nothing on a plane
-COSINES = np.linspace(-1.0, 1.0, 129)
-SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # of a sphere of radius 1
-LEAST_HEIGHT = 0.3  # of its normals; next to the rim a pixel's point is far from the next one's
-MATERIALS: tuple[dict[str, Any], ...] = (  # from one whose light is everywhere to one like a plane
-    {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": 0.0},
-    {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
-)
 
 
 @dataclass(frozen=True)
@@ -58,86 +43,9 @@ def _blurred(batch: Batch) -> Array:
     mu = batch.wi[:, 2]
     shadow = 1.0 - np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
     lit = 1.0 - shadow * np.clip(mu, LEAST_COSINE, 1.0)[:, np.newaxis]
-    inputs = whole(batch)
+    inputs = broadcast_inputs(batch)
     light = np.where(mu[:, np.newaxis] > 1.0, 0.0, circle_blur(mu, inputs["radius"]))
     return np.asarray(batch.strength * inputs["color"] * light * lit)
-
-
-@dataclass(frozen=True, eq=False)
-class SubsurfaceProbe(BsdfProbe):
-    """The node on a plane, and on a sphere, whose points are a batch with a scene."""
-
-    subject: SubsurfaceSubject
-
-    @cached_property
-    def turned(self) -> Batch:
-        """Pairs in frames of their own, which no light leaves elsewhere: such a surface is not flat."""
-        return super().turned.altered(radius=(0.0, 0.0, 0.0))
-
-    @cached_property
-    def spheres(self) -> tuple[Batch, ...]:
-        """Points of a sphere under each light, for each of MATERIALS."""
-        return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
-
-    def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3)."""
-        if batch.scene is None:
-            return super().direct(batch)
-        document = self.subject.document(batch.inputs)
-        [shader] = self.host.compile(document, library=self.library)
-        picture = self.host.picture(shader, batch.scene)
-        return picture[_inner(batch.scene.size)].astype(np.float64)
-
-
-def sphere_cases(probe: Any) -> Iterator[Case]:
-    """Points of a sphere, with the light that the profile spreads over it."""
-    return (Case(batch, probe.direct(batch), _spread(batch)) for batch in probe.spheres)
-
-
-def _spread(batch: Batch) -> Array:
-    """Light on a unit sphere by the profile of l / (1 - g), (N, 3)."""
-    reach = np.array(batch.inputs["radius"]) / (1.0 - batch.inputs["anisotropy"])
-    light = [np.interp(batch.wi[:, 2], COSINES, _profile(each)) for each in reach.tolist()]
-    return np.asarray(batch.inputs["color"] * np.stack(light, axis=-1))
-
-
-@lru_cache(maxsize=8)
-def _profile(reach: float) -> Array:
-    """The blurred cosine at COSINES: between them it is straight within 2e-4."""
-    return diffusion_blur(COSINES, reach)
-
-
-def _around(batch: Batch) -> Array:
-    """Light on a unit sphere as MaterialX blurs it."""
-    mu = np.clip(batch.wi[:, 2], -1.0, 1.0)
-    radius = np.broadcast_to(batch.inputs["radius"], batch.wi.shape)
-    return np.asarray(batch.inputs["color"] * circle_blur(mu, radius, body=1.0))
-
-
-def _lambert(batch: Batch) -> Array:
-    """Light on a sphere of which none spreads."""
-    return np.asarray(batch.inputs["color"] * np.maximum(batch.wi[:, 2:], 0.0))
-
-
-ON_SPHERES = (
-    Candidate("the diffusion profile over the sphere", _spread),
-    Candidate("Lambert, whatever the radius", _lambert),
-    Candidate("MaterialX's blur along a circle of radius 1", _around),
-)
-
-
-def _points(scene: Scene, inputs: dict[str, Any]) -> Batch:
-    """Points of a sphere away from its rim, those in the shadow among them."""
-    normal = sphere(scene.size).normal[_inner(scene.size)]
-    wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light or VIEW))
-    return Batch(wo, wi, inputs, scene)
-
-
-def _inner(size: int) -> NDArray[np.bool_]:
-    """Mask of a picture's points away from the rim of the sphere."""
-    points = sphere(size)
-    mask: NDArray[np.bool_] = points.mask & (points.normal[..., 2] > LEAST_HEIGHT)
-    return mask
 
 
 SUBSURFACES = (SubsurfaceSubject(SUBSURFACE_NODE),)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Candidate)
-from mxeon.conformance.nodes.surface_inputs import (GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs, drawn)
+from mxeon.conformance.nodes.surface_inputs import GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs, drawn
+from mxeon.conformance.samples.batch import Array, Candidate
 from mxeon.shaders.nodes import document_text, node_text
 
 WHOLE = "surface pairs"  # kind of probe

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mxeon.conformance.nodes.bsdf import FILM, BsdfSubject
 from mxeon.conformance.samples.batch import Array
-from mxeon.conformance.nodes.bsdf import (FILM, BsdfSubject)
 from mxeon.models.pbrlib.thin_films import FILM_NODES
 
 THICK, OILS = (0.0, 1.0, 100.0, 1e4), (1.0, 1.5)  # special thicknesses and indices

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, replace
 
-from mxeon.conformance.nodes.bsdf import (SCHLICK, BsdfSubject)
+from mxeon.conformance.nodes.bsdf import SCHLICK, BsdfSubject
 from mxeon.models.pbrlib.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
 
 # Kinds of probes.

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch, Candidate)
 from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.utilities import UTILITIES, UtilityNode, Values
 from mxeon.shaders.nodes import document_text, input_text, node_text
 

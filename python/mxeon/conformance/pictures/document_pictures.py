@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance.accuracy.bsdf import (MICROFACET_VALUE, sum_of)
-from mxeon.conformance.checks.measures import absolute
-from mxeon.conformance.probes.pairs import picture_pairs
 from mxeon.conformance.accuracy import surface_shaders as surfaces
-from mxeon.conformance.samples.tolerance import (ROUNDING, Tolerance)
+from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE, sum_of
+from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
+from mxeon.conformance.samples.measurement import absolute
+from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.models.pbrlib import NODES
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning

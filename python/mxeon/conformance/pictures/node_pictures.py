@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance.samples.batch import (Array, Batch, rounded)
-from mxeon.conformance.probes.polyhedron import (FacetPairProbe, FacetProbe)
-from mxeon.conformance.nodes.diffuse import Subject
-from mxeon.conformance.probes.pairs import (Mask, PairProbe, PictureProbe, PlaneProbe, picture_pairs)
+from mxeon.conformance.nodes.diffuse import DiffuseSubject
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import Mask, PictureProbe, PlaneProbe, picture_pairs
+from mxeon.conformance.probes.polyhedron import FacetPairProbe, FacetProbe
 from mxeon.conformance.results import PORTRAIT, Picture
+from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.scene import BACK, SIDE, Scene, sphere
 
@@ -34,7 +35,7 @@ def portraits(probe: Any) -> tuple[Picture, ...]:
     tuple of Picture
         Away from rim and terminator; elsewhere both are black.
     """
-    if not isinstance(probe.subject, Subject) or isinstance(probe, PlaneProbe):
+    if not isinstance(probe.subject, DiffuseSubject) or isinstance(probe, PlaneProbe):
         return ()
     points = ((scene, *_points(probe, scene)) for scene in SCENES)
     return tuple(_portrait(probe, *each) for each in points if len(each[1].wo))

@@ -8,10 +8,24 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
-from mxeon.conformance.nodes.bsdf import (CLOSED, COMBINED, FITTED, MICROFACET, NESTED, SCHLICK, SHEEN, BsdfSubject)
+from mxeon.conformance.nodes.bsdf import (
+    CLOSED,
+    COMBINED,
+    FITTED,
+    MICROFACET,
+    NESTED,
+    SCHLICK,
+    SHEEN,
+    BsdfSubject,
+)
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.samples.edge_cases import (LEAST_COLOR82, LEAST_TURNED, outside_directions, special_directions)
+from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.edge_cases import (
+    LEAST_COLOR82,
+    LEAST_TURNED,
+    outside_directions,
+    special_directions,
+)
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
 PAIRS = 1 << 12

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
-from mxeon.conformance.samples.batch import Batch
-from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe, PlaneProbe)
+from mxeon.conformance.probes.bsdf import BSDF_PROBES
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
+from mxeon.conformance.samples.batch import Batch
 
 # Values of the inputs that a node has, of the two materials that stand for it.
 MATERIALS: tuple[Mapping[str, Any], ...] = (

@@ -7,14 +7,21 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (LOBE_RIM, Array, Batch)
-from mxeon.conformance.nodes.diffuse import Surface
-from mxeon.conformance.probes.pairs import (PICTURE_INPUTS, PICTURE_SIZE, Mask, PairProbe, PictureProbe, PlaneProbe)
+from mxeon.conformance.nodes.diffuse import DiffuseLobe
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import (
+    PICTURE_INPUTS,
+    PICTURE_SIZE,
+    Mask,
+    PictureProbe,
+    PlaneProbe,
+)
+from mxeon.conformance.samples.batch import LOBE_RIM, Array, Batch
 from mxeon.shaders.generation import Shader
 
 
 @dataclass(frozen=True, eq=False)
-class SurfaceProbe(PictureProbe):
+class DiffuseLobeProbe(PictureProbe):
     """The diffuse lobe of a surface shader, told apart from what lies over it.
 
     A black lobe leaves the other lobes, and a white one at roughness 0, which is Lambert in every
@@ -24,7 +31,7 @@ class SurfaceProbe(PictureProbe):
     kind: ClassVar[str] = "lobes"
     size: ClassVar[int] = PICTURE_SIZE // 4  # the shaders are long
 
-    subject: Surface
+    subject: DiffuseLobe
 
     def _mask(self, wo: Array, wi: Array) -> Mask:
         """Mask of the pairs far from the rim, where an error in position is divided twice."""
@@ -49,7 +56,7 @@ class SurfaceProbe(PictureProbe):
 
 
 @dataclass(frozen=True, eq=False)
-class SurfacePlaneProbe(SurfaceProbe, PlaneProbe):
+class DiffuseLobePlaneProbe(DiffuseLobeProbe, PlaneProbe):
     """The diffuse lobe of a surface shader on a plane."""
 
     kind: ClassVar[str] = "plane lobes"
@@ -59,7 +66,7 @@ class SurfacePlaneProbe(SurfaceProbe, PlaneProbe):
 
 
 # Of surface shaders, by the class for nodes.
-SURFACE_PROBES: dict[type[PairProbe] | type[PictureProbe], type[SurfaceProbe]] = {
-    PairProbe: SurfaceProbe,
-    PlaneProbe: SurfacePlaneProbe,
+SURFACE_PROBES: dict[type[PairProbe] | type[PictureProbe], type[DiffuseLobeProbe]] = {
+    PairProbe: DiffuseLobeProbe,
+    PlaneProbe: DiffuseLobePlaneProbe,
 }

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
-from mxeon.conformance.nodes.emission import (CLOSED, CONE, POWER, EmissionSubject)
-from mxeon.conformance.samples.edge_cases import (GRID, turned_directions, turned_frames)
+from mxeon.conformance.nodes.emission import CLOSED, CONE, POWER, EmissionSubject
+from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
 from mxeon.models.emission import cone_cosine
 from mxeon.shaders.generation import Shader

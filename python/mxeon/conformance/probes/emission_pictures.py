@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (RIM, Array, Batch)
-from mxeon.conformance.probes.emission import (NodeProbe, implementation)
-from mxeon.conformance.nodes.emission import (PICTURES, EmissionSubject)
+from mxeon.conformance.nodes.emission import PICTURES, EmissionSubject
+from mxeon.conformance.probes.emission import NodeProbe, implementation
+from mxeon.conformance.samples.batch import RIM, Array, Batch
 from mxeon.errors import NotRun
 from mxeon.models.pbrlib.emissions import AMOUNT, BASE, FACTOR, FIRST, SECOND
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere

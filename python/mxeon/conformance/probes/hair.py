@@ -7,12 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
-from mxeon.conformance.probes.bsdf import (FEW, NODES, PAIRS, BsdfProbe)
 from mxeon.conformance.nodes.bsdf import HAIR
-from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.nodes.hair import HairSubject
-from mxeon.conformance.samples.edge_cases import (LEAST_TURNED, special_directions)
+from mxeon.conformance.nodes.hair_regions import REGIONS
+from mxeon.conformance.probes.bsdf import FEW, NODES, PAIRS, BsdfProbe
+from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.edge_cases import LEAST_TURNED, special_directions
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.hair.formulas import SCALE, section
 

@@ -7,11 +7,19 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (RIM, SEED, Array, Batch, directions)
-from mxeon.conformance.checks.measures import BLACK
-from mxeon.conformance.probes.renderer_nodes import (ExactProbe, NativeProbe)
-from mxeon.conformance.probes.pairs import (PICTURE_INPUTS, PICTURE_SIZE, PairProbe, Pairs, PictureProbe, PlaneProbe, scene_of)
-from mxeon.conformance.samples.edge_cases import (outside_directions, special_directions)
+from mxeon.conformance.probes.cases import BLACK
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import (
+    PICTURE_INPUTS,
+    PICTURE_SIZE,
+    Pairs,
+    PictureProbe,
+    PlaneProbe,
+    scene_of,
+)
+from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
+from mxeon.conformance.samples.batch import RIM, SEED, Array, Batch, directions
+from mxeon.conformance.samples.edge_cases import outside_directions, special_directions
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.hosts import host_row
 from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions

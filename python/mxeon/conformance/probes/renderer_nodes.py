@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch)
-from mxeon.conformance.nodes.diffuse import OwnNode
-from mxeon.conformance.probes.pairs import (PICTURE_SIZE, PictureProbe, picture_pairs, scene_of)
+from mxeon.conformance.nodes.renderer_nodes import RendererNode
+from mxeon.conformance.probes.pictures import PICTURE_SIZE, PictureProbe, picture_pairs, scene_of
+from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.models import table as reference
 from mxeon.shaders.scene import sphere
 
@@ -26,7 +26,7 @@ EXACT_INPUTS: tuple[dict[str, Any], ...] = (
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
-    subject: OwnNode
+    subject: RendererNode
 
     @property
     def claims(self) -> dict[str, str]:

@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions)
-from mxeon.conformance.probes.bsdf import (LEAST_VIEW, reflected)
+from mxeon.conformance.nodes.surface_shaders import WHOLE, SurfaceShader
+from mxeon.conformance.probes.bsdf import LEAST_VIEW, reflected
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.nodes.surface_shaders import (WHOLE, SurfaceShader)
 from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
 from mxeon.shaders.generation import Shader, generate
 from mxeon.shaders.hosts.calls import NORMAL, TANGENT
 
@@ -24,7 +24,7 @@ STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too
 
 
 @dataclass(frozen=True, eq=False)
-class SurfaceProbe(PairProbe):
+class SurfaceShaderProbe(PairProbe):
     """A surface shader on a host that evaluates any pairs."""
 
     kind: ClassVar[str] = WHOLE

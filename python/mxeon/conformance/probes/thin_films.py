@@ -8,11 +8,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch, directions, rounded)
-from mxeon.conformance.probes.bsdf import (MicrofacetProbe, simple)
 from mxeon.conformance.nodes.bsdf import FILM
-from mxeon.conformance.samples.edge_cases import special_directions
 from mxeon.conformance.nodes.thin_films import THICK
+from mxeon.conformance.probes.bsdf import MicrofacetProbe, simple
+from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.edge_cases import special_directions
 
 PAIRS = 1 << 8  # random ones, and special ones; each average over a film's curve takes long
 ALBEDOS = 24

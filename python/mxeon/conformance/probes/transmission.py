@@ -5,10 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
-from mxeon.conformance.samples.batch import (Array, Batch)
+from mxeon.conformance.nodes.transmission import (
+    SCHLICK_TRANSMITTED,
+    TRANSMITTED,
+    TransmissionSubject,
+)
 from mxeon.conformance.probes.bsdf import MicrofacetProbe
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.nodes.transmission import (SCHLICK_TRANSMITTED, TRANSMITTED, TransmissionSubject)
+from mxeon.conformance.samples.batch import Array, Batch
 
 
 @dataclass(frozen=True, eq=False)

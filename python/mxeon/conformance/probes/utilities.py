@@ -8,9 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, Array, Batch)
-from mxeon.conformance.probes.pairs import (PairProbe, PictureProbe)
-from mxeon.conformance.nodes.utilities import (OSL_VALUES, VALUES, UtilitySubject)
+from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES, UtilitySubject
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.pictures import PictureProbe
+from mxeon.conformance.samples.batch import SEED, Array, Batch
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.hosts.calls import GRAPH

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.reference.graph import Graph
-from mxeon.conformance.reference.points import Points
+from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun
 from mxeon.shaders import hosts
 from mxeon.shaders.generation import Shader
@@ -52,7 +52,7 @@ class Host(base.Host):
             wi, strength = None, scene.environment
         else:
             raise NotRun("reference: environment must be uniform; got an image")
-        lit = Points(wo, wi, strength, normal, tangents(normal), texcoord)
+        lit = ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord)
         image = np.zeros(points.normal.shape)
         image[points.mask] = Graph(shader.document, lit).element(shader.element)
         return image
@@ -84,6 +84,6 @@ class Host(base.Host):
                 "reference: only the response to a light or a uniform environment is known"
             )
         normal, tangent = (np.broadcast_to(axis, wo.shape) for axis in ((0, 0, 1.0), (1.0, 0, 0)))
-        points = Points(wo, wi if branch == "direct" else None, 1.0, normal, tangent)
+        points = ShadingPoints(wo, wi if branch == "direct" else None, 1.0, normal, tangent)
         values = Graph(shader.document, points, inputs, emits=False).element(shader.element)
         return np.array(np.broadcast_to(values, wo.shape), np.float64)

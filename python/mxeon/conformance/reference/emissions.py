@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.reference.points import Points
+from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
 from mxeon.models.pbrlib.emissions import BASE, Emission
 from mxeon.models.pbrlib.emissions import EMISSIONS as ROWS
@@ -17,7 +17,7 @@ from mxeon.models.pbrlib.emissions import EMISSIONS as ROWS
 COLORS = ("color", "color0", "color90", "base")
 
 
-def _radiance(row: Emission, points: Points, *values: Any) -> Any:
+def _radiance(row: Emission, points: ShadingPoints, *values: Any) -> Any:
     wo = points.view
     inputs = {
         name: np.broadcast_to(value, wo.shape)
@@ -35,6 +35,6 @@ def _ports(row: Emission) -> tuple[str, ...]:
     return tuple("base" if name == BASE else name for name in row.inputs)
 
 
-def emissions(points: Points) -> dict[str, tuple[tuple[str, ...], Callable[..., Any]]]:
+def emissions(points: ShadingPoints) -> dict[str, tuple[tuple[str, ...], Callable[..., Any]]]:
     """Category -> its inputs, and the radiance at points by them."""
     return {row.category: (_ports(row), partial(_radiance, row, points)) for row in ROWS}

@@ -29,7 +29,7 @@ from mxeon.conformance.reference.nodes import (
     plain,
 )
 from mxeon.conformance.reference.operations import OPERATIONS, fitted
-from mxeon.conformance.reference.points import Points
+from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.conformance.reference.utilities import UTILITIES
 from mxeon.conformance.reference.walk import evaluated
 from mxeon.errors import NotRun
@@ -56,7 +56,7 @@ class Graph:
     Parameters
     ----------
     document : MaterialX.Document
-    points : Points
+    points : ShadingPoints
     inputs : mapping of str to array
         Inputs of the surface shader, or of lobes where the document has none, that take the place
         of the document's.
@@ -72,7 +72,7 @@ class Graph:
     def __init__(
         self,
         document: Any,
-        points: Points,
+        points: ShadingPoints,
         inputs: Mapping[str, Any] | None = None,
         emits: bool = True,
     ) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.reference.lobes import diffuse, weighted
-from mxeon.conformance.reference.points import Points
+from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models import layering
 from mxeon.models.layering import Bsdf
@@ -37,7 +37,7 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 }
 
 
-def node_lobe(node: Any, inputs: Mapping[str, Any], points: Points, layered: bool) -> Bsdf:
+def node_lobe(node: Any, inputs: Mapping[str, Any], points: ShadingPoints, layered: bool) -> Bsdf:
     """Lobe of a node.
 
     Parameters
@@ -46,7 +46,7 @@ def node_lobe(node: Any, inputs: Mapping[str, Any], points: Points, layered: boo
         Of a category in LOBES.
     inputs : mapping of str to value
         Of all its inputs, each one value or one for each point.
-    points : Points
+    points : ShadingPoints
     layered : bool
         Whether the throughput is needed.
 

@@ -15,7 +15,7 @@ UNIT = 1e-3  # by how much the length of a normal may differ from 1
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class ShadingPoints:
     """Where a graph is evaluated, and by which light.
 
     Attributes

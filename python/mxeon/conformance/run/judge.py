@@ -6,21 +6,21 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from mxeon.conformance.checks.application import judge_curve, judge_subject
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.functions.inversion import InversionProbe, judge_inversion
+from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
+from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
+from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.pictures.documents import generate_document
-from mxeon.conformance.checks.verdicts import (judge_curve, judge_subject)
-from mxeon.conformance.probes.polyhedron import PROBES
-from mxeon.conformance.probes.families import (PBR_SUBJECTS, probe_type_of)
-from mxeon.conformance.functions.shader_functions import (FunctionProbe, judge_functions)
-from mxeon.conformance.pictures.document_pictures import (MATCH, judge_document)
-from mxeon.conformance.functions.inversion import (InversionProbe, judge_inversion)
-from mxeon.conformance.probes.renderer_nodes import ExactProbe
-from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES)
 from mxeon.conformance.pictures.node_pictures import portraits
 from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
-from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.text import (check_definitions, check_texts)
-from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.probes.polyhedron import PROBES
+from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Picture, Result
 from mxeon.conformance.run.plan import (
@@ -36,6 +36,7 @@ from mxeon.conformance.run.plan import (
     Task,
     subjects,
 )
+from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.hosts import host_row, open_host

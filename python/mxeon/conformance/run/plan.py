@@ -18,17 +18,18 @@ import numpy as np
 import OpenImageIO as oiio
 
 import mxeon
-from mxeon.conformance.functions import shader_functions as functions
-from mxeon.conformance.checks.verdicts import applies
-from mxeon.conformance.probes.polyhedron import probe_type
-from mxeon.conformance.probes.families import (COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of)
-from mxeon.conformance.probes.renderer_nodes import NativeProbe
-from mxeon.conformance.nodes.diffuse import (NATIVE, SUBJECTS, SURFACES, Subject)
-from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
+from mxeon.conformance.checks.application import applies
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues.issue import OWN
-from mxeon.conformance.results import Curve, Picture, Result
+from mxeon.conformance.functions import shader_functions as functions
+from mxeon.conformance.known_issues.issue import RENDERER_NODES
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
+from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
+from mxeon.conformance.probes.families import COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.polyhedron import probe_type
+from mxeon.conformance.probes.renderer_nodes import NativeProbe
+from mxeon.conformance.results import AlbedoCurve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
@@ -108,14 +109,18 @@ class Findings:
 
     results: tuple[Result, ...] = ()
     pictures: tuple[Picture, ...] = ()
-    curves: tuple[Curve, ...] = ()
+    curves: tuple[AlbedoCurve, ...] = ()
     notes: tuple[tuple[str, str], ...] = ()
     errors: tuple[str, ...] = ()
     hosts: tuple[Identity, ...] = ()
 
     def answer(self, task: Task) -> bool:
         """Whether these are findings of a task: there are some, and all are of its host."""
-        records: list[Result | Picture | Curve] = [*self.results, *self.pictures, *self.curves]
+        records: list[Result | Picture | AlbedoCurve] = [
+            *self.results,
+            *self.pictures,
+            *self.curves,
+        ]
         location = (task.host, task.library)
         return bool(records or self.errors) and all(
             (record.host, record.library) == location for record in records
@@ -207,7 +212,7 @@ def _rows() -> list[Any]:
     return [*SUBJECTS, *PBR_SUBJECTS, *SURFACES]
 
 
-def subjects(library: str) -> list[Subject]:
+def subjects(library: str) -> list[DiffuseSubject]:
     """The nodes that a library has."""
     data = load_library(library)
     return [subject for subject in SUBJECTS if data.getMatchingNodeDefs(subject.node)]
@@ -268,7 +273,7 @@ def _native(host: str) -> Iterator[Task]:
     probe = probe_type(host)
     if probe is not None and issubclass(probe, NativeProbe):
         for subject in NATIVE[host]:
-            yield from _checks_of(subject, probe.kind, host, OWN)
+            yield from _checks_of(subject, probe.kind, host, RENDERER_NODES)
 
 
 def _checks_of(subject: Any, kind: str, host: str, library: str) -> Iterator[Task]:

@@ -5,7 +5,14 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (Array, Batch, directions, random_inputs, rounded, rounded_roughness)
+from mxeon.conformance.samples.batch import (
+    Array,
+    Batch,
+    directions,
+    random_inputs,
+    rounded,
+    rounded_roughness,
+)
 from mxeon.models.table import Model
 
 EACH = 256  # pairs of each kind

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mxeon.conformance.samples.batch import Array
-from mxeon.conformance.checks.measures import Metric, scaled
+from mxeon.conformance.samples.measurement import Metric, scaled
 
 SCALED = "pi f cos, relative above 1"
 ROUNDING = 2.0**-24  # unit roundoff of float32

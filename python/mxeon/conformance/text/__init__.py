@@ -4,17 +4,17 @@
 from collections.abc import Iterable
 
 from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.nodes.diffuse import Subject
+from mxeon.conformance.nodes.diffuse import DiffuseSubject
+from mxeon.conformance.results import Result
 from mxeon.conformance.text.closures import check_closures
 from mxeon.conformance.text.definitions import check_definitions
 from mxeon.conformance.text.languages import check_languages
-from mxeon.conformance.text.sources import (check_calls, check_sources)
-from mxeon.conformance.results import Result
+from mxeon.conformance.text.sources import check_calls, check_sources
 
 __all__ = ["check_definitions", "check_texts"]
 
 
-def check_texts(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]:
+def check_texts(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
     """Results of all checks of generated text and of functions for the nodes of a library.
 
     Parameters

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import (SEED, directions)
-from mxeon.conformance.nodes.diffuse import Subject
-from mxeon.conformance.text.counts import (HOST, Claim, counted)
-from mxeon.conformance.text.interpreter import (Array, Closure, Interpreter)
-from mxeon.conformance.text.renderers import (PBRLIB, Renderer)
-from mxeon.conformance.text.sources import (source, variable)
+from mxeon.conformance.nodes.diffuse import DiffuseSubject
 from mxeon.conformance.results import FAILED, NOT_RUN, Result
+from mxeon.conformance.samples.batch import SEED, directions
+from mxeon.conformance.text.counts import HOST, Claim, counted
+from mxeon.conformance.text.interpreter import Array, Closure, Interpreter
+from mxeon.conformance.text.renderers import PBRLIB, Renderer
+from mxeon.conformance.text.sources import source, variable
 from mxeon.errors import NotRun, ShaderError
 from mxeon.models import formulas
 from mxeon.shaders.library import has_profile
@@ -44,7 +44,7 @@ FILLED = re.compile(r"\b(\w+)\(([^;]*), lobe_out\);")
 Inputs = dict[str, Array]
 
 
-def check_closures(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]:
+def check_closures(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
     """Results for every subject whose text calls a closure: OSL, MDL, and OSL for Cycles."""
     renderers: list[tuple[str, str | None]] = [("osl", None), ("mdl", None)]
     if has_profile(library, "cycles"):
@@ -56,7 +56,7 @@ def check_closures(subjects: Iterable[Subject], library: str) -> tuple[Result, .
     )
 
 
-def _judge(subject: Subject, target: str, profile: str | None, library: str) -> Result:
+def _judge(subject: DiffuseSubject, target: str, profile: str | None, library: str) -> Result:
     title = ", ".join(filter(None, (subject.title, target, profile)))
     text = source(subject, target, library, profile)
     try:
@@ -81,7 +81,7 @@ def _without_weight(text: str) -> str:
     return text
 
 
-def _faults(subject: Subject, renderer: Renderer, text: str) -> list[str]:
+def _faults(subject: DiffuseSubject, renderer: Renderer, text: str) -> list[str]:
     """Faults of the lobe of a text, in words."""
     inputs = _materials(subject)
     closures = _closures(renderer, text, inputs)
@@ -99,7 +99,7 @@ def _faults(subject: Subject, renderer: Renderer, text: str) -> list[str]:
     return faults
 
 
-def _materials(subject: Subject) -> Inputs:
+def _materials(subject: DiffuseSubject) -> Inputs:
     """Random inputs of a node; the first are corners of their ranges."""
     rng = np.random.default_rng(SEED)
     color, roughness = rng.random((MATERIALS, 3)), rng.random((MATERIALS, 1))
@@ -133,7 +133,7 @@ def _closures(renderer: Renderer, text: str, inputs: Inputs) -> tuple[Closure, .
 
 
 def _argument_faults(
-    subject: Subject, renderer: Renderer, closure: Closure, inputs: Inputs
+    subject: DiffuseSubject, renderer: Renderer, closure: Closure, inputs: Inputs
 ) -> Iterator[str]:
     """Arguments of the one closure that are not the node's inputs."""
     expected = {name: inputs[name] for name in ("color", "roughness")}
@@ -165,7 +165,7 @@ def _instead(name: str, measured: Array, expected: Array, inputs: Inputs) -> str
     return ""
 
 
-def _tint(subject: Subject, inputs: Inputs) -> Array:
+def _tint(subject: DiffuseSubject, inputs: Inputs) -> Array:
     """rho^2 <E> / (1 - rho (1 - <E>)): [Portsmouth2025], Eq. (19); MDL without the flag is FON."""
     if subject.model != "eon":
         return np.zeros((MATERIALS, 3))
@@ -188,7 +188,7 @@ def _normal_faults(closures: tuple[Closure, ...], inputs: Inputs) -> Iterator[st
 
 
 def _value_faults(
-    subject: Subject, renderer: Renderer, closures: tuple[Closure, ...], inputs: Inputs
+    subject: DiffuseSubject, renderer: Renderer, closures: tuple[Closure, ...], inputs: Inputs
 ) -> Iterator[str]:
     """A value that is not the model's: Cycles has QON for s >= 0 alone, and MDL has FON for it."""
     rng = np.random.default_rng(SEED)

@@ -12,8 +12,8 @@ from types import MappingProxyType
 
 import MaterialX as mx
 
-from mxeon.conformance.text.counts import (Claim, counted)
 from mxeon.conformance.results import Result
+from mxeon.conformance.text.counts import Claim, counted
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import EON, FLAG, INVERSIONS, OREN_NAYAR
 

@@ -14,8 +14,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.text.syntax import (Unreadable, expression, function_table, macros, statements)
-from mxeon.conformance.text.tree import (Assignment, Call, Choice, Component, Expression, Function, If, Name, Number, Operation, Return, Statement, Text)
+from mxeon.conformance.text.syntax import Unreadable, expression, function_table, macros, statements
+from mxeon.conformance.text.tree import (
+    Assignment,
+    Call,
+    Choice,
+    Component,
+    Expression,
+    Function,
+    If,
+    Name,
+    Number,
+    Operation,
+    Return,
+    Statement,
+    Text,
+)
 from mxeon.errors import NotRun
 
 Array = NDArray[np.float64]

@@ -6,9 +6,9 @@ Hosts compare the values of the functions in one language with NumPy; this holds
 
 import re
 
-from mxeon.conformance.text.counts import (Claim, counted)
-from mxeon.conformance.text.syntax import (macros, without_comments)
 from mxeon.conformance.results import Result
+from mxeon.conformance.text.counts import Claim, counted
+from mxeon.conformance.text.syntax import macros, without_comments
 from mxeon.shaders.functions import SIGNATURE, has_functions, source
 
 WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}  # OSL, GLSL

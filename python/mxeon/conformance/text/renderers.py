@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mxeon.conformance.text.interpreter import (Array, Closure, Value, weighted)
+from mxeon.conformance.text.interpreter import Array, Closure, Value, weighted
 from mxeon.models import formulas
 from mxeon.shaders.nodes import FLAG
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.nodes.diffuse import Subject
-from mxeon.conformance.text.counts import (Claim, counted)
+from mxeon.conformance.nodes.diffuse import DiffuseSubject
 from mxeon.conformance.results import Result
+from mxeon.conformance.text.counts import Claim, counted
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
 from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.nodes import input_types
@@ -41,7 +41,7 @@ OURS = Claim(
 )
 
 
-def check_sources(subjects: Iterable[Subject], library: str) -> tuple[Result, ...]:
+def check_sources(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Result, ...]:
     """Results of the checks of the generated source of every subject for every target."""
     subjects = list(subjects)
     uses = [_uses_inputs(subject, target, library) for subject in subjects for target in TARGETS]
@@ -66,7 +66,7 @@ def check_calls(subjects: Iterable[BsdfSubject], library: str) -> tuple[Result, 
 
 @lru_cache(maxsize=64)
 def source(
-    subject: Subject | BsdfSubject, target: str, library: str, profile: str | None = None
+    subject: DiffuseSubject | BsdfSubject, target: str, library: str, profile: str | None = None
 ) -> str:
     """Pixel stage of a subject; the variable of an input is `variable` of its name."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
@@ -82,13 +82,15 @@ def variable(name: str) -> str:
     return f"lobe_{name}"
 
 
-def _checks_of_text(subject: Subject, library: str) -> list[Callable[[Subject, str, str], Result]]:
+def _checks_of_text(
+    subject: DiffuseSubject, library: str
+) -> list[Callable[[DiffuseSubject, str, str], Result]]:
     """The checks that apply: QON's text may hold the other model's, which the flag leaves out."""
     applies = {_does_not_clamp: subject.model == "eon", _is_ours: library == "eonlib"}
     return [check for check, does in applies.items() if does]
 
 
-def _uses_inputs(subject: Subject | BsdfSubject, target: str, library: str) -> Result:
+def _uses_inputs(subject: DiffuseSubject | BsdfSubject, target: str, library: str) -> Result:
     """Check that every input of the node occurs in the source beyond its declaration."""
     text = source(subject, target, library)
     names = tuple(input_types(subject.node)) if isinstance(subject, BsdfSubject) else subject.inputs
@@ -99,7 +101,7 @@ def _uses_inputs(subject: Subject | BsdfSubject, target: str, library: str) -> R
     return counted(USES, f"{subject.title}, {target}", library, len(unused), control, meaning)
 
 
-def _does_not_clamp(subject: Subject, target: str, library: str) -> Result:
+def _does_not_clamp(subject: DiffuseSubject, target: str, library: str) -> Result:
     """Check that the cosine between the directions keeps its sign: back-lit pairs need it."""
     text = source(subject, target, library)
     count, control = (len(CLAMP.findall(each)) for each in (text, text + STOCK_LINE))
@@ -107,7 +109,7 @@ def _does_not_clamp(subject: Subject, target: str, library: str) -> Result:
     return counted(SIGNED, f"{subject.title}, {target}", library, count, control, meaning)
 
 
-def _is_ours(subject: Subject, target: str, library: str) -> Result:
+def _is_ours(subject: DiffuseSubject, target: str, library: str) -> Result:
     """Check that the text defines the model's function, and not another implementation."""
     text = source(subject, target, library)
     definition = re.compile(rf"\b(?:vec3|float3) {FUNCTION[subject.model]}\(")

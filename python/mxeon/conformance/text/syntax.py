@@ -9,7 +9,21 @@ loops and arrays are not read.
 import re
 from collections.abc import Mapping
 
-from mxeon.conformance.text.tree import (Assignment, Call, Choice, Component, Expression, Function, If, Name, Number, Operation, Return, Statement, Text)
+from mxeon.conformance.text.tree import (
+    Assignment,
+    Call,
+    Choice,
+    Component,
+    Expression,
+    Function,
+    If,
+    Name,
+    Number,
+    Operation,
+    Return,
+    Statement,
+    Text,
+)
 from mxeon.errors import NotRun, ShaderError
 
 TOKEN = re.compile(

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verdicts: results from a measurement, that of a control, and a diagnosis."""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control, Result
+from mxeon.conformance.samples.measurement import Measurement
+from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders.hosts.base import RendererWarning
+
+
+def judge_measurements(
+    fields: dict[str, Any],
+    tolerance: Tolerance,
+    right: Measurement,
+    variant: str,
+    wrong: Measurement,
+    diagnosis: Diagnosis,
+) -> Result:
+    """The result of a check from its measurement and that of its control.
+
+    Parameters
+    ----------
+    fields : dict of str
+        Check, claim, subject, host and library of the result.
+    tolerance : Tolerance
+    right, wrong : Measurement
+        Of the probe and of its control.
+    variant : str
+        The error that the control makes.
+    diagnosis : Diagnosis
+
+    Returns
+    -------
+    Result
+    """
+    caught = wrong.error > tolerance.value
+    verdict = DIFFERS if diagnosis.permitted else FAILED
+    return Result(
+        **fields,
+        verdict=PASSED if right.error <= tolerance.value and caught else verdict,
+        error=right.error,
+        unit=tolerance.unit,
+        tolerance=tolerance.value,
+        derivation=tolerance.derivation,
+        worst=right.worst,
+        diagnosis=diagnosis.text,
+        distances=diagnosis.distances,
+        control=Control(variant, wrong.error, caught),
+    )
+
+
+def not_measured(fields: dict[str, Any], error: NotRun | ShaderError) -> Result:
+    """The result of a check without a measurement: not run, or failed by a shader error."""
+    if isinstance(error, NotRun):
+        return Result(**fields, verdict=NOT_RUN, reason=str(error))
+    return Result(**fields, verdict=FAILED, diagnosis=str(error))
+
+
+@contextmanager
+def renderer_warnings() -> Iterator[list[str]]:
+    """The renderer's own warnings in a block, each once; others are passed on."""
+    notes: list[str] = []
+    with warnings.catch_warnings(record=True) as records:
+        warnings.simplefilter("always", RendererWarning)
+        yield notes
+    for record in records:
+        if not isinstance(record.message, RendererWarning):
+            warnings.warn(record.message, stacklevel=3)
+        elif str(record.message) not in notes:
+            notes.append(str(record.message))

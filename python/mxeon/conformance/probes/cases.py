@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of a probe beside those that are expected of it, which checks measure and diagnoses explain."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mxeon.conformance.samples.measurement import Case
+from mxeon.conformance.samples.uneven_environment import sky_map
+
+BRANCHES = ("direct", "environment", "transmission", "emission")
+
+
+WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+
+
+LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one is asked
+
+
+def value_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `value`."""
+    for batch in probe.batches:
+        yield Case(batch, probe.direct(batch), probe.subject.expected(batch))
+
+
+def albedo_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `environment`."""
+    for batch, expected in zip(probe.cosines, probe.albedos, strict=True):
+        yield Case(batch, probe.albedo(batch), expected)
+
+
+def frame_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `frame`."""
+    batch = probe.turned
+    local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
+    for output in (probe.direct, probe.albedo):
+        yield Case(batch, output(batch), output(local))
+
+
+def surroundings_case(probe: Any) -> Case:
+    """The case of `surroundings`."""
+    batch = probe.turned
+    if "color" in probe.subject.inputs:
+        batch = batch.altered(color=WHITE)
+    level = probe.albedo(batch)
+    bright = level.min(axis=1) > LEAST_LIGHT
+    if bright.any():  # or what is dark is wrong
+        batch, level = batch.where(bright), level[bright]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        measured = probe.albedo(batch, sky_map()) / level
+    return Case(batch, measured, probe.subject.sky(batch))
+
+
+def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
+    """The cases of `throughput` in one of BRANCHES."""
+    for batch in probe.few:
+        yield Case(batch, probe.throughput(batch, branch), np.zeros((len(batch.wo), 3)))
+
+
+def dead_inputs(probe: Any) -> list[str]:
+    """The inputs of `inputs`."""
+    batch = probe.few[0]
+    plain = probe.direct(batch)  # most changes are of the batch as it is
+    dead = []
+    for name, (before, after) in probe.subject.changes.items():
+        one = probe.direct(batch.altered(**before)) if before else plain
+        other = probe.direct(batch.altered(**after))
+        if np.array_equal(one, other, equal_nan=True):
+            dead.append(name)
+    return dead
+
+
+def edge_case(probe: Any) -> Case:
+    """Values and albedos at the edges of the domain, beside 0."""
+    batch = probe.edges
+    values = np.concatenate([probe.direct(batch), probe.albedo(batch)], axis=1)
+    return Case(batch, values, np.zeros_like(values))
+
+
+LIGHT = ("direct", "environment")  # branches that light a base from above
+
+
+def layering_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `layering`."""
+    for branch in LIGHT:
+        yield from _throughput_cases(probe, branch)
+
+
+def transmission_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `transmission`."""
+    return _throughput_cases(probe, "transmission")
+
+
+def _throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
+    for batch, albedo in zip(probe.cosines, probe.albedos, strict=True):
+        yield Case(batch, probe.throughput(batch, branch), np.maximum(1.0 - albedo, 0.0))
+
+
+def stretched_case(probe: Any) -> Case:
+    """The case of `stretched`."""
+    batch, expected = probe.stretched
+    return Case(batch, probe.albedo(batch), expected)
+
+
+def back_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `back`."""
+    batch = probe.backs
+    yield Case(batch, probe.direct(batch), probe.subject.expected(batch))
+
+
+def transmittance_cases(probe: Any) -> Iterator[Case]:
+    """The cases of `transmittance`."""
+    (batch,) = probe.batches
+    expected = probe.subject.expected(batch)
+    yield Case(batch, probe.direct(batch), expected)
+    yield Case(batch, probe.through, expected)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Measured values beside expected ones, the error of each row, and the worst of them."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.samples.batch import Array, Batch
+
+Metric = Callable[[Array, Any], Array]  # of measured and expected values: error of each row
+
+
+class Case(NamedTuple):
+    """A batch with measured and expected values."""
+
+    batch: Batch
+    measured: Array
+    expected: Array
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """The worst error of a check, and its point.
+
+    Attributes
+    ----------
+    error : float
+    worst : dict of str to list of float
+        Inputs and values at the worst point, by name.
+    """
+
+    error: float
+    worst: dict[str, list[float]]
+
+
+def absolute(measured: ArrayLike, expected: ArrayLike) -> Array:
+    """Largest difference of each row; infinity for what is not a number."""
+    error = np.abs(np.subtract(measured, expected)).max(axis=-1)
+    return np.where(np.isfinite(error), error, np.inf)
+
+
+def scaled(measured: Array, expected: Array) -> Array:
+    """Largest difference of each row, relative to its largest expected value where that exceeds 1."""
+    scale = np.maximum(1.0, np.abs(expected).max(axis=-1, keepdims=True))
+    return absolute(measured / scale, expected / scale)
+
+
+def relative(measured: Array, expected: Array) -> Array:
+    """Largest difference of each row, relative to the expected value."""
+    return absolute(measured / expected, 1.0)
+
+
+def mean_error(measured: Array, expected: Array) -> Array:
+    """Difference of the means over all rows, for every row: noise averages out."""
+    return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
+
+
+def worst_of(metric: Metric, cases: Iterable[Case]) -> Measurement:
+    """The worst row of (batch, measured, expected) cases."""
+    worst = Measurement(-1.0, {})
+    for batch, measured, expected in cases:
+        errors = metric(measured, expected)
+        row = int(np.argmax(errors))
+        if errors[row] > worst.error:
+            expected = np.broadcast_to(expected, measured.shape)
+            values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
+            worst = Measurement(float(errors[row]), {**point_of(batch, row), **values})
+    return worst
+
+
+def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
+    """Directions and inputs of one row of a batch."""
+    columns: dict[str, Any] = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
+    return {
+        name: np.ravel(_row(values, row, len(batch.wo))).astype(float).tolist()
+        for name, values in columns.items()
+    }
+
+
+def _row(values: Any, row: int, count: int) -> Any:
+    """One row of values, or the values that hold for all rows."""
+    return values[row] if np.shape(values) and len(values) == count else values
