@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The BSDF nodes of pbrlib on every host: what engines add, and what pictures and texts show."""
 
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -48,14 +48,15 @@ def test_the_error_of_an_engines_power_is_that_of_a_value_of_the_sheen():
 
 
 def test_only_a_sheen_of_powers_takes_the_engine_into_its_tolerance():
-    host = Engine(1e-4)
-    sheen = BSDF_PROBES["fitted pairs"](host, SUBJECTS["conty_kulla"], "stock")
-    burley = BSDF_PROBES["closed pairs"](host, SUBJECTS["burley"], "stock")
     own = VALUES["fitted pairs"]
-    assert engine.on_engine(own, burley) is own
-    wider = engine.on_engine(own, sheen)
+    sheen, burley = (
+        partial(engine.widen_for_engine, own, SUBJECTS[name], SUBJECTS[name].kind)
+        for name in ("conty_kulla", "burley")
+    )
+    assert burley(Engine(1e-4)) is own
+    wider = sheen(Engine(1e-4))
     assert own.value < wider.value == 2e-4 and "1.0e-04" in wider.derivation
-    assert engine.on_engine(own, replace(sheen, host=Engine(0.0))) is own
+    assert sheen(Engine(0.0)) is own
 
 
 @pytest.mark.parametrize("name", ["webgl", "wgsl"])

@@ -6,20 +6,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 import mxeon
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS, Check
-from mxeon.conformance.nodes.diffuse import CHANGES, Changes, ModelSubject
+from mxeon.conformance.nodes.diffuse import CHANGES, ModelSubject
+from mxeon.conformance.nodes.subject import Changes, Values
+from mxeon.conformance.probes.probe import ValueProbe
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples.batch import PAIRS, SEED, Array, Batch, directions, random_inputs
 from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
 from mxeon.errors import InputError
 from mxeon.models import table as reference
-from mxeon.shaders.hosts.base import Identity
+from mxeon.shaders.hosts.base import Host, Identity
 
 # Checks of values alone: a function has no environment branch and no flag.
 KEYS = ("value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite")
@@ -28,18 +31,22 @@ LIBRARY = "callable"
 Brdf = Callable[[Array, Array, Array, Array], ArrayLike]  # of wo, wi, rho, roughness
 
 
-@dataclass(frozen=True)
-class CallableHost:
-    """The function to judge, in place of a host.
+class CallableHost(Host):
+    """A Python function in place of an engine.
 
-    Attributes
+    Parameters
     ----------
     name : str
     brdf : callable
     """
 
-    name: str
-    brdf: Brdf
+    target = ""
+
+    def __init__(self, name: str, brdf: Brdf) -> None:
+        self.name, self.brdf = name, brdf
+
+    def identity(self) -> Identity:
+        return Identity(self.name, "version not given", "device not given")
 
 
 @dataclass(frozen=True)
@@ -53,8 +60,15 @@ class ClaimedModel(ModelSubject):
 
     title: str
     model: str
-    inputs = ("color", "roughness")
-    flag = None
+
+    node: ClassVar[str] = "a function"
+    kind: ClassVar[str] = "pairs"
+    inputs: ClassVar[tuple[str, ...]] = ("color", "roughness")
+    libraries: ClassVar[tuple[str, ...]] = ()
+
+    def document(self, inputs: Values | None = None) -> str:
+        """None: a function needs no document."""
+        return ""
 
     @property
     def changes(self) -> dict[str, Changes]:
@@ -62,12 +76,10 @@ class ClaimedModel(ModelSubject):
         return {name: ({}, {name: CHANGES[name]}) for name in self.inputs}
 
 
-@dataclass(frozen=True, eq=False)
-class CallableProbe:
+class CallableProbe(ValueProbe):
     """A function evaluated for pairs."""
 
     kind = "pairs"
-    library = LIBRARY
 
     host: CallableHost
     subject: ClaimedModel
@@ -86,11 +98,6 @@ class CallableProbe:
         """Pairs and inputs at the edges of the domain."""
         return diffuse_edges()
 
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """The same: they are few."""
-        return self.batches
-
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""
         count = len(batch.wi)
@@ -104,7 +111,7 @@ class CallableProbe:
         with np.errstate(invalid="ignore"):  # inf x 0 is for the checks to notice
             return np.pi * (values * batch.wi[:, 2:])
 
-    def albedo(self, batch: Batch) -> Array:
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Nothing, (N, 0): a function has no environment branch."""
         return np.empty((len(batch.wi), 0))
 
@@ -144,7 +151,7 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version(), "numpy": version("numpy")},
-        hosts=(Identity(probe.host.name, "version not given", "device not given"),),
+        hosts=(probe.host.identity(),),
         results=results,
     )
 
@@ -190,7 +197,7 @@ def brdf_test(brdf: Brdf, model: str = "eon", name: str | None = None) -> Callab
 def _probe(brdf: Brdf, model: str, name: str | None) -> CallableProbe:
     title = name or str(getattr(brdf, "__name__", type(brdf).__name__))
     return CallableProbe(
-        CallableHost(title, brdf), ClaimedModel(reference.model(model).title, model)
+        CallableHost(title, brdf), ClaimedModel(reference.model(model).title, model), LIBRARY
     )
 
 

@@ -16,6 +16,8 @@ from mxeon.conformance.nodes.emission import (
     PICTURES,
     POWER,
 )
+from mxeon.conformance.nodes.media import MediumSubject
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import RIM, SEED
 from mxeon.conformance.samples.measurement import scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
@@ -105,14 +107,14 @@ EXITANCES = {
 FRONTS = {**RADIANCES, PICTURES: PICTURE_RADIANCE}
 
 
-def on_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
-    """Tolerance of an emission on a probe's host, with the errors of the engine's own functions."""
-    if probe.kind == POWER:
-        return replace(tolerance, value=rounded_up(tolerance.value + power_error(probe.host)))
-    if probe.kind == MEDIUM:
-        error = 2.0 * exponential_error(probe.host)
-        if probe.subject.combined:
-            error += 2.0 * power_error(probe.host)
+def widen_for_functions(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
+    """Tolerance of an emission on a host, with the errors of the engine's own functions."""
+    if kind == POWER:
+        return replace(tolerance, value=rounded_up(tolerance.value + power_error(host)))
+    if kind == MEDIUM:
+        error = 2.0 * exponential_error(host)
+        if isinstance(subject, MediumSubject) and subject.combined:
+            error += 2.0 * power_error(host)
         return replace(tolerance, value=rounded_up(tolerance.value + error))
     return tolerance
 

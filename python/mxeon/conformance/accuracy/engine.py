@@ -2,11 +2,11 @@
 """Errors of an engine's own functions, measured on the host, and the tolerances that take them in."""
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import power_of
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.tolerance import Tolerance
@@ -20,11 +20,11 @@ POWER = """float mxeon_power(float x, float y)
 """
 
 
-def widen_for_engine(tolerance: Tolerance, probe: Any) -> Tolerance:
-    """Tolerance of values on a probe's host: wider for a sheen of powers, by the engine's own."""
-    if probe.kind != "fitted pairs":
+def widen_for_engine(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
+    """Tolerance of values on a host: wider for a sheen of powers, by the engine's own."""
+    if kind != "fitted pairs":
         return tolerance
-    measured = power_of(power_error(probe.host), 1.0 / LEAST_SHEEN)
+    measured = power_of(power_error(host), 1.0 / LEAST_SHEEN)
     return max(tolerance, measured, key=lambda each: each.value)
 
 

@@ -6,10 +6,10 @@ in which its roundings are alike, see `measures`.
 """
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.utilities import VALUES
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.measurement import absolute, scaled
@@ -114,17 +114,17 @@ def color_tolerance(error: float) -> Tolerance:
     )
 
 
-def utility_tolerance(tolerance: Tolerance | None, probe: Any) -> Tolerance:
-    """The tolerance of a probe's output on its host; what the table has is replaced."""
-    title, node = probe.subject.title, probe.subject.node
+def utility_tolerance(_: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
+    """The tolerance of an output on a host, in place of the one that the table has."""
+    title, node = subject.title, subject.node
     if node == "blackbody":
-        return BLACKBODY if probe.kind == VALUES else OSL_BLACKBODY
+        return BLACKBODY if kind == VALUES else OSL_BLACKBODY
     if node == "chiang_hair_roughness":
-        return power_tolerance(function_error(probe.host, "pow"))
+        return power_tolerance(function_error(host, "pow"))
     if node == "deon_hair_absorption_from_melanin":
-        return melanin_tolerance(function_error(probe.host, "log"))
+        return melanin_tolerance(function_error(host, "log"))
     if node == "chiang_hair_absorption_from_color":
-        return color_tolerance(function_error(probe.host, "log"))
+        return color_tolerance(function_error(host, "log"))
     return TOLERANCES[title]
 
 

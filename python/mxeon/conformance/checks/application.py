@@ -3,7 +3,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -11,6 +10,8 @@ from mxeon.conformance.checks.measures import integrated
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured, renderer_warnings
+from mxeon.conformance.nodes.subject import Subject
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.results import AlbedoCurve, Result
 from mxeon.errors import NotRun, ShaderError
 
@@ -18,14 +19,14 @@ CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
 CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
 
-def applies(check: Check, subject: Any, kind: str, host: str) -> bool:
+def applies(check: Check, subject: Subject, kind: str, host: str) -> bool:
     """Whether a check applies to a subject, with a kind of probe, on a host."""
     return (
         subject.model in check.models and kind in check.tolerances and check.applies(subject, host)
     )
 
 
-def judge_subject(probe: Any, checks: Sequence[Check] = CHECKS) -> tuple[Result, ...]:
+def judge_subject(probe: Probe, checks: Sequence[Check] = CHECKS) -> tuple[Result, ...]:
     """Results of the checks that apply to a node on its host.
 
     Parameters
@@ -45,7 +46,7 @@ def judge_subject(probe: Any, checks: Sequence[Check] = CHECKS) -> tuple[Result,
     )
 
 
-def judge_curve(probe: Any) -> tuple[AlbedoCurve, ...]:
+def judge_curve(probe: Probe) -> tuple[AlbedoCurve, ...]:
     """The node's directional albedo over the cosine, integrated from its values.
 
     Parameters
@@ -71,7 +72,7 @@ def judge_curve(probe: Any) -> tuple[AlbedoCurve, ...]:
     )
 
 
-def judge_check(check: Check, probe: Any) -> Result:
+def judge_check(check: Check, probe: Probe) -> Result:
     """The result of a row of the table for a probe, with its control and a diagnosis."""
     fields = {
         "check": check.key,
@@ -79,9 +80,9 @@ def judge_check(check: Check, probe: Any) -> Result:
         "subject": probe.subject.title,
         "host": probe.host.name,
         "library": probe.library,
-        **getattr(probe, "claims", {}),  # of a renderer's own node
+        **probe.claims,
     }
-    tolerance = check.adapt(check.tolerances[probe.kind], probe)
+    tolerance = check.adapt(check.tolerances[probe.kind], probe.subject, probe.kind, probe.host)
     diagnosis = Diagnosis()
     try:
         with renderer_warnings() as notes:

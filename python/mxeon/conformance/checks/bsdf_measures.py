@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.cases import layering_cases, stretched_case, transmission_cases
+from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
@@ -18,12 +20,12 @@ LEAST_INDEX = 1.2  # of a dielectric whose values are divided
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
 
 
-def layering(probe: Any, metric: Metric) -> Measurement:
+def layering(probe: Probe, metric: Metric) -> Measurement:
     """Throughput of a layer against 1 - E, in the branches that light a base from above."""
     return worst_of(metric, layering_cases(probe))
 
 
-def passing(probe: Any, metric: Metric) -> Measurement:
+def passing(probe: Probe, metric: Metric) -> Measurement:
     """Throughput of a combination against 1 - E, where it is negative as `layer` takes it: 0."""
     cases = (
         case._replace(measured=np.maximum(case.measured, 0.0)) for case in layering_cases(probe)
@@ -31,39 +33,39 @@ def passing(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, cases)
 
 
-def transmission(probe: Any, metric: Metric) -> Measurement:
+def transmission(probe: Probe, metric: Metric) -> Measurement:
     """Throughput of a layer against 1 - E, in the branch of light through the base."""
     return worst_of(metric, transmission_cases(probe))
 
 
-def layer(probe: Any, metric: Metric) -> Measurement:
+def layer(probe: Probe, metric: Metric) -> Measurement:
     """Light that a lobe reflects and light that it passes to a white base, against all of it."""
     views, albedo = _integral(probe)
     total = albedo + probe.throughput(views, "direct")
     # Where the equations gain energy by themselves, no throughput makes up for it.
-    sound = (probe.integrals <= probe.subject.albedo(views) + ROUNDED).all(axis=1)
+    sound = (probe.integrals <= subject_of(probe, BsdfSubject).albedo(views) + ROUNDED).all(axis=1)
     return worst_of(metric, [Case(views.where(sound), total[sound], np.ones((1, 3)))])
 
 
-def energy(probe: Any, metric: Metric) -> Measurement:
+def energy(probe: Probe, metric: Metric) -> Measurement:
     """Albedos above 1, and above what the node's own equations have."""
     views, albedo = _integral(probe)
     allowed = np.maximum(1.0, probe.integrals)
     return worst_of(metric, [Case(views, np.maximum(albedo, allowed), allowed)])
 
 
-def lossless(probe: Any, metric: Metric) -> Measurement:
+def lossless(probe: Probe, metric: Metric) -> Measurement:
     """Albedo of a lobe that reflects all light, integrated from the host's values, against 1."""
     batch, weights = probe.integrated
-    mirror = batch.altered(**probe.subject.row.mirror)
+    mirror = batch.altered(**subject_of(probe, BsdfSubject).row.mirror)
     views, albedo = _summed(probe, mirror, weights)
     return worst_of(metric, [Case(views, albedo, np.ones_like(albedo))])
 
 
-def shape(probe: Any, metric: Metric) -> Measurement:
+def shape(probe: Probe, metric: Metric) -> Measurement:
     """Ratio of two values of one view against that of the equations: compensation cancels."""
     batch, other = (_clear(each.first(FEW)) for each in probe.mirrored)
-    first, second = probe.subject.expected(batch), probe.subject.expected(other)
+    first, second = probe.expected(batch), probe.expected(other)
     lit = (np.minimum(first, second) > LEAST_VALUE).any(axis=1)
     lit &= np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2])) >= LEAST_COSINE
     scale = (first * second).max(axis=1, keepdims=True)
@@ -86,7 +88,7 @@ def _clear(batch: Batch) -> Batch:
     return batch.altered(**changes)
 
 
-def retroreflection(probe: Any, metric: Metric) -> Measurement:
+def retroreflection(probe: Probe, metric: Metric) -> Measurement:
     """Values in retroreflective mode against those of the mirrored view."""
     cases = []
     for batch in probe.few:
@@ -96,12 +98,12 @@ def retroreflection(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, cases)
 
 
-def stretched(probe: Any, metric: Metric) -> Measurement:
+def stretched(probe: Probe, metric: Metric) -> Measurement:
     """The environment branch of anisotropic materials against the integrals of their values."""
     return worst_of(metric, [stretched_case(probe)])
 
 
-def anisotropy(probe: Any, metric: Metric) -> Measurement:
+def anisotropy(probe: Probe, metric: Metric) -> Measurement:
     """Values with a turned tangent against those of directions turned the other way."""
     batch = probe.mirrored[0].first(FEW)
     batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_COSINE)
@@ -125,18 +127,18 @@ def _turned_back(w: Array, tangent: Array) -> Array:
     return rounded([along, across, w[:, 2]])
 
 
-def integral(probe: Any, metric: Metric) -> Measurement:
+def integral(probe: Probe, metric: Metric) -> Measurement:
     """Directional albedo, integrated from the host's values, against that of the equations."""
     views, albedo = _integral(probe)
     return worst_of(metric, [Case(views, albedo, probe.integrals)])
 
 
-def _integral(probe: Any) -> tuple[Batch, Array]:
+def _integral(probe: Probe) -> tuple[Batch, Array]:
     """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
     return _summed(probe, *probe.integrated)
 
 
-def _summed(probe: Any, batch: Batch, weights: Array) -> tuple[Batch, Array]:
+def _summed(probe: Probe, batch: Batch, weights: Array) -> tuple[Batch, Array]:
     """Views of materials in many directions of light, and their albedos, (N, 3)."""
     count, nodes = weights.shape
     values = probe.direct(batch).reshape(count, nodes, 3)

@@ -3,12 +3,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from mxeon.conformance.checks.controls import Control
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.subject import Subject
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.measurement import Measurement, Metric
 from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.shaders.hosts.base import Host
 
 
 @dataclass(frozen=True)
@@ -33,18 +36,18 @@ class Check:
         Explanation of a failure.
     open : bool
         Whether an error differs, and does not fail, where a permitted function explains all values.
-    adapt : callable (tolerance, probe) -> Tolerance
-        The tolerance on the probe's host, by the errors of its engine's own functions.
+    adapt : callable (tolerance, subject, kind, host) -> Tolerance
+        The tolerance on a host, by the errors of its engine's own functions.
     """
 
     key: str
     claim: str
     models: tuple[str, ...]
-    measure: Callable[[Any, Metric], Measurement]
+    measure: Callable[[Probe, Metric], Measurement]
     variant: str
-    control: Callable[[Any], Any]
+    control: Control
     tolerances: Mapping[str, Tolerance]
-    applies: Callable[[Any, str], bool] = lambda subject, host: True
-    diagnose: Callable[[Any], Diagnosis] = diagnosis.of_value
+    applies: Callable[[Subject, str], bool] = lambda subject, host: True
+    diagnose: Callable[[Probe], Diagnosis] = diagnosis.of_value
     open: bool = False
-    adapt: Callable[[Tolerance, Any], Tolerance] = lambda tolerance, probe: tolerance
+    adapt: Callable[[Tolerance, Subject, str, Host], Tolerance] = lambda tolerance, *_: tolerance

@@ -8,65 +8,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Batch
 
 Array = NDArray[np.float64]
-Control = Callable[[Any], "Altered"]
+Control = Callable[[Probe], Probe]
 
 
-@dataclass(frozen=True)
-class Altered:
+@dataclass(frozen=True, eq=False)
+class Altered(Probe):
     """A probe made wrong: its batches changed on the way in, its values on the way out.
 
     Responses and throughputs are values of their own.
     """
 
-    probe: Any
+    probe: Probe
     batch: Callable[[Batch], Batch] = lambda batch: batch
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
     throughputs: Callable[[Batch, Array], Array] = lambda batch, values: values
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.probe, name)
-
-    @property
-    def batches(self) -> tuple[Batch, ...]:
-        """The few: a control has nothing to prove on all pairs."""
-        few: tuple[Batch, ...] = self.probe.few
-        return few
-
-    @property
-    def albedos(self) -> tuple[Array, ...]:
-        """Those of the first."""
-        first: tuple[Array, ...] = self.probe.albedos[:1]
-        return first
-
-    @property
-    def cosines(self) -> tuple[Batch, ...]:
-        """The first: pictures of an environment take long on some hosts."""
-        first: tuple[Batch, ...] = self.probe.cosines[:1]
-        return first
-
-    def direct(self, batch: Batch) -> Array:
-        """Values of the changed batch, changed."""
-        return self.values(batch, self.probe.direct(self.batch(batch)))
-
-    def albedo(self, batch: Batch, *irradiance: Array) -> Array:
-        """Albedos of the changed batch, changed."""
-        return self.values(batch, self.probe.albedo(self.batch(batch), *irradiance))
-
-    def transmitted(self, batch: Batch, *radiance: Array) -> Array:
-        """Light through the surface of the changed batch, changed."""
-        return self.values(batch, self.probe.transmitted(self.batch(batch), *radiance))
-
-    def throughput(self, batch: Batch, branch: str) -> Array:
-        """Throughputs of the changed batch, changed."""
-        return self.throughputs(batch, self.probe.throughput(self.batch(batch), branch))
-
-    def density(self, batch: Batch) -> Array:
-        """Densities for the changed batch."""
-        values: Array = self.probe.density(self.batch(batch))
-        return values
+    def __getattribute__(self, name: str) -> object:
+        """Members of the probe, but for those that a control changes."""
+        own = name in Altered.__dict__ or name in type(self).__dict__ or name.startswith("__")
+        return object.__getattribute__(
+            self if own else object.__getattribute__(self, "probe"), name
+        )
 
 
 def with_inputs(**inputs: Any) -> Control:
@@ -74,7 +40,7 @@ def with_inputs(**inputs: Any) -> Control:
     return lambda probe: Altered(probe, batch=lambda batch: batch.altered(**inputs))
 
 
-def gray(probe: Any) -> Altered:
+def gray(probe: Probe) -> Altered:
     """A control that loses the color: every channel gets the mean of the three."""
 
     def mean_color(batch: Batch) -> Batch:
@@ -88,12 +54,12 @@ def gray(probe: Any) -> Altered:
     return Altered(probe, batch=mean_color)
 
 
-def take_response(probe: Any) -> Altered:
+def take_response(probe: Probe) -> Altered:
     """A control that takes the response for another output."""
     return Altered(probe, throughputs=lambda batch, values: probe.direct(batch))
 
 
-def pass_all(probe: Any) -> Altered:
+def pass_all(probe: Probe) -> Altered:
     """A control whose throughput is 1."""
     return Altered(probe, throughputs=lambda batch, values: np.ones_like(values))
 
@@ -103,12 +69,12 @@ def scale(factor: float) -> Control:
     return lambda probe: Altered(probe, values=lambda batch, values: factor * values)
 
 
-def offset(probe: Any) -> Altered:
+def offset(probe: Probe) -> Altered:
     """A control to whose values a thousandth is added."""
     return Altered(probe, values=lambda batch, values: values + 1e-3)
 
 
-def no_number(probe: Any) -> Altered:
+def no_number(probe: Probe) -> Altered:
     """A control whose first value is not a number."""
     return Altered(
         probe,
@@ -116,7 +82,7 @@ def no_number(probe: Any) -> Altered:
     )
 
 
-def rougher(probe: Any) -> Altered:
+def rougher(probe: Probe) -> Altered:
     """A control whose roughness is a tenth larger."""
     return Altered(
         probe,
@@ -126,7 +92,7 @@ def rougher(probe: Any) -> Altered:
     )
 
 
-def isotropic(probe: Any) -> Altered:
+def isotropic(probe: Probe) -> Altered:
     """A control whose roughness is the same in both directions."""
     return Altered(
         probe,
@@ -136,7 +102,7 @@ def isotropic(probe: Any) -> Altered:
     )
 
 
-def shifted(probe: Any) -> Altered:
+def shifted(probe: Probe) -> Altered:
     """A control in which each pair has the inputs of another."""
 
     def batch(batch: Batch) -> Batch:
@@ -146,7 +112,7 @@ def shifted(probe: Any) -> Altered:
     return Altered(probe, batch=batch)
 
 
-def drop_changes(probe: Any) -> Altered:
+def drop_changes(probe: Probe) -> Altered:
     """A control that drops every change of inputs: the host sees the first batch only."""
     return Altered(probe, batch=lambda batch: probe.few[0])
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that emit light."""
 
-from dataclasses import replace
 from typing import Any
 
 from mxeon.conformance.accuracy import emission as tolerances
@@ -21,19 +20,20 @@ from mxeon.conformance.nodes.emission import (
     SURFACES,
     UNIMPLEMENTED,
 )
+from mxeon.conformance.probes.probe import Probe
 
 
-def unimplemented(probe: Any) -> Any:
+def unimplemented(probe: Probe) -> Any:
     """A control that asks for a node that its document defines, and that nothing implements."""
-    return replace(probe, subject=UNIMPLEMENTED)
+    return probe.of(UNIMPLEMENTED)
 
 
-def of_missing(probe: Any) -> Diagnosis:
+def of_missing(probe: Probe) -> Diagnosis:
     """The node that the target lacks."""
     return Diagnosis(f"{probe.host.target} has no implementation of {probe.subject.title}")
 
 
-def of_opacity(probe: Any) -> Diagnosis:
+def of_opacity(probe: Probe) -> Diagnosis:
     """Whether the opacity is dropped."""
     full = max(
         tolerances.OPACITY.metric(
@@ -64,7 +64,7 @@ CHECKS = (
         gray,
         tolerances.FRONTS,
         diagnose=diagnosis.of_radiance,
-        adapt=tolerances.on_engine,
+        adapt=tolerances.widen_for_functions,
     ),
     Check(
         "back",
@@ -76,7 +76,7 @@ CHECKS = (
         tolerances.RADIANCES,
         diagnose=diagnosis.of_back,
         open=True,
-        adapt=tolerances.on_engine,
+        adapt=tolerances.widen_for_functions,
     ),
     Check(
         "exitance",
@@ -87,7 +87,7 @@ CHECKS = (
         scale(0.99),
         tolerances.EXITANCES,
         diagnose=diagnosis.of_radiance,
-        adapt=tolerances.on_engine,
+        adapt=tolerances.widen_for_functions,
     ),
     Check(
         "transmittance",
@@ -98,7 +98,7 @@ CHECKS = (
         shifted,
         {MEDIUM: tolerances.TRANSMITTANCE},
         diagnose=diagnosis.of_medium,
-        adapt=tolerances.on_engine,
+        adapt=tolerances.widen_for_functions,
     ),
     Check(
         "opacity",

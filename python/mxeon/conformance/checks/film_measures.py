@@ -9,6 +9,8 @@ import numpy as np
 
 from mxeon.conformance.checks.controls import Altered
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, of_albedo
+from mxeon.conformance.nodes.bsdf import BsdfSubject
+from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.models.ggx_formulas import smith_lambda
@@ -22,7 +24,7 @@ THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 LEAST_INDEX = 1.05  # of a substrate whose lobe is compared
 
 
-def film_limit(probe: Any, metric: Metric) -> Measurement:
+def film_limit(probe: Probe, metric: Metric) -> Measurement:
     """Values under a film of index 1, and under one next to nothing, against those without."""
     batch = _compared(probe)
     bare = probe.direct(batch.altered(thinfilm_thickness=0.0))
@@ -33,12 +35,12 @@ def film_limit(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, cases)
 
 
-def film_average(probe: Any, metric: Metric) -> Measurement:
+def film_average(probe: Probe, metric: Metric) -> Measurement:
     """F_ss of a film, from values at two roughnesses, against that of the equations."""
     return worst_of(metric, [average_case(probe)])
 
 
-def average_case(probe: Any) -> Case:
+def average_case(probe: Probe) -> Case:
     """The case of `film_average`."""
     batch: Batch = probe.steep
     (_, measured), (F, expected) = (_averages(probe, each, batch) for each in _sides(probe))
@@ -46,12 +48,12 @@ def average_case(probe: Any) -> Case:
     return Case(batch.where(bright), measured[bright], expected[bright])
 
 
-def film_visible(probe: Any, metric: Metric) -> Measurement:
+def film_visible(probe: Probe, metric: Metric) -> Measurement:
     """A film's mean over the visible facets, from its albedo, against that of the equations."""
     batch, *_ = average_case(probe)
     albedos = (
         lambda each: probe.albedo(each) / probe.albedo(_mirror(probe, each)),
-        probe.subject.albedo,
+        probe.expected_albedo,
     )
     measured, expected = (
         _visible(probe, direct, albedo, batch)
@@ -60,7 +62,7 @@ def film_visible(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, [Case(batch, measured, expected)])
 
 
-def of_average(probe: Any) -> Diagnosis:
+def of_average(probe: Probe) -> Diagnosis:
     """Whether F at one cosine stands in the place of its average."""
     batch, measured, expected = average_case(probe)
     direct, model = _sides(probe)
@@ -77,7 +79,7 @@ def of_average(probe: Any) -> Diagnosis:
     return Diagnosis(text, permitted=words == "at the half vector")
 
 
-def of_visible(probe: Any) -> Diagnosis:
+def of_visible(probe: Probe) -> Diagnosis:
     """The explanation of a film's albedo, or the weights of the facets where that is right."""
     explained = of_albedo(probe)
     if RIGHT not in explained.text:
@@ -90,12 +92,12 @@ def view_at(mu: float, batch: Batch) -> Array:
     return np.broadcast_to([np.sqrt(1.0 - mu * mu), 0.0, mu], batch.wo.shape)
 
 
-def _sides(probe: Any) -> tuple[Values, Values]:
+def _sides(probe: Probe) -> tuple[Values, Values]:
     """Values of the host, and of the equations."""
-    return probe.direct, probe.subject.expected
+    return probe.direct, probe.expected
 
 
-def _averages(probe: Any, direct: Values, batch: Batch) -> tuple[Array, Array]:
+def _averages(probe: Probe, direct: Values, batch: Batch) -> tuple[Array, Array]:
     """F at the half vector of mirrored lights, and F_ss, (N, 3) each, from values at two roughnesses.
 
     A value over that of facets that reflect everything is F (1 + F_ss k), k = (1 - E_ss) / E_ss, in
@@ -108,26 +110,26 @@ def _averages(probe: Any, direct: Values, batch: Batch) -> tuple[Array, Array]:
     return F, (first - second) / (k - other_k) / np.maximum(F, 0.5 * LEAST_F)
 
 
-def _parts(probe: Any, direct: Values, batch: Batch) -> tuple[Array, Array]:
+def _parts(probe: Probe, direct: Values, batch: Batch) -> tuple[Array, Array]:
     """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
     facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
     return direct(batch) / facets, direct(_mirror(probe, batch)) / facets - 1.0
 
 
-def _visible(probe: Any, direct: Values, albedo: Values, batch: Batch) -> Array:
+def _visible(probe: Probe, direct: Values, albedo: Values, batch: Batch) -> Array:
     """F_o of an albedo E_ss F_o (1 + F_ss k) over that of a mirror, E_ss (1 + k) = 1, (N, 3)."""
     _, F_ss = _averages(probe, direct, batch)
     _, k = _parts(probe, direct, batch)
     return np.asarray(albedo(batch) * (1.0 + k) / (1.0 + F_ss * k))
 
 
-def _mirror(probe: Any, batch: Batch) -> Batch:
+def _mirror(probe: Probe, batch: Batch) -> Batch:
     """The same pairs with a lobe that reflects everything."""
-    return batch.altered(thinfilm_thickness=0.0, **probe.subject.row.mirror)
+    return batch.altered(thinfilm_thickness=0.0, **subject_of(probe, BsdfSubject).row.mirror)
 
 
-def thicker(probe: Any) -> Altered:
+def thicker(probe: Probe) -> Altered:
     """A control whose film is a quarter thicker."""
     return Altered(
         probe,
@@ -137,7 +139,7 @@ def thicker(probe: Any) -> Altered:
     )
 
 
-def brighter(probe: Any) -> Altered:
+def brighter(probe: Probe) -> Altered:
     """A control whose values under a film are 100 times as large."""
 
     def values(batch: Batch, values: Array) -> Array:
@@ -146,17 +148,17 @@ def brighter(probe: Any) -> Altered:
     return Altered(probe, values=values)
 
 
-def film_energy(probe: Any, metric: Metric) -> Measurement:
+def film_energy(probe: Probe, metric: Metric) -> Measurement:
     """Values under a film, where they exceed those of a lobe that reflects all light."""
     cases = []
     for batch in probe.few[::2]:  # a mirror of index 0 is another check where directions are exact
-        mirror = batch.altered(thinfilm_thickness=0.0, **probe.subject.row.mirror)
+        mirror = batch.altered(thinfilm_thickness=0.0, **subject_of(probe, BsdfSubject).row.mirror)
         most = probe.direct(mirror)
         cases.append(Case(batch, np.maximum(probe.direct(batch), most), most))
     return worst_of(metric, cases)
 
 
-def _compared(probe: Any) -> Batch:
+def _compared(probe: Probe) -> Batch:
     """Random pairs with a film, whose substrate float32 can tell from vacuum."""
     batch: Batch = probe.few[0]
     changes: dict[str, Any] = {"thinfilm_thickness": 300.0}

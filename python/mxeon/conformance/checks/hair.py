@@ -2,15 +2,15 @@
 """Checks of the hair node alone: its lobes apart, where they are wide, narrow, or seen straight."""
 
 from collections.abc import Callable
-from typing import Any
 
 from mxeon.conformance.accuracy.hair import HAIR_REGIONS
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import Altered, with_inputs
+from mxeon.conformance.checks.controls import with_inputs
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.bsdf import HAIR
 from mxeon.conformance.nodes.hair_regions import REGIONS
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.models.hair.defects import FORMS, TILTED
 from mxeon.models.pbrlib.hair import HAIR_NODE
@@ -24,29 +24,29 @@ CLAIMS = {
 }
 
 
-def _case(probe: Any, key: str) -> Case:
+def _case(probe: Probe, key: str) -> Case:
     """Values of a region, and the expected ones."""
     batch = probe.region(key)
-    return Case(batch, probe.direct(batch), probe.subject.expected(batch))
+    return Case(batch, probe.direct(batch), probe.expected(batch))
 
 
-def _measure(key: str) -> Callable[[Any, Metric], Measurement]:
+def _measure(key: str) -> Callable[[Probe, Metric], Measurement]:
     """Values of a region against those of the equations."""
     return lambda probe, metric: worst_of(metric, [_case(probe, key)])
 
 
-def _diagnose(key: str) -> Callable[[Any], Diagnosis]:
+def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
     """The explanation of the values of a region."""
 
-    def diagnose(probe: Any) -> Diagnosis:
+    def diagnose(probe: Probe) -> Diagnosis:
         others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
-        candidates = [each for each in probe.subject.value_candidates if each.title not in others]
+        candidates = [each for each in probe.value_candidates if each.title not in others]
         return diagnosis.of_case(probe, _case(probe, key), candidates, HAIR_REGIONS[key])
 
     return diagnose
 
 
-def without_offset(probe: Any) -> Altered:
+def without_offset(probe: Probe) -> Probe:
     """A control that sees the fiber turned about itself: its normal is off by a tenth."""
     return with_inputs(normal=(0.0, 0.1, 0.995))(probe)
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of a lobe: its values and albedos, its frame, its inputs and its edges."""
 
-from typing import Any
-
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
 from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.accuracy.engine import widen_for_engine
@@ -21,13 +19,16 @@ from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as wiring
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.bsdf import BSDFS, CLOSED, COMBINED, FITTED, HAIR, KINDS, NESTED, SHEEN
-from mxeon.conformance.nodes.diffuse import DiffuseLobe
+from mxeon.conformance.nodes.diffuse import DiffuseLobe, DiffuseSubject
 from mxeon.conformance.nodes.emission import KINDS as EMISSION_KINDS
 from mxeon.conformance.nodes.emission import MEDIUM, PICTURES
 from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.subsurface import SUBSURFACES
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import ON_SPHERES, sphere_cases
+from mxeon.conformance.samples.measurement import worst_of
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.models.pbrlib import NODES
 from mxeon.models.pbrlib.hair import HAIR_NODE
@@ -53,33 +54,33 @@ def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Toleranc
     return dict.fromkeys(kinds, tolerance)
 
 
-def of_sphere(probe: Any) -> Diagnosis:
+def of_sphere(probe: Probe) -> Diagnosis:
     """The explanation of light on a sphere."""
     cases = list(sphere_cases(probe))
     return diagnosis.of_cases(probe, cases, ON_SPHERES, bsdf_tolerances.RINGS)
 
 
-def has_flag(subject: Any, host: str) -> bool:
+def has_flag(subject: Subject, host: str) -> bool:
     """Whether a node has the flag that switches the model."""
-    return FLAG in subject.inputs
+    return isinstance(subject, DiffuseSubject) and FLAG in subject.inputs
 
 
-def is_lobe(subject: Any, host: str) -> bool:
+def is_lobe(subject: Subject, host: str) -> bool:
     """Whether a subject is the lobe of a surface shader, or a renderer's own Lambert."""
     return isinstance(subject, DiffuseLobe) or subject.model == "lambert"
 
 
-def is_alone(subject: Any, host: str) -> bool:
+def is_alone(subject: Subject, host: str) -> bool:
     """Whether no other lobe lies beside the diffuse one."""
     return not (isinstance(subject, RendererNode) and subject.others)
 
 
-def is_sampled(subject: Any, host: str) -> bool:
+def is_sampled(subject: Subject, host: str) -> bool:
     """Whether a renderer's own sampling of the subject can be called."""
     return isinstance(subject, RendererNode) and subject.sampled
 
 
-def has_environment(subject: Any, host: str) -> bool:
+def has_environment(subject: Subject, host: str) -> bool:
     """Whether a host has the subject's model for all pairs, as an environment needs."""
     return not front_lit_only(host, subject.model)
 
@@ -203,7 +204,7 @@ CHECKS = (
         "sphere",
         "On a sphere the diffusion profile spreads light, by the radius and the anisotropy.",
         (SUBSURFACE_NODE.name,),
-        lambda probe, metric: measures.worst_of(metric, sphere_cases(probe)),
+        lambda probe, metric: worst_of(metric, sphere_cases(probe)),
         "the mean free path is 0.3 in every channel",
         with_inputs(radius=(0.3, 0.3, 0.3)),
         {CLOSED: bsdf_tolerances.RINGS},

@@ -3,7 +3,6 @@
 
 from dataclasses import replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +18,7 @@ from mxeon.conformance.probes.cases import (
     throughput_cases,
     value_cases,
 )
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import (
     Case,
@@ -37,27 +37,27 @@ COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
 
-def value(probe: Any, metric: Metric) -> Measurement:
+def value(probe: Probe, metric: Metric) -> Measurement:
     """Values against the model's, over all pairs of the probe."""
     return worst_of(metric, value_cases(probe))
 
 
-def environment(probe: Any, metric: Metric) -> Measurement:
+def environment(probe: Probe, metric: Metric) -> Measurement:
     """The environment branch against the closed form of the directional albedo."""
     return worst_of(metric, albedo_cases(probe))
 
 
-def frame(probe: Any, metric: Metric) -> Measurement:
+def frame(probe: Probe, metric: Metric) -> Measurement:
     """Values in turned frames, of which half have a normal that faces away, against those in none."""
     return worst_of(metric, frame_cases(probe))
 
 
-def surroundings(probe: Any, metric: Metric) -> Measurement:
+def surroundings(probe: Probe, metric: Metric) -> Measurement:
     """The environment branch under an uneven sky, over that in a uniform one, against the sky."""
     return worst_of(metric, [surroundings_case(probe)])
 
 
-def quadrature(probe: Any, metric: Metric) -> Measurement:
+def quadrature(probe: Probe, metric: Metric) -> Measurement:
     """Directional albedo, integrated from the host's values, against its closed form."""
     cases: list[Case] = []
     for mu, color, roughness in product((0.1, 0.3, 0.6, 0.95), COLORS, (0.25, 1.0)):
@@ -68,7 +68,7 @@ def quadrature(probe: Any, metric: Metric) -> Measurement:
 
 
 def integrated(
-    probe: Any, mu: ArrayLike, color: ArrayLike, roughness: float
+    probe: Probe, mu: ArrayLike, color: ArrayLike, roughness: float
 ) -> tuple[Array, Array]:
     """Directional albedo at one or more cosines: from the host's values, and in closed form.
 
@@ -88,22 +88,22 @@ def integrated(
     return measured, row.closed_albedo_dir(mu, color, roughness)
 
 
-def black(probe: Any, metric: Metric) -> Measurement:
+def black(probe: Probe, metric: Metric) -> Measurement:
     """Values of a black surface against 0."""
-    batches = [batch.altered(**probe.subject.black) for batch in probe.few]
+    batches = [batch.altered(**probe.black) for batch in probe.few]
     return worst_of(
         metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches)
     )
 
 
-def throughput(probe: Any, metric: Metric) -> Measurement:
+def throughput(probe: Probe, metric: Metric) -> Measurement:
     """Throughput against 0 of an opaque node, in every branch and for every weight."""
     return worst_of(
         metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch))
     )
 
 
-def furnace(probe: Any, metric: Metric) -> Measurement:
+def furnace(probe: Probe, metric: Metric) -> Measurement:
     """Albedo of a white surface against 1."""
     batches = [batch.altered(color=WHITE, weight=1.0) for batch in probe.cosines]
     return worst_of(
@@ -111,7 +111,7 @@ def furnace(probe: Any, metric: Metric) -> Measurement:
     )
 
 
-def reciprocity(probe: Any, metric: Metric) -> Measurement:
+def reciprocity(probe: Probe, metric: Metric) -> Measurement:
     """f(wo, wi) against f(wi, wo), both times both cosines."""
     cases: list[Case] = []
     for batch in probe.few:
@@ -124,7 +124,7 @@ def reciprocity(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, cases)
 
 
-def lambert(probe: Any, metric: Metric) -> Measurement:
+def lambert(probe: Probe, metric: Metric) -> Measurement:
     """Values at roughness 0 against Lambert's."""
     batches = [batch.altered(roughness=0.0) for batch in probe.few]
     return worst_of(
@@ -132,7 +132,7 @@ def lambert(probe: Any, metric: Metric) -> Measurement:
     )
 
 
-def flag(probe: Any, _: Metric) -> Measurement:
+def flag(probe: Probe, _: Metric) -> Measurement:
     """The change that the flag makes, against the models' difference, relative to the largest."""
     error = largest = 0.0
     for batch in probe.few:
@@ -147,13 +147,13 @@ def flag(probe: Any, _: Metric) -> Measurement:
     return Measurement(float(error / largest), {"expected": [float(largest)]})
 
 
-def inputs(probe: Any, _: Metric) -> Measurement:
+def inputs(probe: Probe, _: Metric) -> Measurement:
     """Number of inputs of the node that change nothing."""
     dead = dead_inputs(probe)
     return Measurement(len(dead), {name: [0.0] for name in dead})
 
 
-def finite(probe: Any, _: Metric) -> Measurement:
+def finite(probe: Probe, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
     batch, values, _expected = edge_case(probe)
     bad = ~np.isfinite(values).all(axis=1)

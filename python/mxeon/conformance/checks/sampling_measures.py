@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of a renderer's own sampling: its density, and its directions against that."""
 
-from typing import Any
-
 import numpy as np
 
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import SEED, Array, Batch
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.models.sampling.cltc import eon_cltc_pdf
@@ -17,7 +16,7 @@ LEAST = 10.0  # samples that a bin has to expect
 ROUGHNESS = 1.0
 
 
-def density(probe: Any, metric: Metric) -> Measurement:
+def density(probe: Probe, metric: Metric) -> Measurement:
     """The renderer's density against that of the paper's sampling."""
     cases: list[Case] = []
     for batch in probe.few:
@@ -28,7 +27,7 @@ def density(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, cases)
 
 
-def samples(probe: Any, _: Metric) -> Measurement:
+def samples(probe: Probe, _: Metric) -> Measurement:
     """Deviation of the chi-square of directions against their own density, in standard deviations.
 
     Drawn for COSINES at ROUGHNESS. The cube root of a chi-square over its degrees of freedom is
@@ -39,7 +38,7 @@ def samples(probe: Any, _: Metric) -> Measurement:
     return Measurement(float(deviations[worst]), {"mu_o": [COSINES[worst]]})
 
 
-def _deviation(probe: Any, mu: float) -> float:
+def _deviation(probe: Probe, mu: float) -> float:
     """Standard deviations by which the counts of one viewer's samples leave their density."""
     rng = np.random.default_rng(SEED)
     wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
@@ -58,7 +57,7 @@ def _deviation(probe: Any, mu: float) -> float:
     return float(((chi_square / freedom) ** (1.0 / 3.0) - (1.0 - spread)) / np.sqrt(spread))
 
 
-def _shares(probe: Any, wo: Array) -> Array:
+def _shares(probe: Probe, wo: Array) -> Array:
     """Integral of the renderer's density over each bin."""
     heights, turns = (FINE * count for count in BINS)
     mu, azimuth = np.meshgrid(

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Diagnosis of a surface shader's failures: the lobe without which they vanish."""
 
-from typing import Any
-
 import numpy as np
 
 from mxeon.conformance.accuracy.surface_shaders import VALUE
 from mxeon.conformance.checks.surface_measures import misplaced
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.surface_shaders import SurfaceShader
+from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Batch
 from mxeon.conformance.samples.measurement import scaled
 
@@ -21,9 +21,10 @@ LOBES = {
 }
 
 
-def of_lobes(probe: Any) -> Diagnosis:
+def of_lobes(probe: Probe) -> Diagnosis:
     """The lobe whose absence leaves the smallest error of the worst pairs."""
-    [batch], [expected] = probe.batches, probe.expected
+    [batch] = probe.batches
+    expected = probe.expected(batch)
     worst = np.argsort(scaled(probe.direct(batch), expected))[-WORST:]
     pairs = batch.where(worst)
     errors = {}
@@ -37,22 +38,22 @@ def of_lobes(probe: Any) -> Diagnosis:
     return Diagnosis(f"no lobe alone explains it; the error is least without {least}")
 
 
-def _error(probe: Any, pairs: Batch, names: tuple[str, ...]) -> float:
+def _error(probe: Probe, pairs: Batch, names: tuple[str, ...]) -> float:
     """Largest error of pairs whose materials lack a lobe."""
     plain = pairs.altered(**{name: np.zeros_like(pairs.inputs[name]) for name in names})
-    return float(scaled(probe.direct(plain), probe.expected_of(plain)).max())
+    return float(scaled(probe.direct(plain), probe.expected(plain)).max())
 
 
-def of_sum(probe: Any) -> Diagnosis:
+def of_sum(probe: Probe) -> Diagnosis:
     """Where the lobes are judged."""
     return Diagnosis("the checks of each lobe and of `layer` say why")
 
 
-def of_reach(probe: Any) -> Diagnosis:
+def of_reach(probe: Probe) -> Diagnosis:
     """The inputs."""
     names = misplaced(probe)
-    silent = [name for name in names if name not in probe.subject.table.silent]
-    heard = [name for name in names if name in probe.subject.table.silent]
+    silent = [name for name in names if name not in subject_of(probe, SurfaceShader).table.silent]
+    heard = [name for name in names if name in subject_of(probe, SurfaceShader).table.silent]
     texts = [
         f"{', '.join(group)} {verb}"
         for group, verb in ((silent, "changes nothing"), (heard, "changes something"))

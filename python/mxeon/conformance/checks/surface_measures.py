@@ -1,49 +1,43 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of surface shaders as a whole."""
 
-from typing import Any
-
 import numpy as np
 
+from mxeon.conformance.nodes.surface_shaders import SurfaceShader
+from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 
 BRANCHES = ("direct", "environment", "transmission")
 
 
-def value(probe: Any, metric: Metric) -> Measurement:
-    """Values against the sum of the lobes by the layer equation."""
-    pairs = zip(probe.batches, probe.expected, strict=True)
-    return worst_of(metric, (Case(batch, probe.direct(batch), each) for batch, each in pairs))
-
-
-def energy(probe: Any, metric: Metric) -> Measurement:
+def energy(probe: Probe, metric: Metric) -> Measurement:
     """Albedos above 1 over random materials with every lobe."""
     albedo = probe.albedo(probe.materials)
     return worst_of(metric, [Case(probe.materials, np.maximum(albedo, 1.0), np.ones((1, 3)))])
 
 
-def furnace(probe: Any, metric: Metric) -> Measurement:
+def furnace(probe: Probe, metric: Metric) -> Measurement:
     """Albedo against 1 of a material that loses no light."""
     albedo = probe.albedo(probe.white)
     return worst_of(metric, [Case(probe.white, albedo, np.ones((1, 3)))])
 
 
-def reach(probe: Any, _: Metric) -> Measurement:
+def reach(probe: Probe, _: Metric) -> Measurement:
     """Number of inputs that change something where the page says nothing, or the reverse."""
     wrong = misplaced(probe)
     return Measurement(len(wrong), {name: [0.0] for name in wrong})
 
 
-def misplaced(probe: Any) -> list[str]:
+def misplaced(probe: Probe) -> list[str]:
     """The inputs of `reach`."""
-    table = probe.subject.table
+    table = subject_of(probe, SurfaceShader).table
     wrong = set(table.silent).symmetric_difference(without_effect(probe))
     return sorted(wrong.difference(table.curved))
 
 
-def without_effect(probe: Any) -> list[str]:
+def without_effect(probe: Probe) -> list[str]:
     """Inputs that change no value in any branch."""
-    names = probe.subject.inputs
+    names = subject_of(probe, SurfaceShader).inputs
     heard = np.zeros(len(names), bool)
     for branch in BRANCHES:
         values = probe.response(probe.changed, branch).reshape(len(names), 2, -1)

@@ -2,7 +2,6 @@
 """Checks of surface shaders as a whole."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from mxeon.conformance.checks import surface_diagnosis as diagnosis
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, scale, shifted
 from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 
 MODELS = tuple(shader.model for shader in SHADERS)
@@ -26,7 +26,7 @@ class _Deaf(Altered):
         return np.repeat(self.probe.response(batch.first(1), branch), len(batch.wo), axis=0)
 
 
-def _deaf(probe: Any) -> Altered:
+def _deaf(probe: Probe) -> Altered:
     return _Deaf(probe)
 
 
@@ -35,7 +35,7 @@ CHECKS = (
         "lobes",
         "Direct light is that of all lobes by the layer equation.",
         MODELS,
-        surface_measures.value,
+        measures.value,
         "each pair has the inputs of another",
         shifted,
         {WHOLE: tolerances.VALUE},

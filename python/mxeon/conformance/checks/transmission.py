@@ -12,7 +12,12 @@ from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
 from mxeon.conformance.diagnosis import inputs as wiring
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
-from mxeon.conformance.nodes.transmission import TRANSMISSION_KINDS, TRANSMITTING
+from mxeon.conformance.nodes.transmission import (
+    TRANSMISSION_KINDS,
+    TRANSMITTING,
+    TransmissionSubject,
+)
+from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.samples.measurement import Case
 from mxeon.conformance.samples.tolerance import Tolerance
@@ -27,7 +32,7 @@ def of_all(tolerance: Tolerance) -> dict[str, Tolerance]:
     return dict.fromkeys(TRANSMISSION_KINDS, tolerance)
 
 
-def infinite(probe: Any) -> Altered:
+def infinite(probe: Probe) -> Altered:
     """A control whose values are divided by 0."""
 
     def divided(batch: Any, values: Any) -> Any:
@@ -36,13 +41,13 @@ def infinite(probe: Any) -> Altered:
     return Altered(probe, values=divided)
 
 
-def of_transmitted(probe: Any) -> Diagnosis:
+def of_transmitted(probe: Probe) -> Diagnosis:
     """Whether the light is divided by G_1, as MaterialX does for reflection; and where it is no number."""
     cases = measures.transmitted_cases(probe)
     near, far = (
         np.sqrt(np.mean(np.concatenate([_squares(case, found(case)) for case in cases])))
         for found in (
-            lambda case: measures.over_masking(probe.subject, case.batch),
+            lambda case: measures.over_masking(subject_of(probe, TransmissionSubject), case.batch),
             lambda case: case.expected,
         )
     )
@@ -57,19 +62,19 @@ def _squares(case: Case, expected: Array) -> Array:
     return squares
 
 
-def of_inputs(probe: Any) -> Diagnosis:
+def of_inputs(probe: Probe) -> Diagnosis:
     """The inputs that change nothing, or that change what they must not."""
     return Diagnosis(
         f"without effect, or with a wrong one: {', '.join(measures.wrong_inputs(probe))}"
     )
 
 
-def of_finite(probe: Any) -> Diagnosis:
+def of_finite(probe: Probe) -> Diagnosis:
     """Where values at the edges are not finite."""
     return Diagnosis(not_finite([measures.finite_case(probe)]))
 
 
-def unknown(probe: Any) -> Diagnosis:
+def unknown(probe: Probe) -> Diagnosis:
     """No explanation."""
     return Diagnosis(wiring.UNKNOWN)
 

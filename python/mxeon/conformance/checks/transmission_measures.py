@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of light through microfacets: its share, its place, and what it leaves alone."""
 
-from typing import Any
-
 import numpy as np
 
+from mxeon.conformance.nodes.transmission import TransmissionSubject
+from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, point_of, worst_of
 from mxeon.conformance.samples.uneven_environment import sky, sky_map
@@ -21,12 +21,12 @@ NORMAL = (0.0, 0.0, 1.0)
 ONE = np.ones((1, 3))
 
 
-def transmitted(probe: Any, metric: Metric) -> Measurement:
+def transmitted(probe: Probe, metric: Metric) -> Measurement:
     """Light of a uniform environment through the surface, against the limits of the equations."""
     return worst_of(metric, transmitted_cases(probe))
 
 
-def transmitted_cases(probe: Any) -> list[Case]:
+def transmitted_cases(probe: Probe) -> list[Case]:
     """The cases of `transmitted`: what is expected is the nearest value inside the limits.
 
     One is what the BTDF passes, without compensation; the other all that is not reflected. The first is
@@ -35,11 +35,17 @@ def transmitted_cases(probe: Any) -> list[Case]:
     cases = []
     for batch in probe.cosines:
         measured = probe.transmitted(batch)
-        cases.append(Case(batch, measured, np.clip(measured, *limits(probe.subject, batch))))
+        cases.append(
+            Case(
+                batch,
+                measured,
+                np.clip(measured, *limits(subject_of(probe, TransmissionSubject), batch)),
+            )
+        )
     return cases
 
 
-def limits(subject: Any, batch: Batch) -> tuple[Array, Array]:
+def limits(subject: TransmissionSubject, batch: Batch) -> tuple[Array, Array]:
     """Least and most light that passes, with tint and weight, (N, 3) each.
 
     The most exceeds 1 where the node's own curve is below 0.
@@ -50,7 +56,7 @@ def limits(subject: Any, batch: Batch) -> tuple[Array, Array]:
     return batch.strength * np.minimum(rest, passed), batch.strength * np.maximum(rest, passed)
 
 
-def over_masking(subject: Any, batch: Batch) -> Array:
+def over_masking(subject: TransmissionSubject, batch: Batch) -> Array:
     """The mean of 1 - F over the normals seen, divided by G_1 of the view, (N, 3)."""
     seen = subject.functions.passed(batch.wo, batch.inputs, False)
     G_1 = smith_g1(batch.wo, batch.inputs["roughness"])
@@ -58,7 +64,7 @@ def over_masking(subject: Any, batch: Batch) -> Array:
     return value
 
 
-def clear(probe: Any, metric: Metric) -> Measurement:
+def clear(probe: Probe, metric: Metric) -> Measurement:
     """Light of a uniform environment that a white lobe reflects and transmits, against all of it."""
     cases = []
     for batch in probe.cosines:
@@ -67,7 +73,7 @@ def clear(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, cases)
 
 
-def kept(probe: Any, metric: Metric) -> Measurement:
+def kept(probe: Probe, metric: Metric) -> Measurement:
     """Reflection beside transmission, against that of the node that only reflects, or none."""
     cases = []
     for batch in probe.cosines:
@@ -75,24 +81,31 @@ def kept(probe: Any, metric: Metric) -> Measurement:
             cases.append(
                 Case(batch, getattr(probe, output)(batch), _reflection(probe, output, batch))
             )
-        for branch in BRANCHES if probe.subject.reflects else BRANCHES[:2]:
-            expected = probe.reflection.throughput(batch, branch) if probe.subject.reflects else ONE
+        for branch in BRANCHES if subject_of(probe, TransmissionSubject).reflects else BRANCHES[:2]:
+            expected = (
+                probe.reflection.throughput(batch, branch)
+                if subject_of(probe, TransmissionSubject).reflects
+                else ONE
+            )
             cases.append(Case(batch, probe.throughput(batch, branch), expected))
     return worst_of(metric, cases)
 
 
-def _reflection(probe: Any, output: str, batch: Batch) -> Array:
+def _reflection(probe: Probe, output: str, batch: Batch) -> Array:
     """A value of the node that only reflects; 0 where the mode has no reflection."""
-    if not probe.subject.reflects:
+    if not subject_of(probe, TransmissionSubject).reflects:
         return 0.0 * ONE
     value: Array = getattr(probe.reflection, output)(batch)
     return value
 
 
-def critical(probe: Any, metric: Metric) -> Measurement:
+def critical(probe: Probe, metric: Metric) -> Measurement:
     """Light through smooth surfaces against 1 - F, and against none beyond the critical angle."""
     batch = _smooth(probe)
-    functions, mu = probe.subject.functions, np.minimum(batch.wo[:, 2], 1.0)
+    functions, mu = (
+        subject_of(probe, TransmissionSubject).functions,
+        np.minimum(batch.wo[:, 2], 1.0),
+    )
     index = functions.ior(batch.inputs)
     edge = np.sqrt(np.maximum(1.0 - index * index, 0.0))
     batch, mu = (batch.where(np.abs(mu - edge) > CRITICAL), mu[np.abs(mu - edge) > CRITICAL])
@@ -100,18 +113,18 @@ def critical(probe: Any, metric: Metric) -> Measurement:
     return worst_of(metric, [Case(batch, probe.transmitted(batch), batch.strength * passed)])
 
 
-def refraction(probe: Any, metric: Metric) -> Measurement:
+def refraction(probe: Probe, metric: Metric) -> Measurement:
     """An uneven environment through smooth surfaces, over a uniform one, against its place."""
     return worst_of(metric, [refraction_case(probe)])
 
 
-def refraction_case(probe: Any) -> Case:
+def refraction_case(probe: Probe) -> Case:
     """The case of `refraction`."""
     batch = _smooth(probe)
     level = probe.transmitted(batch)
     bright = level.min(axis=1) > LEAST_PASSED
     batch, level = batch.where(bright), level[bright]
-    index = probe.subject.functions.ior(batch.inputs)
+    index = subject_of(probe, TransmissionSubject).functions.ior(batch.inputs)
     measured = probe.transmitted(batch, sky_map()) / level
     return Case(batch, measured, sky(through_sphere(batch.wo, index)))
 
@@ -130,21 +143,21 @@ def through_sphere(wo: Array, index: Array) -> Array:
     return direction
 
 
-def _smooth(probe: Any) -> Batch:
+def _smooth(probe: Probe) -> Batch:
     """Views of smooth surfaces of all indices, with the node's colors."""
     batch: Batch = probe.few[0].first(COUNT)
     batch = batch.where(batch.wo[:, 2] >= LEAST_VIEW)
     return batch.altered(roughness=(0.0, 0.0))
 
 
-def finite(probe: Any, _: Metric) -> Measurement:
+def finite(probe: Probe, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
     batch, values, _expected = finite_case(probe)
     bad = ~np.isfinite(values).all(axis=1)
     return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
 
 
-def finite_case(probe: Any) -> Case:
+def finite_case(probe: Probe) -> Case:
     """The case of `finite`, of every fifth pair: each costs a sum over directions."""
     batch: Batch = probe.edges
     batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
@@ -152,17 +165,17 @@ def finite_case(probe: Any) -> Case:
     return Case(batch, values, np.zeros_like(values))
 
 
-def inputs(probe: Any, _: Metric) -> Measurement:
+def inputs(probe: Probe, _: Metric) -> Measurement:
     """Number of inputs that change no light through the surface, and of those that must not."""
     wrong = wrong_inputs(probe)
     return Measurement(len(wrong), {name: [0.0] for name in wrong})
 
 
-def wrong_inputs(probe: Any) -> list[str]:
+def wrong_inputs(probe: Probe) -> list[str]:
     """The inputs of `inputs`: the retroreflective mode is of the reflection alone."""
     batch, wrong = probe.few[0].first(FEW), []
     plain = probe.transmitted(batch, sky_map())
-    for name, (without, change) in probe.subject.changes.items():
+    for name, (without, change) in probe.changes.items():
         before = probe.transmitted(batch.altered(**without), sky_map()) if without else plain
         after = probe.transmitted(batch.altered(**change), sky_map())
         if np.array_equal(before, after, equal_nan=True) != (name == "retroreflective"):

@@ -34,7 +34,7 @@ CHECKS = (
         "each row has the inputs of another",
         shifted,
         dict.fromkeys((VALUES, OSL_VALUES), tolerances.ROUND_TRIP),
-        applies=lambda subject, host: subject.output == "ior",
+        applies=lambda subject, host: subject.title == "artistic_ior, ior",
         diagnose=value_measures.explained,
     ),
     Check(

@@ -4,54 +4,54 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from mxeon.conformance.accuracy.utilities import utility_tolerance
+from mxeon.conformance.accuracy.utilities import ALPHA, utility_tolerance
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, point_of, worst_of
 from mxeon.models.artistic_ior import normal_reflectance
 from mxeon.models.pbrlib.utilities import LARGEST_REFLECTIVITY
 
 
-def value(probe: Any, metric: Metric) -> Measurement:
+def value(probe: Probe, metric: Metric) -> Measurement:
     """Outputs against those of the equations."""
     return worst_of(metric, cases(probe))
 
 
-def cases(probe: Any) -> Iterator[Case]:
+def cases(probe: Probe) -> Iterator[Case]:
     """The cases of `value`."""
     unit = UNITS.get(probe.subject.title, _as_it_is)
     for batch in probe.batches:
-        measured, expected = probe.direct(batch), probe.subject.expected(batch)
+        measured, expected = probe.direct(batch), probe.expected(batch)
         yield Case(batch, unit(measured, batch), unit(expected, batch))
 
 
-def explained(probe: Any) -> Diagnosis:
+def explained(probe: Probe) -> Diagnosis:
     """The explanation of a probe's outputs."""
     unit = UNITS.get(probe.subject.title, _as_it_is)
     candidates = [
         replace(each, values=partial(_in_unit, unit, each.values))
-        for each in probe.subject.value_candidates
+        for each in probe.value_candidates
     ]
-    tolerance = utility_tolerance(None, probe)
+    tolerance = utility_tolerance(ALPHA, probe.subject, probe.kind, probe.host)
     return diagnosis.of_cases(probe, list(cases(probe)), candidates, tolerance)
 
 
-def finite(probe: Any, _: Metric) -> Measurement:
+def finite(probe: Probe, _: Metric) -> Measurement:
     """Number of outputs that are not finite, at the ends of the ranges and beyond."""
     batch = probe.edges
-    bad = ~np.isfinite(probe.direct(batch)).all(axis=1)
+    bad = np.asarray(~np.isfinite(probe.direct(batch)).all(axis=1))
     return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
 
 
-def explained_finite(probe: Any) -> Diagnosis:
+def explained_finite(probe: Probe) -> Diagnosis:
     """The explanation of outputs that are not finite: a bound that an input of each exceeds."""
     batch = probe.edges
-    bad = ~np.isfinite(probe.direct(batch)).all(axis=1)
+    bad = np.asarray(~np.isfinite(probe.direct(batch)).all(axis=1))
     if not bad.any():
         return Diagnosis()
     share = f"{int(bad.sum())} of {len(bad)} outputs are not finite"
@@ -65,7 +65,7 @@ def explained_finite(probe: Any) -> Diagnosis:
     return Diagnosis(share)
 
 
-def round_trip(probe: Any, metric: Metric) -> Measurement:
+def round_trip(probe: Probe, metric: Metric) -> Measurement:
     """Reflectance at normal incidence of an artistic index, against the reflectivity asked for."""
     extinction = probe.other("extinction")
     measured = []

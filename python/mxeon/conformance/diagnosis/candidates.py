@@ -4,7 +4,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,8 @@ from mxeon.conformance.probes.cases import (
     transmittance_cases,
     value_cases,
 )
-from mxeon.conformance.samples.batch import FEW, Array, Batch, Candidate
+from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.measurement import Case, mean_error
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.models import table as reference
@@ -72,73 +72,73 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
 
 
 @lru_cache(maxsize=2)  # several checks of a subject fail for one reason
-def of_value(probe: Any) -> Diagnosis:
+def of_value(probe: Probe) -> Diagnosis:
     """The explanation of the probe's values for pairs of directions."""
-    candidates = probe.subject.value_candidates
+    candidates = probe.value_candidates
     return _explained(
         probe, list(value_cases(probe)), candidates, DIRECT, _tolerance(probe, VALUES)
     )
 
 
 def of_case(
-    probe: Any, case: Case, candidates: Sequence[Candidate], tolerance: Tolerance
+    probe: Probe, case: Case, candidates: Sequence[Candidate], tolerance: Tolerance
 ) -> Diagnosis:
     """The explanation of values of one case, for pairs of directions, by candidates."""
     return _explained(probe, [case], candidates, DIRECT, tolerance)
 
 
 @lru_cache(maxsize=2)
-def of_albedo(probe: Any) -> Diagnosis:
+def of_albedo(probe: Probe) -> Diagnosis:
     """The explanation of the probe's environment branch."""
-    candidates = probe.subject.albedo_candidates
+    candidates = probe.albedo_candidates
     cases = list(albedo_cases(probe))
     return _explained(probe, cases, candidates, ENVIRONMENT, _tolerance(probe, ALBEDOS))
 
 
 @lru_cache(maxsize=2)
-def of_throughput(probe: Any) -> Diagnosis:
+def of_throughput(probe: Probe) -> Diagnosis:
     """The explanation of the throughput of a layer for light from above."""
     return _of_rest(probe, list(layering_cases(probe)))
 
 
 @lru_cache(maxsize=2)
-def of_transmission(probe: Any) -> Diagnosis:
+def of_transmission(probe: Probe) -> Diagnosis:
     """The explanation of the throughput of a layer for light through the base."""
     return _of_rest(probe, list(transmission_cases(probe)))
 
 
 @lru_cache(maxsize=2)
-def of_radiance(probe: Any) -> Diagnosis:
+def of_radiance(probe: Probe) -> Diagnosis:
     """The explanation of what an emission is from the front."""
     return _of_emission(probe, list(value_cases(probe)))
 
 
-def of_back(probe: Any) -> Diagnosis:
+def of_back(probe: Probe) -> Diagnosis:
     """The explanation of what an emission is from the back."""
     return _of_emission(probe, list(back_cases(probe)))
 
 
-def of_medium(probe: Any) -> Diagnosis:
+def of_medium(probe: Probe) -> Diagnosis:
     """The explanation of the transmittance of a medium."""
     return _of_emission(probe, list(transmittance_cases(probe)))
 
 
-def _of_emission(probe: Any, cases: Sequence[Case]) -> Diagnosis:
+def _of_emission(probe: Probe, cases: Sequence[Case]) -> Diagnosis:
     """The explanation of radiances and transmittances."""
     tolerance = {**FRONTS, MEDIUM: TRANSMITTANCE}[probe.kind]
-    return _explained(probe, cases, probe.subject.value_candidates, (), tolerance)
+    return _explained(probe, cases, probe.value_candidates, (), tolerance)
 
 
 def of_cases(
-    probe: Any, cases: Sequence[Case], candidates: Sequence[Candidate], tolerance: Tolerance
+    probe: Probe, cases: Sequence[Case], candidates: Sequence[Candidate], tolerance: Tolerance
 ) -> Diagnosis:
     """The explanation of cases by candidates, the own one first."""
     return _explained(probe, cases, candidates, (), tolerance)
 
 
-def _of_rest(probe: Any, cases: Sequence[Case]) -> Diagnosis:
+def _of_rest(probe: Probe, cases: Sequence[Case]) -> Diagnosis:
     """The explanation of throughputs, by albedos or by none."""
-    *albedos, nothing = probe.subject.albedo_candidates
+    *albedos, nothing = probe.albedo_candidates
     candidates = [Candidate(each.title, partial(_rest, each), each.permitted) for each in albedos]
     candidates.append(Candidate("all light passes", partial(_rest, nothing)))
     return _explained(probe, cases, candidates, (), _tolerance(probe, THROUGHPUTS))
@@ -149,13 +149,13 @@ def _rest(candidate: Candidate, batch: Batch) -> Array:
     return np.maximum(1.0 - candidate.values(batch), 0.0)
 
 
-def _tolerance(probe: Any, tolerances: Mapping[str, Tolerance]) -> Tolerance:
+def _tolerance(probe: Probe, tolerances: Mapping[str, Tolerance]) -> Tolerance:
     """The tolerance of a probe's kind; that of a lobe where it is one below others."""
     return {**LOBES, **tolerances}[probe.kind]
 
 
 def _explained(
-    probe: Any,
+    probe: Probe,
     cases: Sequence[Case],
     candidates: Sequence[Candidate],
     faults: Sequence[Fault],
@@ -165,7 +165,7 @@ def _explained(
     unbounded = not_finite(cases)
     if unbounded:
         return Diagnosis(unbounded)
-    few = getattr(probe, "diagnosed", FEW)
+    few = probe.diagnosed
     short = [Case(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     own = candidates[0]
     models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
@@ -229,17 +229,17 @@ def _fault(faults: dict[str, float], models: dict[str, float], own: str, enough:
     return f"fault: {text} (rms {least:.2g})"
 
 
-def _flag(probe: Any, title: str) -> str:
+def _flag(probe: Probe, title: str) -> str:
     """Words on the flag, where the title is that of the model with the other one."""
     for subject in SUBJECTS:
-        other = subject.node == getattr(probe.subject, "node", None) and subject != probe.subject
+        other = subject.node == probe.subject.node and subject.title != probe.subject.title
         if other and reference.model(subject.model).title == title:
             return f", as with {FLAG} {str(subject.flag).lower()}"
     return ""
 
 
 def _model(
-    probe: Any,
+    probe: Probe,
     cases: Sequence[Case],
     ranking: Sequence[tuple[str, float]],
     own: str,

@@ -2,8 +2,6 @@
 """Diagnoses of what surrounds a model: the flag, the throughput, the frame and the environment."""
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -21,6 +19,7 @@ from mxeon.conformance.probes.cases import (
     surroundings_case,
     throughput_cases,
 )
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.uneven_environment import sky, sky_behind
@@ -46,29 +45,29 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 }
 
 
-def of_flag(probe: Any) -> Diagnosis:
+def of_flag(probe: Probe) -> Diagnosis:
     """The explanation of the values with the flag and of those without it."""
     states: dict[str, list[str]] = {}
     for subject in SUBJECTS:
         if subject.node == probe.subject.node:
-            other = probe if subject == probe.subject else replace(probe, subject=subject)
+            other = probe if subject.title == probe.subject.title else probe.of(subject)
             text = of_value(other).text
             states.setdefault(text, []).append(str(subject.flag).lower())
     texts = (f"{FLAG} {' and '.join(flags)}: {text}" for text, flags in states.items())
     return Diagnosis("; ".join(texts), of_value(probe).distances)
 
 
-def of_inputs(probe: Any) -> Diagnosis:
+def of_inputs(probe: Probe) -> Diagnosis:
     """The inputs that change nothing."""
     return Diagnosis(f"without effect: {', '.join(dead_inputs(probe))}")
 
 
-def of_finite(probe: Any) -> Diagnosis:
+def of_finite(probe: Probe) -> Diagnosis:
     """Where values at the edges are not finite."""
     return Diagnosis(not_finite([edge_case(probe)]))
 
 
-def of_throughput(probe: Any) -> Diagnosis:
+def of_throughput(probe: Probe) -> Diagnosis:
     """The branches whose throughput is not 0, with its value."""
     branches: dict[str, list[str]] = {}
     for branch in BRANCHES:
@@ -88,15 +87,14 @@ def of_throughput(probe: Any) -> Diagnosis:
     )
 
 
-def of_frame(probe: Any) -> Diagnosis:
+def of_frame(probe: Probe) -> Diagnosis:
     """Whether the normal is dropped or not turned, in the first branch that is wrong."""
     for case, branch in zip(frame_cases(probe), ("direct", "environment"), strict=True):
         tolerance = FRAMES[probe.kind]
         wrong = tolerance.metric(case.measured, case.expected) > tolerance.value
         if not wrong.any():
             continue
-        subject = probe.subject
-        expected = subject.expected if branch == "direct" else subject.albedo
+        expected = probe.expected if branch == "direct" else probe.expected_albedo
         dropped = expected(normal_ignored(case.batch))
         if tolerance.metric(case.measured, dropped).max() <= tolerance.value:
             text = "the node's normal is ignored: the surface's takes its place"
@@ -108,23 +106,23 @@ def of_frame(probe: Any) -> Diagnosis:
     return Diagnosis(UNKNOWN)
 
 
-def of_tangent(probe: Any) -> Diagnosis:
+def of_tangent(probe: Probe) -> Diagnosis:
     """Whether the tangent is dropped."""
     return Diagnosis(without_effect(probe, "tangent") or of_value(probe).text)
 
 
-def of_retroreflection(probe: Any) -> Diagnosis:
+def of_retroreflection(probe: Probe) -> Diagnosis:
     """Whether the flag is dropped."""
     return Diagnosis(without_effect(probe, "retroreflective") or of_value(probe).text)
 
 
-def without_effect(probe: Any, name: str) -> str:
+def without_effect(probe: Probe, name: str) -> str:
     """Words on an input that changes nothing; "" if it does, or there is none."""
-    dead = name in probe.subject.changes and name in dead_inputs(probe)
+    dead = name in probe.changes and name in dead_inputs(probe)
     return f"{name} is ignored" if dead else ""
 
 
-def of_stretched(probe: Any) -> Diagnosis:
+def of_stretched(probe: Probe) -> Diagnosis:
     """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
     case = stretched_case(probe)
     view, alpha = case.batch.wo, case.batch.inputs["roughness"]
@@ -140,7 +138,7 @@ def of_stretched(probe: Any) -> Diagnosis:
     return Diagnosis(UNKNOWN)
 
 
-def of_surroundings(probe: Any) -> Diagnosis:
+def of_surroundings(probe: Probe) -> Diagnosis:
     """The direction at which the environment is looked up."""
     case = surroundings_case(probe)
     for words, found in LOOKUPS.items():

@@ -4,11 +4,11 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
@@ -88,7 +88,8 @@ class BsdfSubject:
 
     row: PbrNode
 
-    flag = None  # none of these nodes has energy_compensation
+    libraries: ClassVar[tuple[str, ...]] = ()
+    closure: ClassVar[bool] = True
 
     @property
     def title(self) -> str:
@@ -127,7 +128,7 @@ class BsdfSubject:
         kinds = input_types(self.node)
         for name in ("roughness", "ior"):
             if kinds.get(name) == "float":  # one of the components that other nodes have
-                changes[name] = ({}, {name: CHANGES[name][1][name][-1]})
+                changes[name] = ({}, {name: np.asarray(CHANGES[name][1][name])[-1]})
         return changes
 
     @property

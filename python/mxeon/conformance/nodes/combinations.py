@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import COMBINED, NESTED, BsdfSubject
-from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.models.pbrlib import combinations

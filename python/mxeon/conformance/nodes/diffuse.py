@@ -4,10 +4,11 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, random_inputs
 from mxeon.conformance.samples.edge_cases import special_inputs
 from mxeon.conformance.samples.uneven_environment import sky
@@ -26,9 +27,11 @@ from mxeon.shaders.nodes import (
 
 
 class ModelSubject:
-    """What a subject has that has to be one of the diffuse models."""
+    """Base class of subjects judged against a diffuse model."""
 
     model: str
+
+    closure: ClassVar[bool] = True
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
@@ -84,8 +87,7 @@ def _limited(row: Model, output: Callable[[Batch, str], Array], batch: Batch) ->
     return output(batch.altered(roughness=roughness), row.name)
 
 
-Changes: TypeAlias = tuple[dict[str, Any], dict[str, Any]]  # inputs before and after
-CHANGES = {
+CHANGES: Values = {
     "weight": 0.5,
     "color": (0.9, 0.1, 0.6),
     "roughness": 0.3,
@@ -113,6 +115,9 @@ class DiffuseSubject(ModelSubject):
     flag: bool | None
     model: str
     names: tuple[str, ...] = tuple(INPUT_TYPES)
+
+    kind: ClassVar[str] = "pairs"
+    libraries: ClassVar[tuple[str, ...]] = ()
 
     @property
     def title(self) -> str:
@@ -182,14 +187,18 @@ class DiffuseLobe(ModelSubject):
     fixed: tuple[tuple[str, str, str], ...] = ()
     libraries: tuple[str, ...] = ()
 
+    kind: ClassVar[str] = "lobes"
     inputs: ClassVar[tuple[str, ...]] = ()
+    changes: ClassVar[Mapping[str, Changes]] = {}
 
-    def document(self, inputs: Mapping[str, Any]) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this shader alone."""
-        values = [(self.color, "color3", inputs["color"]), *self.fixed]
-        if self.roughness:
-            values.append((self.roughness, "float", inputs["roughness"]))
-        ports = "".join(input_text(name, kind, value) for name, kind, value in values)
+        inputs = inputs or {}
+        lobe = {"color": (self.color, "color3"), "roughness": (self.roughness, "float")}
+        values = [
+            (*port, inputs[name]) for name, port in lobe.items() if name in inputs and port[0]
+        ]
+        ports = "".join(input_text(*each) for each in (*values, *self.fixed))
         return document_text(node_text(self.node, "surfaceshader", "shading", ports))
 
 

@@ -2,13 +2,13 @@
 """Subjects of the checks: the EDF nodes of pbrlib, and those that combine EDFs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.emissions import (
     AMOUNT,
@@ -69,8 +69,7 @@ class EmissionSubject:
     ports: str = ""
     sources: tuple[str, ...] = ()
 
-    flag = None
-    libraries: tuple[str, ...] = field(default=(), init=False)
+    libraries: ClassVar[tuple[str, ...]] = ()
 
     @property
     def closure(self) -> bool:
@@ -207,9 +206,10 @@ class AbsentSubject:
     node: str
     text: str
 
-    flag = None
-    kind = model = ABSENT
-    libraries = ("stock",)  # no library of ours has one
+    kind: ClassVar[str] = ABSENT
+    model: ClassVar[str] = ABSENT
+    closure: ClassVar[bool] = True
+    libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 
     def document(self, inputs: Mapping[str, Any] | None = None) -> str:
         """MaterialX text that uses the node."""

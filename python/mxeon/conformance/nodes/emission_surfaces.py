@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from mxeon.conformance.nodes.emission import EMITTER, SURFACES, AbsentSubject
 from mxeon.shaders.nodes import document_text, input_text, node_text
@@ -28,9 +28,11 @@ class SurfaceSubject:
     title: str
     lit: bool
 
-    flag = None
-    node, kind, model = "surface", SURFACES, SURFACES
-    libraries = ("stock",)  # no library of ours has one
+    node: ClassVar[str] = "surface"
+    kind: ClassVar[str] = SURFACES
+    model: ClassVar[str] = SURFACES
+    closure: ClassVar[bool] = True
+    libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 
     def document(self, inputs: Mapping[str, Any] | None = None) -> str:
         """MaterialX text of the surface, with this opacity."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import HAIR, NOTHING, BsdfSubject, broadcast_inputs
-from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation

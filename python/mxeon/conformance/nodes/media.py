@@ -4,12 +4,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.diffuse import Changes
 from mxeon.conformance.nodes.emission import MEDIUM, view_rows
+from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
@@ -42,9 +42,9 @@ class MediumSubject:
 
     row: Medium
 
-    flag = None
-    kind = MEDIUM
-    libraries = ()
+    kind: ClassVar[str] = MEDIUM
+    libraries: ClassVar[tuple[str, ...]] = ()
+    closure: ClassVar[bool] = True
 
     @property
     def title(self) -> str:

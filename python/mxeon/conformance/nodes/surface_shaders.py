@@ -3,10 +3,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.nodes.surface_inputs import GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs, drawn
 from mxeon.conformance.samples.batch import Array, Candidate
 from mxeon.shaders.nodes import document_text, node_text
@@ -29,7 +30,9 @@ class SurfaceShader:
     node: str
     table: Inputs
 
-    flag = None
+    libraries: ClassVar[tuple[str, ...]] = ()
+    closure: ClassVar[bool] = True
+    kind: ClassVar[str] = WHOLE
 
     @property
     def title(self) -> str:
@@ -61,6 +64,16 @@ class SurfaceShader:
     def every_input(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values of all inputs of its lobes."""
         return drawn(rng, count, {**self.table.judged, **self.table.others})
+
+    @property
+    def changes(self) -> Mapping[str, Changes]:
+        """None: `changed` of its probe shows all inputs at once."""
+        return {}
+
+    @property
+    def black(self) -> Values:
+        """None: no input takes all lobes away."""
+        return {}
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:

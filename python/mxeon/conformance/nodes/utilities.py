@@ -4,11 +4,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.diffuse import Changes
+from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.utilities import UTILITIES, UtilityNode, Values
 from mxeon.shaders.nodes import document_text, input_text, node_text
@@ -56,7 +56,9 @@ class UtilitySubject:
     row: UtilityNode
     output: str
 
-    closure = False  # it computes a value, which no renderer's closure does
+    kind: ClassVar[str] = VALUES
+    libraries: ClassVar[tuple[str, ...]] = ()
+    closure: ClassVar[bool] = False  # it computes a value, which no renderer's closure does
 
     @property
     def title(self) -> str:

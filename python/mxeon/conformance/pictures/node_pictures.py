@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.nodes.diffuse import DiffuseSubject
-from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import Mask, PictureProbe, PlaneProbe, picture_pairs
 from mxeon.conformance.probes.polyhedron import FacetPairProbe, FacetProbe
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.results import PORTRAIT, Picture
 from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.shaders.facets import facet_points
@@ -22,7 +22,7 @@ SIZE = 96
 SCENES = tuple(replace(scene, size=SIZE) for scene in (SIDE, BACK))
 
 
-def portraits(probe: Any) -> tuple[Picture, ...]:
+def portraits(probe: Probe) -> tuple[Picture, ...]:
     """Pictures of a rough node in light from the side and from behind, each beside its model's.
 
     Parameters
@@ -41,7 +41,7 @@ def portraits(probe: Any) -> tuple[Picture, ...]:
     return tuple(_portrait(probe, *each) for each in points if len(each[1].wo))
 
 
-def _portrait(probe: Any, scene: Scene, batch: Batch, where: Mask) -> Picture:
+def _portrait(probe: Probe, scene: Scene, batch: Batch, where: Mask) -> Picture:
     subject, host = probe.subject, probe.host
     names = (PORTRAIT, subject.title, host.name, probe.library, scene.name)
     keys = ("document", "element", "host", "library", "scene")
@@ -57,7 +57,7 @@ def _picture(values: Array, where: Mask) -> NDArray[np.float32]:
     return picture
 
 
-def _points(probe: PairProbe | PictureProbe, scene: Scene) -> tuple[Batch, Mask]:
+def _points(probe: Probe, scene: Scene) -> tuple[Batch, Mask]:
     """The pairs of a portrait, and the pixels where they are, (size, size)."""
     if isinstance(probe, PictureProbe) and not isinstance(probe, FacetPairProbe):
         wo, wi, judged = probe.points(scene)

@@ -2,7 +2,7 @@
 """Probes of the other BSDF nodes of pbrlib, with the pairs and the quadratures that they need."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -38,7 +38,6 @@ LEAST_VIEW = 0.02  # cosine of their views
 NODES = 48  # of a quadrature, in cosine and in azimuth
 
 
-@dataclass(frozen=True, eq=False)
 class BsdfProbe(PairProbe):
     """A node of pbrlib on a host that evaluates any pairs."""
 
@@ -147,14 +146,12 @@ class BsdfProbe(PairProbe):
         return wi, np.broadcast_to(weights, wi.shape[:2])
 
 
-@dataclass(frozen=True, eq=False)
 class SheenProbe(BsdfProbe):
     """A sheen, whose value has high powers."""
 
     kind: ClassVar[str] = SHEEN
 
 
-@dataclass(frozen=True, eq=False)
 class FittedProbe(BsdfProbe):
     """A sheen whose albedo a shader takes from a fit."""
 
@@ -162,7 +159,6 @@ class FittedProbe(BsdfProbe):
     least_cosine: ClassVar[float] = FIT_COSINE
 
 
-@dataclass(frozen=True, eq=False)
 class MicrofacetProbe(BsdfProbe):
     """A node of microfacets, whose values are large near the mirror direction."""
 
@@ -233,7 +229,6 @@ class MicrofacetProbe(BsdfProbe):
         return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
 
 
-@dataclass(frozen=True, eq=False)
 class SchlickProbe(MicrofacetProbe):
     """A node of microfacets whose curve may dip at 82 degrees."""
 
@@ -261,7 +256,6 @@ def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
     return rounded(ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0].T)
 
 
-@dataclass(frozen=True, eq=False)
 class CombinedProbe(BsdfProbe):
     """A node that combines two lobes, whose weights stay 1."""
 
@@ -279,7 +273,6 @@ class CombinedProbe(BsdfProbe):
         )
 
 
-@dataclass(frozen=True, eq=False)
 class NestedProbe(CombinedProbe):
     """A node that combines a sum of two lobes."""
 

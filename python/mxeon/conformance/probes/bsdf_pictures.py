@@ -2,14 +2,16 @@
 """Probes of the other BSDF nodes of pbrlib on hosts that make pictures."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
-from mxeon.conformance.nodes.bsdf import BsdfSubject
+from mxeon.conformance.nodes.bsdf import MICROFACET_KINDS, BsdfSubject
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Batch
 
 # Values of the inputs that a node has, of the two materials that stand for it.
@@ -40,7 +42,6 @@ INDICES = (1.5, 1.2)
 METALS = ((0.2, 0.9, 1.1), (1.5, 0.6, 2.0))
 
 
-@dataclass(frozen=True, eq=False)
 class BsdfPictureProbe(PictureProbe):
     """A node of pbrlib on a sphere."""
 
@@ -54,14 +55,12 @@ class BsdfPictureProbe(PictureProbe):
         return materials(self.subject)
 
 
-@dataclass(frozen=True, eq=False)
 class MicrofacetPictureProbe(BsdfPictureProbe):
     """A node of microfacets on a sphere."""
 
     kind: ClassVar[str] = "microfacet pictures"
 
 
-@dataclass(frozen=True, eq=False)
 class BsdfPlaneProbe(PlaneProbe):
     """A node of pbrlib on a plane."""
 
@@ -87,7 +86,6 @@ class BsdfPlaneProbe(PlaneProbe):
         return materials(self.subject)
 
 
-@dataclass(frozen=True, eq=False)
 class MicrofacetPlaneProbe(BsdfPlaneProbe):
     """A node of microfacets on a plane."""
 
@@ -102,12 +100,12 @@ PICTURES = {
 
 
 def bsdf_probe_type(
-    subject: BsdfSubject, probe: type[Any]
+    subject: Subject, probe: type[Probe]
 ) -> type[PairProbe] | type[PictureProbe] | None:
     """Class of a subject's probes on a host that has probes of a class; None if it has none."""
     if probe is PairProbe:
         return BSDF_PROBES[subject.kind]
-    return PICTURES[probe][subject.anisotropic] if probe in PICTURES else None
+    return PICTURES[probe][subject.kind in MICROFACET_KINDS] if probe in PICTURES else None
 
 
 def materials(subject: BsdfSubject) -> list[dict[str, Any]]:

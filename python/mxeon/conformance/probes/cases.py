@@ -3,10 +3,10 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.measurement import Case
 from mxeon.conformance.samples.uneven_environment import sky_map
 
@@ -19,19 +19,19 @@ WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one is asked
 
 
-def value_cases(probe: Any) -> Iterator[Case]:
+def value_cases(probe: Probe) -> Iterator[Case]:
     """The cases of `value`."""
     for batch in probe.batches:
-        yield Case(batch, probe.direct(batch), probe.subject.expected(batch))
+        yield Case(batch, probe.direct(batch), probe.expected(batch))
 
 
-def albedo_cases(probe: Any) -> Iterator[Case]:
+def albedo_cases(probe: Probe) -> Iterator[Case]:
     """The cases of `environment`."""
     for batch, expected in zip(probe.cosines, probe.albedos, strict=True):
         yield Case(batch, probe.albedo(batch), expected)
 
 
-def frame_cases(probe: Any) -> Iterator[Case]:
+def frame_cases(probe: Probe) -> Iterator[Case]:
     """The cases of `frame`."""
     batch = probe.turned
     local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
@@ -39,10 +39,10 @@ def frame_cases(probe: Any) -> Iterator[Case]:
         yield Case(batch, output(batch), output(local))
 
 
-def surroundings_case(probe: Any) -> Case:
+def surroundings_case(probe: Probe) -> Case:
     """The case of `surroundings`."""
     batch = probe.turned
-    if "color" in probe.subject.inputs:
+    if "color" in batch.inputs:
         batch = batch.altered(color=WHITE)
     level = probe.albedo(batch)
     bright = level.min(axis=1) > LEAST_LIGHT
@@ -50,21 +50,21 @@ def surroundings_case(probe: Any) -> Case:
         batch, level = batch.where(bright), level[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = probe.albedo(batch, sky_map()) / level
-    return Case(batch, measured, probe.subject.sky(batch))
+    return Case(batch, measured, probe.expected_sky(batch))
 
 
-def throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
+def throughput_cases(probe: Probe, branch: str) -> Iterator[Case]:
     """The cases of `throughput` in one of BRANCHES."""
     for batch in probe.few:
         yield Case(batch, probe.throughput(batch, branch), np.zeros((len(batch.wo), 3)))
 
 
-def dead_inputs(probe: Any) -> list[str]:
+def dead_inputs(probe: Probe) -> list[str]:
     """The inputs of `inputs`."""
     batch = probe.few[0]
     plain = probe.direct(batch)  # most changes are of the batch as it is
     dead = []
-    for name, (before, after) in probe.subject.changes.items():
+    for name, (before, after) in probe.changes.items():
         one = probe.direct(batch.altered(**before)) if before else plain
         other = probe.direct(batch.altered(**after))
         if np.array_equal(one, other, equal_nan=True):
@@ -72,7 +72,7 @@ def dead_inputs(probe: Any) -> list[str]:
     return dead
 
 
-def edge_case(probe: Any) -> Case:
+def edge_case(probe: Probe) -> Case:
     """Values and albedos at the edges of the domain, beside 0."""
     batch = probe.edges
     values = np.concatenate([probe.direct(batch), probe.albedo(batch)], axis=1)
@@ -82,37 +82,37 @@ def edge_case(probe: Any) -> Case:
 LIGHT = ("direct", "environment")  # branches that light a base from above
 
 
-def layering_cases(probe: Any) -> Iterator[Case]:
+def layering_cases(probe: Probe) -> Iterator[Case]:
     """The cases of `layering`."""
     for branch in LIGHT:
         yield from _throughput_cases(probe, branch)
 
 
-def transmission_cases(probe: Any) -> Iterator[Case]:
+def transmission_cases(probe: Probe) -> Iterator[Case]:
     """The cases of `transmission`."""
     return _throughput_cases(probe, "transmission")
 
 
-def _throughput_cases(probe: Any, branch: str) -> Iterator[Case]:
+def _throughput_cases(probe: Probe, branch: str) -> Iterator[Case]:
     for batch, albedo in zip(probe.cosines, probe.albedos, strict=True):
         yield Case(batch, probe.throughput(batch, branch), np.maximum(1.0 - albedo, 0.0))
 
 
-def stretched_case(probe: Any) -> Case:
+def stretched_case(probe: Probe) -> Case:
     """The case of `stretched`."""
     batch, expected = probe.stretched
     return Case(batch, probe.albedo(batch), expected)
 
 
-def back_cases(probe: Any) -> Iterator[Case]:
+def back_cases(probe: Probe) -> Iterator[Case]:
     """The cases of `back`."""
     batch = probe.backs
-    yield Case(batch, probe.direct(batch), probe.subject.expected(batch))
+    yield Case(batch, probe.direct(batch), probe.expected(batch))
 
 
-def transmittance_cases(probe: Any) -> Iterator[Case]:
+def transmittance_cases(probe: Probe) -> Iterator[Case]:
     """The cases of `transmittance`."""
     (batch,) = probe.batches
-    expected = probe.subject.expected(batch)
+    expected = probe.expected(batch)
     yield Case(batch, probe.direct(batch), expected)
     yield Case(batch, probe.through, expected)

@@ -2,7 +2,7 @@
 """Probes of the diffuse lobe of surface shaders, whose other lobes cannot be switched off."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,7 +20,6 @@ from mxeon.conformance.samples.batch import LOBE_RIM, Array, Batch
 from mxeon.shaders.generation import Shader
 
 
-@dataclass(frozen=True, eq=False)
 class DiffuseLobeProbe(PictureProbe):
     """The diffuse lobe of a surface shader, told apart from what lies over it.
 
@@ -55,7 +54,6 @@ class DiffuseLobeProbe(PictureProbe):
         return replace(shader, inputs=tuple(ports))
 
 
-@dataclass(frozen=True, eq=False)
 class DiffuseLobePlaneProbe(DiffuseLobeProbe, PlaneProbe):
     """The diffuse lobe of a surface shader on a plane."""
 

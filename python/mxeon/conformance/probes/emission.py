@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of the EDF nodes: views of an emitting surface, from the front and from the back."""
 
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from mxeon.conformance.nodes.emission import CLOSED, CONE, POWER, EmissionSubject
+from mxeon.conformance.probes.probe import Probe, ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
@@ -34,15 +34,10 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
         return None
 
 
-@dataclass(frozen=True, eq=False)
-class NodeProbe:
+class NodeProbe(Probe):
     """A node of which a host is asked whether it has it."""
 
     kind: ClassVar[str]
-
-    host: Host
-    subject: Any
-    library: str
 
     @property
     def few(self) -> tuple[Batch, ...]:
@@ -68,8 +63,7 @@ class NodeProbe:
         return shader
 
 
-@dataclass(frozen=True, eq=False)
-class EmissionProbe(NodeProbe):
+class EmissionProbe(NodeProbe, ValueProbe):
     """An EDF node on a host that evaluates its radiance for any view."""
 
     kind: ClassVar[str] = CLOSED
@@ -126,14 +120,12 @@ class EmissionProbe(NodeProbe):
         return np.broadcast_to([0.0, 1.0], (MATERIALS, 2))
 
 
-@dataclass(frozen=True, eq=False)
 class PowerProbe(EmissionProbe):
     """An emission with a power in it."""
 
     kind: ClassVar[str] = POWER
 
 
-@dataclass(frozen=True, eq=False)
 class ConeProbe(EmissionProbe):
     """An emission inside a cone, whose axis is an input."""
 

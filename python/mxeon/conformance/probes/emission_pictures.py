@@ -2,7 +2,6 @@
 """Probes of nodes that emit light on hosts that make pictures: a sphere in the dark."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from mxeon.conformance.nodes.emission import PICTURES, EmissionSubject
 from mxeon.conformance.probes.emission import NodeProbe, implementation
+from mxeon.conformance.probes.probe import ValueProbe
 from mxeon.conformance.samples.batch import RIM, Array, Batch
 from mxeon.errors import NotRun
 from mxeon.models.pbrlib.emissions import AMOUNT, BASE, FACTOR, FIRST, SECOND
@@ -44,8 +44,7 @@ MATERIALS: tuple[Mapping[str, Any], ...] = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class EmissionPictureProbe(NodeProbe):
+class EmissionPictureProbe(NodeProbe, ValueProbe):
     """An EDF node on a sphere in the dark."""
 
     kind: ClassVar[str] = PICTURES
@@ -57,11 +56,6 @@ class EmissionPictureProbe(NodeProbe):
         """The points away from the rim, for each of MATERIALS."""
         wo, mask = _views()
         return tuple(Batch(wo[mask], wo[mask], self._inputs(each), DARK) for each in MATERIALS)
-
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """The same: they are few."""
-        return self.batches
 
     def direct(self, batch: Batch) -> Array:
         """Radiance at each point, (N, 3).

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of the node `surface` with an emission, and of nodes that no target has."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -20,7 +20,6 @@ DARK = Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
-@dataclass(frozen=True, eq=False)
 class SurfaceEmissionProbe(NodeProbe):
     """A surface on a host that draws it in the dark, one picture for each opacity."""
 
@@ -35,11 +34,6 @@ class SurfaceEmissionProbe(NodeProbe):
         wo = local_directions(points.normal[points.mask], VIEW)
         return tuple(Batch(wo, wo, {"opacity": each}, DARK) for each in OPACITIES)
 
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """The same: they are few."""
-        return self.batches
-
     def expected(self, batch: Batch) -> Array:
         """Radiance at each point, (N, 3)."""
         radiance = surface_radiance(COLOR, (0.0, 0.0, 0.0), batch.inputs["opacity"])
@@ -52,7 +46,6 @@ class SurfaceEmissionProbe(NodeProbe):
         return np.asarray(image[sphere(DARK.size).mask], np.float64)
 
 
-@dataclass(frozen=True, eq=False)
 class AbsentProbe(NodeProbe):
     """A node that is only asked for."""
 

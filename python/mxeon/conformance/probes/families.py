@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeAlias
 
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
@@ -11,24 +11,28 @@ from mxeon.conformance.nodes.emission import COMBINED_EDFS, EDFS, KINDS
 from mxeon.conformance.nodes.emission_surfaces import ABSENT_NODES, SURFACE_NODES
 from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.media import MEDIUM_NODES
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.subsurface import SUBSURFACES
 from mxeon.conformance.nodes.surface_shaders import SHADERS
 from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.nodes.transmission import TRANSMITTING
 from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.probes.bsdf_pictures import bsdf_probe_type
-from mxeon.conformance.probes.emission import PROBES, NodeProbe
+from mxeon.conformance.probes.emission import PROBES
 from mxeon.conformance.probes.emission_pictures import EmissionPictureProbe
 from mxeon.conformance.probes.emission_surfaces import AbsentProbe, SurfaceEmissionProbe
 from mxeon.conformance.probes.hair import HairProbe
 from mxeon.conformance.probes.media import MediumProbe
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import SubsurfaceProbe
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.probes.thin_films import FilmProbe
 from mxeon.conformance.probes.transmission import transmission_probe_type
 from mxeon.conformance.probes.utilities import utility_probe_type
+
+ProbeType: TypeAlias = Callable[[Subject, type[Probe]], type[Probe] | None]
 
 
 @dataclass(frozen=True)
@@ -45,17 +49,23 @@ class Family:
         Whether every run judges them; others are judged where they are asked for by name.
     """
 
-    subjects: tuple[Any, ...]
-    probe_type: Callable[[Any, type[Any]], type[Any] | None]
+    subjects: tuple[Subject, ...]
+    probe_type: ProbeType
     common: bool = False
 
 
-def on_pairs(kind: type[Any]) -> Callable[[Any, type[Any]], type[Any] | None]:
+def on_pairs(kind: type[Probe]) -> ProbeType:
     """Class of probes of subjects that need a host that evaluates any pairs."""
     return lambda subject, probe: kind if probe is PairProbe else None
 
 
-EMISSION_SUBJECTS = (*EDFS, *COMBINED_EDFS, *MEDIUM_NODES, *SURFACE_NODES, *ABSENT_NODES)
+EMISSION_SUBJECTS: tuple[Subject, ...] = (
+    *EDFS,
+    *COMBINED_EDFS,
+    *MEDIUM_NODES,
+    *SURFACE_NODES,
+    *ABSENT_NODES,
+)
 
 
 ALL_PROBES = {
@@ -64,7 +74,7 @@ ALL_PROBES = {
 }
 
 
-def emission_probe_type(subject: Any, probe: type[Any]) -> type[NodeProbe] | None:
+def emission_probe_type(subject: Subject, probe: type[Probe]) -> type[Probe] | None:
     """Class of a subject's probes on a host that has probes of a class; None if it has none."""
     if probe is PictureProbe and subject.kind in KINDS:
         return EmissionPictureProbe
@@ -87,7 +97,7 @@ COMMON_SUBJECTS = tuple(
 )
 
 
-def probe_type_of(subject: Any, probe: type[Any]) -> type[Any] | None:
+def probe_type_of(subject: Subject, probe: type[Probe]) -> type[Probe] | None:
     """Class of the probes of one of PBR_SUBJECTS on a host that has probes of a class, or None."""
     [family] = (family for family in FAMILIES if subject in family.subjects)
     return family.probe_type(subject, probe)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probe of the hair node: pairs of the whole sphere, pairs in its lobes, and lobes apart."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -19,7 +19,6 @@ from mxeon.models.hair.formulas import SCALE, section
 WIDE = (0.05, 0.3)  # least variance and scale of values that are integrated
 
 
-@dataclass(frozen=True, eq=False)
 class HairProbe(BsdfProbe):
     """The hair node on a host that evaluates any pairs."""
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probe of the VDF nodes: what a surface over a medium lets through."""
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -10,13 +9,13 @@ import numpy as np
 from mxeon.conformance.nodes.emission import MEDIUM
 from mxeon.conformance.nodes.media import MediumSubject
 from mxeon.conformance.probes.emission import NodeProbe
+from mxeon.conformance.probes.probe import ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
 
 VIEWS = 1 << 8
 
 
-@dataclass(frozen=True, eq=False)
-class MediumProbe(NodeProbe):
+class MediumProbe(NodeProbe, ValueProbe):
     """A VDF node on a host that evaluates what a surface over it lets through."""
 
     kind: ClassVar[str] = MEDIUM
@@ -30,11 +29,6 @@ class MediumProbe(NodeProbe):
         wo = directions(rng, VIEWS)
         inputs = self.subject.random_inputs(rng, VIEWS)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], inputs),)
-
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """The same: they are few."""
-        return self.batches
 
     def direct(self, batch: Batch) -> Array:
         """Share of the light from below that passes a surface without weight, (N, 3)."""

@@ -8,14 +8,14 @@ both answer in the same form, so a check is written once.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.nodes.diffuse import DiffuseSubject
+from mxeon.conformance.nodes.subject import DrawnSubject
+from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.samples.batch import FEW, PAIRS, SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import (
     diffuse_edges,
@@ -25,7 +25,6 @@ from mxeon.conformance.samples.edge_cases import (
     turned_directions,
     turned_frames,
 )
-from mxeon.shaders.hosts.base import Host
 
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
@@ -35,15 +34,12 @@ TURNED = 1 << 12  # pairs in frames of their own
 Draw: TypeAlias = Callable[[np.random.Generator, int], dict[str, Array]]
 
 
-@dataclass(frozen=True, eq=False)
-class PairProbe:
+class PairProbe(LobeProbe):
     """A node on a host that evaluates any pairs."""
 
     kind: ClassVar[str] = "pairs"
 
-    host: Host
-    subject: DiffuseSubject | BsdfSubject
-    library: str
+    subject: DrawnSubject
 
     @cached_property
     def _shader(self) -> Shader:
@@ -71,11 +67,6 @@ class PairProbe:
         """Directions for the environment branch, which does not depend on `wi`."""
         return (*self.few, self.batches[-1])
 
-    @cached_property
-    def albedos(self) -> tuple[Array, ...]:
-        """Directional albedos of `cosines`."""
-        return tuple(map(self.subject.albedo, self.cosines))
-
     @property
     def edges(self) -> Batch:
         """Pairs and inputs at the edges of the domain."""
@@ -98,7 +89,7 @@ class PairProbe:
         """pi f cos(theta_i), (N, 3)."""
         return np.pi * self._evaluate(batch, "direct")
 
-    def albedo(self, batch: Batch, irradiance: Array | None = None) -> Array:
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Values of the environment branch, (N, 3); the environment is uniform unless given."""
         return self._evaluate(batch, "environment", irradiance=irradiance)
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.nodes.diffuse import DiffuseLobe, DiffuseSubject
+from mxeon.conformance.nodes.subject import LobeSubject
+from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.samples.batch import RIM, Array, Batch
 from mxeon.shaders.hosts import front_lit_only
 from mxeon.shaders.hosts.base import Host
@@ -39,17 +39,14 @@ Mask: TypeAlias = NDArray[np.bool_]
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 
 
-@dataclass(frozen=True, eq=False)
-class PictureProbe:
+class PictureProbe(LobeProbe):
     """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
 
     kind: ClassVar[str] = "pictures"
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     size: ClassVar[int] = PICTURE_SIZE
 
-    host: Host
-    subject: DiffuseSubject | DiffuseLobe | BsdfSubject
-    library: str
+    subject: LobeSubject
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -61,27 +58,19 @@ class PictureProbe:
         )
         return tuple(batch for batch in batches if len(batch.wo))
 
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """The same: they are few."""
-        return self.batches
-
     @cached_property
     def cosines(self) -> tuple[Batch, ...]:
         """The points in a white environment."""
         scene = replace(FURNACE, size=self.size)
         return tuple(self._batch(scene, inputs) for inputs in self._inputs)
 
-    @cached_property
-    def albedos(self) -> tuple[Array, ...]:
-        """Directional albedos of `cosines`."""
-        return tuple(map(self.subject.albedo, self.cosines))
-
     def direct(self, batch: Batch) -> Array:
         """pi f cos(theta_i), (N, 3)."""
         return self._picture(batch)
 
-    albedo = direct
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
+        """Values in an environment, (N, 3), which is the batch's own."""
+        return self._picture(batch)
 
     @property
     def _inputs(self) -> list[dict[str, Any]]:
@@ -121,7 +110,6 @@ class PictureProbe:
         return self.host.picture(shader, scene)[sphere(scene.size).mask]
 
 
-@dataclass(frozen=True, eq=False)
 class PlaneProbe(PictureProbe):
     """A node on a plane: every pixel is another direction of view."""
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of renderers that show their own nodes on a polyhedron, and the table of all probes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.conformance.probes.cases import BLACK
 from mxeon.conformance.probes.pairs import PairProbe
@@ -28,7 +29,6 @@ SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its c
 OWN_PAIRS = 1 << 13  # random ones: a renderer's own function is called for each
 
 
-@dataclass(frozen=True, eq=False)
 class FacetProbe(ExactProbe):
     """A node of a renderer's own on a polyhedron, with noise under an environment."""
 
@@ -44,7 +44,7 @@ class FacetProbe(ExactProbe):
             self._batch(scene, {name: inputs[name] for name in names}) for inputs in PICTURE_INPUTS
         )
 
-    def albedo(self, batch: Batch) -> Array:
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
         """Pictures of an environment, (N, 3)."""
         return self._picture(batch)
 
@@ -65,14 +65,12 @@ class FacetProbe(ExactProbe):
         return values[facet_pairs(scene)[2]].astype(np.float64)
 
 
-@dataclass(frozen=True, eq=False)
 class CoarseFacetProbe(FacetProbe):
     """A node on the polyhedron, by a renderer that keeps light in a few bits."""
 
     kind: ClassVar[str] = "coarse facets"
 
 
-@dataclass(frozen=True, eq=False)
 class FacetPairProbe(FacetProbe):
     """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of nodes that a renderer has of its own, by its pictures of a sphere."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -22,7 +22,6 @@ EXACT_INPUTS: tuple[dict[str, Any], ...] = (
 )
 
 
-@dataclass(frozen=True, eq=False)
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
@@ -42,7 +41,6 @@ class NativeProbe(PictureProbe):
         return values[picture_pairs(scene)[2]].astype(np.float64)
 
 
-@dataclass(frozen=True, eq=False)
 class ExactProbe(NativeProbe):
     """A node of a renderer's own, on a sphere whose points and light have no error but rounding."""
 
@@ -68,6 +66,5 @@ class ExactProbe(NativeProbe):
         errors = {
             form: float(np.abs(values - batch.expected(form)).max()) for form in self.subject.forms
         }
-        return replace(
-            self, subject=replace(self.subject, model=min(errors, key=errors.__getitem__))
-        )
+        nearest = min(errors, key=errors.__getitem__)
+        return type(self)(self.host, replace(self.subject, model=nearest), self.library)

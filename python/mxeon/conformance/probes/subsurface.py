@@ -2,7 +2,7 @@
 """Probe of subsurface scattering: on a plane, and on a sphere, over which its profile spreads light."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subsurface import SubsurfaceSubject
 from mxeon.conformance.probes.bsdf import BsdfProbe
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.measurement import Case
 from mxeon.models.pbrlib.subsurface import circle_blur
@@ -32,7 +33,6 @@ MATERIALS: tuple[dict[str, Any], ...] = (  # from one whose light is everywhere 
 )
 
 
-@dataclass(frozen=True, eq=False)
 class SubsurfaceProbe(BsdfProbe):
     """The node on a plane, and on a sphere, whose points are a batch with a scene."""
 
@@ -58,7 +58,7 @@ class SubsurfaceProbe(BsdfProbe):
         return picture[_inner(batch.scene.size)].astype(np.float64)
 
 
-def sphere_cases(probe: Any) -> Iterator[Case]:
+def sphere_cases(probe: Probe) -> Iterator[Case]:
     """Points of a sphere, with the light that the profile spreads over it."""
     return (Case(batch, probe.direct(batch), _spread(batch)) for batch in probe.spheres)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of surface shaders as a whole, on hosts that evaluate any pairs."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -23,7 +23,6 @@ SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirr
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
 
 
-@dataclass(frozen=True, eq=False)
 class SurfaceShaderProbe(PairProbe):
     """A surface shader on a host that evaluates any pairs."""
 
@@ -42,11 +41,6 @@ class SurfaceShaderProbe(PairProbe):
         wi = np.where(kept[:, np.newaxis], near, wi)
         return (Batch(wo, wi, self.subject.random_inputs(rng, PAIRS)),)
 
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """The same: they are few."""
-        return self.batches
-
     @cached_property
     def cosines(self) -> tuple[Batch, ...]:
         """Views of isotropic materials."""
@@ -57,11 +51,6 @@ class SurfaceShaderProbe(PairProbe):
     def albedos(self) -> tuple[Array, ...]:
         """Albedos by the layer equation."""
         return tuple(self._reference(batch, "environment") for batch in self.cosines)
-
-    @cached_property
-    def expected(self) -> tuple[Array, ...]:
-        """Values by the layer equation of `batches`."""
-        return tuple(map(self.expected_of, self.batches))
 
     @cached_property
     def materials(self) -> Batch:
@@ -107,7 +96,7 @@ class SurfaceShaderProbe(PairProbe):
         """Values in any branch, (N, 3)."""
         return self._evaluate(batch, branch)
 
-    def expected_of(self, batch: Batch) -> Array:
+    def expected(self, batch: Batch) -> Array:
         """Values by the layer equation, (N, 3)."""
         return np.pi * self._reference(batch, "direct")
 

@@ -2,7 +2,7 @@
 """Probes of microfacets under a thin film."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -24,7 +24,6 @@ LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
 
 
-@dataclass(frozen=True, eq=False)
 class FilmProbe(MicrofacetProbe):
     """A microfacet node under a thin film on a host that evaluates any pairs."""
 

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of the nodes that transmit through microfacets."""
 
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.transmission import (
     SCHLICK_TRANSMITTED,
     TRANSMITTED,
@@ -12,10 +15,10 @@ from mxeon.conformance.nodes.transmission import (
 )
 from mxeon.conformance.probes.bsdf import MicrofacetProbe
 from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 
 
-@dataclass(frozen=True, eq=False)
 class TransmissionProbe(MicrofacetProbe):
     """A node that transmits, on a host that evaluates any pairs."""
 
@@ -23,7 +26,7 @@ class TransmissionProbe(MicrofacetProbe):
 
     subject: TransmissionSubject
 
-    def transmitted(self, batch: Batch, radiance: Array | None = None) -> Array:
+    def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
         """Light of an environment through the surface, (N, 3); it is uniform unless given."""
         return self._evaluate(batch, "transmission", irradiance=radiance)
 
@@ -33,16 +36,13 @@ class TransmissionProbe(MicrofacetProbe):
         return MicrofacetProbe(self.host, self.subject.reflection, self.library)
 
 
-@dataclass(frozen=True, eq=False)
 class SchlickTransmissionProbe(TransmissionProbe):
     """A node that transmits by Schlick's curve."""
 
     kind: ClassVar[str] = SCHLICK_TRANSMITTED
 
 
-def transmission_probe_type(
-    subject: TransmissionSubject, probe: type[Any]
-) -> type[TransmissionProbe] | None:
+def transmission_probe_type(subject: Subject, probe: type[Probe]) -> type[TransmissionProbe] | None:
     """Class of a subject's probes on a host that has probes of a class; None if it has none.
 
     A picture of a solid shows light that enters and leaves it, which no equation of the node has.

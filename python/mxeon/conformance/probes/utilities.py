@@ -2,34 +2,32 @@
 """Probes of the utility nodes: their outputs for many inputs at once."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES, UtilitySubject
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
+from mxeon.conformance.probes.probe import Probe, ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.hosts.calls import GRAPH
 
 COUNT = 1 << 12
 FEW = 1 << 9
 
 
-@dataclass(frozen=True, eq=False)
-class UtilityProbe:
+class UtilityProbe(ValueProbe):
     """An output of a utility node on a host that evaluates a shader's graph."""
 
     kind: ClassVar[str] = VALUES
     diagnosed: ClassVar[int] = FEW
 
-    host: Host
     subject: UtilitySubject
-    library: str
 
     @cached_property
     def _shader(self) -> Shader:
@@ -62,10 +60,9 @@ class UtilityProbe:
 
     def other(self, output: str) -> "UtilityProbe":
         """The probe of another output of the node."""
-        return replace(self, subject=replace(self.subject, output=output))
+        return type(self)(self.host, replace(self.subject, output=output), self.library)
 
 
-@dataclass(frozen=True, eq=False)
 class UtilityOslProbe(UtilityProbe):
     """An output of a utility node on a renderer with OSL, which has mathematics of its own."""
 
@@ -93,12 +90,12 @@ def _batch(inputs: Mapping[str, Array]) -> Batch:
 
 
 # By the hosts' own probes.
-PROBES: dict[type[Any], type[UtilityProbe]] = {
+PROBES: dict[type[Probe], type[UtilityProbe]] = {
     PairProbe: UtilityProbe,
     PictureProbe: UtilityOslProbe,
 }
 
 
-def utility_probe_type(subject: UtilitySubject, probe: type[Any]) -> type[UtilityProbe] | None:
+def utility_probe_type(subject: Subject, probe: type[Probe]) -> type[UtilityProbe] | None:
     """Class of a subject's probes on a host that has probes of a class; None if it has none."""
     return PROBES.get(probe)

@@ -20,6 +20,7 @@ from mxeon.conformance.pictures.node_pictures import portraits
 from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
 from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.polyhedron import PROBES
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Picture, Result
@@ -177,7 +178,7 @@ class Judge:
         return dict(zip(("results", "pictures", "notes"), records, strict=True))
 
 
-def _portraits(task: Task, probe: Any) -> tuple[Picture, ...]:
+def _portraits(task: Task, probe: Probe) -> tuple[Picture, ...]:
     """Portraits of a node, with the check that asks for its value in direct light."""
     if task.check not in DIRECT:
         return ()
@@ -199,7 +200,7 @@ def _with_pages(findings: Findings) -> Findings:
     return replace(findings, results=tuple(map(with_page, findings.results)))
 
 
-def _probe(host: Host, title: str, library: str) -> Any:
+def _probe(host: Host, title: str, library: str) -> Probe:
     """The probe of a subject on a host."""
     probe = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}

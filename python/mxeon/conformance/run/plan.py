@@ -24,6 +24,7 @@ from mxeon.conformance.functions import shader_functions as functions
 from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
 from mxeon.conformance.probes.families import COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
@@ -263,7 +264,7 @@ def _is_renderers(target: str, library: str) -> bool:
     return target == "osl" and library in LIBRARIES and library != "stock"
 
 
-def _is_judged(subject: Any, library: str) -> bool:
+def _is_judged(subject: Subject, library: str) -> bool:
     """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
     return library not in LIBRARIES or library in (getattr(subject, "libraries", ()) or LIBRARIES)
 
@@ -276,7 +277,7 @@ def _native(host: str) -> Iterator[Task]:
             yield from _checks_of(subject, probe.kind, host, RENDERER_NODES)
 
 
-def _checks_of(subject: Any, kind: str, host: str, library: str) -> Iterator[Task]:
+def _checks_of(subject: Subject, kind: str, host: str, library: str) -> Iterator[Task]:
     """Tasks of one subject: the checks that apply to it."""
     for check in CHECKS:
         if applies(check, subject, kind, host):

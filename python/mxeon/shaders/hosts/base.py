@@ -61,7 +61,7 @@ class Host(ABC):
         Whether `node` shows the polyhedron of `mxeon.shaders.facets` in place of the sphere.
     """
 
-    name: ClassVar[str]
+    name: str
     target: ClassVar[str]
     profile: ClassVar[str | None] = None
     language: ClassVar[str] = "glsl"  # of the shader functions that it executes
