@@ -12,7 +12,7 @@ def surface_inputs_block():
     rows = [
         f"| {shader.node} | `{name}` | {'yes' if name in read(shader) else 'no'} |\n"
         for shader in SHADERS
-        for name in shader.table.silent
+        for name in shader.table.without_effect
     ]
     return HEAD + "".join(rows)
 

@@ -10,7 +10,7 @@ import pytest
 from mxeon.conformance import known_issues
 from mxeon.conformance.checks.application import judge_subject
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.diagnosis.candidates import of_value
+from mxeon.conformance.diagnosis.candidates import diagnose_value
 from mxeon.conformance.functions.shader_functions import (
     FUNCTION_CHECKS,
     FunctionProbe,
@@ -238,7 +238,7 @@ def test_what_does_not_run_is_never_passed(error, verdict):
 
 
 def test_the_nearest_model_comes_with_the_next_one():
-    words = of_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
+    words = diagnose_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
     assert words.startswith("nearest known model: Fujii Oren-Nayar (FON) (rms ")
     assert ", then EON with rho^3 (0.0" in words
 
@@ -413,7 +413,7 @@ def test_every_page_that_a_check_refers_to_is_there():
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
 def test_stock_materialx_in_cycles_is_called_by_its_name(hosts, subject):
     probe = PictureProbe(hosts("cycles"), subject, "stock")
-    assert "nearest known model: EON with rho^3 (rms " in of_value(probe).text
+    assert "nearest known model: EON with rho^3 (rms " in diagnose_value(probe).text
 
 
 def test_what_stock_materialx_has_right_passes(stock):

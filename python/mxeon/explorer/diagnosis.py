@@ -4,7 +4,7 @@
 from functools import lru_cache
 
 from mxeon.conformance.accuracy.diffuse import VALUE
-from mxeon.conformance.diagnosis.candidates import INEXACT, of_albedo, of_value
+from mxeon.conformance.diagnosis.candidates import INEXACT, diagnose_albedo, diagnose_value
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.errors import NotRun
@@ -45,7 +45,7 @@ def _nearest(probe: PairProbe) -> str:
     rows = {row.title: row for row in KNOWN_DEFECTS + MODELS}
     value, albedo = (
         min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))
-        for diagnosis in (of_value(probe), of_albedo(probe))
+        for diagnosis in (diagnose_value(probe), diagnose_albedo(probe))
     )
     if value[1] > INEXACT * VALUE.value:
         return ""

@@ -48,6 +48,6 @@ class Check:
     control: Control
     tolerances: Mapping[str, Tolerance]
     applies: Callable[[Subject, str], bool] = lambda subject, host: True
-    diagnose: Callable[[Probe], Diagnosis] = diagnosis.of_value
+    diagnose: Callable[[Probe], Diagnosis] = diagnosis.diagnose_value
     open: bool = False
     adapt: Callable[[Tolerance, Subject, str, Host], Tolerance] = lambda tolerance, *_: tolerance

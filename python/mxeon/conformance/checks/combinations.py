@@ -27,7 +27,7 @@ CHECKS = (
         "each pair has the inputs of another",
         shifted,
         dict.fromkeys((COMBINED, NESTED), tolerances.COMBINED_ALBEDO),
-        diagnose=diagnosis.of_albedo,
+        diagnose=diagnosis.diagnose_albedo,
     ),
     Check(
         "combined_throughput",
@@ -37,7 +37,7 @@ CHECKS = (
         "all light passes",
         pass_all,
         dict.fromkeys((COMBINED, NESTED), tolerances.COMBINED_ALBEDO),
-        diagnose=diagnosis.of_throughput,
+        diagnose=diagnosis.diagnose_throughput,
         open=True,
     ),
 )

@@ -28,12 +28,12 @@ def unimplemented(probe: Probe) -> Any:
     return probe.of(UNIMPLEMENTED)
 
 
-def of_missing(probe: Probe) -> Diagnosis:
+def diagnose_missing(probe: Probe) -> Diagnosis:
     """The node that the target lacks."""
     return Diagnosis(f"{probe.host.target} has no implementation of {probe.subject.title}")
 
 
-def of_opacity(probe: Probe) -> Diagnosis:
+def diagnose_opacity(probe: Probe) -> Diagnosis:
     """Whether the opacity is dropped."""
     full = max(
         tolerances.OPACITY.metric(
@@ -53,7 +53,7 @@ CHECKS = (
         "a node is asked for that nothing implements",
         unimplemented,
         dict.fromkeys((*KINDS, PICTURES, MEDIUM, ABSENT), count_of("nodes")),
-        diagnose=of_missing,
+        diagnose=diagnose_missing,
     ),
     Check(
         "radiance",
@@ -63,7 +63,7 @@ CHECKS = (
         "every channel gets the mean color",
         gray,
         tolerances.FRONTS,
-        diagnose=diagnosis.of_radiance,
+        diagnose=diagnosis.diagnose_radiance,
         adapt=tolerances.widen_for_functions,
     ),
     Check(
@@ -74,7 +74,7 @@ CHECKS = (
         "a thousandth is added to every value",
         offset,
         tolerances.RADIANCES,
-        diagnose=diagnosis.of_back,
+        diagnose=diagnosis.diagnose_back,
         open=True,
         adapt=tolerances.widen_for_functions,
     ),
@@ -86,7 +86,7 @@ CHECKS = (
         "the radiance is 0.99 times as large",
         scale(0.99),
         tolerances.EXITANCES,
-        diagnose=diagnosis.of_radiance,
+        diagnose=diagnosis.diagnose_radiance,
         adapt=tolerances.widen_for_functions,
     ),
     Check(
@@ -97,7 +97,7 @@ CHECKS = (
         "each view has the coefficients of another",
         shifted,
         {MEDIUM: tolerances.TRANSMITTANCE},
-        diagnose=diagnosis.of_medium,
+        diagnose=diagnosis.diagnose_medium,
         adapt=tolerances.widen_for_functions,
     ),
     Check(
@@ -108,6 +108,6 @@ CHECKS = (
         "the opacity is 1",
         with_inputs(opacity=1.0),
         {SURFACES: tolerances.OPACITY},
-        diagnose=of_opacity,
+        diagnose=diagnose_opacity,
     ),
 )

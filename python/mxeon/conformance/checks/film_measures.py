@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.checks.controls import Altered
-from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, of_albedo
+from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, diagnose_albedo
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
@@ -62,7 +62,7 @@ def film_visible(probe: Probe, metric: Metric) -> Measurement:
     return worst_of(metric, [Case(batch, measured, expected)])
 
 
-def of_average(probe: Probe) -> Diagnosis:
+def diagnose_average(probe: Probe) -> Diagnosis:
     """Whether F at one cosine stands in the place of its average."""
     batch, measured, expected = average_case(probe)
     direct, model = _sides(probe)
@@ -79,9 +79,9 @@ def of_average(probe: Probe) -> Diagnosis:
     return Diagnosis(text, permitted=words == "at the half vector")
 
 
-def of_visible(probe: Probe) -> Diagnosis:
+def diagnose_visible(probe: Probe) -> Diagnosis:
     """The explanation of a film's albedo, or the weights of the facets where that is right."""
-    explained = of_albedo(probe)
+    explained = diagnose_albedo(probe)
     if RIGHT not in explained.text:
         return explained
     return Diagnosis("the visible facets are not weighted by masking and shadowing")

@@ -41,7 +41,7 @@ def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
     def diagnose(probe: Probe) -> Diagnosis:
         others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
         candidates = [each for each in probe.value_candidates if each.title not in others]
-        return diagnosis.of_case(probe, _case(probe, key), candidates, HAIR_REGIONS[key])
+        return diagnosis.diagnose_case(probe, _case(probe, key), candidates, HAIR_REGIONS[key])
 
     return diagnose
 

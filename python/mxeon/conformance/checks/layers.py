@@ -19,7 +19,7 @@ CHECKS = (
         "all light passes",
         pass_all,
         tolerances.THROUGHPUTS,
-        diagnose=diagnosis.of_throughput,
+        diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
         "transmission",
@@ -29,7 +29,7 @@ CHECKS = (
         "all light passes",
         pass_all,
         tolerances.THROUGHPUTS,
-        diagnose=diagnosis.of_transmission,
+        diagnose=diagnosis.diagnose_transmission,
     ),
     Check(
         "layer",
@@ -39,6 +39,6 @@ CHECKS = (
         "all light passes",
         pass_all,
         tolerances.LAYERS,
-        diagnose=diagnosis.of_throughput,
+        diagnose=diagnosis.diagnose_throughput,
     ),
 )

@@ -54,10 +54,10 @@ def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Toleranc
     return dict.fromkeys(kinds, tolerance)
 
 
-def of_sphere(probe: Probe) -> Diagnosis:
+def diagnose_sphere(probe: Probe) -> Diagnosis:
     """The explanation of light on a sphere."""
     cases = list(sphere_cases(probe))
-    return diagnosis.of_cases(probe, cases, ON_SPHERES, bsdf_tolerances.RINGS)
+    return diagnosis.diagnose_cases(probe, cases, ON_SPHERES, bsdf_tolerances.RINGS)
 
 
 def has_flag(subject: Subject, host: str) -> bool:
@@ -116,7 +116,7 @@ CHECKS = (
         gray,
         tolerances.ALBEDOS,
         has_environment,
-        diagnosis.of_albedo,
+        diagnosis.diagnose_albedo,
         open=True,
     ),
     Check(
@@ -137,7 +137,7 @@ CHECKS = (
         with_inputs(color=(0.99, 0.99, 0.99)),
         tolerances.ALBEDOS,
         has_environment,
-        diagnosis.of_albedo,
+        diagnosis.diagnose_albedo,
     ),
     Check(
         "black",
@@ -188,7 +188,7 @@ CHECKS = (
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
         tolerances.FRAMES,
-        diagnose=wiring.of_frame,
+        diagnose=wiring.diagnose_frame,
     ),
     Check(
         "surroundings",
@@ -198,7 +198,7 @@ CHECKS = (
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
         dict.fromkeys(("pairs", CLOSED, SHEEN, FITTED, HAIR), tolerances.SURROUNDINGS),
-        diagnose=wiring.of_surroundings,
+        diagnose=wiring.diagnose_surroundings,
     ),
     Check(
         "sphere",
@@ -208,7 +208,7 @@ CHECKS = (
         "the mean free path is 0.3 in every channel",
         with_inputs(radius=(0.3, 0.3, 0.3)),
         {CLOSED: bsdf_tolerances.RINGS},
-        diagnose=of_sphere,
+        diagnose=diagnose_sphere,
     ),
     Check(
         "throughput",
@@ -218,7 +218,7 @@ CHECKS = (
         "the response is taken for the throughput",
         take_response,
         {"pairs": tolerances.OPAQUE, **of_bsdfs(tolerances.OPAQUE)},
-        diagnose=wiring.of_throughput,
+        diagnose=wiring.diagnose_throughput,
     ),
     Check(
         "reciprocity",
@@ -261,7 +261,7 @@ CHECKS = (
             "planes": tolerances.difference_of(tolerances.TESTRENDER),
         },
         has_flag,
-        wiring.of_flag,
+        wiring.diagnose_flag,
     ),
     Check(
         "inputs",
@@ -282,7 +282,7 @@ CHECKS = (
             **dict.fromkeys((COMBINED, NESTED), tolerances.count_of("inputs")),
             **dict.fromkeys((*EMISSION_KINDS, MEDIUM, PICTURES), tolerances.count_of("inputs")),
         },
-        diagnose=wiring.of_inputs,
+        diagnose=wiring.diagnose_inputs,
     ),
     Check(
         "finite",
@@ -292,6 +292,6 @@ CHECKS = (
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
         {"pairs": tolerances.count_of("values"), **of_bsdfs(tolerances.count_of("values"))},
-        diagnose=wiring.of_finite,
+        diagnose=wiring.diagnose_finite,
     ),
 )

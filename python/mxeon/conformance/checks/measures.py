@@ -117,7 +117,7 @@ def reciprocity(probe: Probe, metric: Metric) -> Measurement:
     for batch in probe.few:
         side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # light through the surface
         swapped = replace(batch, wo=side * batch.wi, wi=side * batch.wo)
-        with np.errstate(invalid="ignore"):  # inf x 0 is no number, which `absolute` notices
+        with np.errstate(invalid="ignore"):  # inf x 0 is NaN, which `absolute` notices
             forward = probe.direct(batch) * batch.wo[:, 2:]
             backward = probe.direct(swapped) * np.abs(batch.wi[:, 2:])
         cases.append(Case(batch, forward, backward))

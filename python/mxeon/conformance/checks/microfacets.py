@@ -46,7 +46,7 @@ CHECKS = (
         "the flag is dropped",
         with_inputs(retroreflective=False),
         of_microfacets(tolerances.RETROREFLECTION),
-        diagnose=wiring.of_retroreflection,
+        diagnose=wiring.diagnose_retroreflection,
     ),
     Check(
         "anisotropy",
@@ -56,7 +56,7 @@ CHECKS = (
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
         of_microfacets(tolerances.ANISOTROPY),
-        diagnose=wiring.of_tangent,
+        diagnose=wiring.diagnose_tangent,
     ),
     Check(
         "anisotropic_albedo",
@@ -66,6 +66,6 @@ CHECKS = (
         "the roughness is the same in both directions",
         isotropic,
         of_microfacets(tolerances.ANISOTROPIC_ALBEDO),
-        diagnose=wiring.of_stretched,
+        diagnose=wiring.diagnose_stretched,
     ),
 )

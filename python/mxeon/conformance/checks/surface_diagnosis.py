@@ -21,7 +21,7 @@ LOBES = {
 }
 
 
-def of_lobes(probe: Probe) -> Diagnosis:
+def diagnose_lobes(probe: Probe) -> Diagnosis:
     """The lobe whose absence leaves the smallest error of the worst pairs."""
     [batch] = probe.batches
     expected = probe.expected(batch)
@@ -44,19 +44,23 @@ def _error(probe: Probe, pairs: Batch, names: tuple[str, ...]) -> float:
     return float(scaled(probe.direct(plain), probe.expected(plain)).max())
 
 
-def of_sum(probe: Probe) -> Diagnosis:
+def diagnose_sum(probe: Probe) -> Diagnosis:
     """Where the lobes are judged."""
     return Diagnosis("the checks of each lobe and of `layer` say why")
 
 
-def of_reach(probe: Probe) -> Diagnosis:
+def diagnose_reach(probe: Probe) -> Diagnosis:
     """The inputs."""
     names = misplaced(probe)
-    silent = [name for name in names if name not in subject_of(probe, SurfaceShader).table.silent]
-    heard = [name for name in names if name in subject_of(probe, SurfaceShader).table.silent]
+    without_effect = [
+        name for name in names if name not in subject_of(probe, SurfaceShader).table.without_effect
+    ]
+    effective = [
+        name for name in names if name in subject_of(probe, SurfaceShader).table.without_effect
+    ]
     texts = [
         f"{', '.join(group)} {verb}"
-        for group, verb in ((silent, "changes nothing"), (heard, "changes something"))
+        for group, verb in ((without_effect, "changes nothing"), (effective, "changes something"))
         if group
     ]
     return Diagnosis("; ".join(texts))

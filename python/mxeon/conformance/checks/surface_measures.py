@@ -31,15 +31,15 @@ def reach(probe: Probe, _: Metric) -> Measurement:
 def misplaced(probe: Probe) -> list[str]:
     """The inputs of `reach`."""
     table = subject_of(probe, SurfaceShader).table
-    wrong = set(table.silent).symmetric_difference(without_effect(probe))
+    wrong = set(table.without_effect).symmetric_difference(without_effect(probe))
     return sorted(wrong.difference(table.curved))
 
 
 def without_effect(probe: Probe) -> list[str]:
     """Inputs that change no value in any branch."""
     names = subject_of(probe, SurfaceShader).inputs
-    heard = np.zeros(len(names), bool)
+    effective = np.zeros(len(names), bool)
     for branch in BRANCHES:
         values = probe.response(probe.changed, branch).reshape(len(names), 2, -1)
-        heard |= (values[:, 0] != values[:, 1]).any(axis=1)
-    return [name for name, each in zip(names, heard, strict=True) if not each]
+        effective |= (values[:, 0] != values[:, 1]).any(axis=1)
+    return [name for name, each in zip(names, effective, strict=True) if not each]

@@ -19,15 +19,15 @@ MODELS = tuple(shader.model for shader in SHADERS)
 
 
 @dataclass(frozen=True)
-class _Deaf(Altered):
+class IgnoreChanges(Altered):
     """A probe whose host sees the first pair only."""
 
     def response(self, batch: Batch, branch: str) -> Array:
         return np.repeat(self.probe.response(batch.first(1), branch), len(batch.wo), axis=0)
 
 
-def _deaf(probe: Probe) -> Altered:
-    return _Deaf(probe)
+def ignore_changes(probe: Probe) -> Altered:
+    return IgnoreChanges(probe)
 
 
 CHECKS = (
@@ -39,7 +39,7 @@ CHECKS = (
         "each pair has the inputs of another",
         shifted,
         {WHOLE: tolerances.VALUE},
-        diagnose=diagnosis.of_lobes,
+        diagnose=diagnosis.diagnose_lobes,
     ),
     Check(
         "lobes_albedo",
@@ -49,7 +49,7 @@ CHECKS = (
         "each view has the inputs of another",
         shifted,
         {WHOLE: tolerances.ALBEDO},
-        diagnose=diagnosis.of_sum,
+        diagnose=diagnosis.diagnose_sum,
     ),
     Check(
         "lobes_furnace",
@@ -59,7 +59,7 @@ CHECKS = (
         "every value is a tenth lower",
         scale(0.9),
         {WHOLE: tolerances.ALBEDO},
-        diagnose=diagnosis.of_sum,
+        diagnose=diagnosis.diagnose_sum,
     ),
     Check(
         "lobes_energy",
@@ -69,7 +69,7 @@ CHECKS = (
         "every value is half as high again",
         scale(1.5),
         {WHOLE: tolerances.ALBEDO},
-        diagnose=diagnosis.of_sum,
+        diagnose=diagnosis.diagnose_sum,
     ),
     Check(
         "reach",
@@ -77,8 +77,8 @@ CHECKS = (
         MODELS,
         surface_measures.reach,
         "every change is dropped",
-        _deaf,
+        ignore_changes,
         {WHOLE: count_of("inputs")},
-        diagnose=diagnosis.of_reach,
+        diagnose=diagnosis.diagnose_reach,
     ),
 )

@@ -8,12 +8,12 @@ from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
 from mxeon.conformance.checks.film_measures import (
     brighter,
+    diagnose_average,
+    diagnose_visible,
     film_average,
     film_energy,
     film_limit,
     film_visible,
-    of_average,
-    of_visible,
     thicker,
 )
 from mxeon.conformance.diagnosis import candidates as diagnosis
@@ -59,7 +59,7 @@ CHECKS = (
         "the film is a quarter thicker",
         thicker,
         {FILM: bsdf_tolerances.FILM_ALBEDO},
-        diagnose=diagnosis.of_albedo,
+        diagnose=diagnosis.diagnose_albedo,
         open=True,
     ),
     Check(
@@ -70,7 +70,7 @@ CHECKS = (
         "the film is a quarter thicker",
         thicker,
         {FILM: bsdf_tolerances.FILM_MEAN},
-        diagnose=of_average,
+        diagnose=diagnose_average,
         open=True,
     ),
     Check(
@@ -81,7 +81,7 @@ CHECKS = (
         "the film is a quarter thicker",
         thicker,
         {FILM: bsdf_tolerances.FILM_STEEP},
-        diagnose=of_visible,
+        diagnose=diagnose_visible,
         open=True,
     ),
     Check(
@@ -92,7 +92,7 @@ CHECKS = (
         "all light passes",
         pass_all,
         {FILM: bsdf_tolerances.FILM_ALBEDO},
-        diagnose=diagnosis.of_throughput,
+        diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
         "film_finite",
@@ -102,6 +102,6 @@ CHECKS = (
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
         {FILM: tolerances.count_of("values")},
-        diagnose=wiring.of_finite,
+        diagnose=wiring.diagnose_finite,
     ),
 )

@@ -41,8 +41,8 @@ def infinite(probe: Probe) -> Altered:
     return Altered(probe, values=divided)
 
 
-def of_transmitted(probe: Probe) -> Diagnosis:
-    """Whether the light is divided by G_1, as MaterialX does for reflection; and where it is no number."""
+def diagnose_transmitted(probe: Probe) -> Diagnosis:
+    """Whether the light is divided by G_1, as MaterialX does for reflection; and where it is NaN."""
     cases = measures.transmitted_cases(probe)
     near, far = (
         np.sqrt(np.mean(np.concatenate([_squares(case, found(case)) for case in cases])))
@@ -62,14 +62,14 @@ def _squares(case: Case, expected: Array) -> Array:
     return squares
 
 
-def of_inputs(probe: Probe) -> Diagnosis:
+def diagnose_inputs(probe: Probe) -> Diagnosis:
     """The inputs that change nothing, or that change what they must not."""
     return Diagnosis(
         f"without effect, or with a wrong one: {', '.join(measures.wrong_inputs(probe))}"
     )
 
 
-def of_finite(probe: Probe) -> Diagnosis:
+def diagnose_finite(probe: Probe) -> Diagnosis:
     """Where values at the edges are not finite."""
     return Diagnosis(not_finite([measures.finite_case(probe)]))
 
@@ -88,7 +88,7 @@ CHECKS = (
         "values are twice as large",
         scale(2.0),
         tolerances.TRANSMITTED,
-        diagnose=of_transmitted,
+        diagnose=diagnose_transmitted,
     ),
     Check(
         "clear",
@@ -98,7 +98,7 @@ CHECKS = (
         "values are 5 % too large",
         scale(1.05),
         tolerances.CLEAR,
-        diagnose=of_transmitted,
+        diagnose=diagnose_transmitted,
     ),
     Check(
         "kept",
@@ -118,7 +118,7 @@ CHECKS = (
         "the index is another",
         with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
         tolerances.TRANSMITTED,
-        diagnose=of_transmitted,
+        diagnose=diagnose_transmitted,
     ),
     Check(
         "refraction",
@@ -138,7 +138,7 @@ CHECKS = (
         "values are divided by 0",
         infinite,
         of_all(count_of("values")),
-        diagnose=of_finite,
+        diagnose=diagnose_finite,
     ),
     Check(
         "transmitted_inputs",
@@ -148,6 +148,6 @@ CHECKS = (
         "every change is dropped",
         drop_changes,
         of_all(count_of("inputs")),
-        diagnose=of_inputs,
+        diagnose=diagnose_inputs,
     ),
 )

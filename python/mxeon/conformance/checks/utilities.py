@@ -45,7 +45,7 @@ CHECKS = (
         "every change is dropped",
         drop_changes,
         dict.fromkeys((VALUES, OSL_VALUES), count_of("inputs")),
-        diagnose=wiring.of_inputs,
+        diagnose=wiring.diagnose_inputs,
     ),
     Check(
         "output_finite",

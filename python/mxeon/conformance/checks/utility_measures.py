@@ -38,7 +38,7 @@ def explained(probe: Probe) -> Diagnosis:
         for each in probe.value_candidates
     ]
     tolerance = utility_tolerance(ALPHA, probe.subject, probe.kind, probe.host)
-    return diagnosis.of_cases(probe, list(cases(probe)), candidates, tolerance)
+    return diagnosis.diagnose_cases(probe, list(cases(probe)), candidates, tolerance)
 
 
 def finite(probe: Probe, _: Metric) -> Measurement:

@@ -72,7 +72,7 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
 
 
 @lru_cache(maxsize=2)  # several checks of a subject fail for one reason
-def of_value(probe: Probe) -> Diagnosis:
+def diagnose_value(probe: Probe) -> Diagnosis:
     """The explanation of the probe's values for pairs of directions."""
     candidates = probe.value_candidates
     return _explained(
@@ -80,7 +80,7 @@ def of_value(probe: Probe) -> Diagnosis:
     )
 
 
-def of_case(
+def diagnose_case(
     probe: Probe, case: Case, candidates: Sequence[Candidate], tolerance: Tolerance
 ) -> Diagnosis:
     """The explanation of values of one case, for pairs of directions, by candidates."""
@@ -88,7 +88,7 @@ def of_case(
 
 
 @lru_cache(maxsize=2)
-def of_albedo(probe: Probe) -> Diagnosis:
+def diagnose_albedo(probe: Probe) -> Diagnosis:
     """The explanation of the probe's environment branch."""
     candidates = probe.albedo_candidates
     cases = list(albedo_cases(probe))
@@ -96,29 +96,29 @@ def of_albedo(probe: Probe) -> Diagnosis:
 
 
 @lru_cache(maxsize=2)
-def of_throughput(probe: Probe) -> Diagnosis:
+def diagnose_throughput(probe: Probe) -> Diagnosis:
     """The explanation of the throughput of a layer for light from above."""
     return _of_rest(probe, list(layering_cases(probe)))
 
 
 @lru_cache(maxsize=2)
-def of_transmission(probe: Probe) -> Diagnosis:
+def diagnose_transmission(probe: Probe) -> Diagnosis:
     """The explanation of the throughput of a layer for light through the base."""
     return _of_rest(probe, list(transmission_cases(probe)))
 
 
 @lru_cache(maxsize=2)
-def of_radiance(probe: Probe) -> Diagnosis:
+def diagnose_radiance(probe: Probe) -> Diagnosis:
     """The explanation of what an emission is from the front."""
     return _of_emission(probe, list(value_cases(probe)))
 
 
-def of_back(probe: Probe) -> Diagnosis:
+def diagnose_back(probe: Probe) -> Diagnosis:
     """The explanation of what an emission is from the back."""
     return _of_emission(probe, list(back_cases(probe)))
 
 
-def of_medium(probe: Probe) -> Diagnosis:
+def diagnose_medium(probe: Probe) -> Diagnosis:
     """The explanation of the transmittance of a medium."""
     return _of_emission(probe, list(transmittance_cases(probe)))
 
@@ -129,10 +129,10 @@ def _of_emission(probe: Probe, cases: Sequence[Case]) -> Diagnosis:
     return _explained(probe, cases, probe.value_candidates, (), tolerance)
 
 
-def of_cases(
+def diagnose_cases(
     probe: Probe, cases: Sequence[Case], candidates: Sequence[Candidate], tolerance: Tolerance
 ) -> Diagnosis:
-    """The explanation of cases by candidates, the own one first."""
+    """The explanation of cases by candidates, its own model first."""
     return _explained(probe, cases, candidates, (), tolerance)
 
 

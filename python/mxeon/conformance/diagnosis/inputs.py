@@ -6,7 +6,13 @@ from collections.abc import Callable
 import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import FRAMES, OPAQUE, SURROUNDINGS
-from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite, of_value, region
+from mxeon.conformance.diagnosis.candidates import (
+    NEAR,
+    Diagnosis,
+    diagnose_value,
+    not_finite,
+    region,
+)
 from mxeon.conformance.diagnosis.faults import normal_ignored
 from mxeon.conformance.diagnosis.regions import smallest
 from mxeon.conformance.nodes.diffuse import SUBJECTS
@@ -45,29 +51,29 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 }
 
 
-def of_flag(probe: Probe) -> Diagnosis:
+def diagnose_flag(probe: Probe) -> Diagnosis:
     """The explanation of the values with the flag and of those without it."""
     states: dict[str, list[str]] = {}
     for subject in SUBJECTS:
         if subject.node == probe.subject.node:
             other = probe if subject.title == probe.subject.title else probe.of(subject)
-            text = of_value(other).text
+            text = diagnose_value(other).text
             states.setdefault(text, []).append(str(subject.flag).lower())
     texts = (f"{FLAG} {' and '.join(flags)}: {text}" for text, flags in states.items())
-    return Diagnosis("; ".join(texts), of_value(probe).distances)
+    return Diagnosis("; ".join(texts), diagnose_value(probe).distances)
 
 
-def of_inputs(probe: Probe) -> Diagnosis:
+def diagnose_inputs(probe: Probe) -> Diagnosis:
     """The inputs that change nothing."""
     return Diagnosis(f"without effect: {', '.join(dead_inputs(probe))}")
 
 
-def of_finite(probe: Probe) -> Diagnosis:
+def diagnose_finite(probe: Probe) -> Diagnosis:
     """Where values at the edges are not finite."""
     return Diagnosis(not_finite([edge_case(probe)]))
 
 
-def of_throughput(probe: Probe) -> Diagnosis:
+def diagnose_throughput(probe: Probe) -> Diagnosis:
     """The branches whose throughput is not 0, with its value."""
     branches: dict[str, list[str]] = {}
     for branch in BRANCHES:
@@ -87,7 +93,7 @@ def of_throughput(probe: Probe) -> Diagnosis:
     )
 
 
-def of_frame(probe: Probe) -> Diagnosis:
+def diagnose_frame(probe: Probe) -> Diagnosis:
     """Whether the normal is dropped or not turned, in the first branch that is wrong."""
     for case, branch in zip(frame_cases(probe), ("direct", "environment"), strict=True):
         tolerance = FRAMES[probe.kind]
@@ -106,14 +112,14 @@ def of_frame(probe: Probe) -> Diagnosis:
     return Diagnosis(UNKNOWN)
 
 
-def of_tangent(probe: Probe) -> Diagnosis:
+def diagnose_tangent(probe: Probe) -> Diagnosis:
     """Whether the tangent is dropped."""
-    return Diagnosis(without_effect(probe, "tangent") or of_value(probe).text)
+    return Diagnosis(without_effect(probe, "tangent") or diagnose_value(probe).text)
 
 
-def of_retroreflection(probe: Probe) -> Diagnosis:
+def diagnose_retroreflection(probe: Probe) -> Diagnosis:
     """Whether the flag is dropped."""
-    return Diagnosis(without_effect(probe, "retroreflective") or of_value(probe).text)
+    return Diagnosis(without_effect(probe, "retroreflective") or diagnose_value(probe).text)
 
 
 def without_effect(probe: Probe, name: str) -> str:
@@ -122,7 +128,7 @@ def without_effect(probe: Probe, name: str) -> str:
     return f"{name} is ignored" if dead else ""
 
 
-def of_stretched(probe: Probe) -> Diagnosis:
+def diagnose_stretched(probe: Probe) -> Diagnosis:
     """Whether directions of visible normals are weighted by G_1 at the mean alpha."""
     case = stretched_case(probe)
     view, alpha = case.batch.wo, case.batch.inputs["roughness"]
@@ -138,7 +144,7 @@ def of_stretched(probe: Probe) -> Diagnosis:
     return Diagnosis(UNKNOWN)
 
 
-def of_surroundings(probe: Probe) -> Diagnosis:
+def diagnose_surroundings(probe: Probe) -> Diagnosis:
     """The direction at which the environment is looked up."""
     case = surroundings_case(probe)
     for words, found in LOOKUPS.items():

@@ -57,7 +57,7 @@ class FunctionProbe:
         return functions.source(self.host.language, library=self.library)
 
     @cached_property
-    def strangers(self) -> tuple[str, ...]:
+    def missing_functions(self) -> tuple[str, ...]:
         """Functions of eonlib that the library lacks, or has with other parameters."""
         own = functions.signatures(self.text)
         ours = functions.signatures(functions.source(self.host.language))
@@ -83,7 +83,7 @@ class FunctionProbe:
     def _values(self, scale: float) -> Mapping[str, Array]:
         """Values of the functions, in one call; each of them has POINTS rows."""
         language = self.host.language
-        names = [name for name in functions.names(language) if name not in self.strangers]
+        names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
         slots = functions.parameters(text, functions.EACH)
         count = twins.POINTS
@@ -224,7 +224,7 @@ def _measure(
     errors = {
         name: check.error(name, each) for name, each in values.items() if row_of(name) is check
     }
-    errors |= {name: np.inf for name in probe.strangers if row_of(name) is check}
+    errors |= {name: np.inf for name in probe.missing_functions if row_of(name) is check}
     name = max(errors, key=lambda function: errors[function])
     return Measurement(errors[name], {name: [errors[name]]})
 
@@ -240,7 +240,7 @@ def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
         name for name in causes if name in affected or any(name in uses[each] for each in affected)
     ]
     users = [name for name in affected if name not in own]
-    parts = [f"{name} is not defined as eonlib has it" for name in probe.strangers]
+    parts = [f"{name} is not defined as eonlib has it" for name in probe.missing_functions]
     parts += [f"{name} is off by {errors[name]:.2g}" for name in own]
     parts += [f"with it {', '.join(users)}"] if users else []
     return "; ".join(parts)

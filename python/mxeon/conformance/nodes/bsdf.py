@@ -71,7 +71,7 @@ CHANGES: dict[str, Changes] = {
 }
 BLACK = ("color", "tint", "color0", "color90")
 
-NOTHING = Candidate("nothing at all", lambda batch: np.zeros((len(batch.wo), 3)))
+NOTHING = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 LEAST_ALPHA = 1e-3  # of random pairs
 ROUGH_EDGES = (1e-4, 0.01, 1.0)  # special values of alpha
 SHEEN_EDGES = (0.01, 0.05, 1.0)  # special roughnesses of a lobe that has one

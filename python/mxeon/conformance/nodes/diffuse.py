@@ -76,7 +76,7 @@ class ModelSubject:
     def _candidates(
         self, rows: Iterable[Model], output: Callable[[Batch, str], Array]
     ) -> tuple[Candidate, ...]:
-        """Candidates of rows, the own one first."""
+        """Candidates of rows, its own model first."""
         ordered = sorted(rows, key=lambda row: row.name != self.model)
         return tuple(Candidate(row.title, partial(_limited, row, output)) for row in ordered)
 

@@ -49,7 +49,7 @@ CHANGES: dict[str, Any] = {
     "normal": (0.0, 0.6, 0.8),
     AMOUNT: 0.3,
 }
-DARK = Candidate("nothing at all", lambda batch: np.zeros((len(batch.wo), 3)))
+DARK = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 from mxeon.conformance.nodes.bsdf import HAIR, NOTHING, BsdfSubject, broadcast_inputs
 from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
+from mxeon.conformance.samples.edge_cases import with_edges
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.pbrlib.hair import HAIR_NODE
@@ -68,9 +69,9 @@ class HairSubject(BsdfSubject):
         """Values of which half of the roughnesses and the indices lie on an edge."""
         inputs = self.random_inputs(rng, count)
         for name in ROUGHNESSES:
-            inputs[name] = _mixed(rng, inputs[name], ROUGH_EDGES)
-        inputs["ior"] = _mixed(rng, inputs["ior"], (1.0, 1.55))
-        inputs["absorption_coefficient"] = _mixed(rng, inputs["absorption_coefficient"], (0.0,))
+            inputs[name] = with_edges(rng, inputs[name], ROUGH_EDGES)
+        inputs["ior"] = with_edges(rng, inputs["ior"], (1.0, 1.55))
+        inputs["absorption_coefficient"] = with_edges(rng, inputs["absorption_coefficient"], (0.0,))
         return inputs
 
     def expected(self, batch: Batch) -> Array:
@@ -122,13 +123,6 @@ class HairSubject(BsdfSubject):
             low, high = {"ior": INDEX, "absorption_coefficient": ABSORPTION}.get(name, (0.0, 1.0))
             values = low + (high - low) * np.clip(1.25 * values - 0.125, 0.0, 1.0)
         return values.astype(np.float32).astype(np.float64)
-
-
-def _mixed(rng: np.random.Generator, values: Array, edges: tuple[float, ...]) -> Array:
-    """Values of which half are replaced by random edges, as float32 numbers."""
-    picked = rng.choice(edges, values.shape)
-    mixed: Array = np.where(rng.random(values.shape) < 0.5, picked, values)
-    return mixed.astype(np.float32).astype(np.float64)
 
 
 def _expected(value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:

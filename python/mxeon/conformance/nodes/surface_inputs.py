@@ -33,7 +33,7 @@ class Inputs:
         A material in which every lobe takes part.
     changed : mapping of str to value
         For each input but FREE_PATHS a value that this material does not have.
-    silent : tuple of str
+    without_effect : tuple of str
         Inputs of `changed` that change no value of rasterized targets; docs/upstream/
         surface_inputs.md says why.
     white : mapping of str to value
@@ -48,7 +48,7 @@ class Inputs:
     others: Mapping[str, Range]
     seen: Mapping[str, Any]
     changed: Mapping[str, Any]
-    silent: tuple[str, ...]
+    without_effect: tuple[str, ...]
     white: Mapping[str, Any]
     needs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     curved: tuple[str, ...] = ()
@@ -141,7 +141,7 @@ STANDARD = Inputs(
         coat_normal=TURNED["normal"],
         **TURNED,
     ),
-    silent=(
+    without_effect=(
         "transmission_depth",
         "transmission_scatter",
         "transmission_scatter_anisotropy",
@@ -220,7 +220,7 @@ OPEN_PBR = Inputs(
         geometry_coat_normal=TURNED["normal"],
         geometry_coat_tangent=TURNED["tangent"],
     ),
-    silent=(
+    without_effect=(
         "transmission_scatter",
         "transmission_scatter_anisotropy",
         "transmission_dispersion_scale",
@@ -283,7 +283,7 @@ GLTF = Inputs(
         clearcoat_normal=TURNED["normal"],
         **TURNED,
     ),
-    silent=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
+    without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
     white={
         "base_color": (1.0, 1.0, 1.0),
         "metallic": 0.0,
@@ -317,7 +317,7 @@ PREVIEW = Inputs(
         normal=(0.6, 0.0, 0.8),
         displacement=0.5,
     ),
-    silent=("displacement",),
+    without_effect=("displacement",),
     white={"diffuseColor": (1.0, 1.0, 1.0), "clearcoat": 1.0, "clearcoatRoughness": 0.4},
     needs={"specularColor": {"useSpecularWorkflow": 1}},
 )

@@ -4,6 +4,7 @@
 from itertools import product
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.conformance.samples.batch import (
     Array,
@@ -61,8 +62,8 @@ def special_directions(rng: np.random.Generator) -> tuple[Array, Array]:
 def special_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
     """Colors and roughnesses of a diffuse model, of which half lie on an edge."""
     inputs = random_inputs(rng, count, row)
-    inputs["color"] = _sprinkled(rng, inputs["color"], TINY)
-    roughness = _sprinkled(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
+    inputs["color"] = with_edges(rng, inputs["color"], TINY)
+    roughness = with_edges(rng, inputs["roughness"], [row.largest * x for x in SMOOTH])
     inputs["roughness"] = rounded_roughness(roughness, row)
     return inputs
 
@@ -103,12 +104,12 @@ def diffuse_edges() -> Batch:
 def node_inputs(rng: np.random.Generator, count: int) -> dict[str, Array]:
     """Random weights and occlusions: 1 for half of the pairs, an edge for many others."""
     return {
-        name: np.where(rng.random(count) < 0.5, 1.0, _sprinkled(rng, rng.random(count), edges))
+        name: np.where(rng.random(count) < 0.5, 1.0, with_edges(rng, rng.random(count), edges))
         for name, edges in (("weight", WEIGHTS), ("occlusion", OCCLUSIONS))
     }
 
 
-def _sprinkled(rng: np.random.Generator, values: Array, edges: object) -> Array:
+def with_edges(rng: np.random.Generator, values: Array, edges: ArrayLike) -> Array:
     """Values of which half are replaced by random edges, as float32 numbers."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
     mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)
