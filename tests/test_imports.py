@@ -4,6 +4,7 @@
 import json
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -66,6 +67,37 @@ def test_an_import_from_a_floor_above_breaks_the_contract(tmp_path):
         file.write("import mxeon.shaders.scene\n")
     status, output = lint(tmp_path)
     assert status == 1 and "mxeon.models is not allowed to import mxeon.shaders" in output
+
+
+def drawn(layers):
+    """The picture of a contract: a floor a row, the highest first, with its packages in boxes."""
+    floors = [[name.removeprefix("mxeon.") for name in layer.split(" | ")] for layer in layers]
+    width = max(sum(len(name) + 3 for name in floor) - 1 for floor in floors)
+    rows, lines = [], []
+    for floor in floors:
+        spare, share = width - sum(len(name) + 3 for name in floor) + 1, len(floor)
+        widths = [
+            len(name) + 2 + spare // share + (i < spare % share) for i, name in enumerate(floor)
+        ]
+        rows.append("|" + "|".join(map(str.center, floor, widths)) + "|")
+        lines.append("+" + "+".join("-" * each for each in widths) + "+")
+    between = [
+        "".join("+" if "+" in pair else "-" for pair in zip(*each, strict=True))
+        for each in zip(lines, lines[1:], strict=False)
+    ]
+    text = [lines[0]]
+    for row, line in zip(rows, [*between, lines[-1]], strict=True):
+        text += [row, line]
+    return "\n".join(text)
+
+
+def test_the_design_draws_the_floors_of_the_contracts():
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
+    page = (ROOT / "docs" / "design.md").read_text()
+    pictures = [drawn(each["layers"]) for each in contracts["contracts"] if "layers" in each]
+    assert len(pictures) == 2
+    for picture in pictures:
+        assert f"```text\n{picture}\n```" in page, picture
 
 
 def test_importing_the_package_loads_nothing_else():
