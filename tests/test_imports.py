@@ -5,6 +5,7 @@ import json
 import subprocess
 import sys
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -83,7 +84,7 @@ def drawn(layers):
         lines.append("+" + "+".join("-" * each for each in widths) + "+")
     between = [
         "".join("+" if "+" in pair else "-" for pair in zip(*each, strict=True))
-        for each in zip(lines, lines[1:], strict=False)
+        for each in pairwise(lines)
     ]
     text = [lines[0]]
     for row, line in zip(rows, [*between, lines[-1]], strict=True):

@@ -12,7 +12,7 @@ from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
-from mxeon.conformance.probes.bsdf_pictures import PICTURES, bsdf_probe_type, materials
+from mxeon.conformance.probes.bsdf_pictures import PICTURES, bsdf_probe_type
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
 from mxeon.conformance.probes.polyhedron import PROBES
@@ -86,7 +86,7 @@ def test_a_host_has_probes_by_what_it_shows():
 
 def test_the_materials_of_pictures_have_every_input_of_the_model():
     for subject in BSDFS:
-        for inputs in materials(subject):
+        for inputs in subject.materials:
             assert set(subject.row.inputs) <= set(inputs)
 
 

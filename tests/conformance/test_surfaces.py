@@ -7,7 +7,7 @@ import pytest
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_page
-from mxeon.conformance.nodes.surface_inputs import FREE_PATHS, drawn
+from mxeon.conformance.nodes.surface_inputs import FREE_PATHS
 from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
 from mxeon.conformance.probes.families import COMMON_SUBJECTS
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
@@ -73,10 +73,3 @@ def test_they_are_judged_where_they_are_named():
     assert {shader.node for shader in SHADERS} <= set(node_names())
     plan = make_plan([], ["gl"], ["stock"], nodes=["gltf_pbr"])
     assert {"lobes", "reach"} <= {task.check for task in plan.tasks}
-
-
-def test_drawn_values_are_float32_numbers_in_their_ranges():
-    values = drawn(np.random.default_rng(1), 64, SHADERS[0].table.judged)
-    assert values["base_color"].shape == (64, 3) and values["coat"].shape == (64,)
-    assert all((each == each.astype(np.float32)).all() for each in values.values())
-    assert values["coat_IOR"].min() == np.float32(1.1)

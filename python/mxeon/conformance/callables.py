@@ -16,7 +16,7 @@ from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.nodes.diffuse import CHANGES, ModelSubject
 from mxeon.conformance.nodes.subject import Changes, Values
-from mxeon.conformance.probes.probe import ValueProbe
+from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples.batch import PAIRS, SEED, Array, Batch, directions, random_inputs
 from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
@@ -76,7 +76,7 @@ class ClaimedModel(ModelSubject):
         return {name: ({}, {name: CHANGES[name]}) for name in self.inputs}
 
 
-class CallableProbe(ValueProbe):
+class CallableProbe(LobeProbe):
     """A function evaluated for pairs."""
 
     kind = "pairs"

@@ -2,7 +2,7 @@
 """Negative controls: the probe of a check made wrong on purpose, on which the check has to fail."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,24 +15,69 @@ Array = NDArray[np.float64]
 Control = Callable[[Probe], Probe]
 
 
-@dataclass(frozen=True, eq=False)
 class Altered(Probe):
     """A probe made wrong: its batches changed on the way in, its values on the way out.
 
-    Responses and throughputs are values of their own.
+    Responses and throughputs are values of their own. What a control does not change is the probe's.
+
+    Parameters
+    ----------
+    probe : Probe
+    batch : callable (batch) -> batch
+    values, throughputs : callable (batch, values) -> values
     """
 
-    probe: Probe
-    batch: Callable[[Batch], Batch] = lambda batch: batch
-    values: Callable[[Batch, Array], Array] = lambda batch, values: values
-    throughputs: Callable[[Batch, Array], Array] = lambda batch, values: values
+    def __init__(
+        self,
+        probe: Probe,
+        batch: Callable[[Batch], Batch] = lambda batch: batch,
+        values: Callable[[Batch, Array], Array] = lambda batch, values: values,
+        throughputs: Callable[[Batch, Array], Array] = lambda batch, values: values,
+    ) -> None:
+        super().__init__(probe.host, probe.subject, probe.library)
+        self.probe, self.batch, self.values, self.throughputs = probe, batch, values, throughputs
 
     def __getattribute__(self, name: str) -> object:
-        """Members of the probe, but for those that a control changes."""
-        own = name in Altered.__dict__ or name in type(self).__dict__ or name.startswith("__")
-        return object.__getattribute__(
-            self if own else object.__getattribute__(self, "probe"), name
-        )
+        """Members of the probe in place of those of the base class, which raise."""
+        own = any(name in vars(kind) for kind in type(self).__mro__ if kind is not Probe)
+        if name.startswith("_") or own or name not in vars(Probe):
+            return object.__getattribute__(self, name)
+        return getattr(self.probe, name)
+
+    @property
+    def batches(self) -> tuple[Batch, ...]:
+        """The few: a control has nothing to prove on all pairs."""
+        return self.probe.few
+
+    @property
+    def cosines(self) -> tuple[Batch, ...]:
+        """The first: pictures of an environment take long on some hosts."""
+        return self.probe.cosines[:1]
+
+    @cached_property
+    def albedos(self) -> tuple[Array, ...]:
+        """Those of the first."""
+        return self.probe.albedos[:1]
+
+    def direct(self, batch: Batch) -> Array:
+        """Values of the changed batch, changed."""
+        return self.values(batch, self.probe.direct(self.batch(batch)))
+
+    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
+        """Albedos of the changed batch, changed."""
+        return self.values(batch, self.probe.albedo(self.batch(batch), irradiance))
+
+    def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
+        """Light through the surface of the changed batch, changed."""
+        return self.values(batch, self.probe.transmitted(self.batch(batch), radiance))
+
+    def throughput(self, batch: Batch, branch: str) -> Array:
+        """Throughputs of the changed batch, changed."""
+        return self.throughputs(batch, self.probe.throughput(self.batch(batch), branch))
+
+    def density(self, batch: Batch) -> Array:
+        """Densities for the changed batch."""
+        return self.probe.density(self.batch(batch))
 
 
 def with_inputs(**inputs: Any) -> Control:

@@ -18,7 +18,7 @@ from mxeon.conformance.checks.film_measures import (
 )
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as wiring
-from mxeon.conformance.nodes.bsdf import FILM
+from mxeon.conformance.nodes.bsdf import FILM_PAIRS
 from mxeon.conformance.nodes.thin_films import FILM_MODELS, LAYERED
 
 CHECKS = (
@@ -29,7 +29,7 @@ CHECKS = (
         measures.value,
         "the film is a quarter thicker",
         thicker,
-        {FILM: bsdf_tolerances.FILM_VALUE},
+        {FILM_PAIRS: bsdf_tolerances.FILM_VALUE},
         open=True,
     ),
     Check(
@@ -39,7 +39,7 @@ CHECKS = (
         film_limit,
         "every film has an index of 1.5",
         with_inputs(thinfilm_ior=1.5),
-        {FILM: bsdf_tolerances.FILM_LIMIT},
+        {FILM_PAIRS: bsdf_tolerances.FILM_LIMIT},
         open=True,
     ),
     Check(
@@ -49,7 +49,7 @@ CHECKS = (
         film_energy,
         "values are 100 times as large",
         brighter,
-        {FILM: bsdf_tolerances.FILM_ENERGY},
+        {FILM_PAIRS: bsdf_tolerances.FILM_ENERGY},
     ),
     Check(
         "film_environment",
@@ -58,7 +58,7 @@ CHECKS = (
         measures.environment,
         "the film is a quarter thicker",
         thicker,
-        {FILM: bsdf_tolerances.FILM_ALBEDO},
+        {FILM_PAIRS: bsdf_tolerances.FILM_ALBEDO},
         diagnose=diagnosis.diagnose_albedo,
         open=True,
     ),
@@ -69,7 +69,7 @@ CHECKS = (
         film_average,
         "the film is a quarter thicker",
         thicker,
-        {FILM: bsdf_tolerances.FILM_MEAN},
+        {FILM_PAIRS: bsdf_tolerances.FILM_MEAN},
         diagnose=diagnose_average,
         open=True,
     ),
@@ -80,7 +80,7 @@ CHECKS = (
         film_visible,
         "the film is a quarter thicker",
         thicker,
-        {FILM: bsdf_tolerances.FILM_STEEP},
+        {FILM_PAIRS: bsdf_tolerances.FILM_STEEP},
         diagnose=diagnose_visible,
         open=True,
     ),
@@ -91,7 +91,7 @@ CHECKS = (
         bsdf_measures.layering,
         "all light passes",
         pass_all,
-        {FILM: bsdf_tolerances.FILM_ALBEDO},
+        {FILM_PAIRS: bsdf_tolerances.FILM_ALBEDO},
         diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
@@ -101,7 +101,7 @@ CHECKS = (
         measures.finite,
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
-        {FILM: tolerances.count_of("values")},
+        {FILM_PAIRS: tolerances.count_of("values")},
         diagnose=wiring.diagnose_finite,
     ),
 )

@@ -8,13 +8,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.subject import Changes
+from mxeon.conformance.nodes.ports import Port, changes, color, draw, draw_edges, materials
+from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models import pbrlib
 from mxeon.models.pbrlib.node import Inputs, PbrNode
-from mxeon.shaders.nodes import input_types, material_text
+from mxeon.shaders.nodes import material_text
 
 # Kinds of probes; see `mxeon.conformance.probes.bsdf`.
 CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
@@ -28,7 +29,7 @@ MICROFACET_KINDS = (MICROFACET, SCHLICK)
 HAIR = "hair pairs"  # of the hair node
 COMBINED = "combined pairs"  # of a node that combines lobes
 NESTED = "nested pairs"  # of a node that combines a sum
-FILM = "film pairs"  # of microfacets under a thin film
+FILM_PAIRS = "film pairs"  # of microfacets under a thin film
 QUADRATURES = {  # largest error of a probe's integrals of the equations
     CLOSED: 1e-8,
     SHEEN: 1e-8,
@@ -37,44 +38,76 @@ QUADRATURES = {  # largest error of a probe's integrals of the equations
     SCHLICK: 6e-4,
     HAIR: 1e-4,
 }
-SELECTORS = ("mode", "scatter_mode", "distribution")  # inputs that are words, fixed in a document
-COLORS = ("color", "tint", "color0", "color82", "color90")
-EDGES: dict[str, tuple[float, ...]] = {  # of half of an input's special values
-    **dict.fromkeys(COLORS, (0.0, 1e-3, 1.0)),
-    "ior": (1.0, 1.5, 3.0),
-    "extinction": (0.2, 3.0),
-    "exponent": (1.0, 5.0),
-}
-RANGES: dict[str, tuple[float, float]] = {  # of an input's random values
-    **dict.fromkeys(COLORS, (0.0, 1.0)),
-    "ior": (0.5, 3.0),
-    "extinction": (0.2, 6.0),
-    "exponent": (1.0, 8.0),
-    "thinfilm_thickness": (0.0, 1000.0),
-    "thinfilm_ior": (1.0, 2.5),
-}
-CHANGES: dict[str, Changes] = {
-    "weight": ({}, {"weight": 0.5}),
-    **{name: ({}, {name: (0.9, 0.1, 0.6)}) for name in COLORS},
-    "roughness": ({}, {"roughness": (0.3, 0.3)}),
-    "ior": ({}, {"ior": (0.9, 1.1, 1.6)}),
-    "extinction": ({}, {"extinction": (0.9, 2.1, 3.6)}),
-    "exponent": ({}, {"exponent": 2.5}),
-    "retroreflective": ({}, {"retroreflective": True}),
-    "thinfilm_thickness": ({}, {"thinfilm_thickness": 400.0}),
-    "thinfilm_ior": (
-        {"thinfilm_thickness": 400.0},
-        {"thinfilm_thickness": 400.0, "thinfilm_ior": 2.0},
-    ),
-    "normal": ({}, {"normal": (0.0, 0.6, 0.8)}),
-    "tangent": ({"roughness": (0.1, 0.4)}, {"roughness": (0.1, 0.4), "tangent": (0.6, 0.8, 0.0)}),
-}
-BLACK = ("color", "tint", "color0", "color90")
-
+BLACK = ("color", "tint", "color0", "color90")  # inputs that are 0 where nothing is scattered
 NOTHING = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
+
 LEAST_ALPHA = 1e-3  # of random pairs
-ROUGH_EDGES = (1e-4, 0.01, 1.0)  # special values of alpha
-SHEEN_EDGES = (0.01, 0.05, 1.0)  # special roughnesses of a lobe that has one
+FILM = {"thinfilm_thickness": 400.0}
+WEIGHT = Port("weight", change=0.5, materials=(1.0, 0.5))
+COLOR = color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
+NORMAL = Port("normal", "vector3", change=(0.0, 0.6, 0.8))
+ROUGHNESS = Port(
+    "roughness", low=LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
+)
+INDEX = Port("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(1.5, 1.2))
+MICROFACETS = (
+    Port(
+        "roughness",
+        "vector2",
+        LEAST_ALPHA,
+        1.0,
+        (1e-4, 0.01, 1.0),
+        (0.3, 0.3),
+        logarithmic=True,
+        equal=True,
+        materials=((0.8, 0.8), (0.4, 0.4)),
+    ),
+    Port("retroreflective", "boolean", change=True),
+    Port("thinfilm_thickness", high=1000.0, edges=(0.0, 1.0, 100.0), change=400.0),
+    Port("thinfilm_ior", low=1.0, high=2.5, edges=(1.0, 1.5), change=2.0, needs=FILM),
+    NORMAL,
+    Port("tangent", "vector3", change=(0.6, 0.8, 0.0), needs={"roughness": (0.1, 0.4)}),
+)
+# The inputs of each node, by category, but those that select a mode.
+PORTS: dict[str, tuple[Port, ...]] = {
+    "burley_diffuse_bsdf": (WEIGHT, COLOR, ROUGHNESS, NORMAL),
+    "translucent_bsdf": (WEIGHT, COLOR, NORMAL),
+    "sheen_bsdf": (WEIGHT, COLOR, ROUGHNESS, NORMAL),
+    "subsurface_bsdf": (WEIGHT, COLOR, Port("radius", "color3", high=2.0), NORMAL),
+    "dielectric_bsdf": (
+        WEIGHT,
+        color("tint", (0.2, 0.5, 0.8), (0.9, 0.6, 0.3)),
+        INDEX,
+        *MICROFACETS,
+    ),
+    "conductor_bsdf": (
+        WEIGHT,
+        replace(
+            INDEX,
+            kind="color3",
+            change=(0.9, 1.1, 1.6),
+            materials=((0.2, 0.9, 1.1), (1.5, 0.6, 2.0)),
+        ),
+        Port(
+            "extinction",
+            "color3",
+            0.2,
+            6.0,
+            (0.2, 3.0),
+            (0.9, 2.1, 3.6),
+            materials=((3.9, 2.5, 1.8), (0.5, 1.0, 4.0)),
+        ),
+        *MICROFACETS,
+    ),
+    "generalized_schlick_bsdf": (
+        WEIGHT,
+        color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2)),
+        color("color82", (0.5, 0.7, 0.8), (1.0, 1.0, 1.0)),
+        color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0)),
+        Port("exponent", low=1.0, high=8.0, edges=(1.0, 5.0), change=2.5, materials=(5.0, 3.0)),
+        *MICROFACETS,
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -108,9 +141,25 @@ class BsdfSubject:
         return self.row.name
 
     @property
+    def ports(self) -> tuple[Port, ...]:
+        """The node's inputs but those that select a mode."""
+        return PORTS[self.node]
+
+    @property
+    def drawn(self) -> tuple[Port, ...]:
+        """The inputs that its functions read."""
+        ports = {port.name: port for port in self.ports}
+        return tuple(ports[name] for name in self.row.inputs)
+
+    @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the node's inputs but those that select a mode."""
-        return tuple(name for name in input_types(self.node) if name not in SELECTORS)
+        """Names of its inputs."""
+        return tuple(port.name for port in self.ports)
+
+    @property
+    def materials(self) -> tuple[Values, ...]:
+        """Inputs of the two materials that stand for it in pictures."""
+        return materials((WEIGHT, *self.drawn))
 
     @property
     def kind(self) -> str:
@@ -122,14 +171,9 @@ class BsdfSubject:
         return SHEEN if self.row.category == "sheen_bsdf" else CLOSED
 
     @property
-    def changes(self) -> dict[str, Changes]:
+    def changes(self) -> Mapping[str, Changes]:
         """For each input: inputs without and with a change of it alone, which must be seen."""
-        changes = {name: CHANGES[name] for name in self.inputs}
-        kinds = input_types(self.node)
-        for name in ("roughness", "ior"):
-            if kinds.get(name) == "float":  # one of the components that other nodes have
-                changes[name] = ({}, {name: np.asarray(CHANGES[name][1][name])[-1]})
-        return changes
+        return changes(self.ports)
 
     @property
     def black(self) -> dict[str, Any]:
@@ -139,7 +183,7 @@ class BsdfSubject:
     @property
     def anisotropic(self) -> bool:
         """Whether the roughness has a direction."""
-        return input_types(self.node).get("roughness") == "vector2"
+        return any(port.name == "roughness" and port.kind == "vector2" for port in self.ports)
 
     def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
         """The inputs."""
@@ -151,18 +195,11 @@ class BsdfSubject:
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values of the inputs of the row, float32 numbers."""
-        return {name: self._random(rng, count, name) for name in self.row.inputs}
+        return draw(rng, count, self.drawn)
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Values of which half lie on an edge."""
-        inputs = self.random_inputs(rng, count)
-        edges = {**EDGES, "roughness": ROUGH_EDGES if self.anisotropic else SHEEN_EDGES}
-        for name, values in inputs.items():
-            if name in edges:
-                picked = rng.choice(edges[name], values.shape)
-                mixed = np.where(rng.random(values.shape) < 0.5, picked, values)
-                inputs[name] = mixed.astype(np.float32).astype(np.float64)
-        return inputs
+        return draw_edges(rng, count, self.drawn)
 
     def expected(self, batch: Batch) -> Array:
         """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
@@ -207,24 +244,6 @@ class BsdfSubject:
             if each.albedo
         )
         return (own, *others, NOTHING)
-
-    def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
-        components = {"float": (), "vector2": (2,)}.get(input_types(self.node)[name], (3,))
-        values = rng.random((count, *components))
-        if name == "roughness":
-            values = self._roughness(values)
-        else:
-            low, high = RANGES[name]
-            values = low + (high - low) * np.clip(1.25 * values - 0.125, 0.0, 1.0)
-        return values.astype(np.float32).astype(np.float64)
-
-    def _roughness(self, uniform: Array) -> Array:
-        """Roughness of numbers in [0, 1]: half of the anisotropic ones are the same twice."""
-        if not self.anisotropic:
-            return np.clip(1.25 * uniform - 0.125, LEAST_SHEEN, 1.0)
-        alpha = LEAST_ALPHA ** (1.0 - uniform)
-        alpha[::2] = alpha[::2, :1]
-        return alpha
 
 
 def _wrong_side(row: PbrNode) -> Iterator[Candidate]:

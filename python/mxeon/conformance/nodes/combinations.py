@@ -4,11 +4,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from mxeon.conformance.nodes.bsdf import COMBINED, NESTED, BsdfSubject
-from mxeon.conformance.nodes.subject import Changes
-from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.nodes.ports import Port, color
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.models.pbrlib import combinations
 from mxeon.models.pbrlib.combinations import AMOUNT, AMOUNT_ABOVE, COMBINATIONS, FACTOR, ROUGHNESS
@@ -65,9 +62,19 @@ class CombinedSubject(BsdfSubject):
         return TITLES.get(self.model, self.node)
 
     @property
-    def inputs(self) -> tuple[str, ...]:
-        """Paths of the inputs that its values depend on."""
-        return (ROUGHNESS[0], FACTOR) if self.model in SINGLE else self.row.inputs
+    def drawn(self) -> tuple[Port, ...]:
+        """The inputs of the functions, by path: rows of `top` alone have those of both lobes."""
+        rough = (Port(name, low=LEAST_SHEEN, change=0.4) for name in ROUGHNESS)
+        shares = (Port(name, change=0.3) for name in (AMOUNT, AMOUNT_ABOVE))
+        factor = color(FACTOR, edges=()) if self._colored else Port(FACTOR, change=0.3)
+        ports = {port.name: port for port in (*rough, *shares, factor)}
+        return tuple(ports[name] for name in self.row.inputs)
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Those of its document."""
+        absent = ROUGHNESS[1:] if self.model in SINGLE else ()
+        return tuple(port for port in self.drawn if port.name not in absent)
 
     @property
     def kind(self) -> str:
@@ -79,24 +86,9 @@ class CombinedSubject(BsdfSubject):
         """Whether the roughness has a direction: never."""
         return False
 
-    @property
-    def changes(self) -> dict[str, Changes]:
-        """For each input: inputs without and with a change of it alone."""
-        factor: Any = (0.9, 0.1, 0.6) if self._colored else 0.3
-        amounts = dict.fromkeys((AMOUNT, AMOUNT_ABOVE), 0.3)
-        values = {**dict.fromkeys(ROUGHNESS, 0.4), **amounts, FACTOR: factor}
-        return {name: ({}, {name: values[name]}) for name in self.inputs}
-
     def document(self, inputs: Any = None) -> str:
         """MaterialX text of a material that is this node over sheens."""
         return document_text(NODES[self.model] + SURFACE)
-
-    def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
-        colored = name == FACTOR and self._colored
-        values = np.clip(1.25 * rng.random((count, 3) if colored else count) - 0.125, 0.0, 1.0)
-        if name in ROUGHNESS:
-            values = np.maximum(values, LEAST_SHEEN)
-        return values.astype(np.float32).astype(np.float64)
 
     @property
     def _colored(self) -> bool:

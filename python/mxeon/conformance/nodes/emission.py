@@ -7,8 +7,11 @@ from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from mxeon.conformance.nodes.subject import Changes
+from mxeon.conformance.nodes.bsdf import broadcast_inputs
+from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw, materials
+from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.emissions import (
     AMOUNT,
@@ -16,6 +19,8 @@ from mxeon.models.pbrlib.emissions import (
     COMBINED_EMISSIONS,
     EMISSIONS,
     FACTOR,
+    FIRST,
+    SECOND,
     Emission,
     Value,
 )
@@ -35,19 +40,26 @@ EMITTER = """  <surface name="shading" type="surfaceshader">
 PORT = '    <input name="{}" type="EDF" nodename="{}" />\n'
 LEAST_FALLOFF = 20.0  # degrees of full angle between the cones: what rounds is divided by it
 EXPONENTS = (1.0, 8.0)
-TYPES = {  # of inputs that are no colors, by the last word of their path
-    "exponent": "float",
-    "inner_angle": "float",
-    "outer_angle": "float",
-    "mix": "float",
-    "normal": "vector3",
+BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
+INNER, OUTER = "inner_angle", "outer_angle"
+# In pictures the falloff takes half of the sphere, so that it is not steep.
+PORTS = {
+    port.name: port
+    for port in (
+        *(color(name, BLUE, ORANGE, edges=()) for name in ("color", BASE, FIRST)),
+        color(SECOND, (0.9, 0.1, 0.3), (0.1, 0.2, 0.3), edges=()),
+        Port(AMOUNT, change=0.3, materials=(0.25, 0.75), default=0.5),
+        color("color0", (0.1, 0.4, 0.9), (0.8, 0.5, 0.2), edges=()),
+        color("color90", (0.9, 0.8, 0.6), (1.0, 1.0, 1.0), edges=()),
+        Port("exponent", "float", *EXPONENTS, change=2.0, materials=(5.0, 2.0), default=5.0),
+        Port(INNER, change=20.0, materials=(60.0, 0.0), default=60.0),
+        Port(OUTER, change=150.0, materials=(140.0, 150.0), default=90.0),
+        Port("normal", "vector3", change=(0.0, 0.6, 0.8)),
+    )
 }
-CHANGES: dict[str, Any] = {
-    "exponent": 2.0,
-    "inner_angle": 20.0,
-    "outer_angle": 150.0,
-    "normal": (0.0, 0.6, 0.8),
-    AMOUNT: 0.3,
+FACTORS = {  # of an emission, by the last word of the row's name
+    "float": Port(FACTOR, change=0.3, materials=(0.9, 0.5)),
+    "color3": color(FACTOR, (0.9, 0.6, 0.3), (0.5, 0.5, 0.5), edges=()),
 }
 DARK = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
@@ -59,14 +71,14 @@ class EmissionSubject:
     Attributes
     ----------
     row : Emission
-    ports : str
+    connections : str
         XML of the ports of the node that are connected.
     sources : tuple of str
         Names of the uniform emissions that it takes.
     """
 
     row: Emission
-    ports: str = ""
+    connections: str = ""
     sources: tuple[str, ...] = ()
 
     libraries: ClassVar[tuple[str, ...]] = ()
@@ -81,7 +93,7 @@ class EmissionSubject:
         """Name in reports."""
         if not self.combined:
             return self.node
-        scaled = f", in2 {self._kind(FACTOR)}" if FACTOR in self.row.inputs else ""
+        scaled = f", in2 {self.drawn[-1].kind}" if FACTOR in self.row.inputs else ""
         return f"{self.node}, EDF{scaled}"
 
     @property
@@ -100,9 +112,25 @@ class EmissionSubject:
         return self.row in COMBINED_EMISSIONS
 
     @property
+    def drawn(self) -> tuple[Port, ...]:
+        """The inputs that its functions read."""
+        ports = PORTS | {FACTOR: FACTORS.get(self.row.name.rsplit("_", 1)[-1], FACTORS["float"])}
+        return tuple(ports[name] for name in self.row.inputs)
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """The inputs that its radiance depends on."""
+        return (*self.drawn, *((PORTS["normal"],) if self.row.name == "conical" else ()))
+
+    @property
     def inputs(self) -> tuple[str, ...]:
-        """Paths of the inputs that its radiance depends on."""
-        return (*self.row.inputs, *(("normal",) if self.row.name == "conical" else ()))
+        """Paths of these inputs."""
+        return tuple(port.name for port in self.ports)
+
+    @property
+    def materials(self) -> tuple[Values, ...]:
+        """Inputs of the two materials that stand for it in pictures."""
+        return materials(self.drawn)
 
     @property
     def kind(self) -> str:
@@ -110,16 +138,9 @@ class EmissionSubject:
         return {"conical": CONE, "schlick_emission": POWER}.get(self.row.name, CLOSED)
 
     @property
-    def changes(self) -> dict[str, Changes]:
+    def changes(self) -> Mapping[str, Changes]:
         """For each input: inputs without and with a change of it alone, which must be seen."""
-        return {name: ({}, {name: self._changed(name)}) for name in self.inputs}
-
-    def _changed(self, name: str) -> Any:
-        return CHANGES.get(name, 0.3 if self._kind(name) == "float" else (0.9, 0.1, 0.6))
-
-    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The inputs."""
-        return inputs
+        return changes(self.ports)
 
     def document(self, inputs: Mapping[str, Any] | None = None) -> str:
         """MaterialX text of a surface that emits by this node alone, with these inputs."""
@@ -127,7 +148,8 @@ class EmissionSubject:
 
     def emission_text(self, inputs: Mapping[str, Any] | None = None) -> str:
         """XML of the node and of those that it takes, with a value of each input."""
-        values = {name: self._default(name) for name in self.row.inputs} | dict(inputs or {})
+        kinds = {port.name: port.kind for port in self.ports}
+        values = {port.name: _default(port) for port in self.drawn} | dict(inputs or {})
         ports = {name: "" for name in ("emission", *self.sources)}
         axis = ""
         for path, value in values.items():
@@ -138,35 +160,17 @@ class EmissionSubject:
                 )
                 ports["emission"] += '    <input name="normal" type="vector3" nodename="axis" />\n'
             else:
-                ports[node or "emission"] += input_text(name, self._kind(path), value)
+                ports[node or "emission"] += input_text(name, kinds[path], value)
         nodes = (node_text("uniform_edf", "EDF", name, ports[name]) for name in self.sources)
         return (
             axis
             + "".join(nodes)
-            + node_text(self.node, "EDF", "emission", ports["emission"] + self.ports)
+            + node_text(self.node, "EDF", "emission", ports["emission"] + self.connections)
         )
-
-    def _default(self, path: str) -> Any:
-        return {"inner_angle": 60.0, "outer_angle": 90.0, "exponent": 5.0, AMOUNT: 0.5}.get(
-            path, 1.0 if self._kind(path) == "float" else (1.0, 1.0, 1.0)
-        )
-
-    def _kind(self, path: str) -> str:
-        if path == FACTOR:
-            return "float" if self.row.name.endswith("_float") else "color3"
-        return TYPES.get(path.rsplit("/", 1)[-1], "color3")
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values of the inputs of the row, float32 numbers."""
-        inputs = {}
-        for name in self.row.inputs:
-            kind = self._kind(name)
-            values = np.clip(
-                1.25 * rng.random((count, 3)[: 1 + (kind == "color3")]) - 0.125, 0.0, 1.0
-            )
-            if name == "exponent":
-                values = EXPONENTS[0] + (EXPONENTS[1] - EXPONENTS[0]) * values
-            inputs[name] = _float32(values)
+        inputs = draw(rng, count, self.drawn)
         if self.row.name == "conical":
             inputs |= random_cones(rng, count)
         return inputs
@@ -177,7 +181,7 @@ class EmissionSubject:
 
     def exitance(self, batch: Batch) -> Array:
         """Radiant exitance with the inputs of each view, (N, 3)."""
-        return self.row.exitance(view_rows(batch))
+        return self.row.exitance(broadcast_inputs(batch))
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
@@ -188,6 +192,11 @@ class EmissionSubject:
             for each in self.row.variants
         )
         return (own, *others, DARK)
+
+
+def _default(port: Port) -> ArrayLike:
+    """Value of a port that a document has to set."""
+    return np.broadcast_to(port.default, COMPONENTS[port.kind])
 
 
 @dataclass(frozen=True)
@@ -235,7 +244,7 @@ def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
     inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
     more = LEAST_FALLOFF + (360.0 - LEAST_FALLOFF - inner) * rng.random(count)
     outer = np.where(wide, inner + more, inner * rng.random(count))
-    return {"inner_angle": _float32(inner), "outer_angle": _float32(outer)}
+    return {INNER: _float32(inner), OUTER: _float32(outer)}
 
 
 def _float32(values: Array) -> Array:
@@ -244,23 +253,12 @@ def _float32(values: Array) -> Array:
 
 def _radiance(value: Value, batch: Batch) -> Array:
     """Radiance of a function of views and inputs, (N, 3)."""
-    return value(_unit(batch.wo), view_rows(batch))
+    return value(_unit(batch.wo), broadcast_inputs(batch))
 
 
 def _unit(wo: Array) -> Array:
     """Directions whose cosines do not exceed 1 by a rounding."""
     return np.clip(wo, -1.0, 1.0)
-
-
-def view_rows(batch: Batch) -> dict[str, Array]:
-    """The inputs with a row for each view."""
-    count = len(batch.wo)
-    return {
-        name: np.broadcast_to(values, (count, *np.shape(values)[-1:]))
-        if np.shape(values)[:1] != (count,)
-        else np.asarray(values)
-        for name, values in batch.inputs.items()
-    }
 
 
 BOTH = ("first", "second")

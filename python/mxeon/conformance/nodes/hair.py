@@ -9,35 +9,38 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import HAIR, NOTHING, BsdfSubject, broadcast_inputs
-from mxeon.conformance.nodes.subject import Changes
+from mxeon.conformance.nodes.ports import Port, color
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.conformance.samples.edge_cases import with_edges
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.pbrlib.hair import HAIR_NODE
 from mxeon.models.pbrlib.node import Inputs
-from mxeon.shaders.nodes import input_types
 
-COLOR = (0.9, 0.1, 0.6)
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # of random pairs
 MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # which the node of artistic roughness reaches
-ABSORPTION, INDEX = (0.0, 4.0), (1.1, 2.5)
-ROUGH_EDGES = (0.0, 1e-3, 1.0, 100.0)
-CHANGES: dict[str, Any] = {
-    **dict.fromkeys((*TINTS, "absorption_coefficient"), COLOR),
-    **dict.fromkeys(ROUGHNESSES, (0.3, 0.7)),
-    "ior": 1.3,
-    "cuticle_angle": 0.55,
-    "normal": (0.0, 0.6, 0.8),
-}
-FRONT = (
-    1.0,
-    0.0,
-    1.0,
-    0.5,
-)  # share of R, TT, TRT and TRRT+ that takes light from the viewer's side
-# The variable of the default of `curve_direction` is the surface's tangent.
-DIRECTION = {"tangent": (0.6, 0.8, 0.0)}
+# Share of R, TT, TRT and TRRT+ that takes light from the viewer's side.
+FRONT = np.array([1.0, 0.0, 1.0, 0.5])
+PORTS = (
+    *(color(name, edges=()) for name in TINTS),
+    Port("ior", low=1.1, high=2.5, edges=(1.0, 1.55), change=1.3),
+    *(
+        Port(
+            name,
+            "vector2",
+            (LEAST_VARIANCE, LEAST_SCALE),
+            (MOST_VARIANCE, MOST_SCALE),
+            (0.0, 1e-3, 1.0, 100.0),
+            (0.3, 0.7),
+            logarithmic=True,
+        )
+        for name in ROUGHNESSES
+    ),
+    Port("cuticle_angle", change=0.55, often=0.5),
+    Port("absorption_coefficient", "vector3", 0.0, 4.0, (0.0,), (0.9, 0.1, 0.6)),
+    Port("normal", "vector3", change=(0.0, 0.6, 0.8)),
+    # The variable of its default is the surface's tangent.
+    Port("curve_direction", "vector3", change=(0.6, 0.8, 0.0), variable="tangent"),
+)
 
 
 @dataclass(frozen=True)
@@ -55,24 +58,14 @@ class HairSubject(BsdfSubject):
         return False
 
     @property
-    def changes(self) -> dict[str, Changes]:
-        """For each input: inputs without and with a change of it alone, which must be seen."""
-        changes: dict[str, Changes] = {name: ({}, {name: each}) for name, each in CHANGES.items()}
-        return {**changes, "curve_direction": ({}, dict(DIRECTION))}
+    def ports(self) -> tuple[Port, ...]:
+        """The node's inputs."""
+        return PORTS
 
     @property
     def black(self) -> dict[str, Any]:
         """Inputs with which it scatters no light."""
         return dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
-
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Values of which half of the roughnesses and the indices lie on an edge."""
-        inputs = self.random_inputs(rng, count)
-        for name in ROUGHNESSES:
-            inputs[name] = with_edges(rng, inputs[name], ROUGH_EDGES)
-        inputs["ior"] = with_edges(rng, inputs["ior"], (1.0, 1.55))
-        inputs["absorption_coefficient"] = with_edges(rng, inputs["absorption_coefficient"], (0.0,))
-        return inputs
 
     def expected(self, batch: Batch) -> Array:
         """pi f with occlusion, (N, 3)."""
@@ -110,19 +103,6 @@ class HairSubject(BsdfSubject):
             if each.value
         )
         return (own, *others, NOTHING)
-
-    def _random(self, rng: np.random.Generator, count: int, name: str) -> Array:
-        components = {"float": (), "vector2": (2,)}.get(input_types(self.node)[name], (3,))
-        values = rng.random((count, *components))
-        if name in ROUGHNESSES:
-            least = np.array([LEAST_VARIANCE, LEAST_SCALE])
-            values = least * (np.array([MOST_VARIANCE, MOST_SCALE]) / least) ** values
-        elif name == "cuticle_angle":
-            values[::2] = 0.5
-        else:
-            low, high = {"ior": INDEX, "absorption_coefficient": ABSORPTION}.get(name, (0.0, 1.0))
-            values = low + (high - low) * np.clip(1.25 * values - 0.125, 0.0, 1.0)
-        return values.astype(np.float32).astype(np.float64)
 
 
 def _expected(value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:

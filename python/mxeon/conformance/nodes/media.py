@@ -8,7 +8,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.emission import MEDIUM, view_rows
+from mxeon.conformance.nodes.bsdf import broadcast_inputs
+from mxeon.conformance.nodes.emission import MEDIUM
+from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw
 from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
@@ -51,7 +53,7 @@ class MediumSubject:
         """Name in reports."""
         if not self.combined:
             return self.node
-        scaled = f", in2 {self._kind(FACTOR)}" if FACTOR in self.inputs else ""
+        scaled = f", in2 {self.ports[-1].kind}" if FACTOR in self.inputs else ""
         return f"{self.node}, VDF{scaled}"
 
     @property
@@ -70,27 +72,34 @@ class MediumSubject:
         return self.row.name
 
     @property
+    def ports(self) -> tuple[Port, ...]:
+        """The inputs that its transmittance depends on, by path."""
+        factor = (
+            color(FACTOR, edges=())
+            if self.row.name.endswith("_color3")
+            else Port(FACTOR, change=0.3)
+        )
+        others = {AMOUNT: Port(AMOUNT, change=0.3), FACTOR: factor}
+        return tuple(others.get(name, _coefficient(name)) for name in self.row.inputs)
+
+    @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the inputs that its transmittance depends on."""
+        """Paths of these inputs."""
         return self.row.inputs
 
     @property
-    def changes(self) -> dict[str, Changes]:
+    def changes(self) -> Mapping[str, Changes]:
         """For each input: inputs without and with a change of it alone."""
-        return {
-            name: ({}, {name: 0.3 if self._kind(name) == "float" else (0.9, 0.1, 0.6)})
-            for name in self.inputs
-        }
+        return changes(self.ports)
 
     def document(self, inputs: Mapping[str, Any] | None = None) -> str:
         """MaterialX text of a surface that lets light into the medium."""
         sources = SOURCES.get(self.node, {})
         ports = {name: "" for name in ("medium", *sources.values())}
-        for path in self.inputs:
-            node, _, name = path.rpartition("/")
-            kind = self._kind(path)
-            value = 0.5 if kind == "float" else (0.5, 0.5, 0.5)
-            ports[node or "medium"] += input_text(name, kind, value)
+        for port in self.ports:
+            node, _, name = port.name.rpartition("/")
+            value = np.full(COMPONENTS[port.kind], 0.5)
+            ports[node or "medium"] += input_text(name, port.kind, value)
         ports["medium"] += "".join(PORT.format(*each) for each in sources.items())
         media = [
             node_text("anisotropic_vdf", "VDF", name, ports[name]) for name in sources.values()
@@ -100,21 +109,8 @@ class MediumSubject:
         return document_text(INTERFACE + "".join(media) + layer + SURFACE)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random coefficients, of which an eighth is 0, shares and factors; float32 numbers."""
-        inputs = {}
-        for name in self.inputs:
-            shape = (count,) if self._kind(name) == "float" else (count, 3)
-            values = np.maximum(1.125 * rng.random(shape) - 0.125, 0.0)
-            largest = LARGEST if self._kind(name) == "vector3" else 1.0
-            inputs[name] = (largest * values).astype(np.float32).astype(np.float64)
-        return inputs
-
-    def _kind(self, path: str) -> str:
-        if path == AMOUNT:
-            return "float"
-        if path == FACTOR:
-            return "float" if self.row.name.endswith("_float") else "color3"
-        return "vector3"
+        """Random coefficients, shares and factors, float32 numbers."""
+        return draw(rng, count, self.ports)
 
     def expected(self, batch: Batch) -> Array:
         """Transmittance, (N, 3)."""
@@ -127,9 +123,14 @@ class MediumSubject:
         return tuple(Candidate(title, partial(_transmittance, value)) for title, value in rows)
 
 
+def _coefficient(name: str) -> Port:
+    """A coefficient of a medium."""
+    return Port(name, "vector3", high=LARGEST, change=(0.9, 0.1, 0.6))
+
+
 def _transmittance(value: Any, batch: Batch) -> Array:
     """Transmittance of a function of coefficients, (N, 3)."""
-    return np.asarray(value(view_rows(batch)))
+    return np.asarray(value(broadcast_inputs(batch)))
 
 
 MEDIUM_NODES = tuple(MediumSubject(row) for row in (*MEDIA, *COMBINED_MEDIA))

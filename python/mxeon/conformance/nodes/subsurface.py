@@ -10,8 +10,6 @@ from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE, circle_blur
 
 LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
-LONGEST = 2.0  # mean free path of random pairs
-UNSEEN = ("radius", "anisotropy")  # inputs that change nothing on a plane
 
 
 @dataclass(frozen=True)
@@ -19,20 +17,10 @@ class SubsurfaceSubject(BsdfSubject):
     """The node of subsurface scattering. Its radius and its anisotropy are not seen on a plane."""
 
     @property
-    def inputs(self) -> tuple[str, ...]:
-        """Names of the inputs that a plane shows."""
-        return tuple(name for name in super().inputs if name not in UNSEEN)
-
-    @property
     def value_candidates(self) -> tuple[Candidate, ...]:
         """Lambert, and what MaterialX has in its place."""
         blurred = Candidate("MaterialX's blur along a circle of radius 100", _blurred)
         return (*super().value_candidates, blurred)
-
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random colors and mean free paths, float32 numbers."""
-        radius = (LONGEST * rng.random((count, 3))).astype(np.float32).astype(np.float64)
-        return {"color": self._random(rng, count, "color"), "radius": radius}
 
 
 def _blurred(batch: Batch) -> Array:

@@ -2,21 +2,40 @@
 """Inputs of surface shaders, with the ranges that are asked of them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from dataclasses import dataclass, field, replace
 
-import numpy as np
+from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.nodes.ports import CHANGED_COLOR, Port, color
+from mxeon.conformance.nodes.subject import Values
 
-Range: TypeAlias = tuple[float, float] | str  # of a number, or COLOR
-
-COLOR = "color"
-SHARE, ROUGH, INDEX = (0.0, 1.0), (0.1, 1.0), (1.1, 2.5)
-SHEEN_ROUGH = (0.15, 1.0)
-CHANGED_COLOR = (0.9, 0.1, 0.6)
+# Ports by the range that is asked of them; a change is another value than any default.
+RANGES = {
+    "color": color("", edges=()),
+    "share": Port("", change=0.7),
+    "rough": Port("", low=0.1, change=0.73),
+    "sheen_rough": Port("", low=0.15, change=0.745),
+    "fuzz_rough": Port("", low=0.4, change=0.82),
+    "index": Port("", low=1.1, high=2.5, change=2.08),
+    "thickness": Port("", high=1000.0, change=700.0),
+    "film": Port("", low=100.0, high=1000.0, change=730.0),
+}
 # The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
+TURNED = {"normal": (0.0, 0.6, 0.8), "tangent": (0.6, 0.8, 0.0)}
+
+
+def _ports(**names: str) -> tuple[Port, ...]:
+    """Ports with the names in each of RANGES."""
+    return tuple(
+        replace(RANGES[key], name=name) for key, words in names.items() for name in words.split()
+    )
+
+
+def _changed(*ports: Port, **others: ArrayLike) -> dict[str, ArrayLike]:
+    """A change for each port, and for other inputs."""
+    changes = {each.name: each.change for each in ports if each.name not in FREE_PATHS}
+    return {name: change for name, change in (changes | others).items() if change is not None}
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +44,9 @@ class Inputs:
 
     Attributes
     ----------
-    judged : mapping of str to range
+    judged : tuple of Port
         Those whose values have a reference.
-    others : mapping of str to range
+    others : tuple of Port
         Those of other lobes and of thin films, which are asked for energy.
     seen : mapping of str to value
         A material in which every lobe takes part.
@@ -44,80 +63,34 @@ class Inputs:
         Inputs of `changed` that a curved surface alone has to show; that of pairs is a plane.
     """
 
-    judged: Mapping[str, Range]
-    others: Mapping[str, Range]
-    seen: Mapping[str, Any]
-    changed: Mapping[str, Any]
+    judged: tuple[Port, ...]
+    others: tuple[Port, ...]
+    seen: Values
+    changed: Values
     without_effect: tuple[str, ...]
-    white: Mapping[str, Any]
-    needs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    white: Values
+    needs: Mapping[str, Values] = field(default_factory=dict)
     curved: tuple[str, ...] = ()
 
 
-def drawn(rng: np.random.Generator, count: int, ranges: Mapping[str, Range]) -> dict[str, Array]:
-    """Random values in their ranges, a tenth of each on either end, float32 numbers."""
-    values = {}
-    for name, limits in ranges.items():
-        low, high = (0.0, 1.0) if isinstance(limits, str) else limits
-        share = rng.random((count, 3) if isinstance(limits, str) else count)
-        share = np.clip(1.25 * share - 0.125, 0.0, 1.0)
-        values[name] = (low + (high - low) * share).astype(np.float32).astype(np.float64)
-    return values
-
-
-def _changed(ranges: Mapping[str, Range], **others: Any) -> dict[str, Any]:
-    """A change for each input of a table, and for others."""
-    changes: dict[str, Any] = {
-        name: CHANGED_COLOR
-        if isinstance(limits, str)
-        else limits[0] + 0.7 * (limits[1] - limits[0])
-        for name, limits in ranges.items()
-        if name not in FREE_PATHS
-    }
-    return {**changes, **others}
-
-
-TURNED = {"normal": (0.0, 0.6, 0.8), "tangent": (0.6, 0.8, 0.0)}
-
-_STANDARD: dict[str, Range] = {
-    "base": SHARE,
-    "base_color": COLOR,
-    "diffuse_roughness": SHARE,
-    "metalness": SHARE,
-    "specular": SHARE,
-    "specular_color": COLOR,
-    "specular_roughness": ROUGH,
-    "specular_IOR": INDEX,
-    "specular_anisotropy": SHARE,
-    "specular_rotation": SHARE,
-    "sheen": SHARE,
-    "sheen_color": COLOR,
-    "sheen_roughness": SHEEN_ROUGH,
-    "coat": SHARE,
-    "coat_color": COLOR,
-    "coat_roughness": ROUGH,
-    "coat_anisotropy": SHARE,
-    "coat_rotation": SHARE,
-    "coat_IOR": INDEX,
-    "coat_affect_color": SHARE,
-    "coat_affect_roughness": SHARE,
-}
-_STANDARD_OTHERS: dict[str, Range] = {
-    "transmission": SHARE,
-    "transmission_color": COLOR,
-    "transmission_extra_roughness": SHARE,
-    "subsurface": SHARE,
-    "subsurface_color": COLOR,
-    "subsurface_radius": COLOR,
-    "subsurface_scale": SHARE,
-}
-_STANDARD_FILM: dict[str, Range] = {
-    "thin_film_thickness": (0.0, 1000.0),
-    "thin_film_IOR": INDEX,
-}
+_STANDARD = _ports(
+    share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
+    color="base_color specular_color sheen_color coat_color",
+    rough="specular_roughness coat_roughness",
+    index="specular_IOR coat_IOR",
+    sheen_rough="sheen_roughness",
+)
+_STANDARD_OTHERS = _ports(
+    share="transmission transmission_extra_roughness subsurface subsurface_scale",
+    color="transmission_color subsurface_color subsurface_radius",
+)
+_STANDARD_FILM = _ports(
+    thickness="thin_film_thickness",
+    index="thin_film_IOR",
+)
 STANDARD = Inputs(
     _STANDARD,
-    {**_STANDARD_OTHERS, **_STANDARD_FILM},
+    (*_STANDARD_OTHERS, *_STANDARD_FILM),
     seen={
         "metalness": 0.4,
         "specular_anisotropy": 0.5,
@@ -131,7 +104,9 @@ STANDARD = Inputs(
         "thin_film_thickness": 400.0,
     },
     changed=_changed(
-        {**_STANDARD, **_STANDARD_OTHERS, **_STANDARD_FILM},
+        *_STANDARD,
+        *_STANDARD_OTHERS,
+        *_STANDARD_FILM,
         transmission_depth=2.0,
         transmission_scatter=CHANGED_COLOR,
         transmission_scatter_anisotropy=0.5,
@@ -158,42 +133,24 @@ STANDARD = Inputs(
     },
 )
 
-_OPEN: dict[str, Range] = {
-    "base_weight": SHARE,
-    "base_color": COLOR,
-    "base_diffuse_roughness": SHARE,
-    "base_metalness": SHARE,
-    "specular_weight": SHARE,
-    "specular_color": COLOR,
-    "specular_roughness": ROUGH,
-    "specular_ior": INDEX,
-    "specular_roughness_anisotropy": SHARE,
-    "coat_weight": SHARE,
-    "coat_color": COLOR,
-    "coat_roughness": ROUGH,
-    "coat_roughness_anisotropy": SHARE,
-    "coat_ior": INDEX,
-    "coat_darkening": SHARE,
-    "fuzz_weight": SHARE,
-    "fuzz_color": COLOR,
-    "fuzz_roughness": SHEEN_ROUGH,
-}
-_OPEN_OTHERS: dict[str, Range] = {
-    "transmission_weight": SHARE,
-    "transmission_color": COLOR,
-    "subsurface_weight": SHARE,
-    "subsurface_color": COLOR,
-    "subsurface_radius": SHARE,
-    "subsurface_radius_scale": COLOR,
-}
-_OPEN_FILM: dict[str, Range] = {
-    "thin_film_weight": SHARE,
-    "thin_film_thickness": SHARE,
-    "thin_film_ior": INDEX,
-}
+_OPEN = _ports(
+    share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
+    color="base_color specular_color coat_color fuzz_color",
+    rough="specular_roughness coat_roughness",
+    index="specular_ior coat_ior",
+    sheen_rough="fuzz_roughness",
+)
+_OPEN_OTHERS = _ports(
+    share="transmission_weight subsurface_weight subsurface_radius",
+    color="transmission_color subsurface_color subsurface_radius_scale",
+)
+_OPEN_FILM = _ports(
+    share="thin_film_weight thin_film_thickness",
+    index="thin_film_ior",
+)
 OPEN_PBR = Inputs(
     _OPEN,
-    {**_OPEN_OTHERS, **_OPEN_FILM},
+    (*_OPEN_OTHERS, *_OPEN_FILM),
     seen={
         "base_metalness": 0.4,
         "specular_roughness_anisotropy": 0.5,
@@ -207,7 +164,9 @@ OPEN_PBR = Inputs(
         "thin_film_weight": 0.5,
     },
     changed=_changed(
-        {**_OPEN, **_OPEN_OTHERS, **_OPEN_FILM},
+        *_OPEN,
+        *_OPEN_OTHERS,
+        *_OPEN_FILM,
         transmission_depth=2.0,
         transmission_scatter=CHANGED_COLOR,
         transmission_scatter_anisotropy=0.5,
@@ -240,29 +199,24 @@ OPEN_PBR = Inputs(
     },
 )
 
-_GLTF: dict[str, Range] = {
-    "base_color": COLOR,
-    "metallic": SHARE,
-    "roughness": ROUGH,
-    "ior": INDEX,
-    "specular": SHARE,
-    "specular_color": COLOR,
-    "anisotropy_strength": SHARE,
-    "anisotropy_rotation": SHARE,
-    "sheen_color": COLOR,
-    "sheen_roughness": (0.4, 1.0),
-    "clearcoat": SHARE,
-    "clearcoat_roughness": ROUGH,
-}
-_GLTF_OTHERS: dict[str, Range] = {"transmission": SHARE}
-_GLTF_FILM: dict[str, Range] = {
-    "iridescence": SHARE,
-    "iridescence_ior": INDEX,
-    "iridescence_thickness": (100.0, 1000.0),
-}
+_GLTF = _ports(
+    color="base_color specular_color sheen_color",
+    share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
+    rough="roughness clearcoat_roughness",
+    index="ior",
+    fuzz_rough="sheen_roughness",
+)
+_GLTF_OTHERS = _ports(
+    share="transmission",
+)
+_GLTF_FILM = _ports(
+    share="iridescence",
+    index="iridescence_ior",
+    film="iridescence_thickness",
+)
 GLTF = Inputs(
     _GLTF,
-    {**_GLTF_OTHERS, **_GLTF_FILM},
+    (*_GLTF_OTHERS, *_GLTF_FILM),
     seen={
         "metallic": 0.4,
         "roughness": 0.5,
@@ -275,7 +229,9 @@ GLTF = Inputs(
         "iridescence_thickness": 400.0,
     },
     changed=_changed(
-        {**_GLTF, **_GLTF_OTHERS, **_GLTF_FILM},
+        *_GLTF,
+        *_GLTF_OTHERS,
+        *_GLTF_FILM,
         thickness=0.5,
         attenuation_distance=2.0,
         attenuation_color=CHANGED_COLOR,
@@ -295,22 +251,21 @@ GLTF = Inputs(
     },
 )
 
-_PREVIEW: dict[str, Range] = {
-    "diffuseColor": COLOR,
-    "specularColor": COLOR,
-    "metallic": SHARE,
-    "roughness": ROUGH,
-    "clearcoat": SHARE,
-    "clearcoatRoughness": ROUGH,
-    "ior": INDEX,
-}
-_PREVIEW_OTHERS: dict[str, Range] = {"opacity": SHARE}
+_PREVIEW = _ports(
+    color="diffuseColor specularColor",
+    share="metallic clearcoat",
+    rough="roughness clearcoatRoughness",
+    index="ior",
+)
+_PREVIEW_OTHERS = _ports(
+    share="opacity",
+)
 PREVIEW = Inputs(
     _PREVIEW,
     _PREVIEW_OTHERS,
     seen={"metallic": 0.4, "clearcoat": 0.5, "opacity": 0.6},
     changed=_changed(
-        {**_PREVIEW, **_PREVIEW_OTHERS},
+        *(*_PREVIEW, *_PREVIEW_OTHERS),
         useSpecularWorkflow=1,
         opacityMode=1,
         opacityThreshold=0.5,

@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes.ports import draw
 from mxeon.conformance.nodes.subject import Changes, Values
-from mxeon.conformance.nodes.surface_inputs import GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs, drawn
+from mxeon.conformance.nodes.surface_inputs import GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs
 from mxeon.conformance.samples.batch import Array, Candidate
 from mxeon.shaders.nodes import document_text, node_text
 
@@ -59,11 +60,11 @@ class SurfaceShader:
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values of the inputs whose lobes have a reference, float32 numbers."""
-        return drawn(rng, count, self.table.judged)
+        return draw(rng, count, self.table.judged)
 
     def every_input(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values of all inputs of its lobes."""
-        return drawn(rng, count, {**self.table.judged, **self.table.others})
+        return draw(rng, count, (*self.table.judged, *self.table.others))
 
     @property
     def changes(self) -> Mapping[str, Changes]:

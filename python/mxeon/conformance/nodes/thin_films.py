@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import FILM, BsdfSubject
+from mxeon.conformance.nodes.bsdf import FILM_PAIRS, BsdfSubject
 from mxeon.conformance.samples.batch import Array
 from mxeon.models.pbrlib.thin_films import FILM_NODES
 
-THICK, OILS = (0.0, 1.0, 100.0, 1e4), (1.0, 1.5)  # special thicknesses and indices
+THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 
 
 @dataclass(frozen=True)
@@ -24,28 +24,27 @@ class FilmSubject(BsdfSubject):
     @property
     def kind(self) -> str:
         """Kind of its probe."""
-        return FILM
+        return FILM_PAIRS
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values; a dielectric below 1 counts as 1, a film in air.
 
         From below 1 on, total reflection gives the curve a kink, which no short average sees.
         """
-        inputs = super().random_inputs(rng, count)
-        if "tint" in inputs:
-            inputs["ior"] = np.maximum(inputs["ior"], 1.0)
-        return inputs
+        return self._in_air(super().random_inputs(rng, count))
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Values of which half lie on an edge; of half the films the index is the substrate's."""
-        inputs = super().special_inputs(rng, count)
-        for name, edges in (("thinfilm_thickness", THICK[:-1]), ("thinfilm_ior", OILS)):
-            picked = rng.choice(edges, count)
-            inputs[name] = np.where(rng.random(count) < 0.5, picked, inputs[name])
+        """Values of which half lie on an edge; a quarter of the films have the substrate's index."""
+        inputs = self._in_air(super().special_inputs(rng, count))
         if "tint" in inputs:
             same = rng.random(count) < 0.25
             inputs["thinfilm_ior"] = np.where(same, inputs["ior"], inputs["thinfilm_ior"])
         return inputs
+
+    def _in_air(self, inputs: dict[str, Array]) -> dict[str, Array]:
+        if "tint" not in inputs:
+            return inputs
+        return {**inputs, "ior": np.maximum(inputs["ior"], 1.0)}
 
 
 FILMS = tuple(FilmSubject(row) for row in FILM_NODES)

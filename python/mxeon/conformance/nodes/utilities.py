@@ -7,7 +7,9 @@ from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from mxeon.conformance.nodes.ports import COMPONENTS, Port, draw, draw_edges
 from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.pbrlib.utilities import UTILITIES, UtilityNode, Values
@@ -16,30 +18,30 @@ from mxeon.shaders.nodes import document_text, input_text, node_text
 VALUES, OSL_VALUES = "utility values", "utility values in OSL"  # kinds of probes
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
 KINDS = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
-SHARE = (0.0, 1.0)
-RANGES: dict[str, tuple[float, float]] = {  # of an input's random values
-    "temperature": (800.0, 25000.0),
-    "scale_TT": (0.0, 3.0),
-    "scale_TRT": (0.0, 3.0),
-    "eumelanin_color": (0.01, 1.0),
-    "pheomelanin_color": (0.01, 1.0),
-}
-EDGES: dict[str, tuple[float, ...]] = {  # of half of an input's special values
-    "temperature": (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0),
-    "scale_TT": (0.0, 0.5, 1.0),
-    "scale_TRT": (0.0, 1.0, 2.0),
-    "eumelanin_color": (0.01, 0.5, 1.0),
-    "pheomelanin_color": (0.01, 0.5, 1.0),
-}
-SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # of the other inputs
+SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # edges of most inputs
+PIGMENTS = (0.01, 0.5, 1.0)
+TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
 BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # of an input that may leave its range
 COLD = (-1.0, 0.0, 1.0, 800.0, 25000.0, 1e9)  # temperatures of the same
-CHANGED: dict[str, Any] = {"temperature": 2000.0, "scale_TT": 0.7, "scale_TRT": 1.5}
-BASE: dict[str, float] = {
-    "temperature": 5000.0,
-    "pheomelanin_color": 0.7,
-    "scale_TT": 0.5,
-    "scale_TRT": 2.0,
+# Inputs with a range or a change of their own. A change is from the default of a document.
+PORTS = {
+    port.name: port
+    for port in (
+        Port(
+            "temperature",
+            "float",
+            TEMPERATURES[0],
+            TEMPERATURES[-1],
+            TEMPERATURES,
+            2000.0,
+            logarithmic=True,
+            default=5000.0,
+        ),
+        Port("scale_TT", high=3.0, edges=(0.0, 0.5, 1.0), change=0.7, default=0.5),
+        Port("scale_TRT", high=3.0, edges=(0.0, 1.0, 2.0), change=1.5, default=2.0),
+        Port("eumelanin_color", "color3", 0.01, 1.0, PIGMENTS, 0.25, default=0.5),
+        Port("pheomelanin_color", "color3", 0.01, 1.0, PIGMENTS, 0.25, default=0.7),
+    )
 }
 
 
@@ -78,6 +80,14 @@ class UtilitySubject:
         return self.row.category
 
     @property
+    def ports(self) -> tuple[Port, ...]:
+        """The inputs of the node."""
+        return tuple(
+            PORTS.get(name, Port(name, self._kind(name), edges=SHARES, change=0.25, default=0.5))
+            for name in self.row.inputs
+        )
+
+    @property
     def inputs(self) -> tuple[str, ...]:
         """Names of the inputs that the output depends on."""
         return tuple(name for name in self.row.inputs if self._depends(name))
@@ -85,25 +95,18 @@ class UtilitySubject:
     @property
     def changes(self) -> dict[str, Changes]:
         """For each input: inputs without and with a change of it alone, which must be seen."""
-        base = {name: BASE.get(name, 0.5) for name in self.row.inputs}
-        changes: dict[str, Changes] = {}
-        for name in self.inputs:
-            start, value = (
-                np.full(self._shape(name), number).tolist()
-                for number in (base[name], CHANGED.get(name, 0.25))
-            )
-            before = {
-                **{each: np.full(self._shape(each), base[each]) for each in base},
-                name: start,
-            }
-            changes[name] = before, {**before, name: value}
-        return changes
+        before = {port.name: _filled(port, port.default) for port in self.ports}
+        return {
+            port.name: (before, {**before, port.name: _filled(port, port.change)})
+            for port in self.ports
+            if port.name in self.inputs
+        }
 
     def document(self, inputs: Mapping[str, Any] | None = None) -> str:
         """MaterialX text of a material that emits this output, with these inputs."""
         values = {**self.row.inputs, **(inputs or {})}
         ports = "".join(
-            input_text(name, KINDS[self._shape(name)], values[name]) for name in self.row.inputs
+            input_text(name, self._kind(name), values[name]) for name in self.row.inputs
         )
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
         text = node_text(self.node, kind if single else "multioutput", NAME, ports)
@@ -116,24 +119,12 @@ class UtilitySubject:
         return document_text(text + node_text("surface", "surfaceshader", "shading", surface))
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random values inside the ranges, float32 numbers; a fifth of most lie on an end."""
-        inputs = {}
-        for name in self.row.inputs:
-            low, high = RANGES.get(name, SHARE)
-            share = np.clip(1.25 * rng.random((count, *self._shape(name))) - 0.125, 0.0, 1.0)
-            if name == "temperature":
-                inputs[name] = low * (high / low) ** share
-            else:
-                inputs[name] = low + (high - low) * share
-        return _rounded(inputs)
+        """Random values inside the ranges, float32 numbers."""
+        return draw(rng, count, self.ports)
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Values of which half lie on an edge."""
-        inputs = self.random_inputs(rng, count)
-        for name, values in inputs.items():
-            picked = rng.choice(EDGES.get(name, SHARES), values.shape)
-            inputs[name] = np.where(rng.random(values.shape) < 0.5, picked, values)
-        return _rounded(inputs)
+        return draw_edges(rng, count, self.ports)
 
     def outside_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Values at the ends of the ranges and beyond them."""
@@ -171,6 +162,9 @@ class UtilitySubject:
             whole[name] = np.broadcast_to(value, (count, *self._shape(name)))
         return whole
 
+    def _kind(self, name: str) -> str:
+        return KINDS[self._shape(name)]
+
     def _shape(self, name: str) -> tuple[int, ...]:
         return np.shape(self.row.inputs[name])
 
@@ -179,9 +173,10 @@ class UtilitySubject:
         return not name.startswith("scale_") or name.endswith(self.output.removeprefix("roughness"))
 
 
-def _rounded(inputs: Mapping[str, Array]) -> dict[str, Array]:
-    """The inputs as float32 numbers."""
-    return {name: each.astype(np.float32).astype(np.float64) for name, each in inputs.items()}
+def _filled(port: Port, value: ArrayLike | None) -> ArrayLike:
+    """A number in each component of a port."""
+    filled: list[float] | float = np.full(COMPONENTS[port.kind], value).tolist()
+    return filled
 
 
 def _connected(name: str, kind: str, node: str, output: str = "") -> str:

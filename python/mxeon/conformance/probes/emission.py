@@ -39,11 +39,6 @@ class NodeProbe(Probe):
 
     kind: ClassVar[str]
 
-    @property
-    def few(self) -> tuple[Batch, ...]:
-        """Nothing: a control needs no views."""
-        return ()
-
     def missing(self, text: str) -> bool:
         """Whether the target has no implementation of a node of a document."""
         return implementation(self.host, text, self.library) is None

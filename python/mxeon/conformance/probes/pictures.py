@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.nodes.subject import LobeSubject
+from mxeon.conformance.nodes.subject import LobeSubject, Values
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.samples.batch import RIM, Array, Batch
 from mxeon.shaders.hosts import front_lit_only
@@ -73,7 +73,7 @@ class PictureProbe(LobeProbe):
         return self._picture(batch)
 
     @property
-    def _inputs(self) -> list[dict[str, Any]]:
+    def _inputs(self) -> Sequence[Values]:
         """PICTURE_INPUTS without a weight where the node has none."""
         names = {"color", "roughness", *self.subject.inputs}
         return [

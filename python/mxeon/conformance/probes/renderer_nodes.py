@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of nodes that a renderer has of its own, by its pictures of a sphere."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -8,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
+from mxeon.conformance.nodes.subject import Values
 from mxeon.conformance.probes.pictures import PICTURE_SIZE, PictureProbe, picture_pairs, scene_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.models import table as reference
@@ -48,9 +50,9 @@ class ExactProbe(NativeProbe):
     size: ClassVar[int] = PICTURE_SIZE // 2
 
     @property
-    def _inputs(self) -> list[dict[str, Any]]:
+    def _inputs(self) -> Sequence[Values]:
         """EXACT_INPUTS, from dark to white and from rough to smooth."""
-        return [dict(inputs) for inputs in EXACT_INPUTS]
+        return EXACT_INPUTS
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:

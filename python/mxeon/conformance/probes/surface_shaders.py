@@ -41,6 +41,11 @@ class SurfaceShaderProbe(PairProbe):
         wi = np.where(kept[:, np.newaxis], near, wi)
         return (Batch(wo, wi, self.subject.random_inputs(rng, PAIRS)),)
 
+    @property
+    def few(self) -> tuple[Batch, ...]:
+        """All of them."""
+        return self.batches
+
     @cached_property
     def cosines(self) -> tuple[Batch, ...]:
         """Views of isotropic materials."""

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import FILM
+from mxeon.conformance.nodes.bsdf import FILM_PAIRS
 from mxeon.conformance.nodes.thin_films import THICK
 from mxeon.conformance.probes.bsdf import MicrofacetProbe, simple
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
@@ -27,7 +27,7 @@ LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of 
 class FilmProbe(MicrofacetProbe):
     """A microfacet node under a thin film on a host that evaluates any pairs."""
 
-    kind: ClassVar[str] = FILM
+    kind: ClassVar[str] = FILM_PAIRS
     diagnosed: ClassVar[int] = 1 << 5
     least_cosine: ClassVar[float] = LEAST_FACET
 
