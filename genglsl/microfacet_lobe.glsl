@@ -1,65 +1,148 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the microfacet nodes share: geometry, value and energy compensation of a GGX lobe.
+// What the microfacet nodes share: geometry, reflectances and response of a GGX lobe.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 #include "fresnel_average.glsl"
 #include "ggx_albedo.glsl"
+#include "thin_film.glsl"
+
+// Least index of refraction for MaterialX's own curve: along the normal it divides 0 by 0 where
+// float32 adds nothing to 1. With ior 0 the curve of eonlib reflects everything.
+#define MICROFACET_LEAST_IOR 1e-3
+
+// Index of a mirror by MaterialX's curves of dielectrics and conductors.
+#define MICROFACET_MIRROR_IOR 1e8
 
 // The lobe at one direction wo: [MaterialX2026], Microfacet Model.
 struct MicrofacetLobe
 {
     vec3 wo;
+    vec3 wi;
     vec3 N;
+    vec3 X;
     float mu_o;
+    float mu_h; // cosine of wo and wi with the half vector
     vec2 roughness;
     float alpha;
     float albedo; // E_ss
+    int closure;
 };
 
+// A Fresnel curve's value at the half vector, its cosine-weighted average over the hemisphere, F_ss,
+// and its average over the visible facets.
+struct MicrofacetFresnel
+{
+    vec3 value;
+    vec3 average;
+    vec3 visible;
+};
+
+// Whether a lobe does nothing: it is switched off, or transmits and is asked for reflection. A
+// negative weight, never valid, counts as 0.
+bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
+{
+    bool transmission = closureData.closureType == CLOSURE_TYPE_TRANSMISSION;
+    return weight <= 0.0 || (scatter_mode == 1 && !transmission);
+}
+
 // Cosines and roughness of 0 would divide by 0. Retroreflection mirrors wo at the normal.
-MicrofacetLobe microfacet_lobe(vec3 wo, vec3 N, vec2 roughness, bool retroreflective)
+MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
+                               bool retroreflective)
 {
     MicrofacetLobe lobe;
-    lobe.wo = retroreflective ? reflect(-wo, N) : wo;
+    lobe.closure = closureData.closureType;
+    bool mirrored = retroreflective && lobe.closure != CLOSURE_TYPE_TRANSMISSION;
+    lobe.wo = mirrored ? reflect(-closureData.V, N) : closureData.V;
+    lobe.wi = closureData.L;
     lobe.N = mx_forward_facing_normal(N, lobe.wo);
+    lobe.X = X;
     lobe.mu_o = clamp(dot(lobe.N, lobe.wo), M_FLOAT_EPS, 1.0);
+    lobe.mu_h = clamp(dot(lobe.wo, normalize(lobe.wi + lobe.wo)), M_FLOAT_EPS, 1.0);
     lobe.roughness = clamp(roughness, M_FLOAT_EPS, 1.0);
     lobe.alpha = mx_average_alpha(lobe.roughness);
     lobe.albedo = ggx_albedo_dir(lobe.mu_o, lobe.alpha);
     return lobe;
 }
 
-// 1 + F_ss (1 - E_ss) / E_ss: [MaterialX2026], Energy Compensation.
-vec3 microfacet_compensation(MicrofacetLobe lobe, vec3 F_ss)
+// Cosine of wo with one of nine visible facets of a lobe whose roughness is alpha in both directions,
+// and its weight, the masking: three heights by three azimuths on one side of the plane of view.
+vec2 microfacet_facet(MicrofacetLobe lobe, int i)
 {
-    return 1.0 + F_ss * ((1.0 - lobe.albedo) / lobe.albedo);
+    int row = i / 3;
+    float u = row == 0 ? THIN_FILM_LOW : (row == 1 ? 0.5 : 1.0 - THIN_FILM_LOW);
+    float azimuth = (float(i - 3 * row) + 0.5) / 6.0;  // in units of 2 pi
+    vec3 wo = vec3(sqrt(max(1.0 - lobe.mu_o * lobe.mu_o, 0.0)), 0.0, lobe.mu_o);
+    vec3 H = mx_ggx_importance_sample_VNDF(vec2(azimuth, u), wo, vec2(lobe.alpha));
+    float mu_h = clamp(dot(wo, H), 0.0, 1.0);
+    float mu_i = max(2.0 * mu_h * H.z - lobe.mu_o, 0.0);
+    float height = row == 1 ? THIN_FILM_MIDDLE_WEIGHT : THIN_FILM_OUTER_WEIGHT;
+    return vec2(mu_h, height * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha));
 }
 
-// Cosine of wi with the half vector.
-float microfacet_cosine(MicrofacetLobe lobe, vec3 wi)
+// Put a film's reflectances in the place of those without one. All are taken in one loop, which has
+// no steps without a film: the half vector, six cosines of the hemisphere, nine visible facets.
+void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, bool use_visible,
+                         inout MicrofacetFresnel F)
 {
-    return clamp(dot(lobe.wo, normalize(wi + lobe.wo)), M_FLOAT_EPS, 1.0);
+    MicrofacetFresnel film = MicrofacetFresnel(vec3(0.0), vec3(0.0), vec3(0.0));
+    float weights = 0.0;
+    int first = lobe.closure == CLOSURE_TYPE_REFLECTION ? 0 : 1;
+    int end = !fd.airy ? 0 : (use_visible ? 16 : 7);
+    for (int i = first; i < end; i++)
+    {
+        vec2 gauss = thin_film_gauss(i);
+        vec2 facet = microfacet_facet(lobe, max(i - 7, 0));
+        vec3 curve = thin_film_fresnel(i == 0 ? lobe.mu_h : (i < 7 ? gauss.x : facet.x), fd);
+        film.value += i == 0 ? curve : vec3(0.0);
+        film.average += i > 0 && i < 7 ? gauss.y * curve : vec3(0.0);
+        film.visible += i < 7 ? vec3(0.0) : facet.y * curve;
+        weights += i < 7 ? 0.0 : facet.y;
+    }
+    film.visible /= max(weights, THIN_FILM_LEAST);
+    if (fd.airy)
+    {
+        F = film;
+    }
 }
 
 // D G_2 / (4 mu_o), the value of facets that reflect everything, times mu_i: 0 below the horizon.
-float microfacet_value(MicrofacetLobe lobe, vec3 wi, vec3 X)
+float microfacet_value(MicrofacetLobe lobe)
 {
-    X = normalize(X - dot(X, lobe.N) * lobe.N);
+    vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
     vec3 Y = cross(lobe.N, X);
-    vec3 H = normalize(wi + lobe.wo);
+    vec3 H = normalize(lobe.wi + lobe.wo);
     vec3 local = vec3(dot(H, X), dot(H, Y), dot(H, lobe.N));
-    float mu_i = clamp(dot(lobe.N, wi), 0.0, 1.0);
+    float mu_i = clamp(dot(lobe.N, lobe.wi), 0.0, 1.0);
     return mx_ggx_NDF(local, lobe.roughness) * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha)
            / (4.0 * lobe.mu_o);
 }
 
+// The curve that MaterialX sums over the facets of an environment. It has no film: a film's curve
+// stays outside the sum, as an average over the same facets, and within it they reflect everything.
+FresnelData microfacet_environment_curve(FresnelData fd)
+{
+    if (fd.model == FRESNEL_MODEL_DIELECTRIC)
+    {
+        fd.ior = max(fd.ior, MICROFACET_LEAST_IOR);
+    }
+    if (fd.airy)
+    {
+        fd.ior = vec3(MICROFACET_MIRROR_IOR);
+        fd.F0 = fd.F82 = fd.F90 = vec3(1.0);
+    }
+    fd.airy = false;
+    return fd;
+}
+
 // Light of an environment. MaterialX draws anisotropic visible normals and divides by G_1 at the mean
 // alpha; the factor puts the G_1 of the normals in its place. It is 1 where both alphas are the same.
-vec3 microfacet_environment(MicrofacetLobe lobe, vec3 X, int distribution, FresnelData fd)
+vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
-    vec3 radiance = mx_environment_radiance(lobe.N, lobe.wo, X, lobe.roughness, distribution, fd);
-    X = normalize(X - dot(X, lobe.N) * lobe.N);
+    FresnelData curve = microfacet_environment_curve(fd);
+    vec3 radiance = mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution,
+                                            curve);
+    vec3 X = normalize(lobe.X - dot(lobe.X, lobe.N) * lobe.N);
     vec2 across = vec2(dot(lobe.wo, X), dot(lobe.wo, cross(lobe.N, X))) * lobe.roughness;
     float mu2 = lobe.mu_o * lobe.mu_o;
     float alpha2 = lobe.alpha * lobe.alpha;
@@ -67,33 +150,55 @@ vec3 microfacet_environment(MicrofacetLobe lobe, vec3 X, int distribution, Fresn
     return radiance * (drawn / (lobe.mu_o + sqrt(alpha2 + (1.0 - alpha2) * mu2)));
 }
 
-// Light of an environment from facets that reflect everything. A film's curve stays outside this sum,
-// as an average over the same facets.
-vec3 microfacet_white_environment(MicrofacetLobe lobe, vec3 X, int distribution)
-{
-    FresnelData white = mx_init_fresnel_schlick(vec3(1.0), vec3(1.0), vec3(1.0), 5.0, 0.0, 1.0);
-    return microfacet_environment(lobe, X, distribution, white);
-}
-
-// Light through the surface: the share that passes, from where a solid sphere sends the view.
-vec3 microfacet_transmission(MicrofacetLobe lobe, vec3 X, int distribution, vec3 ior, vec3 tint,
-                             vec3 passed)
+// Light through a surface that reflects nothing, along the view refracted twice.
+vec3 microfacet_transmission(MicrofacetLobe lobe, int distribution, vec3 ior, vec3 tint)
 {
     FresnelData clear = mx_init_fresnel_schlick(vec3(0.0), vec3(1.0), vec3(0.0), 5.0, 0.0, 1.0);
-    clear.ior = ior;
+    clear.ior = max(ior, MICROFACET_LEAST_IOR);
 
     // MaterialX divides the sum by G_1, for a shadowing that it does not have.
-    vec3 light = mx_surface_transmission(lobe.N, lobe.wo, X, lobe.roughness, distribution, clear, tint)
-                 * mx_ggx_smith_G1(lobe.mu_o, lobe.alpha);
+    float shadowing = mx_ggx_smith_G1(lobe.mu_o, lobe.alpha);
+    vec3 wo = lobe.wo;
+    vec2 roughness = lobe.roughness;
+    vec3 light = vec3(-1.0);
 
-    // It is no number where rounding makes one of many facets reflect totally, those that graze wo. A
-    // smooth surface takes their place, at the cosine from which on that does not happen.
-    if (!(dot(light, vec3(1.0)) >= 0.0))
+    // It is NaN where rounding makes one of many facets reflect totally, those that graze wo. In a
+    // second look-up a smooth surface takes their place, at a cosine where that does not happen.
+    for (int i = 0; i < 2 && !(dot(light, vec3(1.0)) >= 0.0); i++)
     {
-        float mu = max(lobe.mu_o, min(0.005 + 2e-3 * ior.x, 0.9));
+        light = shadowing * mx_surface_transmission(lobe.N, wo, lobe.X, roughness, distribution,
+                                                    clear, tint);
+        float mu = max(lobe.mu_o, min(0.005 + 2e-3 * clear.ior.x, 0.9));
         vec3 side = normalize(lobe.wo - lobe.mu_o * lobe.N);
-        vec3 wo = mu > lobe.mu_o ? mu * lobe.N + sqrt(1.0 - mu * mu) * side : lobe.wo;
-        light = mx_surface_transmission(lobe.N, wo, X, vec2(M_FLOAT_EPS), distribution, clear, tint);
+        wo = mu > lobe.mu_o ? mu * lobe.N + sqrt(1.0 - mu * mu) * side : lobe.wo;
+        roughness = vec2(M_FLOAT_EPS);
+        shadowing = 1.0;
     }
-    return light * passed;
+    return light;
+}
+
+// Response and throughput of a lobe with its reflectances F: [MaterialX2026], Energy Compensation,
+// 1 + F_ss (1 - E_ss) / E_ss.
+void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd,
+                     MicrofacetFresnel F, vec3 tint, float weight, int distribution,
+                     int scatter_mode, inout BSDF bsdf)
+{
+    vec3 compensation = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
+    vec3 scale = tint * compensation * weight;
+    bsdf.throughput = max(1.0 - lobe.albedo * F.visible * scale, 0.0);
+
+    if (lobe.closure == CLOSURE_TYPE_REFLECTION)
+    {
+        bsdf.response = microfacet_value(lobe) * F.value * scale * closureData.occlusion;
+    }
+    else if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
+    {
+        vec3 passed = max(1.0 - lobe.albedo * F.visible * compensation, 0.0);
+        bsdf.response = microfacet_transmission(lobe, distribution, fd.ior, tint) * passed * weight;
+    }
+    else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
+    {
+        vec3 outside = fd.airy ? F.visible : vec3(1.0);
+        bsdf.response = microfacet_environment(lobe, distribution, fd) * outside * scale;
+    }
 }

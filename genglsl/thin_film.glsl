@@ -16,24 +16,18 @@
 #define THIN_FILM_GREEN vec4(-0.84281, -0.1531813, 1.956197, 0.03981614)
 #define THIN_FILM_BLUE vec4(0.05384126, 0.009785686, -0.2146441, 1.152291)
 
-// Gauss's rule for the average over a hemisphere, 2 F(mu) mu dmu, in six cosines.
-#define THIN_FILM_MU1 0.07305433
-#define THIN_FILM_W1 0.01747660
-#define THIN_FILM_MU2 0.23076614
-#define THIN_FILM_W2 0.08791033
-#define THIN_FILM_MU3 0.44132848
-#define THIN_FILM_W3 0.19732230
-#define THIN_FILM_MU4 0.66301531
-#define THIN_FILM_W4 0.28158511
-#define THIN_FILM_MU5 0.85192140
-#define THIN_FILM_W5 0.27108499
-#define THIN_FILM_MU6 0.97068357
-#define THIN_FILM_W6 0.14462066
+// Gauss's rule for the average over a hemisphere, 2 F(mu) mu dmu: cosine and weight.
+#define THIN_FILM_GAUSS1 vec2(0.07305433, 0.01747660)
+#define THIN_FILM_GAUSS2 vec2(0.23076614, 0.08791033)
+#define THIN_FILM_GAUSS3 vec2(0.44132848, 0.19732230)
+#define THIN_FILM_GAUSS4 vec2(0.66301531, 0.28158511)
+#define THIN_FILM_GAUSS5 vec2(0.85192140, 0.27108499)
+#define THIN_FILM_GAUSS6 vec2(0.97068357, 0.14462066)
 
 // Gauss's rule on [0, 1] in three nodes, the one in the middle at 1/2.
-#define THIN_FILM_U 0.11270167
-#define THIN_FILM_W (5.0 / 18.0)
-#define THIN_FILM_WM (8.0 / 18.0)
+#define THIN_FILM_LOW 0.11270167
+#define THIN_FILM_OUTER_WEIGHT (5.0 / 18.0)
+#define THIN_FILM_MIDDLE_WEIGHT (8.0 / 18.0)
 
 // Two quotients of 0 by 0 are kept finite: of a vanishing root, and of full reflection at grazing.
 #define THIN_FILM_LEAST 1e-12
@@ -159,35 +153,12 @@ vec3 thin_film_fresnel(float mu, FresnelData fd)
     return clamp(0.5 * F, 0.0, 1.0);
 }
 
-// F_ss, the cosine-weighted average over the hemisphere.
-vec3 thin_film_avg(FresnelData fd)
+// Cosine and weight of node i, from 1 to 6, of F_ss, the cosine-weighted average over the hemisphere.
+vec2 thin_film_gauss(int i)
 {
-    return THIN_FILM_W1 * thin_film_fresnel(THIN_FILM_MU1, fd)
-           + THIN_FILM_W2 * thin_film_fresnel(THIN_FILM_MU2, fd)
-           + THIN_FILM_W3 * thin_film_fresnel(THIN_FILM_MU3, fd)
-           + THIN_FILM_W4 * thin_film_fresnel(THIN_FILM_MU4, fd)
-           + THIN_FILM_W5 * thin_film_fresnel(THIN_FILM_MU5, fd)
-           + THIN_FILM_W6 * thin_film_fresnel(THIN_FILM_MU6, fd);
-}
-
-// Average over the visible facets of a lobe whose roughness is alpha in both directions: three heights
-// by three azimuths on one side of the plane of view, each weighted by its masking.
-vec3 thin_film_visible(float mu_o, float alpha, FresnelData fd)
-{
-    vec3 wo = vec3(sqrt(max(1.0 - mu_o * mu_o, 0.0)), 0.0, mu_o);
-    vec3 total = vec3(0.0);
-    float weights = 0.0;
-    for (int i = 0; i < 9; i++)
+    if (i < 4)
     {
-        int row = i / 3;
-        float u = row == 0 ? THIN_FILM_U : (row == 1 ? 0.5 : 1.0 - THIN_FILM_U);
-        float azimuth = (float(i - 3 * row) + 0.5) / 6.0;  // in units of 2 pi
-        vec3 H = mx_ggx_importance_sample_VNDF(vec2(azimuth, u), wo, vec2(alpha));
-        float c = clamp(dot(wo, H), 0.0, 1.0);
-        float mu_i = max(2.0 * c * H.z - mu_o, 0.0);
-        float weight = (row == 1 ? THIN_FILM_WM : THIN_FILM_W) * mx_ggx_smith_G2(mu_i, mu_o, alpha);
-        total += weight * thin_film_fresnel(c, fd);
-        weights += weight;
+        return i < 2 ? THIN_FILM_GAUSS1 : (i == 2 ? THIN_FILM_GAUSS2 : THIN_FILM_GAUSS3);
     }
-    return total / weights;
+    return i == 4 ? THIN_FILM_GAUSS4 : (i == 5 ? THIN_FILM_GAUSS5 : THIN_FILM_GAUSS6);
 }

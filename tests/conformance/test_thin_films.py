@@ -42,7 +42,7 @@ STOCK = {
         "film_throughput": (FAILED, f"{HALF}: {FITTED}"),
     },
 }
-FILM = "thin_film.glsl"
+FILMS_IN = ("thin_film.glsl", "microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
 WRONG = {
     "phase": ("conductor_bsdf", "-r12 * vec2(re.x, im.x)", "-r12 * vec2(re.x, -im.x)", "film"),
@@ -53,16 +53,17 @@ WRONG = {
     "too much light": (
         "conductor_bsdf", "clamp(0.5 * F, 0.0, 1.0)", "1.1 + 0.0 * F", "film_energy",
     ),
-    "one facet": ("conductor_bsdf", "i < 9", "i < 1", "film_environment"),
+    "one facet": ("conductor_bsdf", "use_visible ? 16 : 7", "use_visible ? 8 : 7", "film_environment"),
     "one cosine for the average": (
-        "conductor_bsdf", "vec3 thin_film_avg(FresnelData fd)\n{",
-        "vec3 thin_film_avg(FresnelData fd)\n{\n    return thin_film_fresnel(2.0 / 3.0, fd);\n", "film_average",
+        "conductor_bsdf", "film.average += i > 0 && i < 7 ? gauss.y * curve : vec3(0.0);",
+        "film.average = thin_film_fresnel(2.0 / 3.0, fd);", "film_average",
     ),
     "facets without masking": (
-        "conductor_bsdf", " * mx_ggx_smith_G2(mu_i, mu_o, alpha)", "", "film_visible",
+        "conductor_bsdf", "height * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha)", "height",
+        "film_visible",
     ),
     "half of the film": (
-        "generalized_schlick_bsdf", "return total / weights", "return 0.5 * total / weights",
+        "generalized_schlick_bsdf", "film.visible /= max(", "film.visible /= 2.0 * max(",
         "film_throughput",
     ),
     "not a number": (
@@ -125,10 +126,11 @@ def wrong_library(folder, text, other):
     """A copy of the library with one text of the film in place of another."""
     for name in ("libraries", "genglsl", "profiles"):
         shutil.copytree(data_folder() / name, folder / name)
-    file = folder / "genglsl" / FILM
-    source = file.read_text(encoding="utf-8")
-    assert text in source
-    file.write_text(source.replace(text, other), encoding="utf-8")
+    files = [folder / "genglsl" / name for name in FILMS_IN]
+    sources = [file.read_text(encoding="utf-8") for file in files]
+    assert any(text in source for source in sources)
+    for file, source in zip(files, sources, strict=True):
+        file.write_text(source.replace(text, other), encoding="utf-8")
     return str(folder / "profiles" / "pbrlib")
 
 
