@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node absorption_vdf: Beer's law over one meter, since a surface has no thickness.
+// Entry point of the node absorption_vdf: Beer's law over one meter, since a surface has no
+// thickness.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

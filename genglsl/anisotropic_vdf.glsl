@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node anisotropic_vdf: what neither absorption nor scattering takes from a ray in one
-// meter. Light that is scattered into the ray is left out, and with it the anisotropy.
+// Entry point of the node anisotropic_vdf: what neither absorption nor scattering takes from a ray in
+// one meter. Light that is scattered into the ray is left out, and with it the anisotropy.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-void anisotropic_vdf(ClosureData closureData, vec3 absorption, vec3 scattering, float anisotropy, inout VDF vdf)
+void anisotropic_vdf(ClosureData closureData, vec3 absorption, vec3 scattering, float anisotropy,
+                     inout VDF vdf)
 {
     if (closureData.closureType == CLOSURE_TYPE_TRANSMISSION)
     {

@@ -44,8 +44,8 @@ float blackbody_z(float t)
     return N / D;
 }
 
-// From CIE XYZ to linear Rec. 709 and its luminance: IEC 61966-2-1. Below 1900 K blue, and below 964 K
-// green lie outside: they are 0, and the rest keeps luminance 1.
+// From CIE XYZ to linear Rec. 709 and its luminance: IEC 61966-2-1. Below 1900 K blue, and below
+// 964 K green lie outside: they are 0, and the rest keeps luminance 1.
 void blackbody_rec709(float temperature, out vec3 result)
 {
     float t = 1000.0 / clamp(temperature, 800.0, 25000.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node chiang_hair_bsdf, and its lobes, after [MaterialX2026], Chiang Hair Model.
+// Entry point of chiang_hair_bsdf, and its lobes, after [MaterialX2026], Chiang Hair Model.
 //
 // Roughness is at least (1e-8, 1e-4), square radian and radian: float32 has no narrower lobes, and
 // (0, 0) has no value. A direction in the fiber's frame has x along it, and z along the normal.
@@ -29,7 +29,8 @@ float chiang_hair_norm(float v)
     float u = 1.0 / v;
     float u2 = u * u;
     return v < 1.0 ? v * (1.0 - exp(-2.0 * u))
-                   : 2.0 * exp(-u) * (1.0 + u2 / 6.0 * (1.0 + u2 / 20.0 * (1.0 + u2 / 42.0 * (1.0 + u2 / 72.0))));
+                   : 2.0 * exp(-u)
+                     * (1.0 + u2 / 6.0 * (1.0 + u2 / 20.0 * (1.0 + u2 / 42.0 * (1.0 + u2 / 72.0))));
 }
 
 // M_p of two points (cosine, sine), by the distance of one from the mirror image of the other: the
@@ -38,18 +39,20 @@ float chiang_hair_longitudinal(vec2 inclined_i, vec2 inclined_o, float v)
 {
     float c = abs(inclined_i.x);
     vec2 d = vec2(c - inclined_o.x, inclined_i.y + inclined_o.y);
-    return exp(-0.5 * dot(d, d) / v) * chiang_hair_bessel(c * inclined_o.x / v) / chiang_hair_norm(v);
+    return exp(-0.5 * dot(d, d) / v) * chiang_hair_bessel(c * inclined_o.x / v)
+           / chiang_hair_norm(v);
 }
 
-// The angle of a vector from the first axis, without its sign. The arc tangent of half of it or less
-// is a polynomial (fits/arc_tangent.py): those of engines are off by 1e-6 and more.
+// The angle of a vector from the first axis, without its sign. The arc tangent of half of it or
+// less is a polynomial (fits/arc_tangent.py): those of engines are off by 1e-6 and more.
 float chiang_hair_angle(vec2 w)
 {
     vec2 a = abs(w);
     float r = min(a.x, a.y) / max(max(a.x, a.y), 1e-30);
     float t = r / (1.0 + sqrt(1.0 + r * r));
     float z = t * t;
-    float series = 0.99999998 + z * (-0.33332786 + z * (0.19974082 + z * (-0.13848490 + z * 0.07976292)));
+    float series = 0.99999998
+                   + z * (-0.33332786 + z * (0.19974082 + z * (-0.13848490 + z * 0.07976292)));
     float angle = 2.0 * t * series;
     angle = a.y > a.x ? 0.5 * M_PI - angle : angle;
     return w.x < 0.0 ? M_PI - angle : angle;
@@ -81,24 +84,27 @@ float chiang_hair_fresnel(float mu, float ior)
 }
 
 // Product of two complex numbers: it adds the angles.
-vec2 chiang_hair_turn(vec2 a, vec2 b)
+vec2 complex_multiply(vec2 a, vec2 b)
 {
     return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
 }
 
-// Cosine and sine of alpha in [-pi/2, pi/2], from the series of its half: engines have none in common
-// (SwiftShader's are off by 1.9e-4). They are cut after the ninth power: 2e-9.
+// Cosine and sine of alpha in [-pi/2, pi/2], from the series of its half: engines have none in
+// common (SwiftShader's are off by 1.9e-4). They are cut after the ninth power: 2e-9.
 vec2 chiang_hair_tilt(float alpha)
 {
     float x = 0.5 * alpha;
     float z = x * x;
     float S = x * (1.0 - z / 6.0 * (1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0))));
-    float C = 1.0 - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0 * (1.0 - z / 90.0))));
-    return chiang_hair_turn(vec2(C, S), vec2(C, S));
+    float C = 1.0
+              - z / 2.0 * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0 * (1.0 - z / 90.0))));
+    return complex_multiply(vec2(C, S), vec2(C, S));
 }
 
-// A_p of R, TT, TRT and TRRT+, the view (cosine, sine) in the cross-section, and that of the refracted ray.
-void chiang_hair_section(vec3 wo, float ior, vec3 absorption, out vec3 A[4], out vec2 gamma_o, out vec2 gamma_t)
+// A_p of R, TT, TRT and TRRT+, the view (cosine, sine) in the cross-section, and that of the
+// refracted ray.
+void chiang_hair_section(vec3 wo, float ior, vec3 absorption, out vec3 A[4], out vec2 gamma_o,
+                         out vec2 gamma_t)
 {
     float c = length(wo.yz);
     gamma_o = c > 0.0 ? vec2(wo.z, -wo.y) / c : vec2(1.0, 0.0);
@@ -115,31 +121,37 @@ void chiang_hair_section(vec3 wo, float ior, vec3 absorption, out vec3 A[4], out
 }
 
 // Sum of the lobes, times pi.
-vec3 chiang_hair_sum(vec3 wo, vec3 wi, vec3 tint[3], vec2 roughness[3], float ior, float cuticle_angle, vec3 absorption)
+vec3 chiang_hair_sum(vec3 wo, vec3 wi, vec3 tint[3], vec2 roughness[3], float ior,
+                     float cuticle_angle, vec3 absorption)
 {
+    // Attenuate each lobe in the cross-section.
     vec3 A[4];
     vec2 gamma_o;
     vec2 gamma_t;
     chiang_hair_section(wo, ior, absorption, A, gamma_o, gamma_t);
 
+    // Tilt the light for R, and turn it to where R leaves.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));
     vec2 back = alpha * vec2(1.0, -1.0);  // by -alpha
-    vec2 tilted = chiang_hair_turn(inclined_i, chiang_hair_turn(alpha, alpha));
+    vec2 tilted = complex_multiply(inclined_i, complex_multiply(alpha, alpha));
     vec2 exit = vec2(dot(wi.yz, wo.yz), wi.z * wo.y - wo.z * wi.y);
-    exit = chiang_hair_turn(exit, chiang_hair_turn(gamma_o, gamma_o));
-    vec2 step = -chiang_hair_turn(gamma_t, gamma_t) * vec2(1.0, -1.0);  // by pi - 2 gamma_t
+    exit = complex_multiply(exit, complex_multiply(gamma_o, gamma_o));
+    vec2 inside = -complex_multiply(gamma_t, gamma_t) * vec2(1.0, -1.0);  // by pi - 2 gamma_t
 
+    // Add R, TT and TRT, each turned on from the one before.
     vec3 total = vec3(0.0);
     for (int p = 0; p < 3; ++p)
     {
         vec2 r = max(roughness[p], vec2(1e-8, 1e-4));
         float M = chiang_hair_longitudinal(tilted, inclined_o, r.x);
         total += tint[p] * A[p] * M * chiang_hair_azimuthal(exit, r.y);
-        exit = chiang_hair_turn(exit, step);
-        tilted = chiang_hair_turn(chiang_hair_turn(tilted, back), chiang_hair_turn(back, back));
+        exit = complex_multiply(exit, inside);
+        tilted = complex_multiply(complex_multiply(tilted, back), complex_multiply(back, back));
     }
+
+    // Add the rest, TRRT+, which leaves at all azimuths alike.
     float v = max(roughness[2].x, 1e-8);
     float M = chiang_hair_longitudinal(inclined_i, inclined_o, v);
     return total + tint[2] * A[3] * M * 0.5 * M_PI_INV;
@@ -170,13 +182,14 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
         roughness[0] = roughness_R;
         roughness[1] = roughness_TT;
         roughness[2] = roughness_TRT;
-        vec3 total = chiang_hair_sum(wo, wi, tint, roughness, ior, cuticle_angle, absorption_coefficient);
+        vec3 total = chiang_hair_sum(wo, wi, tint, roughness, ior, cuticle_angle,
+                                     absorption_coefficient);
         bsdf.response = total * closureData.occlusion * M_PI_INV;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        // Exact for a cuticle without tilt in a uniform environment. In an uneven one, R and TRT take
-        // the light from the viewer's side, TT that from the other, and TRRT+ half of both.
+        // Exact for a cuticle without tilt in a uniform environment. In an uneven one, R and TRT
+        // take the light from the viewer's side, TT that from the other, and TRRT+ half of both.
         vec3 A[4];
         vec2 gamma_o;
         vec2 gamma_t;
@@ -184,6 +197,7 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
         vec3 both = 0.5 * tint[2] * A[3];
         vec3 front = tint[0] * A[0] + tint[2] * A[2] + both;
         vec3 back = tint[1] * A[1] + both;
-        bsdf.response = (front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N)) * M_PI_INV;
+        vec3 light = front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N);
+        bsdf.response = light * M_PI_INV;
     }
 }

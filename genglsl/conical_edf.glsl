@@ -14,7 +14,8 @@ float conical_edf_cosine(float angle)
     return 1.0 - 2.0 * sine * sine;
 }
 
-void conical_edf(ClosureData closureData, vec3 color, vec3 N, float inner_angle, float outer_angle, out EDF result)
+void conical_edf(ClosureData closureData, vec3 color, vec3 N, float inner_angle, float outer_angle,
+                 out EDF result)
 {
     result = vec3(0.0);
     if (closureData.closureType == CLOSURE_TYPE_EMISSION)

@@ -3,8 +3,8 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
-// 1 - F_ss of a dielectric is t N / D, t = 1 / ior. Source: fits/fresnel_average.py. Domain: ior >= 1.
-// Largest absolute error: 5.3e-5.
+// 1 - F_ss of a dielectric is t N / D, t = 1 / ior. Source: fits/fresnel_average.py.
+// Domain: ior >= 1. Largest absolute error: 5.3e-5.
 #define FRESNEL_AVG_N0 5.2782628
 #define FRESNEL_AVG_N1 94.973875
 #define FRESNEL_AVG_N2 -107.33376
@@ -14,8 +14,8 @@
 #define FRESNEL_AVG_D2 43.891479
 #define FRESNEL_AVG_D3 -53.815382
 
-// 1 - F_ss of a metal from three cosines. Source: fits/fresnel_average.py. Domain: index in [0.05, 5],
-// extinction in [0.5, 10]. Largest absolute error: 3.6e-4.
+// 1 - F_ss of a metal from three cosines. Source: fits/fresnel_average.py.
+// Domain: index in [0.05, 5], extinction in [0.5, 10]. Largest absolute error: 3.6e-4.
 #define FRESNEL_AVG_C0 0.22
 #define FRESNEL_AVG_W0 0.13509272
 #define FRESNEL_AVG_C1 0.58

@@ -109,7 +109,9 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     float s = sqrt((n - 1.0) / (n + 1.0));
     float N0 = GGX_DIELECTRIC_N000
                + s * (GGX_DIELECTRIC_N001 + s * (GGX_DIELECTRIC_N002 + s * GGX_DIELECTRIC_N003))
-               + y * (GGX_DIELECTRIC_N010 + s * (GGX_DIELECTRIC_N011 + s * GGX_DIELECTRIC_N012) + y * (GGX_DIELECTRIC_N020 + s * GGX_DIELECTRIC_N021 + y * GGX_DIELECTRIC_N030));
+               + y * (GGX_DIELECTRIC_N010 + s * (GGX_DIELECTRIC_N011 + s * GGX_DIELECTRIC_N012)
+                      + y * (GGX_DIELECTRIC_N020 + s * GGX_DIELECTRIC_N021
+                             + y * GGX_DIELECTRIC_N030));
     float N1 = GGX_DIELECTRIC_N100 + s * (GGX_DIELECTRIC_N101 + s * GGX_DIELECTRIC_N102)
                + y * (GGX_DIELECTRIC_N110 + s * GGX_DIELECTRIC_N111 + y * GGX_DIELECTRIC_N120);
     float N2 = GGX_DIELECTRIC_N200 + s * GGX_DIELECTRIC_N201 + y * GGX_DIELECTRIC_N210;
@@ -131,7 +133,8 @@ float ggx_cosine_schlick(float mu, float alpha, float exponent)
     float s = 4.0 / (3.0 + clamp(exponent, 1.0, 10.0));
     float N0 = GGX_SCHLICK_N000
                + s * (GGX_SCHLICK_N001 + s * (GGX_SCHLICK_N002 + s * GGX_SCHLICK_N003))
-               + y * (GGX_SCHLICK_N010 + s * (GGX_SCHLICK_N011 + s * GGX_SCHLICK_N012) + y * (GGX_SCHLICK_N020 + s * GGX_SCHLICK_N021 + y * GGX_SCHLICK_N030));
+               + y * (GGX_SCHLICK_N010 + s * (GGX_SCHLICK_N011 + s * GGX_SCHLICK_N012)
+                      + y * (GGX_SCHLICK_N020 + s * GGX_SCHLICK_N021 + y * GGX_SCHLICK_N030));
     float N1 = GGX_SCHLICK_N100 + s * (GGX_SCHLICK_N101 + s * GGX_SCHLICK_N102)
                + y * (GGX_SCHLICK_N110 + s * GGX_SCHLICK_N111 + y * GGX_SCHLICK_N120);
     float N2 = GGX_SCHLICK_N200 + s * GGX_SCHLICK_N201 + y * GGX_SCHLICK_N210;

@@ -29,8 +29,8 @@ struct MicrofacetLobe
     int closure;
 };
 
-// A Fresnel curve's value at the half vector, its cosine-weighted average over the hemisphere, F_ss,
-// and its average over the visible facets.
+// A Fresnel curve's value at the half vector, its cosine-weighted average over the hemisphere,
+// F_ss, and its average over the visible facets.
 struct MicrofacetFresnel
 {
     vec3 value;
@@ -65,8 +65,8 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     return lobe;
 }
 
-// Cosine of wo with one of nine visible facets of a lobe whose roughness is alpha in both directions,
-// and its weight, the masking: three heights by three azimuths on one side of the plane of view.
+// Cosine of wo with one of nine visible facets of a lobe of roughness alpha in both directions, and
+// its weight, the masking: three heights by three azimuths on one side of the plane of view.
 vec2 microfacet_facet(MicrofacetLobe lobe, int i)
 {
     int row = i / 3;
@@ -81,11 +81,14 @@ vec2 microfacet_facet(MicrofacetLobe lobe, int i)
 }
 
 // Put a film's reflectances in the place of those without one. All are taken in one loop, which has
-// no steps without a film: the half vector, six cosines of the hemisphere, nine visible facets.
+// no steps without a film: the half vector, six cosines of the hemisphere and nine visible facets.
 void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, bool use_visible,
                          inout MicrofacetFresnel F)
 {
-    MicrofacetFresnel film = MicrofacetFresnel(vec3(0.0), vec3(0.0), vec3(0.0));
+    MicrofacetFresnel film;
+    film.value = vec3(0.0);
+    film.average = vec3(0.0);
+    film.visible = vec3(0.0);
     float weights = 0.0;
     int first = lobe.closure == CLOSURE_TYPE_REFLECTION ? 0 : 1;
     int end = !fd.airy ? 0 : (use_visible ? 16 : 7);
@@ -129,14 +132,17 @@ FresnelData microfacet_environment_curve(FresnelData fd)
     if (fd.airy)
     {
         fd.ior = vec3(MICROFACET_MIRROR_IOR);
-        fd.F0 = fd.F82 = fd.F90 = vec3(1.0);
+        fd.F0 = vec3(1.0);
+        fd.F82 = vec3(1.0);
+        fd.F90 = vec3(1.0);
     }
     fd.airy = false;
     return fd;
 }
 
-// Light of an environment. MaterialX draws anisotropic visible normals and divides by G_1 at the mean
-// alpha; the factor puts the G_1 of the normals in its place. It is 1 where both alphas are the same.
+// Light of an environment. MaterialX draws anisotropic visible normals and divides by G_1 at the
+// mean alpha; the factor puts the G_1 of the normals in its place. It is 1 where both alphas are
+// the same.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     FresnelData curve = microfacet_environment_curve(fd);

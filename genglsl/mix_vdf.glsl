@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node mix for two media: a share of the coefficients of each, an exponent of what passes.
+// Entry point of the node mix for two media: a share of the coefficients of each, an exponent of what
+// passes.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

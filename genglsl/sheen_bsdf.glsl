@@ -26,8 +26,8 @@ float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
     return density / (4.0 * (mu_i + mu_o - mu_i * mu_o));
 }
 
-// [MaterialX2026], Zeltner Sheen Model, times the cosine, at unit albedo. The frame comes from a cross
-// product: a view along the normal would leave the rounding of a difference, which points anywhere.
+// [MaterialX2026], Zeltner Sheen Model, times the cosine, at unit albedo. The frame comes from a
+// cross product: a view along the normal would leave the rounding of a difference, which points anywhere.
 float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 {
     vec3 Y = cross(N, wo);

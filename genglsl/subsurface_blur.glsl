@@ -3,10 +3,10 @@
 
 #define SUBSURFACE_RINGS 8
 
-// Mean of max(cos(theta), 0) over the circle at a distance from a point whose cosine is mu.
-float subsurface_ring(float mu, float distance)
+// Mean of max(cos(theta), 0) over the circle at the end of a chord from a point whose cosine is mu.
+float subsurface_ring(float mu, float chord)
 {
-    float squared = distance * distance;
+    float squared = chord * chord;
     float along = mu * (1.0 - 0.5 * squared);
     float across = sqrt(max((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0));
     if (along >= across)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node subsurface_bsdf: the diffusion profile over a sphere of the surface's curvature.
+// Entry point of the node subsurface_bsdf: the diffusion profile over a sphere of the surface's
+// curvature.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
 #include "subsurface_blur.glsl"
 
-void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 radius, float anisotropy, vec3 N,
-                     inout BSDF bsdf)
+void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 radius,
+                     float anisotropy, vec3 N, inout BSDF bsdf)
 {
     bsdf.throughput = vec3(0.0);
 
@@ -16,16 +17,18 @@ void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 rad
         return;
     }
 
-    // The normal as it comes: turned to the viewer, it would jump where the surface turns away. Where
-    // nothing changes from pixel to pixel, the surface is flat.
+    // The normal as it comes: turned to the viewer, it would jump where the surface turns away.
+    // Where nothing changes from pixel to pixel, the surface is flat.
     float curvature = length(fwidth(N)) / max(length(fwidth(closureData.P)), 1e-30);
     N = mx_forward_facing_normal(N, closureData.V);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
         float mu_i = clamp(dot(N, closureData.L), -1.0, 1.0);
-        // The profile has no anisotropy: its mean free path is that of isotropic scattering, l / (1 - g).
-        vec3 reach = min(curvature * max(radius, vec3(0.0)) / max(1.0 - anisotropy, 1e-3), vec3(1e3));
+        // The profile has no anisotropy: its mean free path is that of isotropic scattering,
+        // l / (1 - g).
+        vec3 reach = curvature * max(radius, vec3(0.0)) / max(1.0 - anisotropy, 1e-3);
+        reach = min(reach, vec3(1e3));
         vec3 light = vec3(subsurface_blur(mu_i, reach.x), subsurface_blur(mu_i, reach.y),
                           subsurface_blur(mu_i, reach.z));
         bsdf.response = color * light * closureData.occlusion * weight * M_PI_INV;

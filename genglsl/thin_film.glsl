@@ -10,8 +10,8 @@
 #define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 
-// Their heights v sqrt(2 pi sigma^2) / 1.0685e-7 times the matrix from XYZ under white E to Rec. 709,
-// `XYZ_TO_REC709_E` of mxeon.models.colorimetry: a film that vanishes has to leave white alone.
+// Their heights v sqrt(2 pi sigma^2) / 1.0685e-7 times the matrix from XYZ under white E to Rec.
+// 709, `XYZ_TO_REC709_E` of mxeon.models.colorimetry: a film that vanishes leaves white alone.
 #define THIN_FILM_RED vec4(2.663585, 0.4841083, -1.666494, -0.480666)
 #define THIN_FILM_GREEN vec4(-0.84281, -0.1531813, 1.956197, 0.03981614)
 #define THIN_FILM_BLUE vec4(0.05384126, 0.009785686, -0.2146441, 1.152291)
@@ -35,7 +35,8 @@
 // Waves of a path difference: 2 pi mu opd, and exp(-k (2 pi sigma opd)^2) by k.
 struct ThinFilmWaves
 {
-    vec4 angle;
+    vec4 cosine;
+    vec4 sine;
     vec4 k1;
     vec4 k4;
     vec4 k9;
@@ -43,100 +44,122 @@ struct ThinFilmWaves
     vec4 k25;
     vec4 k36;
     vec4 k49;
-    vec4 k15;
+    vec4 ratio; // of the geometric series after six orders
 };
 
 ThinFilmWaves thin_film_waves(float opd)
 {
     float phase = 2.0 * M_PI * opd;
     ThinFilmWaves waves;
-    waves.angle = THIN_FILM_POSITIONS * phase;
+    waves.cosine = mx_cos(THIN_FILM_POSITIONS * phase);
+    waves.sine = mx_sin(THIN_FILM_POSITIONS * phase);
     waves.k1 = exp(-THIN_FILM_VARIANCES * (phase * phase));
     vec4 k2 = waves.k1 * waves.k1;
-    vec4 k8 = k2 * k2 * k2 * k2;
     waves.k4 = k2 * k2;
+    vec4 k8 = waves.k4 * waves.k4;
     waves.k9 = k8 * waves.k1;
     waves.k16 = k8 * k8;
     waves.k25 = waves.k16 * waves.k9;
     waves.k36 = waves.k16 * waves.k16 * waves.k4;
     waves.k49 = waves.k25 * k8 * waves.k16;
-    waves.k15 = k8 * waves.k4 * k2 * waves.k1;
+    vec4 k15 = k8 * waves.k4 * k2 * waves.k1;
+    waves.ratio = k15 * (1.0 - waves.k49 * (1.0 - k2 * waves.k1));
     return waves;
 }
 
-// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z. Six are summed; what follows is a
-// geometric series from the seventh on, with the ratio of the eighth to it.
+// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z. Six are summed, as powers of
+// one wave. What follows has the heights k^(7 + j)^2 = k^49 k^(14 j + j^2), and is summed as a
+// geometric series. For a thick film its ratio is k^15, which agrees at j = 1, the one that counts.
+// For a thin one, k near 1, it is k^18, which agrees at j = 4: many terms count, and those before
+// the fourth have errors of the other sign than those after it.
 vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
 {
-    vec4 c = mx_cos(waves.angle);
-    vec4 s = mx_sin(waves.angle);
-    vec4 x = z.x * c - z.y * s;
-    vec4 y = z.x * s + z.y * c;
-    vec4 x2 = x * x - y * y;
-    vec4 y2 = 2.0 * x * y;
-    vec4 x3 = x2 * x - y2 * y;
-    vec4 y3 = x2 * y + y2 * x;
-    vec4 x4 = x2 * x2 - y2 * y2;
-    vec4 y4 = 2.0 * x2 * y2;
-    vec4 x7 = x4 * x3 - y4 * y3;
-    vec4 y7 = x4 * y3 + y4 * x3;
-    vec4 total = waves.k1 * x + waves.k4 * x2 + waves.k9 * x3 + waves.k16 * x4
-                 + waves.k25 * (x4 * x - y4 * y) + waves.k36 * (x3 * x3 - y3 * y3);
-    vec4 rest = 1.0 - waves.k15 * x;
-    vec4 lost = waves.k15 * y;
-    return total + waves.k49 * (x7 * rest - y7 * lost) / max(rest * rest + lost * lost, THIN_FILM_LEAST);
+    // Take powers of the wave.
+    vec4 re1 = z.x * waves.cosine - z.y * waves.sine;
+    vec4 im1 = z.x * waves.sine + z.y * waves.cosine;
+    vec4 re2 = re1 * re1 - im1 * im1;
+    vec4 im2 = 2.0 * re1 * im1;
+    vec4 re3 = re2 * re1 - im2 * im1;
+    vec4 im3 = re2 * im1 + im2 * re1;
+    vec4 re4 = re2 * re2 - im2 * im2;
+    vec4 im4 = 2.0 * re2 * im2;
+
+    // Sum six orders.
+    vec4 orders = waves.k1 * re1 + waves.k4 * re2 + waves.k9 * re3 + waves.k16 * re4
+                  + waves.k25 * (re4 * re1 - im4 * im1) + waves.k36 * (re3 * re3 - im3 * im3);
+
+    // Add a geometric series from the seventh on.
+    vec4 re7 = re4 * re3 - im4 * im3;
+    vec4 im7 = re4 * im3 + im4 * re3;
+    vec4 divisor_re = 1.0 - waves.ratio * re1;
+    vec4 divisor_im = waves.ratio * im1;
+    vec4 squared = max(divisor_re * divisor_re + divisor_im * divisor_im, THIN_FILM_LEAST);
+    return orders + waves.k49 * (re7 * divisor_re - im7 * divisor_im) / squared;
 }
 
-// Reflectance of one polarization: amplitude r12 of the upper interface, and re + i im of the lower one.
-vec3 thin_film_polarized(float r12, vec3 re, vec3 im, ThinFilmWaves waves)
+// Sums of orders of both polarizations, by channel: a channel of a polarization in each step of one
+// loop, of which compilers make one copy. Channels that are all alike have one sum.
+void thin_film_sums(vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, ThinFilmWaves waves, int channels,
+                    out vec3 orders_s, out vec3 orders_p)
+{
+    orders_s = vec3(0.0);
+    orders_p = vec3(0.0);
+    for (int i = 0; i < 2 * channels; i++)
+    {
+        bool is_s = i < channels;
+        int k = is_s ? i : i - channels;
+        vec3 channel = vec3(k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0);
+        vec2 z = vec2(dot(is_s ? re_s : re_p, channel), dot(is_s ? im_s : im_p, channel));
+        vec4 orders = thin_film_orders(z, waves);
+        vec3 sums = vec3(dot(THIN_FILM_RED, orders), dot(THIN_FILM_GREEN, orders),
+                         dot(THIN_FILM_BLUE, orders));
+        sums *= channels == 1 ? vec3(1.0) : channel;
+        orders_s += is_s ? sums : vec3(0.0);
+        orders_p += is_s ? vec3(0.0) : sums;
+    }
+}
+
+// Reflectance of one polarization from the sums of its orders: r12 is the amplitude of the upper
+// interface, re + i im that of the lower one.
+vec3 thin_film_polarized(float r12, vec3 re, vec3 im, vec3 orders)
 {
     float R12 = r12 * r12;
     float T12 = 1.0 - R12;
     vec3 R23 = re * re + im * im;
-    vec3 left = max(1.0 - R12 * R23, THIN_FILM_LEAST);
-    vec3 orders = vec3(dot(THIN_FILM_RED, thin_film_orders(-r12 * vec2(re.x, im.x), waves)),
-                       dot(THIN_FILM_GREEN, thin_film_orders(-r12 * vec2(re.y, im.y), waves)),
-                       dot(THIN_FILM_BLUE, thin_film_orders(-r12 * vec2(re.z, im.z), waves)));
-    return R12 + T12 * (T12 * R23 - 2.0 * (1.0 - R23) * orders) / left;
+    vec3 trapped = max(1.0 - R12 * R23, THIN_FILM_LEAST);
+    return R12 + T12 * (T12 * R23 - 2.0 * (1.0 - R23) * orders) / trapped;
 }
 
-// Root U + i V of (ior + i extinction)^2 - n^2 sin^2, of which the smaller part does not cancel.
-void thin_film_root(float n2_sin2, vec3 ior, vec3 extinction, out vec3 U, out vec3 V)
+// Root of (ior + i extinction)^2 - sin^2, of which the smaller part does not cancel.
+void thin_film_root(float sin2, vec3 ior, vec3 extinction, out vec3 re, out vec3 im)
 {
-    vec3 A = ior * ior - extinction * extinction - n2_sin2;
+    vec3 A = ior * ior - extinction * extinction - sin2;
     vec3 Q = ior * extinction;
     vec3 larger = sqrt(0.5 * (sqrt(A * A + 4.0 * Q * Q) + abs(A)));
     vec3 smaller = Q / max(larger, THIN_FILM_LEAST);
-    vec3 dense = step(vec3(0.0), A);
-    U = mix(smaller, larger, dense);
-    V = mix(larger, smaller, dense);
+    vec3 positive = step(vec3(0.0), A);
+    re = mix(smaller, larger, positive);
+    im = mix(larger, smaller, positive);
 }
 
-// (a - b) / (a + b) of complex vectors, a in x + i y, b in u + i v.
+// (a - b) / (a + b) of complex numbers, a in x + i y, b in u + i v.
 void thin_film_amplitude(vec3 x, vec3 y, vec3 u, vec3 v, out vec3 re, out vec3 im)
 {
-    vec3 below = max((x + u) * (x + u) + (y + v) * (y + v), THIN_FILM_LEAST);
-    re = (x * x + y * y - u * u - v * v) / below;
-    im = 2.0 * (y * u - x * v) / below;
+    vec3 divisor = max((x + u) * (x + u) + (y + v) * (y + v), THIN_FILM_LEAST);
+    re = (x * x + y * y - u * u - v * v) / divisor;
+    im = 2.0 * (y * u - x * v) / divisor;
 }
 
-// F_airy at a cosine. A film thinner than vacuum counts as vacuum; a negative curve has no amplitude.
-vec3 thin_film_fresnel(float mu, FresnelData fd)
+// Amplitudes of the lower interface under a film of index n, at cosines mu_t in the film and a sine
+// above it whose square is sin2, for both polarizations.
+void thin_film_lower(float mu_t, float n, float sin2, FresnelData fd, out vec3 re_s, out vec3 im_s,
+                     out vec3 re_p, out vec3 im_p)
 {
-    float n = max(fd.tf_ior, 1.0);
-    float sin2 = (1.0 - mu) * (1.0 + mu);
-    float mu_t = sqrt(max(1.0 - sin2 / (n * n), 0.0));
-    ThinFilmWaves waves = thin_film_waves(2.0e-9 * n * mu_t * fd.tf_thickness);
-    float gap = (n - 1.0) * (n + 1.0);  // 0 without a film, at grazing too
-    float s = mu + n * mu_t;
-    float p = n * mu + mu_t;
-    float r_s = -gap / max(s * s, THIN_FILM_LEAST);
-    float r_p = gap * (mu * mu - sin2 / (n * n)) / max(p * p, THIN_FILM_LEAST);
-    vec3 re_p, im_p, re_s, im_s;
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
-        re_p = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0))
-               * (2.0 * step(vec3((n - 1.0) / (n + 1.0)), sqrt(fd.F0)) - 1.0);  // index above n
+        // A negative curve has no amplitude; below a denser film it changes its sign.
+        vec3 denser = step(vec3((n - 1.0) / (n + 1.0)), sqrt(fd.F0));
+        re_p = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0)) * (2.0 * denser - 1.0);
         re_s = -re_p;
         im_p = vec3(0.0);
         im_s = vec3(0.0);
@@ -146,14 +169,44 @@ vec3 thin_film_fresnel(float mu, FresnelData fd)
         vec3 U, V;
         thin_film_root(sin2, fd.ior, fd.extinction, U, V);
         thin_film_amplitude(vec3(n * mu_t), vec3(0.0), U, V, re_s, im_s);
-        vec3 real = (fd.ior * fd.ior - fd.extinction * fd.extinction) * mu_t;
-        thin_film_amplitude(real, 2.0 * fd.ior * fd.extinction * mu_t, n * U, n * V, re_p, im_p);
+        vec3 re = (fd.ior * fd.ior - fd.extinction * fd.extinction) * mu_t;
+        vec3 im = 2.0 * fd.ior * fd.extinction * mu_t;
+        thin_film_amplitude(re, im, n * U, n * V, re_p, im_p);
     }
-    vec3 F = thin_film_polarized(r_p, re_p, im_p, waves) + thin_film_polarized(r_s, re_s, im_s, waves);
-    return clamp(0.5 * F, 0.0, 1.0);
 }
 
-// Cosine and weight of node i, from 1 to 6, of F_ss, the cosine-weighted average over the hemisphere.
+// F_airy at a cosine. A film thinner than vacuum counts as vacuum.
+vec3 thin_film_fresnel(float mu, FresnelData fd)
+{
+    // Refract into the film.
+    float n = max(fd.tf_ior, 1.0);
+    float sin2 = (1.0 - mu) * (1.0 + mu);
+    float mu_t = sqrt(max(1.0 - sin2 / (n * n), 0.0));
+
+    // Reflect at the upper interface, whose gap is 0 without a film, at grazing too.
+    float gap = (n - 1.0) * (n + 1.0);
+    float sum_s = mu + n * mu_t;
+    float sum_p = n * mu + mu_t;
+    float r_s = -gap / max(sum_s * sum_s, THIN_FILM_LEAST);
+    float r_p = gap * (mu * mu - sin2 / (n * n)) / max(sum_p * sum_p, THIN_FILM_LEAST);
+
+    // Reflect at the lower interface.
+    vec3 re_s, im_s, re_p, im_p;
+    thin_film_lower(mu_t, n, sin2, fd, re_s, im_s, re_p, im_p);
+
+    // Sum the orders between both.
+    ThinFilmWaves waves = thin_film_waves(2.0e-9 * n * mu_t * fd.tf_thickness);
+    int channels = fd.model == FRESNEL_MODEL_DIELECTRIC ? 1 : 3;
+    vec3 orders_s, orders_p;
+    thin_film_sums(-r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p, waves, channels, orders_s,
+                   orders_p);
+    vec3 F_s = thin_film_polarized(r_s, re_s, im_s, orders_s);
+    vec3 F_p = thin_film_polarized(r_p, re_p, im_p, orders_p);
+    return clamp(0.5 * (F_s + F_p), 0.0, 1.0);
+}
+
+// Cosine and weight of node i, from 1 to 6, of the cosine-weighted average over the hemisphere,
+// F_ss.
 vec2 thin_film_gauss(int i)
 {
     if (i < 4)

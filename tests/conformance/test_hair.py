@@ -36,11 +36,11 @@ STOCK = {
 }
 
 # By name: text of eonlib's shader, the text in its place, key of the check and words of the diagnosis.
-TURNED = "chiang_hair_turn(inclined_i, chiang_hair_turn(alpha, alpha))"
+TURNED = "complex_multiply(inclined_i, complex_multiply(alpha, alpha))"
 WRONG = {
     "the viewer tilted": (
         "M = chiang_hair_longitudinal(tilted, inclined_o, r.x)",
-        "M = chiang_hair_longitudinal(chiang_hair_turn(inclined_o, chiang_hair_turn(tilted,"
+        "M = chiang_hair_longitudinal(complex_multiply(inclined_o, complex_multiply(tilted,"
         " inclined_i * vec2(1.0, -1.0)) / dot(inclined_i, inclined_i)), inclined_i, r.x)",
         "tilted_lobes",
         "nearest known model: the viewer's inclination tilted in place of the light's (rms ",

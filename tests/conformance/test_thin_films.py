@@ -47,11 +47,11 @@ FILMS_IN = ("thin_film.glsl", "microfacet_lobe.glsl")
 WRONG = {
     "phase": ("conductor_bsdf", "-r12 * vec2(re.x, im.x)", "-r12 * vec2(re.x, -im.x)", "film"),
     "one order too few": (
-        "conductor_bsdf", "waves.k4 * x2 + ", "", "film",
+        "conductor_bsdf", "waves.k4 * re2 + ", "", "film",
     ),
-    "no limit": ("dielectric_bsdf", "waves.k1 * x + ", "0.9 * waves.k1 * x + ", "film_limit"),
+    "no limit": ("dielectric_bsdf", "waves.k1 * re1 + ", "0.9 * waves.k1 * re1 + ", "film_limit"),
     "too much light": (
-        "conductor_bsdf", "clamp(0.5 * F, 0.0, 1.0)", "1.1 + 0.0 * F", "film_energy",
+        "conductor_bsdf", "clamp(0.5 * (F_s + F_p), 0.0, 1.0)", "1.1 + 0.0 * F_s", "film_energy",
     ),
     "one facet": ("conductor_bsdf", "use_visible ? 16 : 7", "use_visible ? 8 : 7", "film_environment"),
     "one cosine for the average": (
@@ -67,7 +67,7 @@ WRONG = {
         "film_throughput",
     ),
     "not a number": (
-        "dielectric_bsdf", "clamp(0.5 * F, 0.0, 1.0)", "F / step(1.0, fd.tf_ior)", "film_finite",
+        "dielectric_bsdf", "clamp(0.5 * (F_s + F_p), 0.0, 1.0)", "F_s / step(1.0, fd.tf_ior)", "film_finite",
     ),
 }  # fmt: skip
 
