@@ -10,23 +10,30 @@ Exit status: 0, or 1 if a value that was timed is wrong. A missed goal is shown 
 import argparse
 import os
 import sys
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 
 from benchmarks import page, record
 from mxeon.errors import NotRun
 
-GROUPS = ("shaders", "noise", "materials", "cycles", "models", "tool", "check")
+GROUPS = ("shaders", "noise", "materials", "instructions", "cycles", "models", "tool", "check")
 QUICK = {
     "shaders": {"rounds": 5},
     "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"rounds": 3, "size": 256},
+    "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
     "check": {"rounds": 1, "field": False},
 }
 DOCS = Path(__file__).resolve().parents[1] / "docs"
+
+
+def keep(file, kind, group):
+    """Write a group's figures as far as they are, so that no later failure loses them."""
+    record.write(file, [group], kind)
 
 
 def main(arguments=None):
@@ -46,16 +53,18 @@ def main(arguments=None):
     file = options.output / "performance.json"
     if not options.page:
         os.environ["MESA_SHADER_CACHE_DISABLE"] = "true"  # or a compilation is read from a file
-        found = []
+        record.write(file, [])
         for name in options.groups or GROUPS:
-            sizes = QUICK[name] if options.quick else {}
+            sizes = dict(QUICK[name]) if options.quick else {}
+            if name == "materials":  # which takes longest: each material is kept as it is done
+                sizes["keep"] = partial(keep, file, options.kind)
             try:
-                found.append(import_module(f"benchmarks.{name}").measure(**sizes))
+                group = import_module(f"benchmarks.{name}").measure(**sizes)
             except NotRun as reason:
                 print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
                 continue
-            print(page.table(found[-1]), flush=True)
-        record.write(file, found, options.kind)
+            print(page.table(group), flush=True)
+            keep(file, options.kind, group)
     groups = page.write(options.output, file)
     wrong = [each.name for group in groups for each in group.checks if not each.passed]
     if wrong:

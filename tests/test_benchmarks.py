@@ -41,8 +41,44 @@ def test_error_that_is_no_number_fails_its_check():
     assert not Check("x", float("nan"), 1.0).passed
 
 
-def test_timed_shaders_give_right_values(gl):
-    assert_right(shaders.measure(rounds=1, invocations=1024, calls=2))
+# Each group at its smallest size: its arguments.
+SMALLEST = {
+    "shaders": {"rounds": 1, "invocations": 1024, "calls": 2},
+    "noise": {
+        "rounds": 1, "invocations": 256, "calls": 4, "size": 16, "pictures": 2, "spokes": 2,
+    },
+    "materials": {"rounds": 1, "size": 32, "nodes": ("oren_nayar", "dielectric_bsdf")},
+    "instructions": {"nodes": ("oren_nayar",)},
+    "cycles": {"rounds": 1, "size": 32, "samples": (64,)},
+    "models": {"rounds": 1, "pairs": (1000,)},
+    "tool": {"rounds": 1, "counts": (1, 2), "documents": 1},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*SMALLEST, "check"])
+def test_each_group_is_measured_and_written_to_its_page(gl, tmp_path, monkeypatch, name):
+    small = SMALLEST | {"check": {"rounds": 1, "files": TEXTS, "field": False}}
+    memory = cache(models.extra_memory)  # one process, not one for each way
+    monkeypatch.setattr(models, "extra_memory", lambda way, count: memory("naive", count))
+    monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
+    monkeypatch.setattr(cycles, "processor_seconds", lambda pid: 0.0)  # less than a tick
+    monkeypatch.setattr(command, "QUICK", small)
+    with available(name if name == "cycles" else "gl"):
+        assert command.main([name, "--quick", "--output", str(tmp_path)]) == 0
+    ((group, _),) = record.read(tmp_path / "performance.json")
+    assert group.name == name and group.figures
+    assert_right(group)
+    assert page.table(group) in (tmp_path / "performance.md").read_text(encoding="utf-8")
+
+
+def test_materials_that_were_measured_stay_when_the_next_one_fails(gl, tmp_path, monkeypatch):
+    monkeypatch.setattr(materials, "NODES", {"oren_nayar": materials.NODES["oren_nayar"]})
+    sizes = {"rounds": 1, "size": 16, "nodes": ("oren_nayar", "no_such_node")}
+    monkeypatch.setattr(command, "QUICK", {"materials": sizes})
+    with pytest.raises(KeyError):
+        command.main(["materials", "--quick", "--output", str(tmp_path)])
+    ((group, _),) = record.read(tmp_path / "performance.json")
+    assert {each.name.split(", ")[1] for each in group.figures} == {"oren_nayar"}
 
 
 def test_check_of_shaders_tells_fon_from_eon(gl):
@@ -52,31 +88,7 @@ def test_check_of_shaders_tells_fon_from_eon(gl):
     assert not shaders.checked(device, rivals["EON, eonlib"], kernel).passed
 
 
-def test_timed_materials_agree(gl, monkeypatch):
-    monkeypatch.setattr(materials, "NODES", {"oren_nayar": materials.NODES["oren_nayar"]})
-    assert_right(materials.measure(rounds=1, size=64))
-
-
-def test_timed_models_give_right_values_and_memory_is_seen(monkeypatch):
-    memory = cache(models.extra_memory)  # one process, not one for each way
-    monkeypatch.setattr(models, "extra_memory", lambda way, count: memory("naive", count))
-    group = models.measure(rounds=1, pairs=(1000,))
-    assert_right(group)
-    assert {name.split(":")[0] for name in group.series} == {"ns", "MiB"}
-
-
-def test_timed_generation_gives_the_text_of_the_raw_calls(monkeypatch):
-    monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
-    assert_right(tool.measure(rounds=1, counts=(1, 2), documents=1))
-
-
 TEXTS = (str(examples_folder() / "clay.mtlx"), "--host", "msl")  # nothing but texts is checked
-
-
-def test_check_in_a_process_of_its_own_has_time_memory_and_verdicts():
-    group = check.measure(rounds=1, files=TEXTS, field=False)
-    assert_right(group)
-    assert {each.name for each in group.checks} == {check.NONE, check.TWO}
 
 
 def test_check_whose_results_fail_is_wrong():
@@ -139,12 +151,6 @@ def test_names_of_table_1_are_names_of_rivals():
     named |= {f"cosine + {row[-1]}" for row in page.TABLE_1[1:]}
     named |= {f"{sampler} + quartic" for sampler in page.SAMPLERS[:-1]} | {"exact + eonlib"}
     assert named <= {rival.name for rival in shaders.RIVALS}
-
-
-def test_pictures_of_cycles_have_the_albedos_that_they_are_compared_with(monkeypatch):
-    monkeypatch.setattr(cycles, "processor_seconds", lambda pid: 0.0)  # less than a tick
-    with available("cycles"):
-        assert_right(cycles.measure(rounds=1, size=32, samples=(64,)))
 
 
 def test_compiled_values_of_no_pair_and_of_any_number_of_channels_have_their_shape():
