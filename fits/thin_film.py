@@ -48,7 +48,8 @@ def six_orders(r, phase, opd, _):
         z = r * np.exp(1j * (2.0 * np.pi * mu * opd + phase))
         decay = var * (2.0 * np.pi * opd) ** 2
         orders = sum((z**m).real * np.exp(-decay * m * m) for m in range(1, 7))
-        ratio = np.exp(-15.0 * decay) * (1.0 - np.exp(-49.0 * decay) * (1.0 - np.exp(-3.0 * decay)))
+        tail = np.exp(-49.0 * decay) * (1.0 - np.exp(-6.0 * decay))
+        ratio = np.exp(-15.0 * decay) * (1.0 - r * r * tail)
         rest = np.exp(-49.0 * decay) * (z**7 / (1.0 - ratio * z)).real
         total[k] += weight * (orders + rest)
     return total

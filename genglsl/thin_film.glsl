@@ -44,7 +44,8 @@ struct ThinFilmWaves
     vec4 k25;
     vec4 k36;
     vec4 k49;
-    vec4 ratio; // of the geometric series after six orders
+    vec4 k15;
+    vec4 tail; // by how much the ratio of the series falls below k15 at full reflection
 };
 
 ThinFilmWaves thin_film_waves(float opd)
@@ -62,16 +63,17 @@ ThinFilmWaves thin_film_waves(float opd)
     waves.k25 = waves.k16 * waves.k9;
     waves.k36 = waves.k16 * waves.k16 * waves.k4;
     waves.k49 = waves.k25 * k8 * waves.k16;
-    vec4 k15 = k8 * waves.k4 * k2 * waves.k1;
-    waves.ratio = k15 * (1.0 - waves.k49 * (1.0 - k2 * waves.k1));
+    waves.k15 = k8 * waves.k4 * k2 * waves.k1;
+    waves.tail = waves.k15 * waves.k49 * (1.0 - waves.k4 * k2);
     return waves;
 }
 
 // Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z. Six are summed, as powers of
 // one wave. What follows has the heights k^(7 + j)^2 = k^49 k^(14 j + j^2), and is summed as a
-// geometric series. For a thick film its ratio is k^15, which agrees at j = 1, the one that counts.
-// For a thin one, k near 1, it is k^18, which agrees at j = 4: many terms count, and those before
-// the fourth have errors of the other sign than those after it.
+// geometric series. Where r is small or the film thick its ratio is k^15, which agrees at j = 1, the
+// one that counts. Where r is near 1 and the film thin, k near 1, it is close to k^21, which
+// agrees at j = 7: many terms count, and those before it err in the other direction than those
+// after it.
 vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
 {
     // Take powers of the wave.
@@ -91,8 +93,9 @@ vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
     // Add a geometric series from the seventh on.
     vec4 re7 = re4 * re3 - im4 * im3;
     vec4 im7 = re4 * im3 + im4 * re3;
-    vec4 divisor_re = 1.0 - waves.ratio * re1;
-    vec4 divisor_im = waves.ratio * im1;
+    vec4 ratio = waves.k15 - dot(z, z) * waves.tail;
+    vec4 divisor_re = 1.0 - ratio * re1;
+    vec4 divisor_im = ratio * im1;
     vec4 squared = max(divisor_re * divisor_re + divisor_im * divisor_im, THIN_FILM_LEAST);
     return orders + waves.k49 * (re7 * divisor_re - im7 * divisor_im) / squared;
 }

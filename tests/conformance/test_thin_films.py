@@ -45,7 +45,7 @@ STOCK = {
 FILMS_IN = ("thin_film.glsl", "microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
 WRONG = {
-    "phase": ("conductor_bsdf", "-r12 * vec2(re.x, im.x)", "-r12 * vec2(re.x, -im.x)", "film"),
+    "phase": ("conductor_bsdf", "dot(is_s ? im_s : im_p, channel)", "-dot(is_s ? im_s : im_p, channel)", "film"),
     "one order too few": (
         "conductor_bsdf", "waves.k4 * re2 + ", "", "film",
     ),
