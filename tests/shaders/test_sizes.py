@@ -6,20 +6,21 @@ import pytest
 from benchmarks.instructions import compiled, sources
 from tests.support.availability import available
 
-# Node, and the largest factors of text and of SPIR-V instructions: what was counted, and a twentieth.
+# Factors of text and of SPIR-V instructions, as counted. A twentieth more fails, and so does a tenth
+# less, after which they are to be counted anew.
 SIZES = {
     "oren_nayar": (0.95, 1.07),
-    "dielectric_bsdf": (1.79, 1.59),
-    "conductor_bsdf": (1.63, 1.63),
-    "generalized_schlick_bsdf": (1.78, 1.60),
-    "open_pbr_surface": (1.37, 1.23),
-    "standard_surface": (1.47, 1.24),
-    "gltf_pbr": (1.35, 1.29),
-    "UsdPreviewSurface": (1.34, 1.32),
+    "dielectric_bsdf": (1.84, 1.63),
+    "conductor_bsdf": (1.68, 1.69),
+    "generalized_schlick_bsdf": (1.82, 1.65),
+    "open_pbr_surface": (1.39, 1.25),
+    "standard_surface": (1.49, 1.26),
+    "gltf_pbr": (1.37, 1.31),
+    "UsdPreviewSurface": (1.36, 1.34),
     "chiang_hair_bsdf": (1.17, 0.49),
     "sheen_bsdf, conty_kulla": (1.08, 0.93),
     "sheen_bsdf, zeltner": (1.08, 0.93),
-    "subsurface_bsdf": (1.06, 1.02),
+    "subsurface_bsdf": (1.06, 1.03),
     "translucent_bsdf": (1.24, 1.03),
 }
 GROWTH = 1.05
