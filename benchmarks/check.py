@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, ratio
 from mxeon.errors import NotRun
-from mxeon.shaders.hosts import open_host
+from mxeon.hosts import open_host
 
 OTHERS = ("webgl", "vulkan", "wgsl", "slang", "cycles")
 FIELD = ("--host", "all", "--library", "eonlib", "--library", "stock")

@@ -14,10 +14,10 @@ from functools import partial
 import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
-from mxeon.models.albedo import eon_albedo_dir
-from mxeon.models.known_defect_albedos import eon_rho_cubed_albedo_dir
+from mxeon.hosts import cycles
+from mxeon.models.diffuse.albedo import eon_albedo_dir
+from mxeon.models.diffuse.known_defect_albedos import eon_rho_cubed_albedo_dir
 from mxeon.shaders.generation import generate
-from mxeon.shaders.hosts import cycles
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 from mxeon.shaders.scene import FURNACE, Paths, sphere
 

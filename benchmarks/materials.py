@@ -9,7 +9,7 @@ from itertools import count
 import numpy as np
 
 from benchmarks.rounds import Check, Group, clock_of, figure, interleave, ratio, scaled
-from mxeon.shaders.hosts import gl, points, raster
+from mxeon.hosts import gl, points, raster
 from mxeon.shaders.nodes import (
     FLAG,
     OREN_NAYAR,
@@ -90,7 +90,7 @@ def shader(host, node, library):
 class Frame:
     """A material on the sphere, drawn again and again with its uniforms and buffers in place.
 
-    One picture as by `mxeon.shaders.hosts.gl`, with its functions, and the set-up kept apart.
+    One picture as by `mxeon.hosts.gl`, with its functions, and the set-up kept apart.
     """
 
     def __init__(self, host, generated, size):

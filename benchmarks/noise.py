@@ -17,11 +17,11 @@ import numpy as np
 from benchmarks import rivals, shaders
 from benchmarks.lights import LIGHTS, local, points
 from benchmarks.rounds import Group, clock_of, figure, interleave, less, scaled
-from mxeon.figures.renders import CLAY, FRONT, STAGE
-from mxeon.figures.tracer import Trace, trace
-from mxeon.models.brdf import eon_brdf
+from mxeon.hosts import gl
+from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.sampling import cosine_pdf, eon_cltc_pdf, eon_pdf
-from mxeon.shaders.hosts import gl
+from paper.renders import CLAY, FRONT, STAGE
+from paper.tracer import Trace, trace
 
 REFLECTANCE = 0.8
 ROUGHNESS = (0.25, 0.5, 1.0)  # of three balls whose variances are added

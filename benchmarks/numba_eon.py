@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """EON compiled by Numba, to time the package against; needs the extra `numba`, and is not shipped.
 
-Values and errors are those of `mxeon.models`. The formulas of `mxeon.models.formulas` stand here once
+Values and errors are those of `mxeon.models`. The formulas of `mxeon.models.diffuse.formulas` stand here once
 more, written so that the compiler makes vector instructions of them: no calls and no branches.
 """
 
@@ -10,8 +10,8 @@ import math
 import numba
 import numpy as np
 
-from mxeon.models.arguments import UNIT_TOLERANCE, checked, checked_directions
-from mxeon.models.formulas import C1, C2
+from mxeon.models.core.arguments import UNIT_TOLERANCE, checked, checked_directions
+from mxeon.models.diffuse.formulas import C1, C2
 
 TINY = np.finfo(np.float64).tiny
 # Products and sums may become one rounding; NaN and infinity keep their meaning.
@@ -90,7 +90,7 @@ def _four(z, c):
 
 @FAST
 def _fon_loss(mu):
-    """`mxeon.models.formulas.fon_loss`, with a polynomial for the arc tangent."""
+    """`mxeon.models.diffuse.formulas.fon_loss`, with a polynomial for the arc tangent."""
     S = math.sqrt((1.0 - mu) * (1.0 + mu))
     t = mu / (1.0 + S)
     z = t * t
@@ -129,7 +129,7 @@ def _terms(wo, wi, quotient, lost):
 
 @FAST
 def _value(quotient, lost, rho, r):
-    """`mxeon.models.formulas.eon_brdf` of one channel."""
+    """`mxeon.models.diffuse.formulas.eon_brdf` of one channel."""
     d = 1.0 + C1 * r
     multiple = lost * (r * (1.0 + C2 * r) / (C1 - C2))
     lobe = rho * multiple / (d - rho * (r * (C1 - C2)))

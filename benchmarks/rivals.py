@@ -10,8 +10,9 @@ from functools import partial
 import numpy as np
 
 from mxeon.conformance.accuracy import diffuse as tolerances
-from mxeon.models import albedo, sampling
-from mxeon.models import brdf as models
+from mxeon.models import sampling
+from mxeon.models.diffuse import albedo
+from mxeon.models.diffuse import brdf as models
 
 # pi f cos in float32: as the conformance checks.
 VALUE = tolerances.VALUE.value

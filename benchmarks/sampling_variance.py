@@ -10,7 +10,7 @@ CLTC alone does not exist: their density falls to 0 along a line on which EON do
 
 import numpy as np
 
-from mxeon.models.brdf import eon_brdf
+from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.sampling import SAMPLERS, eon_pdf
 
 # From 0.01 on: towards 0 the variance of cosine sampling grows without bound, as its logarithm.

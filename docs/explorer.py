@@ -7,8 +7,8 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 from mxeon.explorer import page, page_data
+from mxeon.hosts.webgl import FLAGS, program
 from mxeon.io.files import write_text
-from mxeon.shaders.hosts.webgl import FLAGS, program
 
 FOLDER = Path(__file__).resolve().parent
 PAGE = FOLDER / "explore.html"

@@ -13,8 +13,8 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
 from mxeon.conformance.nodes.renderer_nodes import NATIVE
 from mxeon.conformance.results import NOT_RUN
 from mxeon.conformance.run import check
+from mxeon.hosts import HOSTS
 from mxeon.report.field import read_field
-from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.library import examples_folder
 
 PAGE = Path(__file__).resolve().parent / "field.html"

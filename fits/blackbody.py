@@ -10,8 +10,8 @@ import numpy as np
 
 from fits.minimax import mp
 from fits.rational import Form, defines, refined
-from mxeon.models.blackbody import BOLTZMANN, LIGHT, PLANCK
-from mxeon.models.colorimetry import CIE_1931, WAVELENGTHS
+from mxeon.models.core.colorimetry import CIE_1931, WAVELENGTHS
+from mxeon.models.media.blackbody import BOLTZMANN, LIGHT, PLANCK
 
 COLDEST, HOTTEST = 800, 25000  # K
 COUNT = 120  # points of the fit

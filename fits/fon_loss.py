@@ -13,7 +13,7 @@ The largest relative error of H is made least, from the closed form alone.
 import numpy as np
 
 from fits.minimax import least_largest, mp
-from mxeon.models import formulas
+from mxeon.models.diffuse import formulas
 
 # One degree less in either costs a factor above ten; the table that this script prints says so.
 DEGREE_P, DEGREE_Q = 4, 3

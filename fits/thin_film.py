@@ -8,7 +8,7 @@ films of up to 1000 nm on each kind of substrate.
 
 import numpy as np
 
-from mxeon.models.ggx_formulas import smith_lambda
+from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import film_curve
 from mxeon.models.thin_film.lobe import film_albedo_dir

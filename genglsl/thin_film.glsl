@@ -11,7 +11,7 @@
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 
 // Their heights v sqrt(2 pi sigma^2) / 1.0685e-7 times the matrix from XYZ under white E to Rec.
-// 709, `XYZ_TO_REC709_E` of mxeon.models.colorimetry: a film that vanishes leaves white alone.
+// 709, `XYZ_TO_REC709_E` of mxeon.models.core.colorimetry: a film that vanishes leaves white alone.
 #define THIN_FILM_RED vec4(2.663585, 0.4841083, -1.666494, -0.480666)
 #define THIN_FILM_GREEN vec4(-0.84281, -0.1531813, 1.956197, 0.03981614)
 #define THIN_FILM_BLUE vec4(0.05384126, 0.009785686, -0.2146441, 1.152291)

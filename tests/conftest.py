@@ -7,8 +7,8 @@ import pytest
 from coverage import Coverage
 
 from mxeon.conformance import reference as reference_host
+from mxeon.hosts import open_host
 from mxeon.jobs.signals import ENDING
-from mxeon.shaders.hosts import open_host
 from tests.support.availability import available, required
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mxeon.errors import NotRun
-from mxeon.shaders.hosts import HOSTS, host_names
+from mxeon.hosts import HOSTS, host_names
 from tests.support.availability import VARIABLE, available, required
 
 ROOT = Path(__file__).parents[1]

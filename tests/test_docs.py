@@ -21,8 +21,8 @@ from docs.upstream.update import figures, written
 from mxeon import albedo, inversion, models, sampling
 from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.known_issues.issue import STOCK
-from mxeon.shaders.hosts import HOSTS
-from mxeon.shaders.hosts.webgl import program
+from mxeon.hosts import HOSTS
+from mxeon.hosts.webgl import program
 from tests.support.tolerances import PRINTED
 
 ROOT = Path(__file__).resolve().parents[1]

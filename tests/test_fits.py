@@ -21,8 +21,8 @@ from fits import (
     ggx_cosine,
 )
 from fits.minimax import least_largest, mp
-from mxeon.models import inversion
-from mxeon.models.ggx_albedo import ggx_albedo_dir
+from mxeon.models.diffuse import inversion
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import eon as shipped
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders import functions as twins

@@ -25,7 +25,7 @@ HOSTS = {
 }
 HEADINGS = ("Measured", "Cause", "Smallest repair", "Why common tests miss it")
 
-# Those of three.js and Babylon.js are measured in tests/shaders/test_host_browser.py.
+# Those of three.js and Babylon.js are measured in tests/hosts/test_browser.py.
 DEFECTS = [defect for defect in ledger.CHECKED if defect.host not in ("three", "babylon")]
 of_each_defect = pytest.mark.parametrize("defect", DEFECTS, ids=lambda each: each.page)
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mxeon.shaders.hosts import open_host
+from mxeon.hosts import open_host
 from mxeon.shaders.nodes import material_text
 
 STOCK, PAIRS = "stock", 1000

@@ -11,19 +11,20 @@ from docs.upstream.hair_figures import OF_HAIR
 from docs.upstream.random_walk import distances, reflectance_of_h
 from docs.upstream.shader_figures import blur_error, throughput_changes
 from docs.upstream.transmission_quantities import inside_albedo
-from mxeon.models import known_defects, thin_film
-from mxeon.models.albedo import qon_albedo_dir
-from mxeon.models.blackbody import blackbody_xyz, kang_xyz
-from mxeon.models.brdf import eon_brdf
-from mxeon.models.burley import burley_albedo_dir
-from mxeon.models.colorimetry import XYZ_TO_REC709
-from mxeon.models.ggx import smith_g1
-from mxeon.models.ggx_albedo import ggx_albedo_dir
-from mxeon.models.known_defect_albedos import qon_fitted_albedo_dir
-from mxeon.models.microfacet_defects import fitted_albedo
-from mxeon.models.pbrlib.subsurface import STEPS, circle_blur
+from mxeon.models import thin_film
+from mxeon.models.core.colorimetry import XYZ_TO_REC709
+from mxeon.models.diffuse import known_defects
+from mxeon.models.diffuse.albedo import qon_albedo_dir
+from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.diffuse.burley import burley_albedo_dir
+from mxeon.models.diffuse.known_defect_albedos import qon_fitted_albedo_dir
+from mxeon.models.media.blackbody import blackbody_xyz, kang_xyz
+from mxeon.models.media.subsurface import subsurface_albedo, subsurface_reflectance
+from mxeon.models.microfacet.defects import fitted_albedo
+from mxeon.models.microfacet.ggx import smith_g1
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.nodes.subsurface import STEPS, circle_blur
 from mxeon.models.sheen import conty_kulla_albedo_dir
-from mxeon.models.subsurface import subsurface_albedo, subsurface_reflectance
 from mxeon.models.transmission.schlick import schlick_ior
 
 PATHS = 20_000  # of a random walk

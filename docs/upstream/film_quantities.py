@@ -4,8 +4,8 @@
 import numpy as np
 
 from mxeon.models import thin_film as films
-from mxeon.models.colorimetry import XYZ_TO_REC709
-from mxeon.models.fresnel import fresnel_conductor, fresnel_schlick
+from mxeon.models.core.colorimetry import XYZ_TO_REC709
+from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_schlick
 from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import film_curve, without_clamp
 from mxeon.models.thin_film.spectrum import film_spectrum_xyz

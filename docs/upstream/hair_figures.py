@@ -4,9 +4,9 @@
 import numpy as np
 from scipy.optimize import brentq
 
-from mxeon.models.fresnel import fresnel_dielectric
 from mxeon.models.hair.defects import LIMITS
 from mxeon.models.hair.parameters import chiang_hair_roughness
+from mxeon.models.microfacet.fresnel import fresnel_dielectric
 
 SWITCH = 12.0  # argument at which a logarithm takes the place of the series of I_0
 TERMS = 10

@@ -7,9 +7,9 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import ShaderError
+from mxeon.hosts import open_host
 from mxeon.shaders.generation import generate
 from mxeon.shaders.generators import context_of, generator_of
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import load_library
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import Scene

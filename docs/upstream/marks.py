@@ -28,7 +28,7 @@ from pathlib import Path
 import MaterialX as mx
 
 from mxeon.errors import NotRun
-from mxeon.shaders.hosts.browser import packages_folder
+from mxeon.hosts.browser import packages_folder
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 MARK = re.compile(rf"({NUMBER})(`?)<!--([^>\n]+?)-->( %)?")

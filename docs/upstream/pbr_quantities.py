@@ -9,16 +9,16 @@ import numpy as np
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.bsdf import MicrofacetProbe
 from mxeon.conformance.samples.batch import Batch
+from mxeon.hosts import open_host
 from mxeon.models import conductor_brdf
-from mxeon.models.burley import burley_albedo_dir
-from mxeon.models.fresnel import fresnel_schlick
+from mxeon.models.diffuse.burley import burley_albedo_dir
 from mxeon.models.hair import chiang_hair_bcsdf
 from mxeon.models.hair.formulas import longitudinal
-from mxeon.models.microfacet_albedo import conductor_albedo_dir, ggx_albedo_dir_anisotropic
+from mxeon.models.microfacet.albedo import conductor_albedo_dir, ggx_albedo_dir_anisotropic
+from mxeon.models.microfacet.fresnel import fresnel_schlick
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import load_library
 
 HEAD = "| quantity | measured | expected |\n|---|---|---|\n"

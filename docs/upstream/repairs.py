@@ -6,7 +6,7 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
-from mxeon.shaders.hosts.browser import packages_folder
+from mxeon.hosts.browser import packages_folder
 
 
 @dataclass(frozen=True)

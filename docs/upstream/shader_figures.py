@@ -10,8 +10,8 @@ import numpy as np
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.bsdf import SchlickProbe
 from mxeon.conformance.samples.batch import Batch
-from mxeon.models.subsurface import diffusion_blur
-from mxeon.shaders.hosts import open_host
+from mxeon.hosts import open_host
+from mxeon.models.media.subsurface import diffusion_blur
 from mxeon.shaders.library import data_folder
 
 REACHES = (

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from docs.upstream.random_walk import distances
-from mxeon.models.subsurface import subsurface_albedo
+from mxeon.hosts import open_host
+from mxeon.models.media.subsurface import subsurface_albedo
 from mxeon.shaders.generation import generate
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 from mxeon.shaders.scene import FURNACE, Paths, sphere
 

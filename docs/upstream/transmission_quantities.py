@@ -4,8 +4,8 @@
 import numpy as np
 
 from mxeon.models import fresnel_schlick
-from mxeon.models.microfacet_albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
-from mxeon.models.microfacet_lobe import DIELECTRIC
+from mxeon.models.microfacet.albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
+from mxeon.models.microfacet.lobe import DIELECTRIC
 from mxeon.models.transmission.btdf import evaluate_btdf
 from mxeon.models.transmission.schlick import (
     READINGS,

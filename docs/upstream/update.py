@@ -31,8 +31,9 @@ from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
 from mxeon.io.files import write_text
-from mxeon.models import albedo, emission, formulas
-from mxeon.models import brdf as models
+from mxeon.models.diffuse import albedo, formulas
+from mxeon.models.diffuse import brdf as models
+from mxeon.models.media import emission
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import OREN_NAYAR, SURFACE, document_text, input_text, node_text

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directional and average albedos: the public name of `mxeon.models.albedo`."""
+"""Directional and average albedos: the public name of `mxeon.models.diffuse.albedo`."""
 
-from mxeon.models.albedo import (
+from mxeon.models.core.quadrature import albedo_dir_quadrature
+from mxeon.models.diffuse.albedo import (
     eon_albedo_avg,
     eon_albedo_dir,
     eon_albedo_dir_approx,
@@ -12,14 +13,13 @@ from mxeon.models.albedo import (
     qon_albedo_avg,
     qon_albedo_dir,
 )
-from mxeon.models.ggx_albedo import ggx_albedo_dir
-from mxeon.models.microfacet_albedo import (
+from mxeon.models.microfacet.albedo import (
     conductor_albedo_dir,
     dielectric_albedo_dir,
     generalized_schlick_albedo_dir,
     ggx_albedo_dir_anisotropic,
 )
-from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 
 __all__ = [
     "albedo_dir_quadrature",

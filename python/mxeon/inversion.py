@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reflectance from a wanted albedo: the public name of `mxeon.models.inversion`."""
+"""Reflectance from a wanted albedo: the public name of `mxeon.models.diffuse.inversion`."""
 
-from mxeon.models.inversion import (
+from mxeon.models.diffuse.inversion import (
     eon_rho_from_albedo_avg,
     eon_rho_from_albedo_avg_approx,
     eon_rho_from_albedo_avg_refit_approx,

@@ -11,7 +11,7 @@ from mxeon.conformance.nodes.bsdf import BSDFS, QUADRATURES
 from mxeon.conformance.probes import bsdf as bsdf_probes
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
-from mxeon.models.ggx_albedo import ggx_albedo_dir
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.shaders.library import standard_folders
 
 SUBJECTS = {subject.model: subject for subject in BSDFS}

@@ -13,7 +13,7 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
-from mxeon.models.layering import Bsdf, add, layer, multiply, throughput
+from mxeon.models.core.layering import Bsdf, add, layer, multiply, throughput
 from mxeon.shaders.library import data_folder
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "upstream"

@@ -29,10 +29,10 @@ from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.conformance.text import check_texts
 from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
+from mxeon.hosts import HOSTS
+from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
-from mxeon.shaders.hosts import HOSTS
-from mxeon.shaders.hosts.base import Host, Identity
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep_checks
 from tests.support.sharing import shared

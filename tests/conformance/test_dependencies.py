@@ -11,9 +11,9 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.run import check, plan, read_run
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.journal_lines import NAME
+from mxeon.hosts.base import Identity
+from mxeon.hosts.gl import Host
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.hosts.base import Identity
-from mxeon.shaders.hosts.gl import Host
 from mxeon.shaders.library import examples_folder
 
 INCLUDE = '<xi:include xmlns:xi="http://www.w3.org/2001/XInclude" href="{}"/>'

@@ -12,11 +12,12 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference import lobes
 from mxeon.conformance.reference.lobes import TAIL, furnace
 from mxeon.errors import NotRun, OutsideModel
-from mxeon.models import pbrlib
-from mxeon.models.brdf import eon_brdf, qon_brdf
-from mxeon.models.burley import burley_albedo_dir
+from mxeon.hosts import open_host
+from mxeon.models import nodes as pbrlib
+from mxeon.models.diffuse.brdf import eon_brdf, qon_brdf
+from mxeon.models.diffuse.burley import burley_albedo_dir
 from mxeon.models.microfacet import generalized_schlick_brdf
-from mxeon.models.microfacet_albedo import conductor_albedo_dir
+from mxeon.models.microfacet.albedo import conductor_albedo_dir
 from mxeon.models.sheen import (
     conty_kulla_albedo_dir,
     conty_kulla_brdf,
@@ -25,7 +26,6 @@ from mxeon.models.sheen import (
 )
 from mxeon.shaders.document.reading import DocumentWarning
 from mxeon.shaders.generation import generate
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, VIEW, Scene, sphere
 from tests.support.documents import connected, lobe, material

@@ -7,7 +7,7 @@ import pytest
 import mxeon
 from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
 from mxeon.models import table
-from mxeon.models.brdf import eon_brdf, lambert_brdf
+from mxeon.models.diffuse.brdf import eon_brdf, lambert_brdf
 from mxeon.models.table import Model
 from mxeon.shaders.functions import names
 

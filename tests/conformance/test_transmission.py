@@ -13,8 +13,8 @@ from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.probes.transmission import transmission_probe_type
 from mxeon.conformance.results import FAILED, PASSED
+from mxeon.hosts import raster
 from mxeon.models.transmission import refraction
-from mxeon.shaders.hosts import raster
 from tests.conformance.test_bsdfs import wrong_library
 from tests.support.hemispheres import view
 

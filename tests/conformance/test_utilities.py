@@ -14,8 +14,8 @@ from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.conformance.samples.batch import Batch
 from mxeon.errors import Unsupported
-from mxeon.models.pbrlib.utilities import UTILITIES
-from mxeon.shaders.hosts import open_host
+from mxeon.hosts import open_host
+from mxeon.models.nodes.utilities import UTILITIES
 from mxeon.shaders.library import standard_folders
 from mxeon.shaders.nodes import document_text
 from tests.support.availability import available

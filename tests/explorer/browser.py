@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from playwright.sync_api import sync_playwright
 
-from mxeon.shaders.hosts.webgl import FLAGS, program
+from mxeon.hosts.webgl import FLAGS, program
 
 # Few pixels, for a software driver.
 SMALL = {"viewport": {"width": 880, "height": 180}, "device_scale_factor": 0.5}

@@ -7,7 +7,7 @@ import pytest
 from mxeon.conformance.accuracy.diffuse import ENVIRONMENT, VALUE
 from mxeon.conformance.pictures.document_pictures import PLAIN, TEXTURED
 from mxeon.explorer import documents
-from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text

@@ -19,11 +19,11 @@ from types import SimpleNamespace
 import numpy as np
 
 import mxeon.models
-from mxeon.models.arrays import ArrayLike
-from mxeon.models.fresnel_formulas import schlick
-from mxeon.models.layering import Bsdf
-from mxeon.models.microfacet_lobe import SCHLICK, Lobe, uncompensated
-from mxeon.models.ranges import RANGES
+from mxeon.models.core.arrays import ArrayLike
+from mxeon.models.core.layering import Bsdf
+from mxeon.models.core.ranges import RANGES
+from mxeon.models.microfacet.fresnel_formulas import schlick
+from mxeon.models.microfacet.lobe import SCHLICK, Lobe, uncompensated
 from mxeon.models.thin_film import PRINTED
 
 UP, LOW = (0.0, 0.6, 0.8), (0.0, 0.6, -0.8)
@@ -59,8 +59,8 @@ VALID = {
 }
 CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for others
 PLUMBING = (
-    "mxeon.models.arguments",
-    "mxeon.models.evaluation",
+    "mxeon.models.core.arguments",
+    "mxeon.models.core.evaluation",
 )  # which has no arguments of its own
 TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried
 

@@ -139,7 +139,7 @@ def _opened(address):
     """A page of this process's browser, without WebGL, and what it says and asks for."""
     from playwright.sync_api import sync_playwright
 
-    from mxeon.shaders.hosts.webgl import FLAGS, program
+    from mxeon.hosts.webgl import FLAGS, program
 
     browser = (
         sync_playwright()

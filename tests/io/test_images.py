@@ -8,8 +8,8 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.errors import ImageError
+from mxeon.hosts.textures import read_latlong, read_texture
 from mxeon.io.images import ImageWarning, read_image, srgb_decoded, srgb_encoded, write_image
-from mxeon.shaders.hosts.textures import read_latlong, read_texture
 
 PIXELS = np.arange(24.0, dtype=np.float32).reshape(2, 4, 3)
 

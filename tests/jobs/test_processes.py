@@ -9,10 +9,10 @@ from importlib.metadata import packages_distributions
 import pytest
 
 from mxeon.errors import NotRun
+from mxeon.hosts.cycles.process import interpreter
 from mxeon.jobs import pool
 from mxeon.jobs.pool import Outcome
 from mxeon.jobs.processes import HOME
-from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import square
 

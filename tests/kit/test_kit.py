@@ -15,6 +15,7 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.cli import main
+from mxeon.hosts.cycles.process import interpreter
 from mxeon.io.images import write_exr
 from mxeon.kit import check as judging
 from mxeon.kit import diagnosis, questions
@@ -27,7 +28,6 @@ from mxeon.kit.noise import ratio, tiles
 from mxeon.kit.views import MATERIALS, SETUP, views
 from mxeon.models import table as reference
 from mxeon.shaders.generation import ApproximationWarning, generate
-from mxeon.shaders.hosts.cycles.process import interpreter
 from tests.support.availability import available
 from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
 

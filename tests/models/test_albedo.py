@@ -5,7 +5,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models.albedo import (
+from mxeon.models.core.quadrature import albedo_dir_quadrature
+from mxeon.models.diffuse.albedo import (
     eon_albedo_avg,
     eon_albedo_dir,
     eon_albedo_dir_approx,
@@ -16,8 +17,7 @@ from mxeon.models.albedo import (
     qon_albedo_avg,
     qon_albedo_dir,
 )
-from mxeon.models.brdf import eon_brdf
-from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from tests.support import oracle, tolerances
 from tests.support.cases import parameter

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon.models.artistic_ior import artistic_ior, artistic_parameters
-from mxeon.models.conty_kulla import conty_kulla_albedo_dir
+from mxeon.models.microfacet.artistic_ior import artistic_ior, artistic_parameters
+from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
 from mxeon.models.transmission.refraction import refraction_direction
 from tests.fuzz import arguments
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from mxeon.models.fresnel import (
+from mxeon.models.microfacet.fresnel import (
     fresnel_conductor,
     fresnel_conductor_avg,
     fresnel_dielectric,

@@ -5,8 +5,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models import inversion
-from mxeon.models.albedo import eon_albedo_avg, eon_albedo_dir, fon_albedo_avg, fon_albedo_dir
+from mxeon.models.diffuse import inversion
+from mxeon.models.diffuse.albedo import (
+    eon_albedo_avg,
+    eon_albedo_dir,
+    fon_albedo_avg,
+    fon_albedo_dir,
+)
 from tests.support import tolerances
 
 # Colors and roughness on [0, 1], and at all magnitudes beside 0 and 1.

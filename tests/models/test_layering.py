@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.models.layering import Bsdf, add, layer, mix, multiply, throughput
+from mxeon.models.core.layering import Bsdf, add, layer, mix, multiply, throughput
 
 # Values with the cosine, integrated: a lobe that reflects E has value E and throughput 1 - E. The
 # numbers are multiples of 1/64, so that the sums and products below are exact.

@@ -17,9 +17,9 @@ from mxeon.models import (
     smith_g2,
     smith_g2_anisotropic,
 )
-from mxeon.models.ggx_albedo import ggx_albedo_dir
-from mxeon.models.microfacet_defects import MICROFACET_DEFECTS, NODES, averaged_channels
-from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
+from mxeon.models.microfacet.defects import MICROFACET_DEFECTS, NODES, averaged_channels
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere
 

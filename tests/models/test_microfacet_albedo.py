@@ -19,9 +19,8 @@ from mxeon.models import (
     dielectric_brdf,
     fresnel_dielectric,
     generalized_schlick_brdf,
-    ggx_albedo,
-    slopes,
 )
+from mxeon.models.microfacet import ggx_albedo, slopes
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere
 

@@ -7,10 +7,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models import arguments as validation
-from mxeon.models import evaluation, threads, tiling
-from mxeon.models.albedo import fon_albedo_avg, fon_albedo_dir_approx
-from mxeon.models.brdf import eon_brdf, fon_brdf, lambert_brdf, oren_nayar_brdf
+from mxeon.models import threads
+from mxeon.models.core import arguments as validation
+from mxeon.models.core import evaluation, tiling
+from mxeon.models.diffuse.albedo import fon_albedo_avg, fon_albedo_dir_approx
+from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf, lambert_brdf, oren_nayar_brdf
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from tests.support import oracle, tolerances
 from tests.support.cases import direction, pairs, parameter

@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 
-from mxeon.models import materialx_fits
-from mxeon.models.layering import Bsdf, layer
-from mxeon.models.pbrlib import NODES, node
-from mxeon.models.pbrlib.combinations import COMBINATIONS, NESTED, ROUGHNESS
-from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
-from mxeon.models.quadrature import hemisphere_nodes
+from mxeon.models.core.layering import Bsdf, layer
+from mxeon.models.core.quadrature import hemisphere_nodes
+from mxeon.models.microfacet import materialx_fits
+from mxeon.models.nodes import NODES, node
+from mxeon.models.nodes.combinations import COMBINATIONS, NESTED, ROUGHNESS
+from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
 
 COUNT = 6

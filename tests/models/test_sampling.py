@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from mxeon.models.albedo import eon_albedo_dir
-from mxeon.models.brdf import eon_brdf, fon_brdf
-from mxeon.models.formulas import C1
+from mxeon.models.diffuse.albedo import eon_albedo_dir
+from mxeon.models.diffuse.brdf import eon_brdf, fon_brdf
+from mxeon.models.diffuse.formulas import C1
 from mxeon.models.sampling import (
     SAMPLERS,
     cltc,

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from mxeon.models.brdf import eon_brdf
-from mxeon.models.formulas import C1, C2, fon_loss, fon_quotient
+from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.diffuse.formulas import C1, C2, fon_loss, fon_quotient
 from mxeon.models.sampling import eon as eon_sampling
 from mxeon.models.sampling import eon_pdf
 from tests.support import tolerances

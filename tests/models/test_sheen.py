@@ -5,11 +5,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mxeon.models.burley import burley_albedo_dir, burley_brdf
-from mxeon.models.conty_kulla import conty_kulla_albedo_dir
-from mxeon.models.quadrature import albedo_dir_quadrature, hemisphere_nodes
+from mxeon.models.core.quadrature import albedo_dir_quadrature, hemisphere_nodes
+from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
+from mxeon.models.diffuse.translucent import translucent_btdf
 from mxeon.models.sheen import conty_kulla_brdf, zeltner_albedo_dir, zeltner_brdf
-from mxeon.models.translucent import translucent_btdf
+from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
 from tests.support import tolerances
 
 BRDFS = (conty_kulla_brdf, zeltner_brdf, burley_brdf)

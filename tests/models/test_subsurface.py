@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from docs.upstream.random_walk import distances, reflectance_of_h
-from mxeon.models.subsurface import (
+from mxeon.models.media.subsurface import (
     GAIN,
     LINEAR,
     LOSS,

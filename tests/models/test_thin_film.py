@@ -6,9 +6,9 @@ import pytest
 import tmm
 
 from docs.upstream import film_quantities
-from mxeon.models.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
-from mxeon.models.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
-from mxeon.models.pbrlib.thin_films import FILM_NODES
+from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
+from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
+from mxeon.models.nodes.thin_films import FILM_NODES
 from mxeon.models.thin_film import (
     MATERIALX,
     TEXT,

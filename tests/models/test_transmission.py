@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from mxeon.models import fresnel_dielectric, smith_g1, smith_g2
-from mxeon.models.microfacet_albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
-from mxeon.models.microfacet_lobe import DIELECTRIC
+from mxeon.models.microfacet.albedo import dielectric_albedo_dir, generalized_schlick_albedo_dir
+from mxeon.models.microfacet.lobe import DIELECTRIC
 from mxeon.models.transmission.btdf import dielectric_btdf, evaluate_btdf
 from mxeon.models.transmission.refraction import (
     Facet,

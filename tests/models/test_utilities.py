@@ -4,9 +4,6 @@
 import numpy as np
 import pytest
 
-from mxeon.models.artistic_ior import artistic_ior, artistic_parameters, normal_reflectance
-from mxeon.models.blackbody import blackbody, blackbody_xyz, planck_radiance
-from mxeon.models.fresnel import fresnel_conductor
 from mxeon.models.hair.parameters import (
     EUMELANIN,
     PHEOMELANIN,
@@ -14,8 +11,19 @@ from mxeon.models.hair.parameters import (
     chiang_hair_roughness,
     deon_hair_absorption_from_melanin,
 )
-from mxeon.models.pbrlib.utilities import UTILITIES, node
-from mxeon.models.roughness import glossiness_anisotropy, roughness_anisotropy, roughness_dual
+from mxeon.models.media.blackbody import blackbody, blackbody_xyz, planck_radiance
+from mxeon.models.microfacet.artistic_ior import (
+    artistic_ior,
+    artistic_parameters,
+    normal_reflectance,
+)
+from mxeon.models.microfacet.fresnel import fresnel_conductor
+from mxeon.models.microfacet.roughness import (
+    glossiness_anisotropy,
+    roughness_anisotropy,
+    roughness_dual,
+)
+from mxeon.models.nodes.utilities import UTILITIES, node
 
 RNG = np.random.default_rng(1)
 SHARES = RNG.random((2, 10_000))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy import special
 
-from mxeon.models import volume
-from mxeon.models.pbrlib.media import (
+from mxeon.models.media import volume
+from mxeon.models.nodes.media import (
     AMOUNT,
     COMBINED_MEDIA,
     FACTOR,

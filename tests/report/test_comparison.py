@@ -11,9 +11,9 @@ import pytest
 from mxeon.cli import main
 from mxeon.conformance.records import read_record
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Picture, Result, Run
+from mxeon.hosts.base import Identity
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare
-from mxeon.shaders.hosts.base import Identity
 
 PLACE = "gl, eonlib, value, clay"
 

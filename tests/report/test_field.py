@@ -22,10 +22,10 @@ from mxeon.conformance.results import (
     Result,
     Run,
 )
+from mxeon.hosts.base import Identity
 from mxeon.models import table as reference
 from mxeon.report import write, write_field
 from mxeon.report.field import CHECKS, read_field
-from mxeon.shaders.hosts.base import Identity
 
 EON = SUBJECTS[0]
 TITLE = reference.model("eon").title

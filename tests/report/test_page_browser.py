@@ -10,8 +10,8 @@ import pytest
 from playwright.sync_api import sync_playwright
 
 from mxeon.conformance.run import check
+from mxeon.hosts.webgl import program
 from mxeon.report import write
-from mxeon.shaders.hosts.webgl import program
 from mxeon.shaders.library import examples_folder
 from tests.support.plans import keep_checks
 

@@ -31,11 +31,11 @@ from mxeon.conformance.results import (
     Run,
     summarize,
 )
+from mxeon.hosts.base import Identity
 from mxeon.io.images import difference_scale, srgb_encoded
 from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.report.plots import SHOWN_SIZE, difference_pixels
-from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import sphere
 from tests.support.faults import room_for
 

@@ -12,9 +12,9 @@ import MaterialX as mx
 import pytest
 
 from mxeon.errors import DocumentError
+from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
-from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.library import data_folder, examples_folder, load_library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available

@@ -5,8 +5,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from mxeon.hosts.textures import irradiance, read_latlong, read_texture
 from mxeon.io.images import read_image
-from mxeon.shaders.hosts.textures import irradiance, read_latlong, read_texture
 
 # Sums over a map of 64 x 128 pixels miss the integral of a cosine by the square of a pixel's angle,
 # (pi / 64)^2, a twelfth of it for the middle of an interval; ten times that.

@@ -8,10 +8,10 @@ import pytest
 from mxeon.conformance.pictures.document_pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import InputError
+from mxeon.hosts import open_host
+from mxeon.hosts.base import LobeWarning
+from mxeon.hosts.cycles import tracing
 from mxeon.shaders.generation import generate
-from mxeon.shaders.hosts import open_host
-from mxeon.shaders.hosts.base import LobeWarning
-from mxeon.shaders.hosts.cycles import tracing
 from mxeon.shaders.inner_lobes import inner_lobes
 from mxeon.shaders.nodes import document_text
 from mxeon.shaders.scene import FURNACE, MOST_SAMPLES, SIDE, Paths

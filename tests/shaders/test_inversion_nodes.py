@@ -7,8 +7,8 @@ import MaterialX as mx
 import numpy as np
 import pytest
 
-from mxeon.models.formulas import C1, C2
-from mxeon.models.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
+from mxeon.models.diffuse.formulas import C1, C2
+from mxeon.models.diffuse.inversion import eon_rho_from_albedo_avg, eon_rho_from_albedo_normal
 from mxeon.shaders.generation import TARGETS, generate
 from mxeon.shaders.library import eonlib_folder, examples_folder
 from mxeon.shaders.scene import FURNACE, Scene

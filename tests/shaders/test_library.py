@@ -12,10 +12,10 @@ import MaterialX as mx
 import pytest
 
 from mxeon.errors import InputError
-from mxeon.models.albedo import fon_albedo_avg
+from mxeon.hosts.cycles.process import interpreter
+from mxeon.models.diffuse.albedo import fon_albedo_avg
 from mxeon.shaders import library
 from mxeon.shaders.generation import TARGETS, generate
-from mxeon.shaders.hosts.cycles.process import interpreter
 from mxeon.shaders.nodes import EON, NODEDEFS, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import connected, lobe, material

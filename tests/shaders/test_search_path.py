@@ -11,11 +11,11 @@ from mxeon.cli import batch, main
 from mxeon.conformance.pictures.document_pictures import judge_document
 from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import DocumentError, ImageError
+from mxeon.hosts import open_host
 from mxeon.shaders.document.notes import MissingFileWarning
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import CodeWarning, generate
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.scene import Paths
 from tests.support.documents import connected, lobe, material
 

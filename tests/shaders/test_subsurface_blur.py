@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from docs.upstream.update import FOLDER
-from mxeon.models.pbrlib.subsurface import circle_blur
-from mxeon.models.subsurface import diffusion_blur
-from mxeon.shaders.hosts import open_host
+from mxeon.hosts import open_host
+from mxeon.models.media.subsurface import diffusion_blur
+from mxeon.models.nodes.subsurface import circle_blur
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere

@@ -7,8 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from mxeon.models import albedo, formulas
-from mxeon.models import brdf as models
+from mxeon.models.diffuse import albedo, formulas
+from mxeon.models.diffuse import brdf as models
 from mxeon.models.sampling import cltc, eon, ltc
 from mxeon.shaders import functions as twins
 from mxeon.shaders.library import data_folder

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from mxeon.errors import NotRun
+from mxeon.hosts import open_host
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.values import plain
 from mxeon.shaders.generation import TARGETS, generate
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import load_library
 from mxeon.shaders.scene import FURNACE
 from tests.support.documents import material

@@ -11,9 +11,9 @@ from mxeon.cli import main
 from mxeon.conformance.results import NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import InterfaceError, NotRun
+from mxeon.hosts import open_host
 from mxeon.shaders import closure_calls, generation, generators, library
 from mxeon.shaders.closure_calls import check_closure_calls
-from mxeon.shaders.hosts import open_host
 from mxeon.shaders.library import UntestedVersionWarning, load_library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.documents import lobe, material

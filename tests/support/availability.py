@@ -10,7 +10,7 @@ from contextlib import contextmanager
 import pytest
 
 from mxeon.errors import NotRun
-from mxeon.shaders.hosts import host_names
+from mxeon.hosts import host_names
 
 VARIABLE = "MXEON_REQUIRE"
 

@@ -6,7 +6,7 @@ import numpy as np
 from mxeon.conformance.results import FAILED, AlbedoCurve, Control, Picture, Result
 from mxeon.conformance.run.journal import Journal
 from mxeon.conformance.run.plan import Findings, Plan, Task
-from mxeon.shaders.hosts.base import Identity
+from mxeon.hosts.base import Identity
 
 TASKS = tuple(Task("value", name, "gl", "eonlib") for name in "abc")
 OPTIONS, FILES = {"--maxSize": "9"}, {"clay.mtlx": "00", "clay.png": "01"}

@@ -15,9 +15,9 @@ from mxeon.errors import InputError, MxeonError, NotRun, printable
 from mxeon.jobs.timeouts import check_timeout
 
 if TYPE_CHECKING:
+    from mxeon.hosts.base import Host
     from mxeon.shaders.document.policy import Policy
     from mxeon.shaders.generation import Shader
-    from mxeon.shaders.hosts.base import Host
     from mxeon.shaders.scene import Paths
 
 
@@ -159,9 +159,9 @@ def picture(
         If the material has a lobe that the picture cannot show right.
     """
     from mxeon.conformance import reference
+    from mxeon.hosts import open_host
+    from mxeon.hosts.base import LobeWarning
     from mxeon.shaders import scene as scenes
-    from mxeon.shaders.hosts import open_host
-    from mxeon.shaders.hosts.base import LobeWarning
 
     setting = scenes.scene(scene)
     if environment:

@@ -7,8 +7,8 @@ from mxeon.cli import arguments
 from mxeon.cli.output import progress_bar
 from mxeon.cli.verdict import show_run
 from mxeon.errors import InputError
+from mxeon.hosts import host_names
 from mxeon.jobs.timeouts import WAIT
-from mxeon.shaders.hosts import host_names
 
 
 def add_parser(commands: arguments.Commands) -> None:

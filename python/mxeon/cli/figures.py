@@ -1,23 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon figures`: make the figures of the EON paper and measure its claims."""
+"""`mxeon figures`: make the figures of the EON paper and measure its claims, in a checkout.
+
+They lie in the folder `paper` of the repository, which the wheel does not hold.
+"""
 
 import argparse
+import sys
 
 from mxeon.cli import arguments
 from mxeon.cli.output import progress_bar
-from mxeon.errors import PASSED
+from mxeon.errors import PASSED, NotRun
 
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its options."""
-    summary = "make the figures of the EON paper and measure its claims"
+    summary = "make the figures of the EON paper and measure its claims; needs a checkout"
     command = arguments.add_command(commands, "figures", summary, run)
     command.add_argument("folder", metavar="DIR", help="where to write")
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the figures and print the path of their page; return the exit status."""
-    from mxeon.figures import figures
+    from mxeon.shaders.library import data_folder
+
+    checkout = data_folder()
+    if not (checkout / "paper" / "__init__.py").is_file():
+        raise NotRun(
+            "figures: they are not part of the wheel; "
+            "install a checkout of the repository: pip install --editable '.[report]'"
+        )
+    sys.path.append(str(checkout))  # as the last folder, which hides no package
+    from paper import figures
 
     print(figures(options.folder, progress_bar("mxeon figures", "figure")))
     return PASSED

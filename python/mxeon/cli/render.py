@@ -8,7 +8,7 @@ from mxeon.cli import arguments
 from mxeon.cli.batch import picture, run_batch
 from mxeon.cli.output import warn
 from mxeon.errors import PASSED
-from mxeon.shaders.hosts import HOSTS
+from mxeon.hosts import HOSTS
 from mxeon.shaders.scene import Paths
 
 

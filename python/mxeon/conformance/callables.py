@@ -21,8 +21,8 @@ from mxeon.conformance.results import PASSED, Run
 from mxeon.conformance.samples.batch import PAIRS, SEED, Array, Batch, directions, random_inputs
 from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
 from mxeon.errors import InputError
+from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
-from mxeon.shaders.hosts.base import Host, Identity
 
 # Checks of values alone: a function has no environment branch and no flag.
 KEYS = ("value", "albedo", "black", "reciprocity", "lambert", "inputs", "finite")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import InputError
-from mxeon.shaders.hosts.base import Identity
+from mxeon.hosts.base import Identity
 
 PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
 VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)

@@ -9,8 +9,8 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.errors import NotRun
 from mxeon.explorer.data import Models
+from mxeon.hosts import open_host
 from mxeon.models.table import KNOWN_DEFECTS, MODELS
-from mxeon.shaders.hosts import open_host
 
 
 @lru_cache

@@ -14,10 +14,10 @@ import numpy as np
 
 from mxeon.errors import MxeonError, printable
 from mxeon.explorer.data import Controls, Models, Port, ShaderSource, Texels
+from mxeon.hosts.textures import read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Input, Shader, generate
-from mxeon.shaders.hosts.textures import read_texture
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
 LIBRARIES = ("eonlib", "stock")

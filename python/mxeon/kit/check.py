@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 import mxeon
 from mxeon.conformance.results import FAILED, NOT_RUN, Picture, Result, Run
 from mxeon.errors import InputError
+from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
 from mxeon.kit.expected import judged, pixel_means
 from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
@@ -23,7 +24,6 @@ from mxeon.kit.questions import QUESTIONS, Question, answer
 from mxeon.kit.submitted import Missing, Unusable, read_render
 from mxeon.kit.views import MATERIALS, View, views
 from mxeon.models import table as reference
-from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import sphere
 
 RENDERER = "renderer"

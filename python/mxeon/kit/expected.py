@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.kit.views import Material, View
-from mxeon.models.quadrature import albedo_dir_quadrature
+from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 

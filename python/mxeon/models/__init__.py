@@ -4,7 +4,8 @@
 The models import NumPy alone. A call uses the caller's thread, unless `threads` asks for more.
 """
 
-from mxeon.models.brdf import (
+from mxeon.models.core.evaluation import threads
+from mxeon.models.diffuse.brdf import (
     eon_brdf,
     eon_brdf_approx,
     fon_brdf,
@@ -14,8 +15,8 @@ from mxeon.models.brdf import (
     qon_footnote_brdf,
     qon_fujii_brdf,
 )
-from mxeon.models.evaluation import threads
-from mxeon.models.fresnel import (
+from mxeon.models.microfacet import conductor_brdf, dielectric_brdf, generalized_schlick_brdf
+from mxeon.models.microfacet.fresnel import (
     fresnel_conductor,
     fresnel_conductor_avg,
     fresnel_dielectric,
@@ -23,8 +24,7 @@ from mxeon.models.fresnel import (
     fresnel_schlick,
     fresnel_schlick_avg,
 )
-from mxeon.models.ggx import ggx_ndf, smith_g1, smith_g2, smith_g2_anisotropic
-from mxeon.models.microfacet import conductor_brdf, dielectric_brdf, generalized_schlick_brdf
+from mxeon.models.microfacet.ggx import ggx_ndf, smith_g1, smith_g2, smith_g2_anisotropic
 
 __all__ = [
     "conductor_brdf",

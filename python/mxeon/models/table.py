@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import albedo, known_defect_albedos, known_defects
-from mxeon.models import brdf as models
-from mxeon.models.arrays import Array, ArrayLike
-from mxeon.models.burley import burley_albedo_dir, burley_brdf
-from mxeon.models.ranges import RANGES
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.ranges import RANGES
+from mxeon.models.diffuse import albedo, known_defect_albedos, known_defects
+from mxeon.models.diffuse import brdf as models
+from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from typing import Any
 from mxeon.conformance.records import ERRORS, read_record, spelled
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, VERDICTS, Result
 from mxeon.errors import InputError
+from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
 from mxeon.report import JSON_FORMAT
-from mxeon.shaders.hosts.base import Identity
 
 FACTOR = 2.0  # a figure that changes by less is not reported
 ORDER = (PASSED, DIFFERS, NOT_RUN, FAILED)

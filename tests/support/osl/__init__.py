@@ -13,9 +13,9 @@ import tempfile
 from pathlib import Path
 
 from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.hosts.testrender import Host, planes
+from mxeon.hosts.testrender.programs import VARIABLES, find_program
 from mxeon.shaders.generation import generate
-from mxeon.shaders.hosts.testrender import Host, planes
-from mxeon.shaders.hosts.testrender.programs import VARIABLES, find_program
 from mxeon.shaders.scene import Scene
 
 FOLDER = Path(__file__).parent

@@ -21,8 +21,8 @@ from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import RIM, SEED
 from mxeon.conformance.samples.measurement import scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
-from mxeon.models.emission import cone_cosine, cone_width
-from mxeon.shaders.hosts.base import Host
+from mxeon.hosts.base import Host
+from mxeon.models.media.emission import cone_cosine, cone_width
 
 UNIT = "radiance"
 QUADRATURE = 1e-6  # of the weighted sum on the equations

@@ -10,7 +10,7 @@ from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.shaders.hosts.base import Host
+from mxeon.hosts.base import Host
 
 COUNT = 1 << 14
 POWER = """float mxeon_power(float x, float y)

@@ -14,7 +14,7 @@ from mxeon.conformance.nodes.utilities import VALUES
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.measurement import absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
-from mxeon.shaders.hosts.base import Host
+from mxeon.hosts.base import Host
 
 COUNT = 1 << 12
 LEAST = 1e-4  # of numbers whose logarithm is measured

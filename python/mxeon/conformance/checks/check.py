@@ -11,7 +11,7 @@ from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.measurement import Measurement, Metric
 from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.shaders.hosts.base import Host
+from mxeon.hosts.base import Host
 
 
 @dataclass(frozen=True)

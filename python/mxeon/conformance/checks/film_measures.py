@@ -13,7 +13,7 @@ from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
-from mxeon.models.ggx_formulas import smith_lambda
+from mxeon.models.microfacet.ggx_formulas import smith_lambda
 
 Values = Callable[[Batch], Array]
 TURNED = (-1.0, -1.0, 1.0)

@@ -13,7 +13,7 @@ from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.models.hair.defects import FORMS, TILTED
-from mxeon.models.pbrlib.hair import HAIR_NODE
+from mxeon.models.nodes.hair import HAIR_NODE
 
 CLAIMS = {
     "each_lobe": "R, TT, and TRT with all beyond, each apart, are those of the equations.",

@@ -6,7 +6,7 @@ from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all
 from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.models.pbrlib import NODES
+from mxeon.models.nodes import NODES
 
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 

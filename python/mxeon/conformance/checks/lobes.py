@@ -30,10 +30,10 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import ON_SPHERES, sphere_cases
 from mxeon.conformance.samples.measurement import worst_of
 from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.models.pbrlib import NODES
-from mxeon.models.pbrlib.hair import HAIR_NODE
-from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE
-from mxeon.shaders.hosts import front_lit_only
+from mxeon.hosts import front_lit_only
+from mxeon.models.nodes import NODES
+from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")

@@ -28,9 +28,9 @@ from mxeon.conformance.samples.measurement import (
     point_of,
     worst_of,
 )
+from mxeon.hosts import front_lit_only
 from mxeon.models import table as reference
-from mxeon.models.quadrature import albedo_dir_quadrature
-from mxeon.shaders.hosts import front_lit_only
+from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.shaders.nodes import FLAG
 
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))

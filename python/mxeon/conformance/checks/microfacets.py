@@ -8,7 +8,7 @@ from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_in
 from mxeon.conformance.diagnosis import inputs as wiring
 from mxeon.conformance.nodes.bsdf import MICROFACET, MICROFACET_KINDS
 from mxeon.conformance.samples.tolerance import Tolerance
-from mxeon.models.pbrlib.microfacets import MICROFACET_NODES
+from mxeon.models.nodes.microfacets import MICROFACET_NODES
 
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of the models that several checks hold for."""
 
-from mxeon.models.pbrlib import NODES
-from mxeon.models.pbrlib.combinations import COMBINATIONS
-from mxeon.models.pbrlib.emissions import COMBINED_EMISSIONS, EMISSIONS
-from mxeon.models.pbrlib.hair import HAIR_NODE
-from mxeon.models.pbrlib.media import COMBINED_MEDIA, MEDIA
-from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE
+from mxeon.models.nodes import NODES
+from mxeon.models.nodes.combinations import COMBINATIONS
+from mxeon.models.nodes.emissions import COMBINED_EMISSIONS, EMISSIONS
+from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.media import COMBINED_MEDIA, MEDIA
+from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 
 FRAMED = (*(row.name for row in NODES), "burley_lambert", HAIR_NODE.name)
 # The checked frames turn from pixel to pixel: to subsurface scattering that is a curved surface.

@@ -8,7 +8,7 @@ from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, point_of, worst_of
 from mxeon.conformance.samples.uneven_environment import sky, sky_map
-from mxeon.models.ggx import smith_g1
+from mxeon.models.microfacet.ggx import smith_g1
 from mxeon.models.transmission.refraction import refraction_direction
 
 BRANCHES = ("direct", "environment", "transmission")

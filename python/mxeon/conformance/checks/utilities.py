@@ -9,7 +9,7 @@ from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
 from mxeon.conformance.diagnosis import inputs as wiring
 from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES
-from mxeon.models.pbrlib.utilities import UTILITIES
+from mxeon.models.nodes.utilities import UTILITIES
 
 NAMES = tuple(row.category for row in UTILITIES)
 

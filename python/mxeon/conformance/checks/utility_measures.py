@@ -13,8 +13,8 @@ from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, point_of, worst_of
-from mxeon.models.artistic_ior import normal_reflectance
-from mxeon.models.pbrlib.utilities import LARGEST_REFLECTIVITY
+from mxeon.models.microfacet.artistic_ior import normal_reflectance
+from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY
 
 
 def value(probe: Probe, metric: Metric) -> Measurement:

@@ -11,7 +11,7 @@ from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control,
 from mxeon.conformance.samples.measurement import Measurement
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, ShaderError
-from mxeon.shaders.hosts.base import RendererWarning
+from mxeon.hosts.base import RendererWarning
 
 
 def judge_measurements(

@@ -21,8 +21,8 @@ from mxeon.conformance.samples.batch import SEED, Array
 from mxeon.conformance.samples.measurement import Measurement, absolute
 from mxeon.conformance.text.syntax import braces
 from mxeon.errors import NotRun, ShaderError
-from mxeon.models import albedo, inversion
-from mxeon.shaders.hosts.base import Host
+from mxeon.hosts.base import Host
+from mxeon.models.diffuse import albedo, inversion
 from mxeon.shaders.nodes import (
     INVERSIONS,
     OREN_NAYAR,

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from mxeon.conformance.samples.batch import GRAZING, SEED, Array, directions
-from mxeon.models import albedo, formulas, sampling
+from mxeon.models import sampling
+from mxeon.models.diffuse import albedo, formulas
 from mxeon.models.sampling import cltc, eon, hemisphere, ltc
 from mxeon.shaders import functions
 

@@ -21,8 +21,8 @@ from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.samples.measurement import Measurement, absolute, relative
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts.base import Host
 from mxeon.shaders import functions
-from mxeon.shaders.hosts.base import Host
 
 SUBJECT = "shader twins"  # the name in reports
 KINDS = ("pairs", "pictures", "planes")  # of probes whose hosts evaluate functions

@@ -13,8 +13,8 @@ from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
-from mxeon.models import pbrlib
-from mxeon.models.pbrlib.node import Inputs, PbrNode
+from mxeon.models import nodes as pbrlib
+from mxeon.models.nodes.node import Inputs, PbrNode
 from mxeon.shaders.nodes import material_text
 
 # Kinds of probes; see `mxeon.conformance.probes.bsdf`.
@@ -112,7 +112,7 @@ PORTS: dict[str, tuple[Port, ...]] = {
 
 @dataclass(frozen=True)
 class BsdfSubject:
-    """A mode of a node of `mxeon.models.pbrlib`.
+    """A mode of a node of `mxeon.models.nodes`.
 
     Attributes
     ----------

@@ -7,8 +7,8 @@ from typing import Any
 from mxeon.conformance.nodes.bsdf import COMBINED, NESTED, BsdfSubject
 from mxeon.conformance.nodes.ports import Port, color
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
-from mxeon.models.pbrlib import combinations
-from mxeon.models.pbrlib.combinations import AMOUNT, AMOUNT_ABOVE, COMBINATIONS, FACTOR, ROUGHNESS
+from mxeon.models.nodes import combinations
+from mxeon.models.nodes.combinations import AMOUNT, AMOUNT_ABOVE, COMBINATIONS, FACTOR, ROUGHNESS
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 
 
@@ -54,7 +54,7 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 
 @dataclass(frozen=True)
 class CombinedSubject(BsdfSubject):
-    """A node of `mxeon.models.pbrlib.combinations`."""
+    """A node of `mxeon.models.nodes.combinations`."""
 
     @property
     def title(self) -> str:

@@ -13,7 +13,7 @@ from mxeon.conformance.nodes.bsdf import broadcast_inputs
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw, materials
 from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.models.pbrlib.emissions import (
+from mxeon.models.nodes.emissions import (
     AMOUNT,
     BASE,
     COMBINED_EMISSIONS,
@@ -66,7 +66,7 @@ DARK = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 @dataclass(frozen=True)
 class EmissionSubject:
-    """A row of `mxeon.models.pbrlib.emissions`.
+    """A row of `mxeon.models.nodes.emissions`.
 
     Attributes
     ----------

@@ -13,8 +13,8 @@ from mxeon.conformance.nodes.ports import Port, color
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
-from mxeon.models.pbrlib.hair import HAIR_NODE
-from mxeon.models.pbrlib.node import Inputs
+from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.node import Inputs
 
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # of random pairs
 MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # which the node of artistic roughness reaches

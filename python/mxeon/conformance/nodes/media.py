@@ -13,7 +13,7 @@ from mxeon.conformance.nodes.emission import MEDIUM
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw
 from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.models.pbrlib.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
+from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 
 LARGEST = 4.0  # coefficient, 1/m
@@ -35,7 +35,7 @@ PORTS = """    <input name="top" type="BSDF" nodename="top" />
 
 @dataclass(frozen=True)
 class MediumSubject:
-    """A row of `mxeon.models.pbrlib.media`.
+    """A row of `mxeon.models.nodes.media`.
 
     Attributes
     ----------

@@ -7,7 +7,7 @@ import numpy as np
 
 from mxeon.conformance.nodes.bsdf import BsdfSubject, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.models.pbrlib.subsurface import SUBSURFACE_NODE, circle_blur
+from mxeon.models.nodes.subsurface import SUBSURFACE_NODE, circle_blur
 
 LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from mxeon.conformance.nodes.bsdf import FILM_PAIRS, BsdfSubject
 from mxeon.conformance.samples.batch import Array
-from mxeon.models.pbrlib.thin_films import FILM_NODES
+from mxeon.models.nodes.thin_films import FILM_NODES
 
 THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 

@@ -4,7 +4,7 @@
 from dataclasses import dataclass, replace
 
 from mxeon.conformance.nodes.bsdf import SCHLICK, BsdfSubject
-from mxeon.models.pbrlib.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
+from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
 
 # Kinds of probes.
 TRANSMITTED, SCHLICK_TRANSMITTED = TRANSMISSION_KINDS = (
@@ -15,7 +15,7 @@ TRANSMITTED, SCHLICK_TRANSMITTED = TRANSMISSION_KINDS = (
 
 @dataclass(frozen=True)
 class TransmissionSubject(BsdfSubject):
-    """A node of `mxeon.models.pbrlib.transmissions`."""
+    """A node of `mxeon.models.nodes.transmissions`."""
 
     @property
     def kind(self) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, draw, draw_edges
 from mxeon.conformance.nodes.subject import Changes
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.models.pbrlib.utilities import UTILITIES, UtilityNode, Values
+from mxeon.models.nodes.utilities import UTILITIES, UtilityNode, Values
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
 VALUES, OSL_VALUES = "utility values", "utility values in OSL"  # kinds of probes
@@ -47,7 +47,7 @@ PORTS = {
 
 @dataclass(frozen=True)
 class UtilitySubject:
-    """An output of a node of `mxeon.models.pbrlib.utilities`.
+    """An output of a node of `mxeon.models.nodes.utilities`.
 
     Attributes
     ----------

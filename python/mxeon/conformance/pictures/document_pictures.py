@@ -18,12 +18,12 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture,
 from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
-from mxeon.models.pbrlib import NODES
+from mxeon.hosts import host_row
+from mxeon.hosts.base import Host
+from mxeon.models.nodes import NODES
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
-from mxeon.shaders.hosts import host_row
-from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.nodes import BSDF_INPUTS
 from mxeon.shaders.scene import Scene, sphere
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from mxeon.conformance.results import FAILED, PASSED, Control, Result
 from mxeon.errors import DocumentError, NotRun
+from mxeon.hosts import host_row
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, CodeWarning, generate
-from mxeon.shaders.hosts import host_row
 
 CHECK = "document"
 CLAIM = "Shaders are generated from every material of the document."

@@ -11,9 +11,9 @@ from mxeon.conformance.probes.probe import Probe, ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
-from mxeon.models.emission import cone_cosine
+from mxeon.hosts.base import Host
+from mxeon.models.media.emission import cone_cosine
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts.base import Host
 
 VIEWS = 1 << 12
 FEW = 1 << 10

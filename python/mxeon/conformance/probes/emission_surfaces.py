@@ -11,7 +11,7 @@ from mxeon.conformance.nodes.emission import ABSENT, SURFACES
 from mxeon.conformance.nodes.emission_surfaces import COLOR, SurfaceSubject
 from mxeon.conformance.probes.emission import NodeProbe
 from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.models.shading import surface_radiance
+from mxeon.models.media.shading import surface_radiance
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 DARK = Scene("dark", size=8)

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from mxeon.conformance.nodes.subject import LobeSubject, Values
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.samples.batch import RIM, Array, Batch
-from mxeon.shaders.hosts import front_lit_only
-from mxeon.shaders.hosts.base import Host
+from mxeon.hosts import front_lit_only
+from mxeon.hosts.base import Host
 from mxeon.shaders.plane import LIGHTS, plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 

@@ -21,8 +21,8 @@ from mxeon.conformance.probes.pictures import (
 from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
 from mxeon.conformance.samples.batch import RIM, SEED, Array, Batch, directions
 from mxeon.conformance.samples.edge_cases import outside_directions, special_directions
+from mxeon.hosts import host_row
 from mxeon.shaders.facets import facet_points
-from mxeon.shaders.hosts import host_row
 from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions
 
 SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import Changes, LobeSubject, Subject, ValuedSubject, Values
 from mxeon.conformance.samples.batch import FEW, Array, Batch, Candidate
-from mxeon.shaders.hosts.base import Host
+from mxeon.hosts.base import Host
 
 
 class Probe:

@@ -14,8 +14,8 @@ from mxeon.conformance.probes.bsdf import BsdfProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.measurement import Case
-from mxeon.models.pbrlib.subsurface import circle_blur
-from mxeon.models.subsurface import diffusion_blur
+from mxeon.models.media.subsurface import diffusion_blur
+from mxeon.models.nodes.subsurface import circle_blur
 from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
 
 COSINES = np.linspace(-1.0, 1.0, 129)

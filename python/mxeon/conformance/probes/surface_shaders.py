@@ -12,8 +12,8 @@ from mxeon.conformance.probes.bsdf import LEAST_VIEW, reflected
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
+from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.generation import Shader, generate
-from mxeon.shaders.hosts.calls import NORMAL, TANGENT
 
 PAIRS = 256  # of directions, each with a material of its own
 VIEWS = 64  # whose albedo is asked

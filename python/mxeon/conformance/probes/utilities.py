@@ -14,8 +14,8 @@ from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.probes.probe import Probe, ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch
+from mxeon.hosts.calls import GRAPH
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts.calls import GRAPH
 
 COUNT = 1 << 12
 FEW = 1 << 9

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon import hosts
 from mxeon.conformance.reference.graph import Graph
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun
-from mxeon.shaders import hosts
+from mxeon.hosts import base
+from mxeon.hosts.base import Identity
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.hosts import base
-from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
 # Any target will do: the document behind the shader is what is evaluated.
@@ -23,7 +23,7 @@ ROW = hosts.Row("reference", target="glsl", module=__name__)
 
 
 class Host(base.Host):
-    """The models of `mxeon.models.table` and the nodes of `mxeon.models.pbrlib`."""
+    """The models of `mxeon.models.table` and the nodes of `mxeon.models.nodes`."""
 
     name = ROW.name
     target = ROW.target
@@ -33,7 +33,7 @@ class Host(base.Host):
         return Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
 
     def picture(self, shader: Shader, scene: Scene) -> NDArray[np.float64]:
-        """Picture of the sphere with the shader's document on it; see `mxeon.shaders.hosts.base.Host`.
+        """Picture of the sphere with the shader's document on it; see `mxeon.hosts.base.Host`.
 
         Raises
         ------
@@ -68,7 +68,7 @@ class Host(base.Host):
         output: str = "response",
         irradiance: NDArray[Any] | None = None,
     ) -> NDArray[np.float64]:
-        """Values of the document's lobes; see `mxeon.shaders.hosts.base.Host`.
+        """Values of the document's lobes; see `mxeon.hosts.base.Host`.
 
         Raises
         ------

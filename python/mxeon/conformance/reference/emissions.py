@@ -11,8 +11,8 @@ import numpy as np
 
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
-from mxeon.models.pbrlib.emissions import BASE, Emission
-from mxeon.models.pbrlib.emissions import EMISSIONS as ROWS
+from mxeon.models.nodes.emissions import BASE, Emission
+from mxeon.models.nodes.emissions import EMISSIONS as ROWS
 
 COLORS = ("color", "color0", "color90", "base")
 

@@ -34,7 +34,7 @@ from mxeon.conformance.reference.utilities import UTILITIES
 from mxeon.conformance.reference.walk import evaluated
 from mxeon.errors import NotRun
 from mxeon.io.images import srgb_decoded
-from mxeon.models.layering import Bsdf
+from mxeon.models.core.layering import Bsdf
 from mxeon.shaders.document.graphs import reachable
 
 Path: TypeAlias = tuple[str, ...]  # see Graph

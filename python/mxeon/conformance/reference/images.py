@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
-from mxeon.shaders.hosts.textures import read_texture
+from mxeon.hosts.textures import read_texture
 
 CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
 

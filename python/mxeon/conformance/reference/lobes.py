@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
 from mxeon.models import table
-from mxeon.models.layering import Bsdf, throughput
-from mxeon.models.pbrlib.node import PbrNode
+from mxeon.models.core.layering import Bsdf, throughput
+from mxeon.models.nodes.node import PbrNode
 
 Values: TypeAlias = NDArray[np.float64]
 Inputs: TypeAlias = Mapping[str, Values]

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from mxeon.conformance.reference.lobes import diffuse, weighted
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun, OutsideModel
-from mxeon.models import layering
-from mxeon.models.layering import Bsdf
-from mxeon.models.pbrlib import NODES
-from mxeon.models.pbrlib.node import PbrNode
+from mxeon.models.core import layering
+from mxeon.models.core.layering import Bsdf
+from mxeon.models.nodes import NODES
+from mxeon.models.nodes.node import PbrNode
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
 COMPONENTS = {"color3": 3, "vector2": 2}

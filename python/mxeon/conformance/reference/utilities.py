@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.models.pbrlib.utilities import UTILITIES as ROWS
-from mxeon.models.pbrlib.utilities import UtilityNode
+from mxeon.models.nodes.utilities import UTILITIES as ROWS
+from mxeon.models.nodes.utilities import UtilityNode
 
 
 def _values(row: UtilityNode, *values: Any) -> Any:

@@ -48,7 +48,7 @@ def check(
     files : sequence of path-like
         MaterialX documents; none for the bundled examples.
     hosts : sequence of str
-        Hosts to judge; `mxeon.shaders.hosts.host_names` lists them.
+        Hosts to judge; `mxeon.hosts.host_names` lists them.
     libraries : sequence of str
         "eonlib", "stock" for MaterialX as it comes, and folders of MaterialX documents, which are
         loaded before the standard libraries.

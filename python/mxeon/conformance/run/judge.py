@@ -39,9 +39,9 @@ from mxeon.conformance.run.plan import (
 )
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
+from mxeon.hosts import host_row, open_host
+from mxeon.hosts.base import Host
 from mxeon.shaders.document.policy import Policy
-from mxeon.shaders.hosts import host_row, open_host
-from mxeon.shaders.hosts.base import Host
 from mxeon.shaders.library import examples_folder
 
 ROWS = {check.key: check for check in CHECKS}

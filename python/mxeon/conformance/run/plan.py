@@ -33,10 +33,10 @@ from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import AlbedoCurve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.errors import InputError
+from mxeon.hosts import host_names, host_row
+from mxeon.hosts.base import Identity
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
-from mxeon.shaders.hosts import host_names, host_row
-from mxeon.shaders.hosts.base import Identity
 from mxeon.shaders.library import (
     LIBRARIES,
     check_version,

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.samples.batch import Array
-from mxeon.shaders.hosts.base import TURN
-from mxeon.shaders.hosts.textures import latlong_directions
+from mxeon.hosts.base import TURN
+from mxeon.hosts.textures import latlong_directions
 
 ROWS = 128  # of its map, which has twice as many columns
 SLOPE = 0.5  # of the irradiance over a component of the normal

@@ -19,7 +19,7 @@ from mxeon.conformance.text.interpreter import Array, Closure, Interpreter
 from mxeon.conformance.text.renderers import PBRLIB, Renderer
 from mxeon.conformance.text.sources import source, variable
 from mxeon.errors import NotRun, ShaderError
-from mxeon.models import formulas
+from mxeon.models.diffuse import formulas
 from mxeon.shaders.library import has_profile
 from mxeon.shaders.nodes import FLAG
 

@@ -2,7 +2,7 @@
 """The closures of renderers that generated text calls: their arguments, and their values.
 
 A renderer's documentation says both; none is executed here. Directions and values are those of
-`mxeon.models.formulas`.
+`mxeon.models.diffuse.formulas`.
 """
 
 from collections.abc import Callable, Mapping
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mxeon.conformance.text.interpreter import Array, Closure, Value, weighted
-from mxeon.models import formulas
+from mxeon.models.diffuse import formulas
 from mxeon.shaders.nodes import FLAG
 
 Closures = tuple[Closure, ...]

@@ -10,8 +10,8 @@ from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.diffuse import DiffuseSubject
 from mxeon.conformance.results import Result
 from mxeon.conformance.text.counts import Claim, counted
+from mxeon.hosts import HOSTS
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
-from mxeon.shaders.hosts import HOSTS
 from mxeon.shaders.nodes import input_types
 
 # Targets whose text holds the BSDF itself; the others call a closure of their renderer.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mxeon.models.arguments import (
+from mxeon.models.core.arguments import (
     channel_count,
     checked,
     checked_color,
@@ -17,8 +17,8 @@ from mxeon.models.arguments import (
     checked_pairs,
     checked_sphere,
 )
-from mxeon.models.arrays import Array, ArrayLike
-from mxeon.models.evaluation import evaluate_material
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.hair import formulas as formulas
 from mxeon.models.hair.formulas import LOBES, TEXT, Form
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mxeon.models.arrays import Array
+from mxeon.models.core.arrays import Array
 from mxeon.models.hair.formulas import TEXT, Form
 
 # The series of I_0 has so many terms, and above the limit a logarithm takes its place.

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import fresnel_formulas
-from mxeon.models.arrays import Array
+from mxeon.models.core.arrays import Array
+from mxeon.models.microfacet import fresnel_formulas
 
 LOBES = ("R", "TT", "TRT", "TRRT+")
 SCALE = np.sqrt(np.pi / 8.0)  # of the logistic distribution: Azimuthal Scattering

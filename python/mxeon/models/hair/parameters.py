@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_triples, lead_shape
-from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.arguments import checked, checked_triples, lead_shape
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 
 # Absorption of the pigments in red, green and blue, per radius of the fiber.
 EUMELANIN = (0.419, 0.697, 1.37)

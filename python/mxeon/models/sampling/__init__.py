@@ -9,7 +9,7 @@ lie in [0, 1). Densities are in solid angle, 1/sr.
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mxeon.models.arrays import Array
+from mxeon.models.core.arrays import Array
 from mxeon.models.sampling.cltc import cltc_pdf, cltc_sample, eon_cltc_pdf, eon_cltc_sample
 from mxeon.models.sampling.eon import eon_pdf, eon_sample
 from mxeon.models.sampling.hemisphere import cosine_pdf, cosine_sample, uniform_pdf, uniform_sample

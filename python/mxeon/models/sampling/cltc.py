@@ -7,7 +7,7 @@ rest has the shape of a lune. See `mxeon.models.sampling.ltc` for the matrix and
 
 import numpy as np
 
-from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.sampling.hemisphere import (
     around,
     checked_draw,

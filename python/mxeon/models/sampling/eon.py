@@ -23,8 +23,8 @@ the parts' errors under non-negative weights, so that the sum has no larger erro
 
 import numpy as np
 
-from mxeon.models.arrays import Array, ArrayLike
-from mxeon.models.formulas import (
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.diffuse.formulas import (
     C1,
     C2,
     cosines,

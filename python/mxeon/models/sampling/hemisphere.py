@@ -6,8 +6,8 @@ Directions leave the surface, local frame with the normal +z. Random numbers `u`
 
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_directions, checked_pairs, lead_shape
-from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.arguments import checked, checked_directions, checked_pairs, lead_shape
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 
 
 def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ under a clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
 
 import numpy as np
 
-from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.sampling.hemisphere import (
     azimuth_frame,
     checked_draw,

@@ -7,9 +7,9 @@ half vectors of the stretched `wo` and a direction drawn uniformly on a spherica
 
 import numpy as np
 
-from mxeon.models import ggx_formulas as ggx
-from mxeon.models.arguments import checked_directions, checked_pairs, lead_shape
-from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.arguments import checked_directions, checked_pairs, lead_shape
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.sampling.hemisphere import around, unpack_uniforms
 
 

@@ -8,7 +8,7 @@ and the value times the cosine over the density is color E(mu_o) for every sampl
 
 import numpy as np
 
-from mxeon.models.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.sampling.hemisphere import (
     azimuth_frame,
     checked_draw,

@@ -6,9 +6,9 @@ A film of thickness 0 is the node's own Fresnel curve. `Form` says what the spec
 
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_rgb, lead_shape
-from mxeon.models.arrays import Array, ArrayLike
-from mxeon.models.evaluation import evaluate_material
+from mxeon.models.core.arguments import checked, checked_rgb, lead_shape
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.thin_film.curve import CIE_RGB, MATERIALX, PRINTED, TEXT, Form, film_curve
 
 __all__ = [

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mxeon.models import fresnel_formulas as fresnel
-from mxeon.models.arrays import Array
-from mxeon.models.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
-from mxeon.models.microfacet_lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve
+from mxeon.models.core.arrays import Array
+from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
+from mxeon.models.microfacet import fresnel_formulas as fresnel
+from mxeon.models.microfacet.lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve
 from mxeon.models.thin_film import formulas as film
 
 AVERAGE_NODES = 12  # of Gauss-Legendre in the cosine

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mxeon.models import fresnel_formulas as fresnel
-from mxeon.models.arrays import Array
+from mxeon.models.core.arrays import Array
+from mxeon.models.microfacet import fresnel_formulas as fresnel
 
 # Gaussians of the sensitivities: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2.
 GAUSSIANS = (

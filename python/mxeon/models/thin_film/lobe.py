@@ -6,10 +6,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from mxeon.models.arguments import checked, checked_choice, checked_directions, checked_rgb
-from mxeon.models.arrays import Array, ArrayLike, Numbers
-from mxeon.models.microfacet_albedo import lobe_albedo
-from mxeon.models.microfacet_lobe import Curve, Lobe, evaluate_lobe
+from mxeon.models.core.arguments import checked, checked_choice, checked_directions, checked_rgb
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.microfacet.albedo import lobe_albedo
+from mxeon.models.microfacet.lobe import Curve, Lobe, evaluate_lobe
 from mxeon.models.thin_film.curve import CURVES, TEXT, Form, film_curve, without_clamp
 
 FILM = ("thinfilm_thickness", "thinfilm_ior")

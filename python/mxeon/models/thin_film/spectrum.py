@@ -7,9 +7,9 @@ interfaces and the phase of one passage give the sum of all reflections in close
 
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_numbers
-from mxeon.models.arrays import Array, ArrayLike, Numbers
-from mxeon.models.colorimetry import matching_functions
+from mxeon.models.core.arguments import checked, checked_numbers
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.colorimetry import matching_functions
 
 STEP = 1.0  # nm
 VISIBLE = np.arange(360.0, 830.0 + STEP, STEP)

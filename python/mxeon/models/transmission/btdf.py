@@ -13,8 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models import ggx_formulas as ggx
-from mxeon.models.arguments import (
+from mxeon.models.core.arguments import (
     channel_count,
     checked,
     checked_directions,
@@ -22,9 +21,10 @@ from mxeon.models.arguments import (
     checked_switch,
     checked_transmitted,
 )
-from mxeon.models.arrays import Array, ArrayLike, Numbers
-from mxeon.models.evaluation import evaluate_material
-from mxeon.models.microfacet_lobe import DIELECTRIC
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.microfacet import ggx_formulas as ggx
+from mxeon.models.microfacet.lobe import DIELECTRIC
 from mxeon.models.transmission.refraction import LEAST, Facet
 
 

@@ -6,9 +6,9 @@ An index of refraction is that of the far side relative to the side of the first
 
 import numpy as np
 
-from mxeon.models.arguments import checked, checked_directions, checked_transmitted
-from mxeon.models.arrays import Array, ArrayLike
-from mxeon.models.evaluation import evaluate_material
+from mxeon.models.core.arguments import checked, checked_directions, checked_transmitted
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.evaluation import evaluate_material
 
 LEAST = 1e-50  # index below which all light counts as reflected; its square divides
 

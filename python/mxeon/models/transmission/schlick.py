@@ -10,8 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import fresnel_formulas as fresnel
-from mxeon.models.arguments import (
+from mxeon.models.core.arguments import (
     channel_count,
     checked,
     checked_choice,
@@ -22,7 +21,8 @@ from mxeon.models.arguments import (
     checked_transmitted,
     lead_shape,
 )
-from mxeon.models.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.transmission.btdf import evaluate_btdf
 from mxeon.models.transmission.transmittance import evaluate_transmittance
 

@@ -10,17 +10,17 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models import ggx_formulas as ggx
-from mxeon.models.arguments import (
+from mxeon.models.core.arguments import (
     channel_count,
     checked,
     checked_directions,
     checked_pairs,
     checked_switch,
 )
-from mxeon.models.arrays import Array, ArrayLike, Numbers
-from mxeon.models.evaluation import evaluate_material
-from mxeon.models.microfacet_lobe import DIELECTRIC
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.microfacet import ggx_formulas as ggx
+from mxeon.models.microfacet.lobe import DIELECTRIC
 from mxeon.models.sampling.visible_normals import visible_normal
 from mxeon.models.transmission.refraction import refracted
 

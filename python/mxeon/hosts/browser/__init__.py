@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Renderers from npm in a headless Chromium, each as a page that draws one picture per request.
+
+The page is an ES module beside this file. It imports the renderer from `node_modules`, which a route
+inside the browser serves: nothing is bundled, and nothing leaves the machine.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.errors import NotRun
+from mxeon.hosts import webgl
+from mxeon.shaders.library import data_folder
+
+try:
+    from playwright import sync_api
+except ImportError:
+    sync_api = None
+
+MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
+ORIGIN = "https://renderers.invalid/"  # a secure origin, without which there is no WebGPU
+FLAGS = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
+HTML = """<!doctype html><script type="importmap">{imports}</script>
+<script type="module">
+import * as page from "/page.js";
+window.answer = async (job) => {{
+    try {{
+        return await page.draw(job);
+    }} catch (error) {{
+        return {{ failed: String(error?.message ?? error) }};
+    }}
+}};
+</script>"""
+SHARED = {"Access-Control-Allow-Origin": "*"}
+PICTURES = 64  # that are kept: the checks of a node ask for some of them again
+LIMIT = 60.0  # seconds that a picture may take, the renderer's start included
+TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json"}
+
+
+def packages_folder() -> Path:
+    """Folder of the package.json and the lock file that pin the renderers."""
+    return data_folder() / "renderers"
+
+
+def modules_folder(package: str, host: str) -> Path:
+    """The node_modules that holds a package: MXEON_NODE_MODULES, or that beside the lock file.
+
+    Raises
+    ------
+    NotRun
+        If it is not there; says how to install it.
+    """
+    folder = Path(os.environ.get(MODULES) or packages_folder() / "node_modules")
+    if not (folder / package / "package.json").is_file():
+        raise NotRun(
+            f"{host}: no package {package} in {folder}; npm ci --prefix {packages_folder()}"
+        )
+    return folder
+
+
+def package_version(folder: Path, package: str) -> str:
+    """Version of an installed package."""
+    version: str = json.loads((folder / package / "package.json").read_text("utf-8"))["version"]
+    return version
+
+
+class Browser:
+    """A page with a renderer, started by the first request and again after it died.
+
+    Playwright wants a thread without an event loop, and always the same: it gets one of its own.
+
+    Parameters
+    ----------
+    host : str
+        Name in messages.
+    page : Path
+        ES module that exports `draw(job)`; its answer has `pixels`, or `failed`.
+    imports : mapping of str to str
+        Paths of modules in node_modules, by their names in the page.
+    modules : Path
+        The folder node_modules.
+    assets : mapping of str to bytes
+        PNG files that the renderer would load from the network, by address.
+    limit : float
+        Seconds that a request may take; after them the browser is ended.
+
+    Raises
+    ------
+    NotRun
+        If there is no Playwright or no Chromium.
+    """
+
+    def __init__(
+        self,
+        host: str,
+        page: Path,
+        imports: Mapping[str, str],
+        modules: Path,
+        *,
+        assets: Mapping[str, bytes] | None = None,
+        limit: float = LIMIT,
+    ) -> None:
+        if sync_api is None:
+            raise NotRun(f"{host}: Playwright is not installed; pip install 'mxeon[webgl]'")
+        self._host = host
+        self._script = page
+        self._imports = {name: f"/{path}" for name, path in imports.items()}
+        self._modules = modules
+        self._assets = assets or {}
+        self._program = webgl.program(host)
+        self._limit = 1000.0 * limit
+        self._page: Any = None
+        self._stack = ExitStack()
+        self._thread = ThreadPoolExecutor(max_workers=1)
+        self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
+
+    def picture(self, job: Mapping[str, Any], size: int) -> NDArray[np.float32]:
+        """Picture of the page's answer to a job, (size, size, 3), row 0 at the top; read-only.
+
+        Raises
+        ------
+        NotRun
+            As `ask`.
+        """
+        return self._picture(json.dumps(job), size)
+
+    def ask(self, job: Mapping[str, Any]) -> dict[str, Any]:
+        """The page's answer to a job, with the version of the browser.
+
+        Raises
+        ------
+        NotRun
+            If the page fails, or the browser dies or hangs, which is then ended.
+        """
+        answer = self._thread.submit(self._answer, dict(job)).result()
+        if "failed" in answer:
+            raise NotRun(f"{self._host}: {answer['failed']}")
+        return answer
+
+    def close(self) -> None:
+        """End the browser; the next request starts another."""
+        self._thread.submit(self._stop).result()
+
+    def _drawn(self, job: str, size: int) -> NDArray[np.float32]:
+        """Picture of the answer to a job in JSON."""
+        return pixels(self.ask(json.loads(job)), size)
+
+    def _answer(self, job: dict[str, Any]) -> dict[str, Any]:
+        try:
+            if self._page is None:
+                self._start()
+            handle = self._page.wait_for_function(
+                "job => answer(job)", arg=job, timeout=self._limit
+            )
+            answer: dict[str, Any] = handle.json_value()
+            return answer | {"browser": self._page.context.browser.version}
+        except sync_api.Error as error:
+            self._stop()
+            return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
+
+    def _start(self) -> None:
+        playwright = self._stack.enter_context(sync_api.sync_playwright())
+        browser = self._stack.enter_context(
+            playwright.chromium.launch(
+                executable_path=self._program, args=FLAGS, chromium_sandbox=os.geteuid() != 0
+            )
+        )
+        self._page = browser.new_page()
+        self._page.set_default_timeout(self._limit)
+        self._page.route("**/*", self._serve)
+        self._page.goto(ORIGIN)
+        self._page.wait_for_function("window.answer")
+
+    def _serve(self, route: Any) -> None:
+        """Answer a request of the page from this machine."""
+        if route.request.url in self._assets:
+            body = self._assets[route.request.url]
+            route.fulfill(body=body, content_type="image/png", headers=SHARED)
+            return
+        path = route.request.url.removeprefix(ORIGIN)
+        if not path:
+            imports = json.dumps({"imports": self._imports})
+            route.fulfill(body=HTML.format(imports=imports), content_type="text/html")
+            return
+        own = {"page.js": self._script, "sphere.js": Path(__file__).with_name("sphere.js")}
+        file = own.get(path, self._modules / path)
+        if file.suffix in TYPES and file.is_file():
+            route.fulfill(path=file, content_type=TYPES[file.suffix])
+        else:
+            route.fulfill(status=404, body="")
+
+    def _stop(self) -> None:
+        self._page = None
+        self._stack.close()
+
+
+def pixels(answer: Mapping[str, Any], size: int) -> NDArray[np.float32]:
+    """Picture of an answer, (size, size, 3), row 0 at the top."""
+    values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
+    return values.reshape(size, size, 4)[..., :3]

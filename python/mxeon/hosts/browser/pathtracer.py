@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""three-gpu-pathtracer: the diffuse functions of its path tracers, called for pairs of directions."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import NotRun
+from mxeon.hosts import base, browser, webgl
+from mxeon.hosts.base import Identity
+from mxeon.hosts.browser import three
+from mxeon.shaders.scene import Scene
+
+PACKAGE = "three-gpu-pathtracer"
+IMPORTS = {**three.IMPORTS, f"{PACKAGE}/": f"{PACKAGE}/"}
+
+LOBE = "WebGLPathTracer, diffuseEval"
+# Title of a node -> function of the WGSL that WebGPUPathTracer has, or "" for that of the GLSL.
+NODES = {
+    "WebGPUPathTracer, eonBrdf": "eon",
+    "WebGPUPathTracer, fonBrdf": "fon",
+    LOBE: "",
+    f"{LOBE}, shorter wh": "",
+}
+SHORTER = 1.0 - 2.0**-22  # a half vector whose product with wo exceeds 1 by no rounding
+
+PI = "#define PI 3.141592653589793"
+# Without refraction nothing of the light is lost above the diffuse lobe.
+GLSL = """
+vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
+{
+    SurfaceRecord surface;
+    surface.color = rho;
+    surface.roughness = roughness;
+    surface.metalness = 0.0;
+    surface.transmission = 0.0;
+    surface.eta = 1.0;
+    surface.f0 = 0.0;
+    vec3 value = vec3(0.0);
+    if (wi.z > 0.0) diffuseEval(wo, wi, scale * normalize(wo + wi), surface, value);
+    return value;
+}
+"""
+
+
+class Host(base.Host):
+    """three-gpu-pathtracer in a headless Chromium.
+
+    Raises
+    ------
+    NotRun
+        If the package, Playwright or Chromium is missing; says how to install it.
+    """
+
+    name = "three-gpu-pathtracer"
+    target = "essl"  # nothing is generated for this host
+
+    def __init__(self) -> None:
+        self._modules = browser.modules_folder(PACKAGE, self.name)
+        self._version = browser.package_version(self._modules, PACKAGE)
+        page = Path(__file__).with_suffix(".js")
+        self._browser = browser.Browser(self.name, page, IMPORTS, self._modules)
+        self._webgl: webgl.Host | None = None
+
+    def identity(self) -> Identity:
+        """Version of the package and the browser, and the WebGPU device."""
+        answer = self._browser.ask({})
+        version = f"{self.name} {self._version}, Chromium {answer['browser']}"
+        return Identity(self.name, version, answer["device"])
+
+    def pairs(
+        self,
+        title: str,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        color: NDArray[Any],
+        roughness: NDArray[Any],
+    ) -> NDArray[Any]:
+        """f cos(theta_i) by the package's own function; see `mxeon.hosts.base.Host`."""
+        if NODES[title]:
+            return self._execute(NODES[title], wo, wi, color, roughness)
+        scale = np.full(len(wo), SHORTER if title.endswith("shorter wh") else 1.0)
+        arguments = (wo, wi, color, roughness, scale)
+        return self._glsl().execute(self._source(), "diffuse_value", *arguments)
+
+    def node(
+        self, title: str, color: Sequence[float], roughness: float, scene: Scene
+    ) -> NDArray[Any]:
+        """Raise NotRun: no path tracer of the package draws here."""
+        raise NotRun(
+            f"{self.name}: its path tracers do not draw here: with three 0.187.0 the wavefront "
+            "kernels do not compile, and the megakernel ends the software device"
+        )
+
+    def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+        """Density of the directions that `sample` draws; see `mxeon.hosts.base.Host`."""
+        return self._execute("density", wo, wi, np.zeros_like(wo), roughness)[:, 0]
+
+    def sample(self, wo: NDArray[Any], u: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+        """Directions drawn by the package; see `mxeon.hosts.base.Host`."""
+        numbers = np.concatenate([u, np.zeros((len(u), 1))], axis=1)
+        return self._execute("sample", wo, numbers, np.zeros_like(wo), roughness)
+
+    def close(self) -> None:
+        """End the browsers."""
+        self._browser.close()
+        if self._webgl:
+            self._webgl.close()
+
+    def _execute(self, call: str, *columns: ArrayLike) -> NDArray[Any]:
+        """Values of a WGSL function for rows of arguments, (N, 3)."""
+        table = np.column_stack([np.asarray(each, np.float32) for each in columns])
+        count = len(table)
+        size = math.isqrt(count - 1) + 1  # the answer comes as a square
+        rows = np.zeros((size * size, table.shape[1]), np.float32)
+        rows[:count] = table
+        answer = self._browser.ask(
+            {"call": call, "rows": base64.b64encode(rows.tobytes()).decode()}
+        )
+        return browser.pixels(answer, size).reshape(-1, 3)[:count]
+
+    def _glsl(self) -> webgl.Host:
+        if self._webgl is None:
+            self._webgl = webgl.Host()
+        return self._webgl
+
+    def _source(self) -> str:
+        """The package's GLSL of the diffuse lobe, and a function that calls it."""
+        folder = self._modules / PACKAGE / "src" / "shader"
+        files = ("structs/surface_record_struct", "common/fresnel_functions")
+        texts = [_template(folder / f"{file}.glsl.js") for file in files]
+        lobes = _template(folder / "bsdf/bsdf_functions.glsl.js")
+        return "\n".join(
+            [PI, *texts, _cut(lobes, "float diffuseEval(", "vec3 diffuseDirection("), GLSL]
+        )
+
+
+def _template(path: Path) -> str:
+    """The text of the one template string of a module."""
+    try:
+        return path.read_text("utf-8").split("`")[1]
+    except (OSError, IndexError):
+        raise NotRun(f"{PACKAGE}: no shader text in {path}") from None
+
+
+def _cut(text: str, begin: str, end: str) -> str:
+    """The part of a text from one word to another."""
+    if begin not in text or end not in text:
+        raise NotRun(f"{PACKAGE}: no {begin}) in its shader text")
+    return begin + text.split(begin)[1].split(end)[0]

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calls of a generated shader: the statements by which its main evaluates its BSDFs, EDFs or graph.
+
+A host repeats the statements with arguments of its own, as local variables that hide the shader's.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+from numpy.typing import ArrayLike
+
+from mxeon.errors import InputError, InterfaceError
+from mxeon.hosts.surface import Prelude, prelude
+from mxeon.shaders.generation import Input, Shader
+from mxeon.shaders.nodes import types_of
+
+# By branch: the closure type of the call that is repeated, and the one that takes its place. A BSDF
+# that only reflects is called in the first two branches alone.
+CLOSURES = {
+    "direct": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_REFLECTION"),
+    "environment": ("CLOSURE_TYPE_INDIRECT", "CLOSURE_TYPE_INDIRECT"),
+    "transmission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_TRANSMISSION"),
+    "emission": ("CLOSURE_TYPE_REFLECTION", "CLOSURE_TYPE_EMISSION"),
+}
+EMISSION = "CLOSURE_TYPE_EMISSION"  # of the call of an EDF, in every branch
+GRAPH = "graph"  # in place of a branch: the color that the shader gives to its uniform EDF
+OUTPUTS = ("response", "throughput", "radiance")  # the last is that of an EDF
+NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+ASKED = "throughput_asked"  # variable of an evaluation
+# How MaterialX's text for WGSL, which has no booleans in memory, makes one of an integer.
+BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
+
+Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by name
+
+
+@dataclass(frozen=True)
+class Call:
+    """How a generated shader calls its BSDFs.
+
+    Attributes
+    ----------
+    statements : str
+        Statements of the shader's main up to the call.
+    value : str
+        Expression of the output that is asked for, a color. It is the same for every output, so
+        that they share a program.
+    arguments : dict of str to (str, array_like)
+        Type and values of every variable that the statements and the expression read, but P.
+    """
+
+    statements: str
+    value: str
+    arguments: Arguments
+
+
+def bsdf_call(
+    shader: Shader,
+    wo: ArrayLike,
+    wi: ArrayLike,
+    inputs: Mapping[str, Any],
+    branch: str,
+    output: str = OUTPUTS[0],
+) -> Call:
+    """Call of a shader's BSDF, with the values of its arguments.
+
+    Parameters
+    ----------
+    shader : Shader
+        Of a rasterized target.
+    wo, wi, inputs, branch, output
+        As in `mxeon.hosts.base.Host.evaluate`.
+
+    Returns
+    -------
+    Call
+
+    Raises
+    ------
+    ValueError
+        If the shader calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
+    """
+    branches = (GRAPH, *CLOSURES)
+    for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
+        if word not in known:
+            raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
+    if branch == GRAPH:
+        return _graph_call(shader, wo, inputs)
+    emitted = output == "radiance"
+    called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
+    text = shader.stages["pixel"]
+    start, statements, result, names = _find_calls(text, called, shader.element)
+    arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
+    arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
+    if not emitted:
+        arguments[ASKED] = ("boolean", output == "throughput")
+    if before := prelude(text, start):
+        statements = before.statements + statements
+        arguments = _surface_arguments(shader, before, inputs) | arguments
+    else:
+        ports = _ports(shader)
+        arguments |= {name: _argument(name, ports, inputs) for name in names}
+    value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
+    return Call(statements.replace(called, closure), value, arguments)
+
+
+@lru_cache(maxsize=16)  # the checks of a node share its shader
+def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
+    """Place and text of the statements that evaluate BSDFs for a closure type, result, arguments.
+
+    The last call combines what the others before it return, or is the only one.
+    """
+    # MaterialX before 1.39.5 calls the constructor itself.
+    constructor = r"(?:makeClosureData|ClosureData)"
+    match = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
+    block = match[0] if match else ""
+    calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block)
+    if not calls:
+        kind = "an EDF" if closure == EMISSION else "a BSDF"
+        raise InputError(
+            f"element {element!r} must call {kind} to be evaluated; its shader calls none"
+        )
+    end, results = f", {calls[-1][1]});", [result for _, result in calls]
+    names = [name for arguments, _ in calls for name in arguments.split(", ")]
+    arguments = [name for name in dict.fromkeys(names) if name not in results]
+    start = match.start() if match else 0
+    return start, block[: block.index(end) + len(end)], results[-1], arguments
+
+
+def _surface_arguments(shader: Shader, before: Prelude, inputs: Mapping[str, Any]) -> Arguments:
+    """Types and values of the inputs of a surface shader's function."""
+    ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
+    arguments: Arguments = {}
+    for name, kind in before.inputs.items():
+        default = ports[name].value if name in ports else _argument(name, {}, {})[1]
+        arguments[name] = kind, inputs.get(name, default)
+    return arguments
+
+
+def _graph_call(shader: Shader, wo: ArrayLike, inputs: Mapping[str, Any]) -> Call:
+    """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
+    text = shader.stages["pixel"]
+    color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
+    if not color:
+        raise InputError(
+            f"element {shader.element!r} must call a uniform EDF; its shader calls none"
+        )
+    before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
+    # Slang's own main begins with its stage's inputs and outputs.
+    statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
+    ports = _ports(shader)
+    words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
+    arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing
+    arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
+    return Call(statements, color[1], arguments)
+
+
+def _ports(shader: Shader) -> dict[str, Input]:
+    """Inputs of a shader by name, with the booleans that its text makes of integers."""
+    ports = {port.name: port for port in shader.inputs}
+    for name in booleans(shader.stages["pixel"]):
+        if name in ports:
+            ports[name] = replace(ports[name], type="boolean")
+    return ports
+
+
+@lru_cache(maxsize=16)
+def booleans(text: str) -> list[str]:
+    """Names of the inputs that a text for WGSL makes booleans of."""
+    return BOOLEAN.findall(text)
+
+
+def _argument(
+    name: str, ports: Mapping[str, Input], inputs: Mapping[str, Any]
+) -> tuple[str, ArrayLike]:
+    """Type and value of a BSDF's argument; one that is no input of the shader is of the surface."""
+    port = ports.get(name)
+    if port is None:
+        tangent = "tangent" in name.lower() or "tworld" in name.lower()
+        return "vector3", inputs.get(*(("tangent", TANGENT) if tangent else ("normal", NORMAL)))
+    key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
+    types = types_of(key.rsplit("/", 1)[-1])
+    if key in inputs and types and port.type not in types:
+        required = " or ".join(sorted(types))
+        raise InterfaceError(
+            f"input {key} must have the type {required} to be evaluated; got {port.type}"
+        )
+    return port.type, inputs.get(key, port.value)

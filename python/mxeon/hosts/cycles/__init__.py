@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's Cycles: OSL on the CPU, in a process of its own.
+
+Cycles is part of the Python module `bpy`, which needs an environment of its own. This half writes
+OSL files, `worker.py` renders them there, and this half reads the float32 pictures.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import MaterialX as mx
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import ImageError, InputError, NotRun, ShaderError
+from mxeon.hosts import base
+from mxeon.hosts.base import Identity
+from mxeon.hosts.cycles import closures, graphs, tracing
+from mxeon.hosts.cycles.process import interpreter
+from mxeon.hosts.process import Worker
+from mxeon.io.images import read_image, write_image
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.inner_lobes import inner_lobes
+from mxeon.shaders.library import data_folder
+from mxeon.shaders.scene import FRONT, Scene, sphere
+
+# Pictures that are kept: the checks of a node ask for some of them again.
+PICTURES = 64
+
+EMITTER = Scene("emitter")  # without light, for what shines by itself
+
+# Cycles has no surface coordinates on a point cloud: a block that opens like this gives the globals
+# `u` and `v`, which a generated shader reads, the values of `mxeon.shaders.scene.sphere`.
+TEXCOORD = """{
+    float u = 0.5 + atan2(N[0], N[2]) / M_2PI;
+    float v = 0.5 + atan2(N[1], hypot(N[0], N[2])) / M_PI;
+"""
+
+# The values of a function as the light that a sphere emits: pixel by pixel its arguments are read
+# from images, by position and without filtering, so that every bit of a float32 survives.
+CALL = """#include "{source}"
+
+shader call(output closure color out = 0)
+{{
+    float s = 0.5 + 0.5 * P[0];
+    float t = 0.5 - 0.5 * P[1];
+{reads}
+    color value = {function}({names});
+    out = value * emission();
+}}
+"""
+READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
+
+
+class Host(base.Host):
+    """Blender's Cycles, with a process and a temporary folder.
+
+    Parameters
+    ----------
+    sources : Path or None
+        Folder of the OSL files whose functions `call` executes; None for eonlib's.
+    limit : float
+        Seconds that one picture may take.
+
+    Raises
+    ------
+    NotRun
+        If no interpreter with Blender is found.
+    """
+
+    name = "cycles"
+    target = "osl"
+    profile = "cycles"
+    language = "osl"
+
+    def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
+        python = interpreter()
+        self._sources = Path(sources or data_folder() / "genosl").resolve()
+        self._temporary = TemporaryDirectory(prefix="mxeon-cycles-")
+        log = Path(self._temporary.name, "log.txt")
+        script = Path(__file__).with_name("worker.py")
+        self.worker = Worker(self.name, python, script, log, limit)
+        self._picture = lru_cache(maxsize=PICTURES)(self._rendered)
+
+    def close(self) -> None:
+        """End the process and remove the temporary files."""
+        self.worker.close()
+        self._temporary.cleanup()
+
+    def identity(self) -> Identity:
+        """Name and version; the device is always the CPU."""
+        self.worker.start()
+        return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
+
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Picture of the unit sphere with a generated OSL shader on it.
+
+        Parameters
+        ----------
+        shader : Shader
+            Of the target "osl".
+        scene : Scene
+            Its environment, if any, uniform.
+
+        Returns
+        -------
+        ndarray, shape (size, size, 3), float32
+            Linear, row 0 at the top, 0 off the sphere.
+
+        Raises
+        ------
+        ShaderError
+            If the shader does not compile.
+        NotRun
+            If the environment is an image, the shader uses a closure that Cycles lacks, or the
+            process fails.
+
+        Notes
+        -----
+        Accuracy: float32 rounding under a distant light. Under an environment a pixel is a mean of
+        `tracing.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
+        the rim, and 2e-5 in the mean over the sphere.
+        """
+        if isinstance(scene.environment, (str, Path)):
+            raise NotRun("cycles: environment must be uniform; got an image")
+        text = _on_sphere(shader.stages["pixel"])
+        return self._picture(scene, inner_lobes(shader), text=text)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """Paths that are too few or too short; see `mxeon.hosts.base.Host`."""
+        return tracing.approximations(scene, inner_lobes(shader))
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's graph, the one branch that is none of closures; see `base.Host`."""
+        if branch != graphs.BRANCH:
+            raise self._unsupported("values for pairs of directions", "gl")
+        source, arguments = graphs.graph_function(shader, inputs)
+        return self.execute(_with_header(source), graphs.FUNCTION, *arguments)
+
+    def blender_node(self, kind: str, inputs: dict[str, Any], scene: Scene) -> NDArray[Any]:
+        """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
+
+        Parameters
+        ----------
+        kind : str
+            Blender's name of the node's type.
+        inputs : dict of str to float or sequence of float
+            Values by the names of the node's sockets.
+        scene : Scene
+            Its environment, if any, uniform.
+
+        Returns
+        -------
+        ndarray, shape (size, size, 3), float32
+            As `picture`.
+
+        Raises
+        ------
+        NotRun
+            If the process fails.
+        """
+        return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
+
+    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a function of the OSL sources; see `execute`.
+
+        Raises
+        ------
+        ValueError
+            If no source defines the function, or the arguments do not fit its parameters.
+        NotRun
+            If the process fails.
+        """
+        return self.execute(functions.expanded(self._file(function)), function, *arguments)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of an OSL function; see `mxeon.hosts.base.Host`."""
+        types = [kind for kind, _ in functions.parameters(source, function)]
+        if len(types) != len(arguments):
+            raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
+        columns = [_columns(*pair) for pair in zip(types, arguments, strict=True)]
+        count = max(map(len, columns))
+        size = max(4, math.isqrt(count - 1) + 1)  # Blender renders no smaller picture.
+        names = [f"argument{index}" for index in range(len(types))]
+        with self._folder() as folder:
+            path = Path(folder, "functions.osl")
+            path.write_text(source, encoding="utf-8")
+            reads = []
+            for kind, name, column in zip(types, names, columns, strict=True):
+                image = Path(folder, f"{name}.exr")
+                _write(image, np.broadcast_to(column, (count, column.shape[1])), size)
+                reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
+            text = CALL.format(
+                source=path.as_posix(),
+                reads="\n".join(reads),
+                function=function,
+                names=", ".join(names),
+            )
+            frame = tracing.request(EMITTER, ()) | {"size": size, "radius": 2.0}
+            pixels = self._render(Path(folder), text, **frame)
+        return pixels.reshape(-1, 3)[:count]
+
+    def closures(self) -> dict[str, str]:
+        """For each of MaterialX's closures, "" if Cycles renders it, else its reason not to.
+
+        Raises
+        ------
+        NotRun
+            If the process fails.
+        """
+        return {name: self._reason(name) for name in closures.CALLS}
+
+    def _reason(self, closure: str) -> str:
+        frame = tracing.request(replace(FRONT, size=4), ())
+        try:
+            with self._folder() as folder:
+                self._render(Path(folder), closures.text(closure), **frame)
+        except (NotRun, ShaderError) as error:
+            return str(error)
+        return ""
+
+    def forget(self) -> None:
+        """Forget the pictures that are kept."""
+        self._picture.cache_clear()
+
+    def _rendered(
+        self,
+        scene: Scene,
+        lobes: tuple[str, ...],
+        text: str = "",
+        kind: str = "",
+        inputs: tuple[tuple[str, Any], ...] = (),
+    ) -> NDArray[Any]:
+        """Picture of the sphere with an OSL shader or a node of Blender's on it; read-only."""
+        frame = tracing.request(scene, lobes)
+        with self._folder() as folder:
+            if text:
+                pixels = self._render(Path(folder), text, **frame)
+            else:
+                native = {"kind": kind, "inputs": dict(inputs)}
+                pixels = self._request(Path(folder), native=native, **frame)
+        image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+        image.flags.writeable = False  # shared by all callers
+        return image
+
+    def _folder(self) -> TemporaryDirectory[str]:
+        """Folder for the files of one request."""
+        return TemporaryDirectory(dir=self._temporary.name)
+
+    def _file(self, function: str) -> Path:
+        """File that defines a function."""
+        for path in sorted(self._sources.glob("*.osl")):
+            if function in functions.signatures(path.read_text(encoding="utf-8")):
+                return path
+        raise InputError(f"function must be defined in {self._sources}; got {function!r}")
+
+    def _render(self, folder: Path, text: str, **frame: Any) -> NDArray[Any]:
+        """Picture that the worker renders of the OSL shader `text`."""
+        shader = folder / "shader.osl"
+        shader.write_text(text)
+        return self._request(folder, shader=str(shader), **frame)
+
+    def _request(self, folder: Path, **request: Any) -> NDArray[Any]:
+        """Picture that the worker renders."""
+        output = folder / "output.exr"
+        reply = self.worker.ask(output=str(output), **request)
+        if "error" in reply:
+            errors = " | ".join(self.worker.printed()[:4])
+            raise ShaderError(f"cycles: the shader does not compile: {errors}")
+        # A closure that Cycles lacks makes the whole shader black, with no other sign than this.
+        for line in self.worker.printed():
+            if line.startswith("ERROR"):
+                raise NotRun(f"cycles: {line.partition(', called from')[0]}")
+        try:
+            return read_image(output)
+        except ImageError as error:
+            raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
+
+
+def _with_header(text: str) -> str:
+    """A generated text with the path of its include."""
+    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+    return text.replace('"mx_funcs.h"', f'"{header.asString()}"')
+
+
+def _on_sphere(text: str) -> str:
+    """A generated shader with the path of its include and the sphere's texture coordinates."""
+    head, brace, body = _with_header(text).rpartition("\n)\n{\n")
+    return head + brace + TEXCOORD + body + "}"
+
+
+def _columns(kind: str, values: ArrayLike) -> NDArray[np.float32]:
+    """Values of an OSL type as rows of float32, one row for what is the same everywhere."""
+    return np.asarray(values, np.float32).reshape(-1, 1 if kind == "float" else 3)
+
+
+def _write(path: Path, rows: NDArray[np.float32], size: int) -> None:
+    """Write rows as the first pixels of a float32 image of `size` x `size`."""
+    channels = rows.shape[1]
+    pixels = np.zeros((size * size, channels), np.float32)
+    pixels[: len(rows)] = rows
+    write_image(path, pixels.reshape(size, size, channels), {})

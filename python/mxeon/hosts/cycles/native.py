@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's own nodes: Cycles without OSL, and without MaterialX."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from numpy.typing import NDArray
+
+from mxeon.hosts import base, cycles
+from mxeon.hosts.base import Identity
+from mxeon.shaders.scene import Scene
+
+# Title of a node -> Blender's type, its sockets for color and roughness, and what switches all
+# but its diffuse lobe off.
+NODES: dict[str, tuple[str, str, str, dict[str, float]]] = {
+    "Diffuse BSDF": ("ShaderNodeBsdfDiffuse", "Color", "Roughness", {}),
+    "Principled BSDF": (
+        "ShaderNodeBsdfPrincipled",
+        "Base Color",
+        "Diffuse Roughness",
+        {"Specular IOR Level": 0.0},
+    ),
+}
+
+
+class Host(base.Host):
+    """Blender's Cycles with its own shading nodes.
+
+    Raises
+    ------
+    NotRun
+        If no interpreter with Blender is found.
+    """
+
+    name = "cycles-native"
+    target = "osl"  # of its sibling: nothing is generated for this host
+
+    def __init__(self) -> None:
+        self._cycles = cycles.Host()
+
+    def identity(self) -> Identity:
+        """Name and version; the device is always the CPU."""
+        return Identity(self.name, self._cycles.identity().version, "CPU, SVM")
+
+    def node(
+        self, title: str, color: Sequence[float], roughness: float, scene: Scene
+    ) -> NDArray[Any]:
+        """Picture of the unit sphere with one of NODES on it; see `mxeon.hosts.cycles`."""
+        kind, color_socket, roughness_socket, fixed = NODES[title]
+        inputs = {color_socket: (*color, 1.0), roughness_socket: roughness, **fixed}
+        return self._cycles.blender_node(kind, inputs, scene)
+
+    def close(self) -> None:
+        """End the process."""
+        self._cycles.close()

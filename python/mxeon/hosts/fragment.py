@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fragment shaders that evaluate a function once per pixel, around source text left unchanged.
+
+Arguments arrive in float textures, one texel per pixel. A generated shader keeps every character:
+a macro renames its `main`, and a second `main` repeats the statements by which the first one calls
+its BSDF. There, local variables of the same names hide the shader's uniforms.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.hosts.calls import OUTPUTS, booleans, bsdf_call
+from mxeon.shaders.generation import Shader
+
+TEXEL = "texelFetch(mxeon_{}, mxeon_pixel, 0)"
+FETCH = {
+    "float": "float {0} = {1}.x;",
+    "boolean": "bool {0} = {1}.x > 0.5;",
+    "color3": "vec3 {0} = {1}.xyz;",
+}
+FETCH["vector3"] = FETCH["vec3"] = FETCH["color3"]
+FETCH["vector2"] = "vec2 {0} = {1}.xy;"
+FETCH["integer"] = "int {0} = int({1}.x);"
+# More arguments than a stage may have textures share one, whose layers lie above each other.
+STACK = "mxeon_stack"
+MOST = 12  # textures of arguments; every device has 16, of which some are the environment's
+LAYER = (
+    f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
+)
+COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
+WIDTH = 1024  # most pixels in a row of an evaluation
+
+Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values by name
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """Text that a language of the GLSL family needs around a function.
+
+    Attributes
+    ----------
+    version : str
+        First line of a stage.
+    prelude : str
+        Lines between the version and a generated text.
+    output : str
+        Declaration of a pixel stage's output, for text that has none.
+    sampler : str
+        Declaration of an argument's sampler, with its name and its number.
+    vertex : str
+        Vertex stage for text that reads nothing from one.
+    """
+
+    version: str
+    prelude: str
+    output: str
+    sampler: str
+    vertex: str
+
+
+RENAME = "#define main mxeon_generated_main\n"
+VERTEX = "in vec3 i_position;\nvoid main() { gl_Position = vec4(i_position, 1.0); }\n"
+
+# WebGPU's Vulkan has separate textures and samplers, the generated text has combined ones: here its
+# sampler2D is a texture that is always read through the same sampler.
+SEPARATE = """#extension GL_EXT_samplerless_texture_functions : require
+layout (set = 1, binding = 0) uniform sampler mxeon_sampler;
+vec4 mxeon_lookup(texture2D t, vec2 uv) { return texture(sampler2D(t, mxeon_sampler), uv); }
+vec4 mxeon_lookup_lod(texture2D t, vec2 uv, float lod)
+{
+    return textureLod(sampler2D(t, mxeon_sampler), uv, lod);
+}
+#define sampler2D texture2D
+#define texture mxeon_lookup
+#define textureLod mxeon_lookup_lod
+"""
+
+DIALECTS = {
+    "glsl": Dialect(
+        version="#version 430\n",
+        prelude="",
+        output="out vec4 mxeon_out;\n",
+        sampler="uniform sampler2D {name};",
+        vertex="#version 430\n" + VERTEX,
+    ),
+    "essl": Dialect(
+        version="#version 300 es\n",
+        prelude="",
+        output="precision highp float;\nout vec4 mxeon_out;\n",
+        sampler="uniform highp sampler2D {name};",
+        vertex="#version 300 es\n" + VERTEX,
+    ),
+    "vulkan": Dialect(
+        version="#version 450\n",
+        prelude=SEPARATE,
+        output="layout (location = 0) out vec4 mxeon_out;\n",
+        sampler="layout (set = 2, binding = {number}) uniform texture2D {name};",
+        vertex="#version 450\nlayout (location = 0) " + VERTEX,
+    ),
+}
+DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # its textures are separate already
+
+
+def bsdf_evaluation(
+    shader: Shader,
+    wo: ArrayLike,
+    wi: ArrayLike,
+    inputs: Mapping[str, Any],
+    branch: str,
+    output: str = OUTPUTS[0],
+) -> tuple[str, Columns]:
+    """Pixel stage that evaluates the BSDF of a generated shader, and its arguments.
+
+    Parameters
+    ----------
+    shader : Shader
+        Of a target in DIALECTS.
+    wo, wi, inputs, branch, output
+        As in `mxeon.hosts.base.Host.evaluate`.
+
+    Returns
+    -------
+    str, dict of str to ndarray
+        The text, and float32 texels (N, 1 to 3) by sampler name.
+
+    Raises
+    ------
+    ValueError
+        If the shader calls no BSDF, or branch or output is unknown.
+    """
+    dialect = DIALECTS[shader.target]
+    call = bsdf_call(shader, wo, wi, inputs, branch, output)
+    version, text = shader.stages["pixel"].split("\n", 1)
+    # Subsurface scattering divides by what P changes from pixel to pixel: here it is that of a plane.
+    body = [
+        "vec3 P = vec3(gl_FragCoord.xy, 0.0);",
+        call.statements,
+        f"{_output(text)} = vec4({call.value}, 1.0);",
+    ]
+    head = f"{version}\n{dialect.prelude}{RENAME}"
+    main, texels = _main(dialect, call.arguments, body)
+    macros = "".join(f"#undef {name}\n" for name in ["main", *booleans(text)])
+    return f"{head}{text}{macros}{main}", texels
+
+
+def function_evaluation(
+    source: str,
+    function: str,
+    parameters: Sequence[tuple[str, str]],
+    arguments: Sequence[ArrayLike],
+    target: str = "glsl",
+) -> tuple[str, Columns]:
+    """Pixel stage that evaluates a function of `source`, and its texels as in `bsdf_evaluation`."""
+    dialect = DIALECTS[target]
+    values = {
+        name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
+    }
+    store = f"mxeon_out = vec4(vec3({function}({', '.join(values)})), 1.0);"
+    main, texels = _main(dialect, values, [store])
+    return dialect.version + dialect.prelude + dialect.output + source + main, texels
+
+
+def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
+    """Number of elements, that of the longest argument, and size of the frame for them.
+
+    Width and height are even: a change from pixel to pixel is that within a square of 2 x 2.
+    """
+    count = max(map(len, arguments.values()))
+    height = 2 * -(-count // (2 * WIDTH))
+    return count, (2 * -(-count // (2 * height)), height)
+
+
+def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
+    """Values, a row or layers of them per element or one for all, laid out over a frame of `size`."""
+    width, height = size
+    layers = values[:, np.newaxis] if values.ndim == 2 else values  # one above the other
+    count, number, components = layers.shape
+    rows = np.zeros((number, width * height, components), dtype=np.float32)
+    rows[:, : count if count > 1 else None] = np.moveaxis(layers, 1, 0)
+    return rows.reshape(number * height, width, components)
+
+
+def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:
+    """Values of (type, values) as float32 rows of 1 to 3, by name."""
+    return {
+        name: np.asarray(value, dtype=np.float32).reshape(-1, COMPONENTS.get(kind, 3))
+        for name, (kind, value) in arguments.items()
+    }
+
+
+@lru_cache(maxsize=16)
+def _output(text: str) -> str:
+    """Name of the output of a pixel stage."""
+    return str(re.findall(r"\bout vec4 (\w+);", text)[0])
+
+
+def _main(
+    dialect: Dialect, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str]
+) -> tuple[str, Columns]:
+    """A main that reads the arguments and then executes `body`, and the arguments' texels."""
+    rows = columns(arguments)
+    if len(rows) <= MOST:
+        values = {f"mxeon_{name}": each for name, each in rows.items()}
+        texels = [TEXEL.format(name) for name in rows]
+    else:
+        values = {STACK: _stacked(rows)}
+        texels = [LAYER.format(index, len(rows)) for index in range(len(rows))]
+    fetches = [
+        FETCH[kind].format(name, texel)
+        for (name, (kind, _)), texel in zip(arguments.items(), texels, strict=True)
+    ]
+    lines = ["ivec2 mxeon_pixel = ivec2(gl_FragCoord.xy);", *fetches, *body]
+    samplers = [
+        dialect.sampler.format(name=name, number=number) for number, name in enumerate(values)
+    ]
+    text = [*samplers, "void main()", "{", *("    " + line for line in lines), "}", ""]
+    return "\n".join(text), values
+
+
+def _stacked(rows: Columns) -> NDArray[np.float32]:
+    """Columns of three values each as layers, (N, layers, 3)."""
+    count = max(map(len, rows.values()))
+    layers = np.zeros((count, len(rows), 3), np.float32)
+    for index, each in enumerate(rows.values()):
+        layers[:, index, : each.shape[1]] = each
+    return layers

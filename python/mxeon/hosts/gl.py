@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OpenGL without a window: generated GLSL on Mesa's software driver or a GPU, in float32."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache, partial, wraps
+from typing import Any, Concatenate, ParamSpec, TypeVar, cast
+
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import base, fragment, points, raster
+from mxeon.hosts.base import Identity
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import Scene
+
+PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
+POINTS = 4  # textures of points that are kept: most materials have the same vertex stage
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Host, P], T]:
+    """Verb with the host's context current: other hosts of a process have contexts of their own.
+
+    An object of OpenGL is a number that each context counts for itself. What Python drops at any
+    time is therefore deleted here, where its own context is current, and nowhere else.
+    """
+
+    @wraps(verb)
+    def wrapped(self: Host, /, *arguments: P.args, **options: P.kwargs) -> T:
+        with self._context:
+            try:
+                return verb(self, *arguments, **options)
+            finally:
+                self._context.gc()
+
+    return wrapped
+
+
+class Host(base.Host):
+    """OpenGL through EGL.
+
+    Raises
+    ------
+    NotRun
+        If there is no EGL or no OpenGL 4.3.
+    """
+
+    name = "gl"
+    target = "glsl"
+
+    def __init__(self) -> None:
+        try:
+            self._context = moderngl.create_context(
+                require=430,
+                standalone=True,
+                backend="egl",  # type: ignore[arg-type]
+            )
+        except Exception as error:  # moderngl and glcontext raise bare Exception
+            raise NotRun(
+                f"gl: no OpenGL 4.3 through EGL ({str(error).strip()}); on Debian: "
+                "apt-get install libegl1 libgl1-mesa-dri"
+            ) from None
+        self._context.gc_mode = "context_gc"
+        self._program = lru_cache(maxsize=PROGRAMS)(partial(_program, self._context))
+        self._points = lru_cache(maxsize=POINTS)(partial(_points, self._context))
+
+    @_current
+    def identity(self) -> Identity:
+        """Version and device as the driver names them."""
+        info = self._context.info
+        return Identity(self.name, info["GL_VERSION"], info["GL_RENDERER"])
+
+    @_current
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Picture of the sphere; see `mxeon.hosts.base.Host`."""
+        self.refuse_paths(scene)
+        program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
+        _set(program, raster.inputs(shader) | raster.light(scene))
+        captured, size = points.outputs(shader), scene.size
+        textures = self._textures(program, raster.textures(shader, scene))
+        if captured:
+            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
+        return raster.picture(self._draw(program, textures, (size, size)), size)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """What takes the place of lobes below the surface; see `mxeon.hosts.base.Host`."""
+        return raster.approximations(shader)
+
+    @_current
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
+        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
+
+    @_current
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function; see `mxeon.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
+        pixel, texels = fragment.function_evaluation(source, function, parameters, arguments)
+        return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, texels)
+
+    @_current
+    def accumulate(
+        self,
+        pixel: str,
+        uniforms: Mapping[str, Any],
+        size: tuple[int, int],
+        passes: Iterable[int],
+    ) -> NDArray[np.float32]:
+        """Sum over passes of what a fragment shader draws; the uniform `tracer_pass` counts them.
+
+        Parameters
+        ----------
+        pixel : str
+            Fragment shader.
+        uniforms : mapping of str to value
+            Their values; those that the shader does not use are left out.
+        size : tuple of int
+            Width and height.
+        passes : iterable of int
+            Value of `tracer_pass` in each pass.
+
+        Returns
+        -------
+        ndarray, shape (height, width, 4), float32
+            Row 0 at the bottom.
+        """
+        context = self._context
+        program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
+        _set(program, uniforms)
+        triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
+        frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
+        frame.use()
+        frame.clear()
+        context.enable(context.BLEND)
+        context.blend_func = context.ONE, context.ONE
+        for index in passes:
+            _set(program, {"tracer_pass": index})
+            triangle.render()
+            context.finish()
+        context.disable(context.BLEND)
+        image: NDArray[np.float32] = np.frombuffer(
+            frame.read(components=4, dtype="f4"), dtype=np.float32
+        )
+        return image.reshape(size[1], size[0], 4)
+
+    def close(self) -> None:
+        """Release the context, and all that is in it."""
+        self._program.cache_clear()
+        self._points.cache_clear()
+        self._context.release()
+
+    def _evaluate(
+        self,
+        vertex: str,
+        pixel: str,
+        arguments: Mapping[str, NDArray[Any]],
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values, one pixel per element, as many as the longest argument has."""
+        count, size = fragment.frame(arguments)
+        textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
+        textures |= raster.environment(irradiance)
+        program = self._program(vertex, pixel)
+        _set(program, raster.EVALUATION)
+        frame = self._draw(program, self._textures(program, textures), size)
+        return frame.reshape(-1, 3)[:count]
+
+    def _draw(
+        self,
+        program: moderngl.Program,
+        textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
+        size: tuple[int, int],
+    ) -> NDArray[Any]:
+        """One frame as float32 (height, width, 3), row 0 at the bottom."""
+        context = self._context
+        frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
+        frame.use()
+        frame.clear()
+        for unit, (name, texture) in enumerate(textures.items()):
+            texture.use(location=unit)
+            _set(program, {name: unit})
+        context.vertex_array(program, _buffers(context, program, raster.TRIANGLE)).render()
+        image = np.frombuffer(frame.read(components=3, dtype="f4"), dtype=np.float32)
+        return image.reshape(size[1], size[0], 3)
+
+    def _textures(
+        self, program: moderngl.Program, texels: Mapping[str, NDArray[Any]]
+    ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
+        """Textures of the samplers that a program has."""
+        return {
+            name: self._texture(values, name == "u_envRadiance")
+            for name, values in texels.items()
+            if program.get(name, None)
+        }
+
+    def _texture(self, texels: NDArray[Any], mipmaps: bool) -> moderngl.Texture:
+        height, width, components = texels.shape
+        data = np.ascontiguousarray(texels, dtype=np.float32)
+        texture = self._context.texture((width, height), components, data, dtype="f4")
+        if mipmaps:
+            texture.build_mipmaps()
+        return texture
+
+
+def _program(context: moderngl.Context, vertex: str, pixel: str) -> moderngl.Program:
+    try:
+        return context.program(vertex_shader=vertex, fragment_shader=pixel)
+    except moderngl.Error as error:
+        raise ShaderError(f"gl: {str(error).strip()}") from None
+
+
+def _points(
+    context: moderngl.Context, vertex: str, captured: tuple[points.Output, ...], size: int
+) -> moderngl.TextureArray:
+    """Texture of what a vertex stage gives at the points of a picture."""
+    program = context.program(vertex_shader=vertex, varyings=tuple(each.name for each in captured))
+    vertices = points.vertices(size)
+    count = len(vertices["i_position"])
+    stage = context.vertex_array(program, _buffers(context, program, vertices))
+    buffer = context.buffer(reserve=count * points.stride(captured))
+    context.simple_framebuffer((1, 1)).use()  # without a frame, OpenGL draws nothing at all
+    stage.transform(buffer, mode=context.POINTS, vertices=count)
+    texels = points.texels(buffer.read(), captured, size)
+    layers, height, width, _ = texels.shape
+    return context.texture_array((width, height, layers), 4, texels, dtype="f4")
+
+
+def _buffers(
+    context: moderngl.Context, program: moderngl.Program, vertices: Mapping[str, NDArray[Any]]
+) -> list[tuple[moderngl.Buffer, str, str]]:
+    """Buffers of the attributes that a program has."""
+    return [
+        (context.buffer(values), f"{values.shape[1]}f", name)
+        for name, values in vertices.items()
+        if program.get(name, None)
+    ]
+
+
+def _set(program: moderngl.Program, values: Mapping[str, Any]) -> None:
+    """Set the uniforms that the program has."""
+    for name, value in values.items():
+        if member := program.get(name, None):
+            cast(moderngl.Uniform, member).value = value

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures in which every pixel is an exact point: the vertex stage runs once for each of them.
+
+A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of
+pixels for each triangle. Here a host runs a generated vertex stage for the points alone and captures
+its outputs. They reach the pixel stage in the layers of a texture, one texel per pixel, and one
+triangle covers the picture. Derivatives are differences between neighboring pixels, as ever.
+
+Both texts keep every character: macros turn the inputs of the pixel stage into variables, and a second
+`main` fills these before it calls the first.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.hosts.fragment import RENAME
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import sphere, tangents
+
+MARGIN = 1  # points beyond each edge, for the derivatives of the last row and column
+SAMPLER = "mxeon_points"
+
+# Before a generated text: macros that make its inputs variables. GLSL has them in a block.
+VARIABLES = {
+    "glsl": "#define VertexData mxeon_Inputs { float mxeon_unused; } mxeon_inputs; struct VertexData\n",
+    "essl": "#define in\n",
+}
+FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i4"}
+
+
+@dataclass(frozen=True)
+class Output:
+    """An output of the vertex stage that the pixel stage reads.
+
+    Attributes
+    ----------
+    kind, name, variable : str
+        GLSL type, name for the capture, and name in the pixel stage.
+    """
+
+    kind: str
+    name: str
+    variable: str
+
+
+def outputs(shader: Shader) -> tuple[Output, ...]:
+    """Outputs of a generated vertex stage, as its pixel stage declares them."""
+    text = shader.stages["pixel"]
+    if shader.target == "essl":
+        found = re.findall(r"^(?:flat )?in (\w+) (\w+);", text, re.MULTILINE)
+        return tuple(Output(kind, name, name) for kind, name in found)
+    block = re.search(r"^in VertexData\s*\{([^}]*)\} (\w+);", text, re.MULTILINE)
+    members, instance = block.groups() if block else ("", "")
+    return tuple(
+        Output(kind, f"VertexData.{name}", f"{instance}.{name}")
+        for kind, name in re.findall(r"(\w+) (\w+);", members)
+    )
+
+
+def pixel_stage(shader: Shader) -> str:
+    """Pixel stage that reads the outputs of the vertex stage from the texture."""
+    version, text = shader.stages["pixel"].split("\n", 1)
+    reads = [
+        f"    {each.variable} = {each.kind}(texelFetch({SAMPLER}, ivec3(pixel, {layer}), 0));\n"
+        for layer, each in enumerate(outputs(shader))
+    ]
+    return (
+        f"{version}\n#define flat\n{VARIABLES[shader.target]}{RENAME}{text}#undef main\n"
+        f"uniform highp sampler2DArray {SAMPLER};\nvoid main()\n{{\n"
+        f"    ivec2 pixel = ivec2(gl_FragCoord.xy) + {MARGIN};\n{''.join(reads)}"
+        "    mxeon_generated_main();\n}\n"
+    )
+
+
+def vertices(size: int) -> dict[str, NDArray[np.float32]]:
+    """Attributes of the points of a picture, with a margin, in the rows of a frame, row 0 at the top.
+
+    A point beside the sphere has the normal of the nearest point of the rim.
+    """
+    points = sphere(size, margin=MARGIN)
+    flat = points.normal.reshape(-1, 3)
+    attributes = {
+        "i_position": points.position.reshape(-1, 3),
+        "i_normal": flat,
+        "i_tangent": tangents(flat),
+        "i_texcoord_0": points.texcoord.reshape(-1, 2),
+    }
+    return {name: values.astype("f4") for name, values in attributes.items()}
+
+
+def stride(captured: Iterable[Output]) -> int:
+    """Bytes of the outputs of one point."""
+    return _row(captured).itemsize
+
+
+def texels(buffer: bytes, captured: Sequence[Output], size: int) -> NDArray[np.float32]:
+    """Texels of the captured outputs, (layers, rows, columns, 4), row 0 at the bottom."""
+    width = size + 2 * MARGIN
+    rows = np.frombuffer(buffer, _row(captured))
+    layers = np.zeros((len(captured), width * width, 4), dtype=np.float32)
+    for layer, each in zip(layers, captured, strict=True):
+        values = rows[each.name].reshape(width * width, -1)
+        layer[:, : values.shape[1]] = values
+    return np.ascontiguousarray(layers.reshape(-1, width, width, 4)[:, ::-1])
+
+
+def _row(captured: Iterable[Output]) -> np.dtype[np.void]:
+    return np.dtype([(each.name, FORMATS[each.kind]) for each in captured])

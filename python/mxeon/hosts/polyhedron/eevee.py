@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's EEVEE with its own nodes, drawn by OpenGL without a screen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+from mxeon.hosts.cycles.process import interpreter
+from mxeon.hosts.polyhedron import PolyhedronHost
+
+
+class Host(PolyhedronHost):
+    """Blender's EEVEE with its own shading nodes.
+
+    Raises
+    ------
+    NotRun
+        If no interpreter with Blender is found.
+    """
+
+    name = "eevee"
+    target = "osl"  # of its sibling `cycles`: nothing is generated for this host
+    samples = 1  # it has no noise
+    device = "OpenGL"
+    nodes: ClassVar[dict[str, dict[str, Any]]] = {
+        "Diffuse BSDF": {
+            "kind": "ShaderNodeBsdfDiffuse",
+            "Color": "{color}",
+            "Roughness": "{roughness}",
+        },
+        "Principled BSDF": {
+            "kind": "ShaderNodeBsdfPrincipled",
+            "Base Color": "{color}",
+            "Diffuse Roughness": "{roughness}",
+            "Specular IOR Level": 0.0,
+        },
+    }
+
+    def _interpreter(self) -> Path:
+        """Path of the Python that has Blender."""
+        return interpreter()
+
+    def _missing(self) -> str:
+        """How to install Blender."""
+        return (
+            "eevee: no Blender: pip install bpy==5.0.1 in an environment of Python 3.11 and name "
+            "its interpreter in MXEON_CYCLES_PYTHON"
+        )

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames that a rasterizing host draws: uniforms, textures, and one triangle over all pixels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.hosts.textures import irradiance, read_latlong, read_texture
+from mxeon.shaders.document.values import members
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
+from mxeon.shaders.scene import Scene, sphere
+
+VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
+WHITE = np.ones((1, 1, 3), dtype=np.float32)
+
+# Directions over which a shader of microfacets sums its environment: see docs/hosts.md for the error
+# of each number, and its cost. The environment has no smaller versions of itself.
+EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
+PICTURE = {"u_envRadianceSamples": 256, "u_envRadianceMips": 1}
+DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # every sum is 0
+TRIANGLE = {  # attributes of its three vertices
+    "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
+    "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
+}
+
+# What generated GLSL does in place of a lobe below the surface.
+IN_PLACE = {
+    SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred as on a sphere of the "
+    "surface's curvature, and under an environment it is Lambert of its color",
+    TRANSMISSION: "transmission is rasterized: what is seen through the surface is the environment "
+    "in one refracted direction, and no light that the object itself bends or blocks",
+    VOLUME: "a volume is rasterized: it absorbs over a length of 1 and scatters nothing",
+}
+
+
+def approximations(shader: Shader) -> tuple[str, ...]:
+    """What generated GLSL does in place of a shader's lobes below the surface."""
+    return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
+
+
+def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
+    """Texels by sampler: images of a shader's document and the environment, row 0 first in v."""
+    radiance = read_latlong(scene.environment)
+    images = {
+        port.name: read_texture(str(port.value))
+        for port in shader.inputs
+        if port.type == "filename" and port.value
+    }
+    return images | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
+
+
+def environment(irradiance: NDArray[Any] | None) -> dict[str, NDArray[Any]]:
+    """Texels of the environment of an evaluation; see `mxeon.hosts.base.Host.evaluate`."""
+    return dict.fromkeys(
+        ("u_envRadiance", "u_envIrradiance"), WHITE if irradiance is None else irradiance
+    )
+
+
+def inputs(shader: Shader) -> dict[str, Any]:
+    """Values of the uniforms that carry a shader's inputs, but for its images.
+
+    A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
+    is a uniform of its own.
+    """
+    ports: list[tuple[str, str, Any]] = [
+        (port.name, port.type, port.value) for port in shader.inputs
+    ]
+    uniforms: dict[str, Any] = {}
+    while ports:
+        name, kind, value = ports.pop()
+        if parts := members(kind, shader.document):
+            values = zip(parts, value or (), strict=False)
+            ports += [(f"{name}.{part}", inner, member) for (part, inner), member in values]
+        elif value is not None and not isinstance(value, str):
+            uniforms[name] = value
+    return uniforms
+
+
+def light(scene: Scene) -> dict[str, Any]:
+    """Values of the uniforms of the viewer and the distant light."""
+    values: dict[str, Any] = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE)}
+    values |= DARK if scene.environment is None else PICTURE
+    values["u_numActiveLightSources"] = 0  # or the program keeps the last scene's
+    if scene.light is not None:
+        values |= {
+            "u_numActiveLightSources": 1,
+            "u_lightData[0].type": 1,
+            "u_lightData[0].direction": tuple(-x for x in scene.light),
+            "u_lightData[0].color": (1.0, 1.0, 1.0),
+            "u_lightData[0].intensity": np.pi,
+        }
+    return values
+
+
+def picture(image: NDArray[Any], size: int) -> NDArray[Any]:
+    """Picture of a frame whose row 0 is at the bottom: 0 off the sphere, row 0 at the top."""
+    return np.where(sphere(size).mask[..., None], image[::-1], np.float32(0.0))

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Slang on a GPU or the CPU: generated Slang compiled by slangpy, in float32.
+
+A compute kernel after the generated text, which stays as it is, repeats the statements by which
+the text calls its BSDF. Arguments arrive in buffers, one row per thread.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import base, calls, fragment, raster
+from mxeon.hosts.base import TURN, Identity
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+
+try:
+    import slangpy
+except ImportError:
+    slangpy = None
+
+ENTRY = "mxeon_main"
+THREADS = 64  # in a group
+READ = {
+    1: "{kind} {name} = {kind}(mxeon_{name}[mxeon_row]);",
+    2: "float2 {name} = float2(mxeon_{name}[2 * mxeon_row], mxeon_{name}[2 * mxeon_row + 1]);",
+    3: "float3 {name} = float3(mxeon_{name}[3 * mxeon_row], mxeon_{name}[3 * mxeon_row + 1], "
+    "mxeon_{name}[3 * mxeon_row + 2]);",
+}
+KERNEL = """
+{buffers}
+RWStructuredBuffer<float> mxeon_out;
+uniform uint mxeon_count;
+
+[shader("compute")]
+[numthreads({threads}, 1, 1)]
+void {entry}(uint3 mxeon_thread : SV_DispatchThreadID)
+{{
+    uint mxeon_row = mxeon_thread.x;
+    if (mxeon_row >= mxeon_count)
+    {{
+        return;
+    }}
+{body}
+    for (int mxeon_channel = 0; mxeon_channel < 3; ++mxeon_channel)
+    {{
+        mxeon_out[3 * mxeon_row + mxeon_channel] = mxeon_value[mxeon_channel];
+    }}
+}}
+"""
+
+# GLSL's words for what the shader functions use, where Slang has other words.
+GLSL = """typealias vec3 = float3;
+#define mix lerp
+"""
+KINDS = {"boolean": "bool", "integer": "int"}
+
+DEVICES = ("vulkan", "cpu")  # the first that works
+
+# The CPU device fills no texture but from a kernel.
+FILL = f"""RWTexture2D<float4> mxeon_texture;
+StructuredBuffer<float> mxeon_texels;
+uniform uint mxeon_width;
+
+[shader("compute")]
+[numthreads(1, 1, 1)]
+void {ENTRY}(uint3 mxeon_thread : SV_DispatchThreadID)
+{{
+    uint first = 3 * (mxeon_thread.y * mxeon_width + mxeon_thread.x);
+    mxeon_texture[mxeon_thread.xy] = float4(
+        mxeon_texels[first], mxeon_texels[first + 1], mxeon_texels[first + 2], 1.0);
+}}
+"""
+
+
+class Host(base.Host):
+    """The first of DEVICES on which slangpy runs a kernel.
+
+    Raises
+    ------
+    NotRun
+        If there is no slangpy, or neither a GPU nor a C++ compiler for it.
+    """
+
+    name = "slang"
+    target = "slang"
+
+    def __init__(self) -> None:
+        if slangpy is None:
+            raise NotRun("slang: slangpy is not installed; pip install 'mxeon[slang]'")
+        slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
+        for device in DEVICES:
+            self._kernels: dict[str, Any] = {}
+            self._names = itertools.count()
+            try:
+                self._device = slangpy.Device(type=slangpy.DeviceType[device])
+                self._white = self._texture(np.ones((1, 1, 3)))
+                return
+            except RuntimeError as error:
+                reason = _reason(error)
+        raise NotRun(f"slang: no kernel for the CPU; {reason}")
+
+    def identity(self) -> Identity:
+        """slangpy's version and device."""
+        info = self._device.info
+        return Identity(self.name, f"slangpy {slangpy.__version__}", info.adapter_name)
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
+        if "subsurface_bsdf(closureData" in shader.stages["pixel"]:
+            raise NotRun(
+                "slang: subsurface scattering reads the change from pixel to pixel, and a kernel has "
+                "no pixels"
+            )
+        call = calls.bsdf_call(shader, wo, wi, inputs, branch, output)
+        body = ["float3 P = float3(0.0);", call.statements]
+        body.append(f"float3 mxeon_value = {call.value};")
+        environment = self._environment(irradiance)
+        return self._evaluate(shader.stages["pixel"], call.arguments, body, environment)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function compiled as Slang; see `mxeon.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
+        values = {
+            name: (kind, value) for (kind, name), value in zip(parameters, arguments, strict=True)
+        }
+        body = [f"float3 mxeon_value = float3({function}({', '.join(values)}));"]
+        return self._evaluate(GLSL + source, values, body, {})
+
+    def close(self) -> None:
+        """Release the device."""
+        self._device.close()
+
+    def _evaluate(
+        self,
+        text: str,
+        arguments: Mapping[str, tuple[str, Any]],
+        body: Sequence[str],
+        uniforms: Mapping[str, Any],
+    ) -> NDArray[Any]:
+        """Values, one thread per element, as many as the longest argument has."""
+        rows = fragment.columns(arguments)
+        count = max(map(len, rows.values()))
+        reads = [
+            READ[rows[name].shape[1]].format(name=name, kind=KINDS.get(kind, kind))
+            for name, (kind, _) in arguments.items()
+        ]
+        kernel = self._kernel(text + _kernel_text(rows, [*reads, *body]))
+        output = self._device.create_buffer(
+            size=12 * count, struct_size=4, usage=slangpy.BufferUsage.unordered_access
+        )
+        values = {f"mxeon_{name}": self._buffer(column, count) for name, column in rows.items()}
+        values |= {"mxeon_out": output, "mxeon_count": count, **uniforms}
+        kernel.dispatch(thread_count=[count, 1, 1], vars=values)
+        result: NDArray[np.float32] = output.to_numpy().view(np.float32).reshape(count, 3)
+        return result
+
+    def _kernel(self, text: str) -> Any:
+        """Kernel of a text, compiled once."""
+        if text not in self._kernels:
+            try:
+                name = f"mxeon_{next(self._names)}"  # a text that does not compile keeps its own
+                module = self._device.load_module_from_source(name, text)
+                program = self._device.link_program([module], [module.entry_point(ENTRY)])
+                self._kernels[text] = self._device.create_compute_kernel(program)
+            except slangpy.SlangCompileError as error:
+                raise ShaderError(f"slang: {str(error).strip()}") from None
+        return self._kernels[text]
+
+    def _buffer(self, rows: NDArray[Any], count: int) -> Any:
+        data = np.array(np.broadcast_to(rows, (count, rows.shape[1])), order="C")
+        usage = slangpy.BufferUsage.shader_resource
+        return self._device.create_buffer(data=data, struct_size=4, usage=usage)
+
+    def _texture(self, texels: NDArray[Any]) -> Any:
+        """A texture of float32 texels (height, width, 3)."""
+        height, width, _ = texels.shape
+        texture = self._device.create_texture(
+            type=slangpy.TextureType.texture_2d,
+            format=slangpy.Format.rgba32_float,
+            width=width,
+            height=height,
+            usage=slangpy.TextureUsage.shader_resource | slangpy.TextureUsage.unordered_access,
+        )
+        rows = self._buffer(texels.reshape(-1, 3).astype(np.float32), width * height)
+        values = {"mxeon_texture": texture, "mxeon_texels": rows, "mxeon_width": width}
+        self._kernel(FILL).dispatch(thread_count=[width, height, 1], vars=values)
+        return texture
+
+    def _environment(self, irradiance: NDArray[Any] | None) -> dict[str, Any]:
+        """Uniforms of an environment; a white one where there is no irradiance."""
+        sampler = self._device.create_sampler()
+        white = {"tex": self._white, "sampler": sampler}
+        tinted = white
+        if irradiance is not None:
+            tinted = {"tex": self._texture(irradiance), "sampler": sampler}
+        values = {"u_envRadiance": tinted, "u_envIrradiance": tinted, "u_envLightIntensity": 1.0}
+        matrix = slangpy.float4x4(TURN.astype(np.float32))
+        return {"pixelCB": {**values, **raster.EVALUATION, "u_envMatrix": matrix}}
+
+
+def _kernel_text(names: Iterable[str], body: Sequence[str]) -> str:
+    """Kernel that evaluates `body`, with a buffer for each argument."""
+    return KERNEL.format(
+        buffers="\n".join(f"StructuredBuffer<float> mxeon_{name};" for name in names),
+        body="\n".join("    " + line for line in body),
+        threads=THREADS,
+        entry=ENTRY,
+    )
+
+
+def _reason(error: Exception) -> str:
+    """Message of slangpy, and the remedy where it misses a C++ compiler."""
+    lines = [line.strip() for line in str(error).splitlines() if "error" in line]
+    return "; ".join(
+        [*lines, "without a GPU it needs a C++ compiler: on Debian: apt-get install g++"]
+    )

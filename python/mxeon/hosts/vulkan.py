@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Vulkan device without a window: generated Vulkan GLSL as SPIR-V, in float32.
+
+glslang makes the SPIR-V, wgpu passes it to the driver. wgpu takes no interface block: the one that
+an evaluation leaves unused is removed from the SPIR-V, not from the text.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import struct
+import subprocess
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import base, fragment, raster
+from mxeon.hosts.base import TURN, Identity
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+
+try:
+    import wgpu
+except ImportError:
+    wgpu = None
+
+COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin")
+REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
+TIMEOUT = 60.0  # seconds for one of them
+
+# Kinds of bindings, in wgpu's words.
+FILTERED = {"texture": {"sample_type": "float"}}
+UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
+SAMPLER = {"sampler": {"type": "filtering"}}
+BLOCK = {"buffer": {"type": "uniform"}}
+
+# Bindings of a generated text.
+DECLARATION = re.compile(
+    r"^layout \((?:std140, )?binding=(?P<number>\d+)\) uniform "
+    r"(?:(?P<kind>sampler2D|texture2D|sampler) (?P<name>\w+);|\w+\s*\{(?P<block>[^}]*)\})",
+    re.MULTILINE,
+)
+
+# Values of block members that must not be 0.
+UNIFORMS = {"u_envMatrix": tuple(TURN.ravel()), "u_envLightIntensity": (1.0,)}
+UNIFORMS |= {name: (number,) for name, number in raster.EVALUATION.items()}
+STD140 = {"mat4": (16, 64), "vec4": (16, 16), "vec3": (16, 12), "vec2": (8, 8)}
+STD140 |= dict.fromkeys(("float", "int", "bool"), (4, 4))  # type -> alignment and size, in bytes
+BLOCK_SIZE = 1 << 14
+
+CORNERS = np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4")
+FORMATS = {"uint8": "rgba8unorm", "float16": "rgba16float"}  # which can be filtered
+FLOATS = {1: "r32float", 2: "rg32float", 4: "rgba32float"}  # components -> format
+WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
+
+PROGRAMS = 8  # kept: the checks of a node evaluate one shader many times
+
+Bindings: TypeAlias = dict[int, tuple[dict[str, Any], Any]]  # kind and resource by number
+
+
+class Host(base.Host):
+    """The first Vulkan adapter that wgpu finds.
+
+    Raises
+    ------
+    NotRun
+        If there is no wgpu, no glslang or no Vulkan device.
+    """
+
+    name = "vulkan"
+    target = "vulkan"
+    path: ClassVar[str] = "Vulkan"  # of a text to the device
+    programs: ClassVar[tuple[str, ...]] = (COMPILER[0], REMOVER[0])
+
+    def __init__(self) -> None:
+        if wgpu is None:
+            raise NotRun(f"{self.name}: wgpu is not installed; pip install 'mxeon[vulkan]'")
+        for program in self.programs:
+            if shutil.which(program) is None:
+                raise NotRun(
+                    f"{self.name}: no program {program!r}; on Debian: apt-get install glslang-tools"
+                )
+        self._adapter = self._find_adapter()
+        self._device = self._adapter.request_device_sync()
+        self._programs: dict[str, tuple[tuple[Any, ...], Any]] = {}
+
+    def identity(self) -> Identity:
+        """Version and device as the driver names them."""
+        info = self._adapter.info
+        version = f"{self.path}, {info['description']}; wgpu {wgpu.__version__}"
+        return Identity(self.name, version, info["device"])
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
+        environment = {} if irradiance is None else raster.environment(irradiance)
+        return self._evaluate(pixel, arguments, environment)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function; see `mxeon.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
+        pixel, texels = fragment.function_evaluation(
+            source, function, parameters, arguments, self.target
+        )
+        return self._evaluate(pixel, texels)
+
+    def _find_adapter(self) -> Any:
+        for adapter in wgpu.gpu.enumerate_adapters_sync():
+            if adapter.info["backend_type"] == "Vulkan":
+                return adapter
+        raise NotRun(
+            f"{self.name}: no Vulkan device; on Debian: apt-get install mesa-vulkan-drivers"
+        )
+
+    def close(self) -> None:
+        """Release the device."""
+        self._device.destroy()
+
+    def _evaluate(
+        self,
+        pixel: str,
+        arguments: Mapping[str, NDArray[Any]],
+        environment: Mapping[str, NDArray[Any]] = {},
+    ) -> NDArray[Any]:
+        """Values, one pixel per element, as many as the longest argument has."""
+        count, size = fragment.frame(arguments)
+        texels = [fragment.texels(rows, size) for rows in arguments.values()]
+        sets = (
+            self._generated(pixel, environment),
+            {0: (SAMPLER, self._device.create_sampler())},
+            {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
+        )
+        layouts, pipeline = self._program(pixel, sets)
+        groups = [
+            self._group(layout, bindings) for layout, bindings in zip(layouts, sets, strict=True)
+        ]
+        return self._draw(pipeline, groups, size)[:count]
+
+    def _program(self, pixel: str, sets: Iterable[Bindings]) -> tuple[tuple[Any, ...], Any]:
+        """Layouts of a text's bindings, and its pipeline: the same whatever the resources."""
+        if pixel not in self._programs:
+            if len(self._programs) == PROGRAMS:
+                self._programs.clear()
+            layouts = tuple(map(self._layout, sets))
+            self._programs[pixel] = layouts, self._pipeline(pixel, layouts)
+        return self._programs[pixel]
+
+    def _draw(self, pipeline: Any, groups: Iterable[Any], size: tuple[int, int]) -> NDArray[Any]:
+        """One frame as float32 rows, pixel after pixel."""
+        usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
+        target = self._device.create_texture(size=size, format=FLOATS[4], usage=usage)
+        attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
+        commands = self._device.create_command_encoder()
+        render = commands.begin_render_pass(color_attachments=[attachment])
+        render.set_pipeline(pipeline)
+        for index, group in enumerate(groups):
+            render.set_bind_group(index, group)
+        corners = self._device.create_buffer_with_data(data=CORNERS, usage="VERTEX")
+        render.set_vertex_buffer(0, corners)
+        render.draw(3)
+        render.end()
+        queue = self._device.queue
+        queue.submit([commands.finish()])
+        layout = {"bytes_per_row": 16 * size[0]}
+        frame = queue.read_texture({"texture": target}, layout, (*size, 1))
+        return np.frombuffer(frame, dtype=np.float32).reshape(-1, 4)[:, :3]
+
+    def _pipeline(self, pixel: str, layouts: Sequence[Any]) -> Any:
+        position = {"format": "float32x3", "offset": 0, "shader_location": 0}
+        return self._device.create_render_pipeline(
+            layout=self._device.create_pipeline_layout(bind_group_layouts=layouts),
+            vertex={
+                **self._stage("vert", self._vertex(pixel)),
+                "buffers": [{"array_stride": 12, "attributes": [position]}],
+            },
+            fragment={**self._stage("frag", pixel), "targets": [{"format": FLOATS[4]}]},
+            primitive={"topology": "triangle-list"},
+        )
+
+    def _stage(self, stage: str, text: str) -> dict[str, Any]:
+        """A stage, "vert" or "frag", of a pipeline."""
+        code = self._code(stage, text)
+        try:
+            module = self._device.create_shader_module(label=stage, code=code)
+        except wgpu.GPUValidationError as error:
+            raise ShaderError(f"{self.name}: {str(error).strip()}") from None
+        return {"module": module, "entry_point": "main"}
+
+    def _vertex(self, pixel: str) -> str:
+        """The vertex stage before a pixel stage."""
+        return fragment.DIALECTS[self.target].vertex
+
+    def _code(self, stage: str, text: str) -> bytes | str:
+        """What wgpu is given for a stage."""
+        return _spirv(stage, text)
+
+    def _generated(self, text: str, textures: Mapping[str, NDArray[Any]]) -> Bindings:
+        """Bindings that generated text declares: textures, white ones unless given, and blocks."""
+        halves = {name: texels.astype(np.float16) for name, texels in textures.items()}
+        return {
+            int(match["number"]): self._binding(match, halves)
+            for match in DECLARATION.finditer(text)
+        }
+
+    def _binding(
+        self, declaration: re.Match[str], textures: Mapping[str, NDArray[Any]]
+    ) -> tuple[dict[str, Any], Any]:
+        """Kind and resource of a declaration; a separate texture's name ends in _texture."""
+        if declaration["block"] is not None:
+            return BLOCK, self._block(declaration["block"])
+        if declaration["kind"] == "sampler":
+            return SAMPLER, self._device.create_sampler()
+        texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE)
+        return FILTERED, self._texture(texels)
+
+    def _layout(self, bindings: Bindings) -> Any:
+        """Layout of one set of bindings."""
+        kinds = [
+            {"binding": number, "visibility": "FRAGMENT", **kind}
+            for number, (kind, _) in bindings.items()
+        ]
+        return self._device.create_bind_group_layout(entries=kinds)
+
+    def _group(self, layout: Any, bindings: Bindings) -> Any:
+        """Group of one set of bindings."""
+        entries = [
+            {"binding": number, "resource": resource} for number, (_, resource) in bindings.items()
+        ]
+        return self._device.create_bind_group(layout=layout, entries=entries)
+
+    def _texture(self, texels: NDArray[Any]) -> Any:
+        """A texture of 8-bit, float16 or float32 texels, of one to four components."""
+        height, width, components = texels.shape
+        if components == 3:  # there are no textures of three
+            texels = np.pad(texels, ((0, 0), (0, 0), (0, 1)))
+        form = FORMATS.get(texels.dtype.name) or FLOATS[texels.shape[2]]
+        size = (width, height, 1)
+        usage = wgpu.TextureUsage.TEXTURE_BINDING | wgpu.TextureUsage.COPY_DST
+        texture = self._device.create_texture(size=size, format=form, usage=usage)
+        layout = {"bytes_per_row": texels[0].nbytes, "rows_per_image": height}
+        self._device.queue.write_texture({"texture": texture}, texels, layout, size)
+        return texture.create_view()
+
+    def _block(self, members: str) -> Any:
+        """A uniform block with the values of UNIFORMS in it, and 0 elsewhere."""
+        data = _std140(members)
+        return self._device.create_buffer_with_data(data=data, usage="UNIFORM")
+
+
+@lru_cache(maxsize=8)  # the vertex stage is always the same
+def _spirv(stage: str, text: str) -> bytes:
+    """SPIR-V of a stage."""
+    with TemporaryDirectory(prefix="mxeon-vulkan-") as folder:
+        whole, used = str(Path(folder, "whole")), Path(folder, "used")
+        _run([*COMPILER, "-S", stage, "-o", whole], text)
+        _run([*REMOVER, whole, "-o", str(used)])
+        return used.read_bytes()
+
+
+def _run(command: Sequence[str], text: str = "") -> None:
+    try:
+        process = subprocess.run(
+            command, input=text, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
+        )
+    except subprocess.TimeoutExpired:
+        raise NotRun(f"vulkan: {command[0]} takes longer than {TIMEOUT:.0f} s") from None
+    if process.returncode:
+        raise ShaderError(f"vulkan: {(process.stdout + process.stderr).strip()}")
+
+
+def _std140(members: str) -> bytes:
+    """Bytes of a block: up to the first structure, after which none of UNIFORMS comes."""
+    data, offset = bytearray(BLOCK_SIZE), 0
+    for kind, name in re.findall(r"(\w+) (\w+);", members):
+        if kind not in STD140:
+            break
+        alignment, size = STD140[kind]
+        offset = -(-offset // alignment) * alignment
+        values = UNIFORMS.get(name, ())
+        form = "i" if kind == "int" else "f"
+        struct.pack_into(f"<{len(values)}{form}", data, offset, *values)
+        offset += size
+    return bytes(data)

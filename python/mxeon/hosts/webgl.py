@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: Apache-2.0
+"""WebGL2 in a headless Chromium: generated ESSL as a browser runs it, in float32.
+
+Playwright drives the browser that is installed. The page, `webgl.js`, draws a frame per request. It
+reads arrays from a file, bit for bit, and returns pixels as text. No host name resolves in this
+browser: nothing leaves the machine.
+"""
+
+from __future__ import annotations
+
+import base64
+import os
+import re
+import shutil
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from functools import lru_cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import base, fragment, points, raster
+from mxeon.hosts.base import TURN, Identity
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import Scene
+
+try:
+    from playwright import sync_api
+except ImportError:
+    sync_api = None
+
+PROGRAM = "MXEON_CHROMIUM"  # environment variable that names the browser
+FLAGS = (
+    "--use-gl=angle",
+    "--use-angle=swiftshader",  # Chromium's own software driver, alike on every machine
+    "--enable-unsafe-swiftshader",
+    "--no-proxy-server",
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+)
+PAGE = "<input type='file'><script>{}</script>"
+IDENTITY = np.eye(4).ravel().tolist()
+VERTEX = fragment.DIALECTS["essl"].vertex
+POINTS = 4  # pictures' points that are kept: most materials have the same vertex stage
+
+# ESSL gives uniforms no initial values.
+UNIFORMS = {
+    "u_worldMatrix": IDENTITY,
+    "u_viewProjectionMatrix": IDENTITY,
+    "u_worldInverseTransposeMatrix": IDENTITY,
+    "u_envMatrix": TURN.ravel().tolist(),
+    "u_envLightIntensity": 1.0,
+}
+IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
+
+
+class Host(base.Host):
+    """A browser, started anew after it died.
+
+    Playwright wants a thread without an event loop, and always the same: it gets one of its own.
+
+    Parameters
+    ----------
+    limit : float
+        Seconds that a frame may take.
+
+    Raises
+    ------
+    NotRun
+        If there is no Playwright, no Chromium, or no WebGL2 with float32 frames in it.
+    """
+
+    name = "webgl"
+    target = "essl"
+
+    def __init__(self, limit: float = 300.0) -> None:
+        if sync_api is None:
+            raise NotRun("webgl: Playwright is not installed; pip install 'mxeon[webgl]'")
+        self._program = program()
+        self._limit = 1000.0 * limit
+        self._page: Any = None
+        self._points = lru_cache(maxsize=POINTS)(self._capture)
+        self._stack = ExitStack()
+        self._thread = ThreadPoolExecutor(max_workers=1)
+        try:
+            self._ask("identify")
+        except NotRun:
+            self.close()
+            raise
+
+    def identity(self) -> Identity:
+        """Version and device as the browser names them."""
+        answer = self._ask("identify")
+        return Identity(self.name, f"Chromium {answer['version']}, WebGL2", answer["device"])
+
+    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+        """Picture of the sphere; see `mxeon.hosts.base.Host`."""
+        self.refuse_paths(scene)
+        captured, size = points.outputs(shader), scene.size
+        stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
+        uniforms = UNIFORMS | _inputs(shader) | raster.light(scene)
+        textures = raster.textures(shader, scene)
+        if captured:
+            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
+        return raster.picture(self._draw(stages, uniforms, textures, (size, size)), size)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """What takes the place of lobes below the surface; see `mxeon.hosts.base.Host`."""
+        return raster.approximations(shader)
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: NDArray[Any],
+        wi: NDArray[Any],
+        inputs: Mapping[str, Any],
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
+        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
+        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+        """Values of a GLSL function; see `mxeon.hosts.base.Host`."""
+        parameters = functions.parameters(source, function)
+        pixel, texels = fragment.function_evaluation(
+            source, function, parameters, arguments, self.target
+        )
+        return self._evaluate(VERTEX, pixel, texels)
+
+    def close(self) -> None:
+        """End the browser; the next request starts another."""
+        self._thread.submit(self._stop).result()
+
+    def _evaluate(
+        self,
+        vertex: str,
+        pixel: str,
+        arguments: Mapping[str, NDArray[Any]],
+        irradiance: NDArray[Any] | None = None,
+    ) -> NDArray[Any]:
+        """Values, one pixel per element, as many as the longest argument has."""
+        count, size = fragment.frame(arguments)
+        textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
+        textures |= raster.environment(irradiance)
+        stages = {"vertex": vertex, "pixel": pixel}
+        frame = self._draw(stages, UNIFORMS | raster.EVALUATION, textures, size)
+        return frame.reshape(-1, 3)[:count]
+
+    def _draw(
+        self,
+        stages: Mapping[str, str],
+        uniforms: Mapping[str, Any],
+        textures: Mapping[str, NDArray[Any]],
+        size: tuple[int, int],
+    ) -> NDArray[Any]:
+        """One frame as float32 (height, width, 3), row 0 at the bottom."""
+        job = {**stages, "size": size, "uniforms": uniforms}
+        arrays = {"textures": textures, "attributes": raster.TRIANGLE}
+        pixels = np.frombuffer(self._bytes("draw", job, arrays), dtype=np.float32)
+        return pixels.reshape(size[1], size[0], 4)[..., :3]
+
+    def _capture(
+        self, vertex: str, captured: tuple[points.Output, ...], size: int
+    ) -> NDArray[np.float32]:
+        """Texels of what a vertex stage gives at the points of a picture."""
+        attributes = points.vertices(size)
+        job = {
+            "vertex": vertex,
+            "outputs": [each.name for each in captured],
+            "count": len(attributes["i_position"]),
+            "stride": points.stride(captured),
+            "uniforms": UNIFORMS,
+        }
+        return points.texels(
+            self._bytes("capture", job, {"attributes": attributes}), captured, size
+        )
+
+    def _bytes(
+        self,
+        function: str,
+        job: Mapping[str, Any],
+        arrays: Mapping[str, Mapping[str, NDArray[Any]]],
+    ) -> bytes:
+        """Bytes that a function of the page makes of a job and arrays."""
+        with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
+            file = Path(folder, "arrays")
+            answer = self._ask(function, {**job, **_write(file, arrays)}, file)
+        if "refused" in answer:
+            raise ShaderError(f"webgl: {answer['refused'].strip()}")
+        return base64.b64decode(answer["bytes"])
+
+    def _ask(
+        self, function: str, job: dict[str, Any] | None = None, file: Path | None = None
+    ) -> dict[str, Any]:
+        """Answer of a function of the page; a browser that dies or hangs is ended."""
+        answer = self._thread.submit(self._answer, function, job, file).result()
+        if "failed" in answer:
+            raise NotRun(f"webgl: {answer['failed']}")
+        return answer
+
+    def _answer(
+        self, function: str, job: dict[str, Any] | None, file: Path | None
+    ) -> dict[str, Any]:
+        try:
+            if self._page is None:
+                self._start()
+            if file is not None:
+                self._page.set_input_files("input", file)
+            handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
+            answer: dict[str, Any] = handle.json_value() | {
+                "version": self._page.context.browser.version
+            }
+            return answer
+        except sync_api.Error as error:
+            self._stop()
+            return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
+
+    def _start(self) -> None:
+        playwright = self._stack.enter_context(sync_api.sync_playwright())
+        browser = self._stack.enter_context(
+            playwright.chromium.launch(
+                executable_path=self._program, args=FLAGS, chromium_sandbox=os.geteuid() != 0
+            )
+        )
+        self._page = browser.new_page()
+        self._page.set_content(PAGE.format(Path(__file__).with_suffix(".js").read_text("utf-8")))
+
+    def _stop(self) -> None:
+        self._page = None
+        self._stack.close()
+
+
+def program(host: str = "webgl") -> str:
+    """Path of the browser, for a host."""
+    name = os.environ.get(PROGRAM) or "chromium"
+    path = shutil.which(name)
+    if path is None:
+        raise NotRun(
+            f"{host}: no program {name!r}; on Debian: apt-get install chromium, "
+            f"or name another Chromium in {PROGRAM}"
+        )
+    return path
+
+
+def _inputs(shader: Shader) -> dict[str, Any]:
+    """Values of the uniforms that carry a shader's inputs."""
+    names = re.findall(r"^uniform vec2 (\w+_(uv_scale|uv_offset));", shader.stages["pixel"], re.M)
+    return {name: IMAGE[kind] for name, kind in names} | raster.inputs(shader)
+
+
+def _write(path: Path, groups: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict[str, Any]:
+    """Write arrays one after the other; return shapes and offsets in the file by group and name."""
+    layout: dict[str, Any] = {}
+    offset = 0
+    with path.open("wb") as file:
+        for group, arrays in groups.items():
+            layout[group] = {}
+            for name, values in arrays.items():
+                data = np.ascontiguousarray(values, dtype=np.float32)
+                layout[group][name] = {"shape": data.shape, "offset": offset}
+                offset += file.write(data.tobytes())
+    return layout

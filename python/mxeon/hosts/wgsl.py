@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""WebGPU without a browser: MaterialX's text for its target WGSL, in float32.
+
+That text is GLSL for a converter. wgpu has one, naga, which reads it as it is and makes of it what it
+makes of WGSL; no text of WGSL comes to light.
+"""
+
+from __future__ import annotations
+
+import re
+
+from mxeon.hosts import vulkan
+
+BLOCK = re.compile(r"^layout \(location = 0\) in (\w+\s*\{[^}]*\} \w+;)", re.MULTILINE)
+
+
+class Host(vulkan.Host):
+    """The first Vulkan adapter that wgpu finds, with naga in place of glslang.
+
+    Raises
+    ------
+    NotRun
+        If there is no wgpu or no Vulkan device.
+    """
+
+    name = "wgsl"
+    target = "wgsl"
+    path = "naga, Vulkan"
+    programs = ()
+
+    def _vertex(self, pixel: str) -> str:
+        """A vertex stage with the block that the pixel stage has, 0 in all of it.
+
+        naga keeps what an evaluation leaves unused, and wgpu then asks for it.
+        """
+        head, rest = super()._vertex(pixel).split("\n", 1)
+        outputs = [f"layout (location = 0) out {block}\n" for block in BLOCK.findall(pixel)]
+        return "".join([f"{head}\n", *outputs, rest])
+
+    def _code(self, stage: str, text: str) -> str:
+        """The text itself."""
+        return text

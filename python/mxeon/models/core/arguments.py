@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Validation of arguments: ranges, directions, shapes, switches and choices.
+
+Directions leave the surface, in a local frame with the normal +z.
+"""
+
+from collections.abc import Collection, Mapping
+from typing import NoReturn
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.ranges import RANGES
+from mxeon.models.core.tiling import blocks, channels_first
+
+# Largest error of the squared length of a direction: directions rounded to float32 pass.
+UNIT_TOLERANCE = 1e-6
+
+
+def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
+    """Argument as an array of real numbers inside the range that its name has in `RANGES`.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument; a key of `RANGES` if no quantity is named.
+    value : array_like
+        The caller's argument.
+    quantity : str
+        Key of `RANGES`, where the name has another range elsewhere.
+
+    Returns
+    -------
+    ndarray
+        `value`, in the precision in which it came.
+
+    Raises
+    ------
+    ValueError
+        If an element is no real number or leaves the range; names it, and NaN leaves every range.
+        A masked array is refused, for the result could not keep its mask.
+
+    Examples
+    --------
+    >>> checked("roughness", [0.5, 1.2])
+    Traceback (most recent call last):
+    ...
+    ValueError: roughness must lie in [0, 1]; got 1.2 at index (1,)
+    """
+    array = _real(name, value)
+    low, high, interval = RANGES[quantity or name]
+    # In float64: half floats would round the ends of the range to infinity.
+    if array.size and not (float(array.min()) >= low and float(array.max()) <= high):
+        wide = np.asarray(array, np.float64)
+        _refuse(f"{name} must lie in {interval}", array, (wide >= low) & (wide <= high))
+    return array
+
+
+def checked_numbers(**values: ArrayLike) -> list[Array]:
+    """Numbers inside the ranges of their names, in float64, whose shapes broadcast.
+
+    Examples
+    --------
+    >>> checked_numbers(mu=[0.5, 1.0], roughness=[0.1, 0.2, 0.3])
+    Traceback (most recent call last):
+    ...
+    ValueError: mu, roughness must broadcast; got shapes (2,), (3,)
+    """
+    return broadcastable({}, {name: checked(name, value) for name, value in values.items()})
+
+
+def checked_color(name: str, value: ArrayLike) -> Numbers:
+    """Argument inside the range of its name, with an axis of at least one channel."""
+    color = np.atleast_1d(checked(name, value))
+    if not color.shape[-1]:
+        raise ValueError(f"{name} must have at least one channel; got shape {color.shape}")
+    return color
+
+
+def checked_rgb(name: str, value: ArrayLike) -> Numbers:
+    """Argument inside the range of its name, in red, green and blue; one channel counts for all."""
+    color = checked_color(name, value)
+    if color.shape[-1] not in (1, 3):
+        raise ValueError(f"{name} must have 1 or 3 channels; got shape {color.shape}")
+    return np.broadcast_to(color, (*color.shape[:-1], 3))
+
+
+def checked_colors(
+    colors: Mapping[str, ArrayLike], **numbers: ArrayLike
+) -> tuple[list[Array], list[Array]]:
+    """Colors (..., C) and numbers with an axis for their channels, in float64, that broadcast."""
+    vectors = {name: checked_color(name, value) for name, value in colors.items()}
+    values = broadcastable(vectors, {name: checked(name, each) for name, each in numbers.items()})
+    channel_count(vectors)
+    return values[: len(colors)], [value[..., np.newaxis] for value in values[len(colors) :]]
+
+
+def checked_switch(name: str, value: bool) -> bool:
+    """Argument that is True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} must be True or False; got {value!r}")
+    return bool(value)
+
+
+def checked_count(name: str, value: int) -> int:
+    """Argument that is a positive integer, and not too large for an array."""
+    if not isinstance(value, int | np.integer) or isinstance(value, bool) or not 0 < value < 2**31:
+        raise ValueError(f"{name} must be a positive integer; got {value!r}")
+    return int(value)
+
+
+def checked_choice(name: str, value: str, known: Collection[str]) -> str:
+    """Argument that is one of the known words."""
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
+    return value
+
+
+def checked_directions(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array of unit vectors on or above the horizon.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument in the error message.
+    value : array_like, shape (..., 3)
+        The caller's argument.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        `value`, in the precision in which it came.
+
+    Raises
+    ------
+    ValueError
+        If the last axis is not 3, a squared length differs from 1 by more than `UNIT_TOLERANCE`,
+        or a direction points below the horizon; names the first such element.
+
+    Examples
+    --------
+    >>> checked_directions("wo", [0.0, 0.6, -0.8])
+    Traceback (most recent call last):
+    ...
+    ValueError: wo must not point below the horizon (z >= 0); got z = -0.8
+    """
+    array = checked_triples(name, value)
+    for block in blocks(array.shape[:-1]):
+        if not are_directions(channels_first(array[block])):
+            refuse_direction(name, array)
+    return array
+
+
+def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 3) of unit vectors, none of which points above the horizon."""
+    array = checked_triples(name, value)
+    z = array[..., 2]
+    if (z > 0.0).any():
+        _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > 0.0), "z = ")
+    return checked_sphere(name, array)
+
+
+def checked_sphere(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 3) of unit vectors, on either side of the surface."""
+    array = checked_triples(name, value)
+    checked_directions(name, np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1))
+    return array
+
+
+def checked_triples(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array of shape (..., 3), whose lengths are not looked at."""
+    array = _real(name, value)
+    if array.shape[-1:] != (3,):
+        raise ValueError(f"{name} must have shape (..., 3); got shape {array.shape}")
+    return array
+
+
+def checked_pairs(name: str, value: ArrayLike) -> Numbers:
+    """Argument of shape (..., 2) inside the range that its name has in `RANGES`."""
+    array = checked(name, value)
+    if array.shape[-1:] != (2,):
+        raise ValueError(f"{name} must have shape (..., 2); got shape {array.shape}")
+    return array
+
+
+def are_directions(components: Numbers) -> bool:
+    """Whether all vectors of shape (3, ...) are unit and on or above the horizon."""
+    x, y, z = components
+    if not z.size:
+        return True
+    with np.errstate(over="ignore"):
+        length = x * x + y * y + z * z
+    unit = abs(length.min() - 1.0) <= UNIT_TOLERANCE and abs(length.max() - 1.0) <= UNIT_TOLERANCE
+    return bool(unit and z.min() >= 0.0)
+
+
+def refuse_direction(name: str, w: Numbers) -> NoReturn:
+    """Raise for the first direction that is below the horizon or else of the wrong length."""
+    z = w[..., 2]
+    if (z < 0.0).any():
+        _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < 0.0), "z = ")
+    with np.errstate(over="ignore"):
+        length = np.sum(np.square(w, dtype=np.float64), axis=-1)
+    unit = np.abs(length - 1.0) <= UNIT_TOLERANCE
+    _refuse(f"{name} must be unit vectors to {UNIT_TOLERANCE}", length, unit, "squared length ")
+
+
+def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
+    """Shape to which arguments broadcast, the last axis of `vectors` apart.
+
+    Parameters
+    ----------
+    vectors : dict of str to ndarray
+        Directions, random numbers or colors by name: shapes (..., C).
+    numbers : dict of str to ndarray
+        The others: shapes (...).
+
+    Returns
+    -------
+    tuple of int
+
+    Raises
+    ------
+    ValueError
+        If they do not broadcast; names them and their shapes.
+
+    Examples
+    --------
+    >>> lead_shape({"wo": np.zeros((4, 3))}, {"roughness": np.zeros(5)})
+    Traceback (most recent call last):
+    ...
+    ValueError: wo, roughness must broadcast (last axis of wo apart); got shapes (4, 3), (5,)
+    """
+    arrays = [*vectors.values(), *numbers.values()]
+    leads = [array.shape[:-1] for array in vectors.values()]
+    leads += [array.shape for array in numbers.values()]
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        names = ", ".join([*vectors, *numbers])
+        apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
+        shapes = ", ".join(str(array.shape) for array in arrays)
+        raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
+
+
+def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
+    """Checked vectors and numbers, in this order, as float64 arrays whose shapes broadcast."""
+    lead_shape(vectors, numbers)
+    return [np.asarray(array, np.float64) for array in (*vectors.values(), *numbers.values())]
+
+
+def channel_count(colors: Mapping[str, Numbers]) -> int:
+    """Number of channels to which colors of shape (..., C) broadcast.
+
+    Raises
+    ------
+    ValueError
+        If they do not; names them and their numbers of channels.
+    """
+    counts = [int(color.shape[-1]) for color in colors.values()]
+    largest = max(counts)
+    if any(count not in (1, largest) for count in counts):
+        raise ValueError(
+            f"{', '.join(colors)} must have equal numbers of channels; got {', '.join(map(str, counts))}"
+        )
+    return largest
+
+
+def _real(name: str, value: ArrayLike) -> Numbers:
+    """Argument as an array; raise for complex numbers, text, ragged lists and masks."""
+    if np.ma.isMaskedArray(value):
+        raise ValueError(f"{name} must not be a masked array, whose mask would be lost; fill it")
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        array = np.empty(0, object)
+    if not np.can_cast(array.dtype, np.float64, "same_kind"):
+        raise ValueError(f"{name} must be real numbers; got {value!r}")
+    return array.astype(np.float64) if array.dtype == np.bool_ else array
+
+
+def _refuse(rule: str, array: Numbers, valid: Numbers, quantity: str = "") -> NoReturn:
+    """Raise ValueError for the first element of `array` that is not valid."""
+    index = tuple(int(i) for i in np.argwhere(~valid)[0])
+    location = f" at index {index}" if index else ""
+    raise ValueError(f"{rule}; got {quantity}{array[index]}{location}")

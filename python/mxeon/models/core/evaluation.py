@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Evaluation of reflection formulas over broadcast arguments, in blocks that fit a cache."""
+
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+import numpy as np
+
+from mxeon.models.core.arguments import (
+    are_directions,
+    checked,
+    checked_triples,
+    lead_shape,
+    refuse_direction,
+)
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.tiling import BLOCK, blocks, tile, with_axes
+
+_threads: ContextVar[int] = ContextVar("threads", default=1)
+
+
+@contextmanager
+def threads(count: int) -> Iterator[None]:
+    """Context in which the functions of `mxeon.models` evaluate on `count` threads.
+
+    Parameters
+    ----------
+    count : int
+        Number of threads, at least 1. Outside such a context a call uses the caller's thread alone.
+
+    Raises
+    ------
+    ValueError
+        If `count` is not a positive integer.
+
+    Notes
+    -----
+    A thread takes a block of 32768 pairs at a time, so that calls with fewer pairs use one. Values
+    do not depend on the number. The setting belongs to the thread or task that enters the context.
+
+    Examples
+    --------
+    >>> from mxeon.models import lambert_brdf
+    >>> with threads(2):
+    ...     lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 0.5).round(6)
+    array([0.159155])
+    """
+    if not isinstance(count, int) or count < 1:
+        raise ValueError(f"threads must be a positive integer; got {count!r}")
+    token = _threads.set(count)
+    try:
+        yield
+    finally:
+        _threads.reset(token)
+
+
+def evaluate(
+    formula: Callable[..., Array],
+    wo: ArrayLike,
+    wi: ArrayLike,
+    rho: ArrayLike,
+    **parameter: ArrayLike,
+) -> Array:
+    """Values of a reflection formula over broadcast arguments, block by block.
+
+    Parameters
+    ----------
+    formula : callable
+        `formula(wo, wi, rho, *parameter)` for one block: directions (..., 3) with contiguous
+        components, `rho` (C, ...), the parameter (...), all float64; returns (C, ...). Axes of
+        length 1 stay so, and with them everything that depends on the material alone stays small.
+    wo, wi : array_like, shape (..., 3)
+        Directions, unit vectors on or above the horizon.
+    rho : array_like, shape (..., C)
+        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
+    **parameter : array_like, shape (...)
+        At most one, under a name of `RANGES`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Beyond it and the arguments, memory does not grow with the number of pairs.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or the shapes do not broadcast.
+
+    Examples
+    --------
+    >>> evaluate(lambda wo, wi, rho: rho * wi[..., 2], [0, 0, 1], [0.6, 0, 0.8], [0.5, 1.0])
+    array([0.4, 0.8])
+    """
+    arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
+    arguments["rho"] = np.atleast_1d(checked("rho", rho))
+    numbers = {name: checked(name, value) for name, value in parameter.items()}
+    shape = lead_shape(arguments, numbers)
+    arguments |= {name: array[..., np.newaxis] for name, array in numbers.items()}
+    arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
+    out = np.empty(shape + arrays["rho"].shape[-1:])
+
+    def fill(block: tuple[slice, ...]) -> None:
+        parts = {name: tile(array, block) for name, array in arrays.items()}
+        for name in ("wo", "wi"):
+            if not are_directions(parts[name]):
+                refuse_direction(name, arguments[name])
+        wo, wi, rho, *rest = parts.values()
+        values = formula(np.moveaxis(wo, 0, -1), np.moveaxis(wi, 0, -1), rho, *(a[0] for a in rest))
+        for channel, value in enumerate(values):
+            out[block][..., channel] = value
+
+    _for_each(fill, list(blocks(shape)))
+    return out
+
+
+def evaluate_material(
+    formula: Callable[..., Array],
+    vectors: Mapping[str, Numbers],
+    numbers: Mapping[str, Numbers],
+    channels: int,
+    size: int = BLOCK,
+) -> Array:
+    """Values of a formula over broadcast arguments that were checked, block by block.
+
+    Parameters
+    ----------
+    formula : callable
+        `formula(**arguments)` for one block: of `vectors` each with its last axis first, (C, ...),
+        of `numbers` (...), all float64; returns (channels, ...). Axes of length 1 stay so.
+    vectors, numbers : dict of str to ndarray
+        Directions, colors and pairs, shapes (..., C); the others, shapes (...).
+    channels : int
+        Channels of the result.
+    size : int
+        Elements per block; fewer where the formula keeps many numbers for each.
+
+    Returns
+    -------
+    ndarray, shape (..., channels), float64
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not broadcast.
+
+    Examples
+    --------
+    >>> color, mu = np.array([0.5, 1.0]), np.array(0.4)
+    >>> evaluate_material(lambda color, mu: color * mu, {"color": color}, {"mu": mu}, 2)
+    array([0.2, 0.4])
+    """
+    shape = lead_shape(vectors, numbers)
+    arguments = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
+    arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
+    out = np.empty((*shape, channels))
+
+    def fill(block: tuple[slice, ...]) -> None:
+        parts = {name: tile(array, block) for name, array in arrays.items()}
+        values = formula(
+            **{name: parts[name][0] if name in numbers else parts[name] for name in parts}
+        )
+        out[block] = np.moveaxis(np.broadcast_to(values, (channels, *out[block].shape[:-1])), 0, -1)
+
+    _for_each(fill, list(blocks(shape, size)))
+    return out
+
+
+def _for_each(fill: Callable[[tuple[slice, ...]], None], tiling: list[tuple[slice, ...]]) -> None:
+    """Fill every block, on as many threads as the context says."""
+    count = min(_threads.get(), len(tiling))
+    if count < 2:
+        for block in tiling:
+            fill(block)
+        return
+    # NumPy computes without the interpreter's lock.
+    with ThreadPoolExecutor(count) as pool:
+        list(pool.map(fill, tiling))

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong variants of models that renderers in the field implement, to recognize them by."""
+
+import numpy as np
+
+from mxeon.models.core.arguments import checked
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.evaluation import evaluate
+from mxeon.models.diffuse import formulas
+from mxeon.models.diffuse.brdf import qon_brdf
+from mxeon.models.diffuse.burley import burley_brdf
+from mxeon.models.diffuse.formulas import C1, C2, cosines
+
+FLOOR = 0.1  # least reflectance that Babylon.js passes to EON
+
+
+def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of EON with dot(wo, wi) kept above 1e-8 before s is formed.
+
+        s = max(dot(wo, wi), 1e-8) - mu_o mu_i
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too bright where dot(wo, wi) < 0, and correct elsewhere.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    MaterialX's GLSL node clamps the product, for the needs of other nodes, and passes it on.
+
+    Examples
+    --------
+    >>> eon_clamped_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.2, 0.8], 1.0).round(6)
+    array([0.033311, 0.156407])
+    """
+    return evaluate(_eon_clamped, wo, wi, rho, roughness=roughness)
+
+
+def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of Burley's diffuse model at roughness^2, multiplied by mu_i.
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.diffuse.burley.burley_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; not reciprocal, and a white surface reflects two thirds of the light.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    LuxCoreRender's disney: `DisneyDiffuse` squares the roughness, and both `Evaluate` and
+    `DisneyEvaluate` multiply by the cosine of the light.
+
+    Examples
+    --------
+    >>> burley_cosine_brdf([0.0, 0.0, 1.0], [0.8, 0.0, 0.6], [0.5, 1.0], 0.5).round(6)
+    array([0.095395, 0.19079 ])
+    """
+    value = burley_brdf(wo, wi, rho, np.square(checked("roughness", roughness)))
+    return value * np.asarray(wi, np.float64)[..., 2:]
+
+
+def burley_schlick_brdf(
+    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+) -> Array:
+    """Reflection of Burley's diffuse model with wrong retro-reflection.
+
+        f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
+        R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.diffuse.burley.burley_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The GLSL of three-gpu-pathtracer. Burley's R is 2 roughness (wi . wh)^2.
+
+    Examples
+    --------
+    >>> burley_schlick_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.5, 1.0], 1.0).round(6)
+    array([0.159156, 0.318311])
+    """
+    return evaluate(_burley_schlick, wo, wi, rho, roughness=roughness)
+
+
+def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too dark, and correct where rho is 0 or 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The OSL closure of Blender's Cycles applies its albedo weight to the lobe once too often.
+
+    Examples
+    --------
+    >>> eon_rho_cubed_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.2, 0.8], 1.0).round(6)
+    array([0.018131, 0.095069])
+    """
+    return evaluate(_eon_rho_cubed, wo, wi, rho, roughness=roughness)
+
+
+def fon_white_lobe_brdf(
+    wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike
+) -> Array:
+    """Reflection of FON plus the multiple-scattering lobe of a white surface.
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too bright, and correct where rho is 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    The MDL target forgets to tint the lobe: a black surface reflects 0.22 at roughness 1.
+
+    Examples
+    --------
+    >>> fon_white_lobe_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.0, 0.8], 1.0).round(6)
+    array([0.048519, 0.119705])
+    """
+    return evaluate(_fon_white_lobe, wo, wi, rho, roughness=roughness)
+
+
+def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+    """Reflection of EON whose shape is that of a reflectance of at least 0.1.
+
+        f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
+
+    Parameters
+    ----------
+    wo, wi, rho, roughness
+        As those of `mxeon.models.eon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Babylon.js 9.34.0 divides EON by the reflectance, which it keeps above 0.1; its albedo is the
+    paper's quartic.
+
+    Examples
+    --------
+    >>> eon_floor_brdf([0.8, 0.0, 0.6], [-0.8, 0.0, 0.6], [0.01, 0.8], 1.0).round(6)
+    array([0.000931, 0.101069])
+    """
+    return evaluate(_eon_floor, wo, wi, rho, roughness=roughness)
+
+
+def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Reflection of QON that is multiplied by its own color once more.
+
+    Parameters
+    ----------
+    wo, wi, rho, sigma
+        As those of `mxeon.models.qon_brdf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; too dark, and correct where rho is 0 or 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    OpenPBR's thin-walled lobe in MaterialX 1.39.5, issue 3027 of MaterialX.
+
+    Examples
+    --------
+    >>> qon_tinted_twice_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.5, 1.0], 0.0).round(6)
+    array([0.079577, 0.31831 ])
+    """
+    return checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
+
+
+def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
+    """Reflection of QON that takes the number of degrees for radians.
+
+    Parameters
+    ----------
+    wo, wi, rho, sigma
+        As those of `mxeon.models.qon_brdf`: sigma is in radian, and 180 sigma / pi enters.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In 1/sr; from a few degrees on it is the limit of large sigma, and correct at 0.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    LuxCoreRender's roughmatte: its manual has degrees, its code radians.
+
+    Examples
+    --------
+    >>> qon_degrees_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
+    array([0.062398, 0.249593])
+    """
+    return evaluate(_qon_degrees, wo, wi, rho, sigma=sigma)
+
+
+def _eon_clamped(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    mu_o, mu_i, s = cosines(wo, wi)
+    s = np.maximum(s + mu_o * mu_i, 1e-8) - mu_o * mu_i
+    return formulas.eon_brdf_mu(mu_o, mu_i, s, rho, roughness)
+
+
+def _eon_rho_cubed(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    mu_o, mu_i, s = cosines(wo, wi)
+    single_scatter = 1.0 + roughness * formulas.fon_quotient(mu_o, mu_i, s)
+    weight = rho * formulas.eon_multiple_weight(rho, roughness)
+    multi_scatter = weight * (formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i))
+    return formulas.fon_scale(rho, roughness) * (single_scatter + multi_scatter)
+
+
+def _eon_floor(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    floor = np.maximum(rho, FLOOR)
+    return rho / floor * formulas.eon_brdf_approx(wo, wi, floor, roughness)
+
+
+def _burley_schlick(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    mu_o, mu_i, _ = cosines(wo, wi)
+    F_o, F_i = (1.0 - mu_o) ** 5, (1.0 - mu_i) ** 5
+    smooth = (1.0 - 0.5 * F_o) * (1.0 - 0.5 * F_i)
+    R = 0.5 + 2.0 * roughness * F_i**2
+    return rho / np.pi * (smooth + R * (F_o + F_i + F_o * F_i * (R - 1.0)))
+
+
+def _qon_degrees(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
+    return formulas.qon_brdf(wo, wi, rho, np.degrees(sigma))
+
+
+def _fon_white_lobe(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
+    mu_o, mu_i, _ = cosines(wo, wi)
+    losses = formulas.fon_loss(mu_o) * formulas.fon_loss(mu_i)
+    white = roughness * formulas.fon_a(roughness) / (np.pi * (C1 - C2)) * losses
+    return formulas.fon_brdf(wo, wi, rho, roughness) + white

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Diffuse transmission, as in [MaterialX2026], section `translucent_bsdf`."""
+
+import numpy as np
+
+from mxeon.models.core.arguments import checked_transmitted, checked_triples
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.evaluation import evaluate
+from mxeon.models.diffuse.formulas import lambert_brdf
+
+
+def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
+    """BTDF of Lambert's transmission.
+
+        f = rho / pi
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
+    wi : array_like, shape (..., 3)
+        Direction to the light, unit vector to 1e-6, z <= 0.
+    rho : array_like, shape (..., C)
+        Diffuse transmittance per channel, dimensionless, in [0, 1]; a number is one channel.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        BTDF in 1/sr. Its integral over the lower hemisphere times |mu_i| is rho.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `translucent_bsdf`, Lambertian transmittance equation.
+
+    Examples
+    --------
+    >>> translucent_btdf([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.2, 0.8]).round(6)
+    array([0.063662, 0.254648])
+    """
+    mirrored = checked_transmitted("wi", checked_triples("wi", wi)) * np.array([1.0, 1.0, -1.0])
+    return evaluate(lambert_brdf, wo, mirrored, rho)

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Emission, participating media, and light below the surface."""

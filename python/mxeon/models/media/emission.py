@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Emission of surfaces: the EDF nodes of [MaterialX2026], and the power that they emit.
+
+A radiance is per channel, in any unit; the exitance is its integral over the hemisphere times the
+cosine, pi times that unit. Directions leave the surface, normal +z; one below the horizon sees the
+back of the surface. `measured_edf` has no function here: its values are those of a file.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from mxeon.models.core.arguments import (
+    broadcastable,
+    checked_colors,
+    checked_numbers,
+    checked_sphere,
+)
+from mxeon.models.core.arrays import Array, ArrayLike
+
+HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
+
+
+def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
+    """Radiance of a surface that emits the same in all directions.
+
+        L_e = c
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Direction to the viewer, unit vector to 1e-6, normal +z; z may be negative.
+    radiance : array_like, shape (..., C)
+        c per channel, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In the unit of `radiance`. The equation has no side, so that the back emits as much.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `uniform_edf`, Uniform Emission Equation.
+
+    Examples
+    --------
+    >>> uniform_edf([0.6, 0.0, 0.8], [0.5, 2.0])
+    array([0.5, 2. ])
+    """
+    mu, (c,), _ = _checked(wo, {"radiance": radiance})
+    return np.array(np.broadcast_to(c, (*np.broadcast_shapes(mu.shape, c.shape[:-1]), c.shape[-1])))
+
+
+def uniform_exitance(radiance: ArrayLike) -> Array:
+    """Radiant exitance of a uniform emitter, pi c.
+
+    Parameters
+    ----------
+    radiance : array_like
+        c, in [0, 1e50].
+
+    Returns
+    -------
+    float64 or ndarray, float64
+        pi times the unit of `radiance`.
+
+    Raises
+    ------
+    ValueError
+        If `radiance` leaves its range; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `uniform_edf`.
+
+    Examples
+    --------
+    >>> round(float(uniform_exitance(2.0)), 6)
+    6.283185
+    """
+    (c,) = checked_numbers(radiance=radiance)
+    return np.asarray(np.pi * c)[()]
+
+
+def conical_edf(
+    wo: ArrayLike, radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike
+) -> Array:
+    """Radiance of a surface that emits inside a cone around its normal.
+
+        L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
+        L_e = c if cos >= c_in, else 0          otherwise
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        As in `uniform_edf`.
+    radiance : array_like, shape (..., C)
+        c, the radiance inside the cone, per channel, in [0, 1e50].
+    inner_angle, outer_angle : array_like, shape (...)
+        Full angles of the cones where the falloff starts and where it ends, degrees, in [0, 360].
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In the unit of `radiance`. Below the horizon the cosine counts as 0, as the text has it.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
+
+    Examples
+    --------
+    >>> conical_edf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [2.0], 60.0, 90.0).round(6)
+    array([[2.      ],
+           [1.251183]])
+    """
+    angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
+    mu, (c,), (inner, outer) = _checked(wo, {"radiance": radiance}, **angles)
+    falloff = conical_falloff(np.maximum(mu, 0.0)[..., np.newaxis], inner, outer)
+    return np.asarray(c * falloff)
+
+
+def conical_falloff(mu: Array, inner: Array, outer: Array) -> Array:
+    """Share of the radiance at cosines `mu`, without checks; 1 in the cone, 0 outside."""
+    soft = outer > inner
+    width = np.where(soft, cone_width(inner, outer), 1.0)
+    t = np.clip((mu - cone_cosine(outer)) / width, 0.0, 1.0)
+    return np.where(soft, t * t * (3.0 - 2.0 * t), mu >= cone_cosine(inner))
+
+
+def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike) -> Array:
+    """Radiant exitance of a conical emitter, in closed form.
+
+    With a = c_out, b = c_in and h = b - a, the falloff has the integral
+
+        int t^2 (3 - 2 t) mu dmu = h [a (t^3 - t^4 / 2) + h (3 t^4 / 4 - 2 t^5 / 5)],
+
+    between mu = max(a, 0) and b, where mu = a + h t; inside the cone it is (1 - b^2) / 2. The
+    exitance is 2 pi c times both, and pi c where the inner cone holds the hemisphere.
+
+    Parameters
+    ----------
+    radiance, inner_angle, outer_angle
+        As in `conical_edf`; `radiance` has the shape (..., C).
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        pi times the unit of `radiance`.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    Notes
+    -----
+    h is a product of two sines, so that a narrow falloff does not cancel. The integral is our own.
+
+    References
+    ----------
+    [MaterialX2026], section `conical_edf`.
+
+    Examples
+    --------
+    >>> conical_exitance([1.0], 90.0, 0.0).round(6)  # pi sin^2 of 45 degrees
+    array([1.570796])
+    """
+    angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
+    (c,), (inner, outer) = checked_colors({"radiance": radiance}, **angles)
+    a, b = cone_cosine(outer), cone_cosine(inner)
+    h = np.where(outer > inner, cone_width(inner, outer), 0.0)
+    start = np.clip(np.where(h > 0.0, -a / np.where(h > 0.0, h, 1.0), 1.0), 0.0, 1.0)
+
+    def antiderivative(t: Array | float) -> Array:
+        return np.asarray(h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t)))
+
+    ramp = antiderivative(1.0) - antiderivative(start)
+    cone = 0.5 * np.sin(HALF_TURN * inner) ** 2
+    share = np.where(b <= 0.0, 0.5, cone + ramp)
+    return np.asarray(2.0 * np.pi * c * share)
+
+
+def generalized_schlick_edf(
+    wo: ArrayLike, base: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
+) -> Array:
+    """Radiance of another emission, scaled by a Schlick curve.
+
+        L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        As in `uniform_edf`.
+    base : array_like, shape (..., C)
+        Radiance of the scaled emission towards `wo`, per channel, in [0, 1e50].
+    color0, color90 : array_like, shape (..., C)
+        Factors along the normal and at grazing, in [0, 1].
+    exponent : array_like, shape (...)
+        q, in [0, 1e50]; with 0 the factor is `color90` everywhere.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In the unit of `base`. The back is seen at |cos|: with a negative cosine the curve of the text
+        would leave the range between both factors.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission Equations.
+
+    Examples
+    --------
+    >>> generalized_schlick_edf([0.6, 0.0, 0.8], [2.0], [1.0], [0.0], 1.0).round(6)
+    array([1.6])
+    """
+    colors = {"base": base, "color0": color0, "color90": color90}
+    mu, (c, r0, r90), (q,) = _checked(wo, colors, exponent=exponent)
+    power = np.maximum(1.0 - np.abs(mu[..., np.newaxis]), 0.0) ** q
+    return np.asarray(c * (r0 + (r90 - r0) * power))
+
+
+def generalized_schlick_exitance(
+    radiance: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
+) -> Array:
+    """Radiant exitance of a uniform emitter that is scaled by a Schlick curve.
+
+        M = pi c (r_0 + (r_90 - r_0) 2 / ((q + 1) (q + 2)))
+
+    Parameters
+    ----------
+    radiance, color0, color90 : array_like, shape (..., C)
+    exponent : array_like, shape (...)
+        As in `generalized_schlick_edf`.
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        pi times the unit of `radiance`.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `generalized_schlick_edf`; the integral is our own.
+
+    Examples
+    --------
+    >>> generalized_schlick_exitance([1.0], [0.0], [1.0], 0.0).round(6)
+    array([3.141593])
+    """
+    colors = {"radiance": radiance, "color0": color0, "color90": color90}
+    (c, r0, r90), (q,) = checked_colors(colors, exponent=exponent)
+    share = 2.0 / ((q + 1.0) * (q + 2.0))
+    return np.asarray(np.pi * c * (r0 + (r90 - r0) * share))
+
+
+def cone_cosine(angle: Array) -> Array:
+    """Cosine of half of a full angle in degrees, exactly 0 at 180."""
+    return np.asarray(np.sin(HALF_TURN * (180.0 - angle)))
+
+
+def cone_width(inner: Array, outer: Array) -> Array:
+    """c_in - c_out by a product of sines."""
+    half = 0.5 * HALF_TURN
+    return np.asarray(2.0 * np.sin(half * (outer + inner)) * np.sin(half * (outer - inner)))
+
+
+def _checked(
+    wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
+) -> tuple[Array, list[Array], list[Array]]:
+    """Cosines of the view, and what `checked_colors` returns, all of which broadcast."""
+    directions = checked_sphere("wo", wo)
+    vectors, values = checked_colors(colors, **numbers)
+    parts = dict(zip(colors, vectors, strict=True))
+    plain = {name: value[..., 0] for name, value in zip(numbers, values, strict=True)}
+    broadcastable({"wo": directions} | parts, plain)
+    return np.clip(np.asarray(directions[..., 2], np.float64), -1.0, 1.0), vectors, values

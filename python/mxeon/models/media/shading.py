@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Radiance of surfaces, lights and media by the shader nodes of [MaterialX2026]."""
+
+import numpy as np
+
+from mxeon.models.core.arguments import checked_colors
+from mxeon.models.core.arrays import Array, ArrayLike
+
+
+def light_radiance(emission: ArrayLike, intensity: ArrayLike, exposure: ArrayLike) -> Array:
+    """Radiance of a light source: that of its EDF, scaled in linear units and in stops.
+
+        L_e = I 2^E L_edf
+
+    Parameters
+    ----------
+    emission : array_like, shape (..., C)
+        Radiance of the EDF per channel, in [0, 1e50].
+    intensity : array_like, shape (...)
+        I, in [0, 1e50].
+    exposure : array_like, shape (...)
+        E, in stops, in [-1000, 1000].
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        In the unit of `emission`.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `light`, Light Emission Equation.
+
+    Examples
+    --------
+    >>> light_radiance([0.5, 1.0], 3.0, 2.0)
+    array([ 6., 12.])
+    """
+    numbers = {"intensity": intensity, "exposure": exposure}
+    (c,), (scale, stops) = checked_colors({"emission": emission}, **numbers)
+    return np.asarray(c * (scale * np.exp2(stops)))
+
+
+def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLike) -> Array:
+    """Radiance of a surface: what it emits and what it scatters, times its opacity.
+
+        L_o = O (L_e + L_s)
+
+    Parameters
+    ----------
+    emission, scattered : array_like, shape (..., C)
+        L_e of its EDF, and L_s, the integral of its BSDF over the light, per channel, in [0, 1e50].
+    opacity : array_like, shape (...)
+        O, the share of the footprint that the material covers, in [0, 1].
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        Without the light from behind, of which 1 - O passes.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `surface`, Surface Shading Equation; its integral is that of section
+    The Light Transport Equation.
+
+    Examples
+    --------
+    >>> surface_radiance([1.0], [0.5], 0.5)
+    array([0.75])
+    """
+    colors = {"emission": emission, "scattered": scattered}
+    (emitted, light), (covered,) = checked_colors(colors, opacity=opacity)
+    return np.asarray(covered * (emitted + light))
+
+
+def volume_radiance(
+    behind: ArrayLike,
+    emission: ArrayLike,
+    absorption: ArrayLike,
+    scattering: ArrayLike,
+    distance: ArrayLike,
+) -> Array:
+    """Radiance of a ray through a homogeneous medium, without the light that is scattered into it.
+
+        L = L_0 T + L_e t (1 - T) / (sigma_t t)
+
+    Parameters
+    ----------
+    behind : array_like, shape (..., C)
+        L_0, the radiance that enters the medium, per channel, in [0, 1e50].
+    emission : array_like, shape (..., C)
+        L_e, radiance per meter that the medium emits, the same in all directions, in [0, 1e50].
+    absorption, scattering : array_like, shape (..., C)
+        Coefficients in 1/m, in [0, 1e50].
+    distance : array_like, shape (...)
+        t in m, in [0, 1e50].
+
+    Returns
+    -------
+    ndarray, shape (..., C), float64
+        The solution of the equation of transfer whose integral over directions is left out: that
+        needs a renderer.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `volume`, and section The Equation of Transfer.
+
+    Examples
+    --------
+    >>> volume_radiance([1.0], [3.0], [0.0], [0.0], 2.0)
+    array([7.])
+    """
+    media = {"absorption": absorption, "scattering": scattering}
+    (light, emitted, sigma_a, sigma_s), (t,) = checked_colors(
+        {"behind": behind, "emission": emission} | media, distance=distance
+    )
+    depth = (sigma_a + sigma_s) * t
+    share = np.where(depth > 0.0, -np.expm1(-depth) / np.where(depth > 0.0, depth, 1.0), 1.0)
+    return np.asarray(light * np.exp(-depth) + emitted * t * share)

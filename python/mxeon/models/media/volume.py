@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Participating media: the VDF nodes of [MaterialX2026].
+
+Coefficients are per channel, in 1/m. Directions point away from the position where light is
+scattered, so that light that goes straight on has wi = -wo.
+"""
+
+import numpy as np
+
+from mxeon.models.core.arguments import (
+    checked_numbers,
+    checked_pairs,
+    checked_sphere,
+    lead_shape,
+)
+from mxeon.models.core.arrays import Array, ArrayLike
+
+
+def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
+    """Extinction coefficient, sigma_t = sigma_a + sigma_s.
+
+    Parameters
+    ----------
+    absorption, scattering : array_like
+        Coefficients in 1/m, in [0, 1e50].
+
+    Returns
+    -------
+    float64 or ndarray, float64
+        In 1/m.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `anisotropic_vdf`, Extinction.
+
+    Examples
+    --------
+    >>> float(extinction(0.5, 1.5))
+    2.0
+    """
+    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
+    return np.asarray(sigma_a + sigma_s)[()]
+
+
+def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
+    """Share of the radiance that passes a homogeneous medium, T = exp(-sigma_t t).
+
+    Parameters
+    ----------
+    absorption, scattering : array_like
+        Coefficients in 1/m, in [0, 1e50]. `absorption_vdf` has a scattering of 0.
+    distance : array_like
+        t in m, in [0, 1e50].
+
+    Returns
+    -------
+    float64 or ndarray, float64
+        Dimensionless, in [0, 1]. Light that is scattered into the ray is left out.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], sections `absorption_vdf`, Beer-Lambert Absorption, and `anisotropic_vdf`,
+    Extinction.
+
+    Examples
+    --------
+    >>> round(float(transmittance(0.5, 0.5, 2.0)), 6)
+    0.135335
+    """
+    values = {"absorption": absorption, "scattering": scattering, "distance": distance}
+    sigma_a, sigma_s, t = checked_numbers(**values)
+    return np.asarray(np.exp(-(sigma_a + sigma_s) * t))[()]
+
+
+def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
+    """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t.
+
+    Parameters
+    ----------
+    absorption, scattering : array_like
+        Coefficients in 1/m, in [0, 1e50].
+
+    Returns
+    -------
+    float64 or ndarray, float64
+        Dimensionless, in [0, 1]; 0 where no light leaves the ray.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `anisotropic_vdf`, Extinction.
+
+    Examples
+    --------
+    >>> float(single_scattering_albedo(0.5, 1.5))
+    0.75
+    """
+    sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
+    sigma_t = sigma_a + sigma_s
+    return np.asarray(sigma_s / np.where(sigma_t > 0.0, sigma_t, 1.0))[()]
+
+
+def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
+    """Phase function of Henyey and Greenstein.
+
+        f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2))
+
+    Parameters
+    ----------
+    cos_theta : array_like
+        Cosine of the angle of deflection, in [-1, 1]: 1 is straight on.
+    g : array_like
+        Mean cosine of the deflection, in (-1, 1); at either end all light goes one way, and the
+        function has no value.
+
+    Returns
+    -------
+    float64 or ndarray, float64
+        Density in solid angle, 1/sr. Its integral over all directions is 1.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    Notes
+    -----
+    The denominator is (1 - |g|)^2 + 2 |g| (1 - cos), with the sign of g on the cosine, and 1 - g^2 a
+    product: neither cancels near g = 1 or -1.
+
+    References
+    ----------
+    [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
+
+    Examples
+    --------
+    >>> hg_phase([1.0, -1.0], 0.5).round(6)
+    array([0.477465, 0.017684])
+    """
+    cosine, mean = checked_numbers(cos_theta=cos_theta, g=g)
+    return np.asarray(_phase(1.0 - np.where(mean < 0.0, -cosine, cosine), mean))[()]
+
+
+def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
+    """Direction sampled by the phase function of Henyey and Greenstein, and its density.
+
+    With x = 2 u_1 - 1, the inverse of its distribution is written
+
+        1 - cos = (1 - g)^2 (1 - x) (2 + g (1 + x)) / (2 (1 + g x)^2),
+
+    which is 1 - x at g = 0 and does not cancel for any g.
+
+    Parameters
+    ----------
+    wo : array_like, shape (..., 3)
+        Direction from which the light leaves, any unit vector to 1e-6.
+    u : array_like, shape (..., 2)
+        Independent uniform random numbers, in [0, 1).
+    g : array_like, shape (...)
+        As in `hg_phase`.
+
+    Returns
+    -------
+    wi : ndarray, shape (..., 3), float64
+        Unit vectors towards the light.
+    pdf : float64 or ndarray, shape (...)
+        Density at `wi`, `hg_pdf`, in 1/sr.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `anisotropic_vdf`; the form of the inverse is our own.
+
+    Examples
+    --------
+    >>> wi, pdf = hg_sample([0.0, 0.0, 1.0], [0.5, 0.0], 0.0)
+    >>> wi.round(12) + 0.0, round(float(pdf), 6)
+    (array([0., 1., 0.]), 0.079577)
+    """
+    views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), checked_numbers(g=g)
+    shape = lead_shape({"wo": views, "u": pairs}, {"g": mean})
+    x, azimuth = 2.0 * pairs[..., 0] - 1.0, 2.0 * np.pi * pairs[..., 1]
+    square = 2.0 * (1.0 + mean * x) ** 2
+    less = (1.0 - mean) ** 2 * (1.0 - x) * (2.0 + mean * (1.0 + x)) / square  # 1 - cos
+    more = (1.0 + mean) ** 2 * (1.0 + x) * (2.0 - mean * (1.0 - x)) / square  # 1 + cos
+    sine = np.sqrt(np.maximum(less * more, 0.0))
+    local = np.stack([sine * np.cos(azimuth), sine * np.sin(azimuth), 0.5 * (more - less)], axis=-1)
+    wi = _around(-np.asarray(views, np.float64), np.broadcast_to(local, (*shape, 3)))
+    density = _phase(np.where(mean < 0.0, more, less), mean)
+    return wi, np.array(np.broadcast_to(density, shape))[()]
+
+
+def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
+    """Density of `hg_sample` at `wi`, in solid angle: the phase function itself.
+
+    Parameters
+    ----------
+    wo, wi : array_like, shape (..., 3)
+        Directions away from the position, unit vectors to 1e-6; cos = -dot(wo, wi).
+    g : array_like, shape (...)
+        As in `hg_phase`.
+
+    Returns
+    -------
+    float64 or ndarray, shape (...)
+        In 1/sr.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
+
+    References
+    ----------
+    [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
+
+    Examples
+    --------
+    >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
+    0.477465
+    """
+    views, lights, (mean,) = (
+        checked_sphere("wo", wo),
+        checked_sphere("wi", wi),
+        checked_numbers(g=g),
+    )
+    lead_shape({"wo": views, "wi": lights}, {"g": mean})
+    side = np.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
+    difference = (
+        np.asarray(views, np.float64) + side * lights
+    )  # 0 where the deflection is likeliest
+    return np.asarray(_phase(0.5 * np.sum(difference**2, axis=-1), mean))[()]
+
+
+def _around(axis: Array, local: Array) -> Array:
+    """Directions, of a frame with the normal +z, in one with the normal `axis`."""
+    helper = np.where(np.abs(axis[..., :1]) < 0.5, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    tangent = np.cross(helper, axis)
+    tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
+    x, y, z = (local[..., [index]] for index in range(3))
+    wi = x * tangent + y * np.cross(axis, tangent) + z * axis
+    return np.asarray(wi / np.linalg.norm(wi, axis=-1, keepdims=True))
+
+
+def _phase(less: Array, g: Array) -> Array:
+    """The phase function at 1 - cos for g >= 0, and at 1 + cos for g < 0."""
+    size = np.abs(g)
+    square = (1.0 - size) ** 2 + 2.0 * size * less
+    return np.asarray((1.0 - size) * (1.0 + size) / (4.0 * np.pi * square * np.sqrt(square)))

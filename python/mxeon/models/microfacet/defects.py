@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong variants of the microfacet nodes that renderers implement, to recognize them by."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mxeon.models.core.arguments import checked
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.microfacet import ggx_formulas as ggx
+from mxeon.models.microfacet.lobe import (
+    CONDUCTOR,
+    DIELECTRIC,
+    SCHLICK,
+    Curve,
+    Lobe,
+    Pair,
+    compensation,
+    evaluate_lobe,
+    missing,
+    uncompensated,
+)
+
+# Fresnel curve of each node, its inputs with channels, and those without.
+NODES: dict[str, tuple[Curve, tuple[str, ...], tuple[str, ...]]] = {
+    "dielectric_bsdf": (DIELECTRIC, ("tint",), ("ior",)),
+    "conductor_bsdf": (CONDUCTOR, ("ior", "extinction"), ()),
+    "generalized_schlick_bsdf": (SCHLICK, ("color0", "color82", "color90"), ("exponent",)),
+}
+
+
+# MaterialX 1.39.5, rational fit of the GGX albedo A F0 + B F90 in x = mu, y = alpha; up to 0.14 off
+# in [1e-3, 1]^2. Rows: coefficients of 1, x, y, x y, x^2, y^2, x^2 y, x y^2, x^2 y^2; columns:
+# numerators of A and B, denominators of A and B.
+ALBEDO_FIT = np.array(
+    [
+        [0.1003, 0.9345, 1.0, 1.0],
+        [-0.6303, -2.323, -1.765, 0.2281],
+        [9.748, 2.229, 8.263, 15.94],
+        [-2.038, -3.748, 11.53, -55.83],
+        [29.34, 1.424, 28.96, 13.08],
+        [-8.245, -0.7684, -7.507, 41.26],
+        [-26.44, 1.436, -36.11, 54.9],
+        [19.99, 0.2913, 15.86, 300.2],
+        [-5.448, 0.6286, 33.37, -285.1],
+    ]
+)
+
+
+@dataclass(frozen=True)
+class MicrofacetDefect:
+    """A known wrong variant of the three microfacet nodes.
+
+    Attributes
+    ----------
+    name, title : str
+        One word, and the name in print.
+    lobe : Lobe
+        Its terms.
+    """
+
+    name: str
+    title: str
+    lobe: Lobe
+
+    def value(
+        self,
+        node: str,
+        wo: ArrayLike,
+        wi: ArrayLike,
+        inputs: Mapping[str, ArrayLike],
+        retroreflective: bool = False,
+    ) -> Array:
+        """Values of the variant of a node.
+
+        Parameters
+        ----------
+        node : str
+            A key of NODES.
+        wo, wi : array_like, shape (..., 3)
+            Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
+        inputs : mapping of str to array_like
+            Inputs of the node by the names of its ports; others than the BRDF's are ignored.
+        retroreflective : bool
+            Whether light returns towards where it comes from.
+
+        Returns
+        -------
+        ndarray, shape (..., C), float64
+            1/sr.
+
+        Raises
+        ------
+        ValueError
+            If an argument leaves its range or the shapes do not broadcast.
+
+        Examples
+        --------
+        >>> inputs = {"tint": 1.0, "ior": 1.5, "roughness": [0.3, 0.3]}
+        >>> no_compensation = MICROFACET_DEFECTS[0]
+        >>> w = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
+        >>> no_compensation.value("dielectric_bsdf", *w, inputs).round(6)
+        array([0.059164])
+        """
+        curve, colors, numbers = NODES[node]
+        return evaluate_lobe(
+            self.lobe,
+            curve,
+            wo,
+            wi,
+            inputs["roughness"],
+            {name: np.atleast_1d(checked(name, inputs[name])) for name in colors},
+            {name: checked(name, inputs[name]) for name in numbers},
+            retroreflective,
+        )
+
+
+def averaged_channels(albedo: Array) -> Array:
+    """Albedo whose channels all have their mean, as the throughput of a colored node may have."""
+    mean = np.mean(albedo, axis=-1, keepdims=True)
+    return np.broadcast_to(mean, albedo.shape).copy()
+
+
+def _compensated_by(cosine: Callable[[Pair], Array]) -> Callable[[Pair], Array]:
+    """Compensation with F at a cosine in place of its average F_ss."""
+
+    def factor(pair: Pair) -> Array:
+        F = pair.curve.at(cosine(pair), **pair.material)
+        return 1.0 + F * missing(pair.wo[2], pair.roughness)
+
+    return factor
+
+
+def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
+    """Directional albedo of GGX with a Schlick curve, by the fit of MaterialX 1.39.5.
+
+    Examples
+    --------
+    >>> fitted_albedo(np.array([0.1]), np.array([0.01]), 1.0, 1.0).round(3)
+    array([0.93])
+    """
+    x, y = np.broadcast_arrays(mu, alpha)
+    powers = np.stack(
+        [x**0, x, y, x * y, x * x, y * y, x * x * y, x * y * y, x * x * y * y], axis=-1
+    )
+    fit = np.einsum("...k,kj->...j", powers, ALBEDO_FIT)
+    A, B = (np.clip(fit[..., k] / fit[..., k + 2], 0.0, 1.0) for k in (0, 1))
+    albedo: Array = F0 * A + F90 * B
+    return albedo
+
+
+def fitted_half(pair: Pair) -> Array:
+    """Compensation of MaterialX 1.39.5: F at the half vector, and the fit for E_ss."""
+    return 1.0 + pair.curve.at(pair.cosine, **pair.material) * _missing_by_fit(pair)
+
+
+def schlick_average(normal: Array, grazing: Array | float) -> Array:
+    """Average of F over the hemisphere, as Schlick's curve of exponent 5 has it between two ends.
+
+    MaterialX takes it for every curve since its pull request 2958, of June 2026.
+
+    Examples
+    --------
+    >>> schlick_average(np.array([0.04]), 1.0).round(6)
+    array([0.085714])
+    """
+    average: Array = normal + (grazing - normal) / 21.0
+    return average
+
+
+def _averaged(pair: Pair) -> Array:
+    """Average of F by its ends."""
+    ends = (pair.curve.at(np.full_like(pair.cosine, mu), **pair.material) for mu in (1.0, 0.0))
+    return schlick_average(*ends)
+
+
+def averaged_exact(pair: Pair) -> Array:
+    """Compensation with the average of F by its ends."""
+    return 1.0 + _averaged(pair) * missing(pair.wo[2], pair.roughness)
+
+
+def averaged_fitted(pair: Pair) -> Array:
+    """Compensation of MaterialX after 1.39.5: the average of F by its ends, and the fit for E_ss."""
+    return 1.0 + _averaged(pair) * _missing_by_fit(pair)
+
+
+def _missing_by_fit(pair: Pair) -> Array:
+    """(1 - E_ss) / E_ss by the fit of MaterialX 1.39.5."""
+    alpha = np.maximum(ggx.mean_alpha(pair.roughness), 1e-6)
+    E = fitted_albedo(np.clip(pair.wo[2], 1e-6, 1.0), alpha, 1.0, 1.0)
+    return (1.0 - E) / E
+
+
+def _separable(pair: Pair) -> Array:
+    """G1(wo) G1(wi) / (4 mu_o mu_i) at sqrt(alpha_x alpha_y)."""
+    alpha = ggx.mean_alpha(pair.roughness)
+    mu_o, mu_i = pair.wo[2], pair.wi[2]
+    length_o, length_i = (mu + ggx.smith_lambda(mu, alpha) for mu in (mu_o, mu_i))
+    return ggx.reciprocal(length_o * length_i)
+
+
+def _anisotropic(pair: Pair) -> Array:
+    """G2 / (4 mu_o mu_i) that belongs to the anisotropic distribution."""
+    return ggx.visibility_anisotropic(pair.wo, pair.wi, pair.roughness)
+
+
+MICROFACET_DEFECTS = (
+    MicrofacetDefect("no_compensation", "no energy compensation", Lobe(uncompensated)),
+    MicrofacetDefect(
+        "compensation_half",
+        "compensation with F at the half vector",
+        Lobe(_compensated_by(lambda pair: pair.cosine)),
+    ),
+    MicrofacetDefect(
+        "compensation_f0",
+        "compensation with F along the normal",
+        Lobe(_compensated_by(lambda pair: np.ones_like(pair.cosine))),
+    ),
+    MicrofacetDefect(
+        "compensation_view",
+        "compensation with F at the view direction",
+        Lobe(_compensated_by(lambda pair: np.minimum(pair.wo[2], 1.0))),
+    ),
+    MicrofacetDefect(
+        "compensation_fitted",
+        "compensation with F at the half vector and MaterialX's fit of E_ss",
+        Lobe(fitted_half),
+    ),
+    MicrofacetDefect(
+        "compensation_average",
+        "compensation with the average F0 + (F90 - F0) / 21",
+        Lobe(averaged_exact),
+    ),
+    MicrofacetDefect(
+        "compensation_average_fitted",
+        "compensation with the average F0 + (F90 - F0) / 21 and MaterialX's fit of E_ss",
+        Lobe(averaged_fitted),
+    ),
+    MicrofacetDefect(
+        "smith_separable", "masking and shadowing uncorrelated", Lobe(visibility=_separable)
+    ),
+    MicrofacetDefect(
+        "smith_anisotropic",
+        "masking of the anisotropic distribution (Heitz 2014)",
+        Lobe(visibility=_anisotropic),
+    ),
+    MicrofacetDefect("alpha_squared", "roughness squared once more", Lobe(alpha=np.square)),
+    MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
+    MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
+)
+# Those beside MaterialX's compensation, as one slip in a copy of its shaders gives them.
+FITTED_DEFECTS = tuple(
+    MicrofacetDefect(
+        f"{each.name}_fitted",
+        f"{each.title}, and MaterialX's compensation",
+        replace(each.lobe, factor=fitted_half),
+    )
+    for each in MICROFACET_DEFECTS
+    if each.lobe.factor is compensation
+)

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fresnel reflectances and their averages on valid float64 arrays, which broadcast.
+
+Sections are those of [MaterialX2026].
+"""
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+
+# Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
+COS_THETA_MAX = 1.0 / 7.0
+
+# Indices below count as this one where 1 / n enters: F_ss is 1 to rounding, and n^3 stays finite.
+LEAST = 1e-50
+
+# Double-exponential rule: c = X^2 / (X^2 + 1/X^2), X = exp(pi/4 sinh(t)), |t| < 3.2.
+# The weights beyond are below 1e-15.
+STEP, STEPS = 0.0625, 51
+GROUP = 2**12  # values of the integrand at once
+
+
+def dielectric(mu: Array, ior: Array) -> Array:
+    """F: [MaterialX2026], Dielectric Fresnel Equations, without a cancellation.
+
+    g - c = (ior^2 - 1) / (g + c), and g^2 is a sum of terms >= 0 for ior >= 1. Without an interface
+    (ior 1) F is 0 at grazing too, where 0 / 0 stands.
+    """
+    gap = (ior - 1.0) * (ior + 1.0)
+    g2 = gap + mu * mu
+    g = np.sqrt(np.maximum(g2, 0.0))
+    total = np.where(g2 > 0.0, g + mu, 1.0)
+    amplitude = gap / total / total
+    plus = mu * g + (1.0 - mu) * (1.0 + mu)
+    minus = mu * g - (1.0 - mu) * (1.0 + mu)
+    ratio = minus / np.where(plus > 0.0, plus, 1.0)
+    F = 0.5 * amplitude**2 * (1.0 + ratio**2)
+    return np.where((g2 > 0.0) | (gap == 0.0), np.minimum(F, 1.0), 1.0)
+
+
+def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
+    """F: [MaterialX2026], Conductor Fresnel Equations."""
+    return _conductor(mu, ior, extinction, _gap(ior, extinction))
+
+
+def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
+    """R_p and R_s: [MaterialX2026], Conductor Fresnel Equations, without a cancellation.
+
+    w = a + i b = sqrt(n^2 - sin^2), n = ior + i extinction;  R_s = |n^2 - 1|^2 / |w + c|^4.
+    No interface (n = 1) reflects nothing, at grazing too; n = 0 reflects all, along the normal too.
+    """
+    return _polarized(mu, ior, extinction, _gap(ior, extinction))
+
+
+def _gap(ior: Array, extinction: Array) -> Array:
+    """|n^2 - 1|, which does not depend on the direction."""
+    gap: Array = np.hypot(ior - 1.0, extinction) * np.hypot(ior + 1.0, extinction)
+    return gap
+
+
+def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
+    """`conductor` from |n^2 - 1|."""
+    Rp, Rs = _polarized(mu, ior, extinction, gap)
+    return np.minimum(0.5 * (Rs + Rp), 1.0)
+
+
+def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
+    """`polarized` from |n^2 - 1|."""
+    S2 = (1.0 - mu) * (1.0 + mu)
+    real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
+    length = np.hypot(real, 2.0 * ior * extinction)
+    # The larger part of the root by a sum, the smaller one from their product.
+    larger = np.sqrt(0.5 * (length + np.abs(real)))
+    smaller = ior * extinction / np.where(larger > 0.0, larger, 1.0)
+    a, b = np.where(real >= 0.0, larger, smaller), np.where(real >= 0.0, smaller, larger)
+    total = (a + mu) ** 2 + b * b
+    Rs = np.minimum((gap / np.where(total > 0.0, total, 1.0)) ** 2, 1.0)
+    minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
+    Rp = Rs * np.where(plus > 0.0, minus / np.where(plus > 0.0, plus, 1.0), 1.0)
+    return Rp, Rs
+
+
+def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
+    """F_theta: [MaterialX2026], Generalized Schlick Equations; 0^0 counts as 1."""
+    a = _schlick_a(color0, color82, color90, exponent)
+    m = 1.0 - mu
+    return color0 + (color90 - color0) * m**exponent - a * mu * m**6
+
+
+def dielectric_avg(ior: Array) -> Array:
+    """F_ss of a dielectric: closed form for ior >= 1, and by reciprocity below.
+
+    [Walsh1926] with n = e^t: every difference of large terms is taken out, and so is 1 - e^t.
+    ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior) for the same interface from its other side.
+    """
+    inside = ior < 1.0
+    gap = np.where(inside, (1.0 - ior) / np.maximum(ior, LEAST), ior - 1.0)
+    F = _external_avg(np.maximum(gap, 0.0))
+    return np.where(inside, (1.0 - ior) * (1.0 + ior) + ior * ior * F, F)
+
+
+def conductor_avg(ior: Array, extinction: Array) -> Array:
+    """F_ss of a conductor, by a double-exponential rule on either side of the critical angle.
+
+    F has square roots at c^2 = 1 - n^2, next to the real axis for weakly absorbing media, and, for
+    strong ones, a pole as near to grazing as 1 / |n|: the nodes crowd at all of these.
+    """
+    n2 = (ior + 1j * extinction) ** 2
+    split = np.clip(np.sqrt(1.0 - n2).real, 0.0, 1.0)
+    total = np.zeros(split.shape)
+    terms = np.broadcast_arrays(ior, extinction, _gap(ior, extinction))
+    for low, length in ((np.zeros(split.shape), split), (split, 1.0 - split)):
+        rows = length > 0.0
+        total[rows] += _part(low[rows], length[rows], *(array[rows] for array in terms))
+    return np.minimum(2.0 * total, 1.0)
+
+
+def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) -> Array:
+    """Integral of c F over [low, low + length] of the cosine c, of materials (N,)."""
+    total = np.zeros(len(low))
+    t = STEP * np.arange(-STEPS, STEPS + 1)
+    X = np.exp(np.pi * np.sinh(t))
+    rule = X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2
+    count = max(1, GROUP // max(len(low), 1))  # nodes at once
+    for start in range(0, len(t), count):
+        x, weight = (values[start : start + count, np.newaxis] for values in rule)
+        mu = low + length * x
+        part = weight * length * mu * _conductor(mu, ior, extinction, gap)
+        total += np.sum(part, axis=0)
+    return total
+
+
+def schlick_avg(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
+    """F_ss of the generalized Schlick curve: two Beta functions, B(2, q + 1) and B(3, 7).
+
+    2 B(2, q + 1) = 2 / ((q + 1) (q + 2)),  2 B(3, 7) = 1 / 126
+    """
+    a = _schlick_a(color0, color82, color90, exponent)
+    return color0 + (color90 - color0) * 2.0 / ((exponent + 1.0) * (exponent + 2.0)) - a / 126.0
+
+
+def _schlick_a(color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
+    """a: [MaterialX2026], Generalized Schlick Equations."""
+    m = 1.0 - COS_THETA_MAX
+    return (color0 + (color90 - color0) * m**exponent) * (1.0 - color82) / (COS_THETA_MAX * m**6)
+
+
+def _external_avg(gap: Array) -> Array:
+    """F_ss for n = 1 + gap >= 1.
+
+    F_ss = (sinh^2 t - (n - 1)) / (2 cosh^2 t) + tanh(t/2) (3 n + 1) / (6 (n + 1))
+           + n sinh^2 t log(tanh(t/2)) / (2 cosh^3 t) + n (2 t coth(2 t) - 1) / (cosh t sinh 2 t)
+    """
+    n = 1.0 + gap
+    t = np.log1p(gap)
+    sinh, cosh = 0.5 * gap * (n + 1.0) / n, 0.5 * (n + 1.0 / n)
+    half = gap / (n + 1.0)
+    double = 2.0 * sinh * cosh
+    log = np.log(np.where(gap > 0.0, half, 1.0))
+    excess = _x_coth_x_minus_1(2.0 * t, double, cosh * cosh + sinh * sinh)
+    return (
+        0.5 * (sinh * sinh - gap) / cosh**2
+        + half * (3.0 * n + 1.0) / (6.0 * (n + 1.0))
+        + 0.5 * n * sinh * sinh * log / cosh**3
+        + n * excess / np.where(gap > 0.0, cosh * double, 1.0)
+    )
+
+
+def _x_coth_x_minus_1(x: Array, sinh: Array, cosh: Array) -> Array:
+    """x coth(x) - 1, below 1 by its continued fraction of positive terms."""
+    fraction = np.full_like(x, 19.0)
+    y = np.minimum(x, 1.0) ** 2
+    for odd in range(17, 1, -2):
+        fraction = odd + y / fraction
+    return np.where(x < 1.0, y / fraction, x * cosh / np.where(sinh > 0.0, sinh, 1.0) - 1.0)

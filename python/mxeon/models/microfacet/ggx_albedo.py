@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Directional albedo of GGX microfacets that reflect everything: E_ss of the specification."""
+
+import numpy as np
+
+from mxeon.models.core.arguments import checked
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.microfacet.ggx_formulas import smith_lambda
+
+# Gauss-Legendre nodes per panel, panels between wo and the normal, and elements per block.
+NODES, PANELS, BLOCK = 28, 3, 2**10
+RULE = np.polynomial.legendre.leggauss(NODES)
+
+# Least scale of the nodes and least elevation of wo, in radian: nothing changes by more than 1e-10.
+LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
+
+# Below this alpha, E_ss(mu, alpha) counts as E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
+LEAST_ALPHA = 1e-9
+
+
+def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
+    """Directional albedo E_ss of isotropic GGX at unit Fresnel reflectance, by quadrature.
+
+        E_ss(mu) = integral of D G2 / (4 mu mu_i) mu_i over the hemisphere of wi
+
+    Parameters
+    ----------
+    mu : array_like, shape M
+        Cosine of the polar angle, dimensionless, in [0, 1].
+    alpha : array_like, shape R
+        GGX roughness, dimensionless, in [0, 1]: the input `roughness` of the nodes, of anisotropic
+        ones sqrt(alpha_x alpha_y).
+
+    Returns
+    -------
+    ndarray, shape broadcast(M, R), float64
+        Dimensionless, in [1 - log(2), 1] up to 1e-10.
+
+    Raises
+    ------
+    ValueError
+        If an argument leaves its range; names it and the first bad element.
+
+    Notes
+    -----
+    Accuracy: absolute error below 1e-10 for alpha >= 1e-4 and every mu, 2e-8 below. At alpha 0, the mirror, it
+    is 1, the limit at every mu > 0.
+    Form: with u = |wo + wi|^2 = a + b cos(phi) and h_z^2 = (mu + mu_i)^2 / u, the azimuth integral
+    of (u / (u - k))^2, k = (1 - alpha^2) (mu + mu_i)^2, is elementary. In half sums and half
+    differences of the elevations all its terms are products of sums of positive numbers. The
+    integral over the elevation of wi is split at wo and graded by hyperbolic sines.
+
+    References
+    ----------
+    [MaterialX2026], Energy Compensation.
+
+    Examples
+    --------
+    >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
+    array([0.30685282, 0.99412395])
+    """
+    numbers = {"mu": checked("mu", mu), "alpha": checked("alpha", alpha)}
+    return evaluate_material(
+        lambda mu, alpha: albedo(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
+    )[..., 0][()]
+
+
+def albedo(mu: Array, alpha: Array) -> Array:
+    """E_ss on valid float64 arrays; cosines that are alike, as those of pictures, count once."""
+    if alpha.size == 1 < mu.size:
+        each, indices = np.unique(mu, return_inverse=True)
+        found: Array = _albedo(each, alpha.reshape(1))[indices]
+        return found.reshape(np.broadcast_shapes(mu.shape, alpha.shape))
+    return _albedo(mu, alpha)
+
+
+def _albedo(mu: Array, alpha: Array) -> Array:
+    """E_ss by quadrature."""
+    rough = np.maximum(alpha, LEAST_ALPHA)
+    scaled = np.minimum(mu * (rough / np.maximum(alpha, 1e-300)), 1.0)
+    elevation = np.maximum(np.arcsin(scaled), LEAST_ELEVATION)
+    graded = 2.0 * np.minimum(rough, np.maximum(elevation, LEAST_SCALE))
+    total = np.zeros(np.broadcast_shapes(mu.shape, rough.shape))
+    # From wo to the normal, from wo to half its elevation, and from there to the horizon.
+    for d, weight in _graded(graded, 0.5 * np.pi - elevation, PANELS):
+        total += np.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
+    for d, weight in _graded(2.0 * rough, 0.5 * elevation, 1):
+        total += np.sum(weight * _density(elevation, elevation - d, d, rough), axis=0)
+    for e, weight in _graded(rough, 0.5 * elevation, 1):
+        total += np.sum(weight * _density(elevation, e, elevation - e, rough), axis=0)
+    return np.where(alpha > 0.0, np.minimum(total, 1.0), 1.0)
+
+
+def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
+    """Nodes and weights on [0, length], denser towards 0 from `scale` on, axis of nodes first."""
+    x, weight = (v.reshape(-1, *(1,) * np.ndim(length * scale)) for v in RULE)
+    extent = np.arcsinh(length / scale)
+    step = extent / panels
+    y = [step * (k + 0.5 + 0.5 * x) for k in range(panels)]
+    return [(scale * np.sinh(v), 0.5 * weight * step * scale * np.cosh(v)) for v in y]
+
+
+def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
+    """Integrand of E_ss over the elevation e_i of wi, d = e_o - e_i.
+
+    alpha^2 mu_i cos(e_i) (1 + 2 k/q + k^2 p/q^3) / (lambda_o mu_i + lambda_i mu_o),
+    k/q = (1 - alpha^2) sqrt(c C / (X Y)),  p/q = (r + 1/r) / 2,  r = sqrt(c X / (C Y)),
+    X = S_d + alpha^2 C,  Y = S + alpha^2 c;  C, S_d, c, S: squared cosines and sines of half
+    the difference and half the sum of the polar angles;  p = a - k,  q^2 = p^2 - b^2
+    """
+    alpha2 = alpha * alpha
+    sin_d, cos_d = np.sin(0.5 * d), np.cos(0.5 * d)
+    half = 0.5 * (e_o + e_i)
+    sin_s, cos_s = np.cos(half), np.sin(half)
+    X = np.sqrt(sin_d * sin_d + alpha2 * cos_d * cos_d)
+    Y = np.sqrt(sin_s * sin_s + alpha2 * cos_s * cos_s)
+    kq = (1.0 - alpha) * (1.0 + alpha) * cos_s * cos_d / (X * Y)
+    r = cos_s * X / (cos_d * Y)
+    azimuth = 1.0 + kq * (2.0 + 0.5 * kq * (r + 1.0 / r))
+    mu_o, mu_i = np.sin(e_o), np.sin(e_i)
+    smith = smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o
+    density: Array = alpha2 * mu_i * np.cos(e_i) * azimuth / smith
+    return density

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""GGX microfacets on valid float64 arrays: distribution, masking and shadowing.
+
+Directions and pairs have their components on the first axis; sections are those of
+[MaterialX2026], Microfacet Model.
+"""
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+
+# Sums of cosines below count as 0: D alone is at most 1e162.
+LEAST = 1e-140
+
+
+def ndf(wh: Array, roughness: Array) -> Array:
+    """D: GGX Normal Distribution Function; no division by alpha; 0 where an alpha is 0.
+
+    D = a^3 / (pi ((alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2)^2),  a = alpha_x alpha_y
+    """
+    (alpha_x, alpha_y), (x, y, z) = roughness, wh
+    area = alpha_x * alpha_y
+    squared = (alpha_y * x) ** 2 + (alpha_x * y) ** 2 + (area * z) ** 2
+    # Squares of alpha below 1e-100 underflow: such a surface is a mirror.
+    positive = squared > 0.0
+    scale = area / np.where(positive, squared, 1.0)
+    return np.where(positive, area * scale * scale / np.pi, 0.0)
+
+
+def smith_lambda(mu: Array, alpha: Array) -> Array:
+    """lambda(cos theta): Height-Correlated Smith Masking-Shadowing."""
+    return np.sqrt(alpha * alpha + (1.0 - alpha) * (1.0 + alpha) * mu * mu)
+
+
+def mean_alpha(roughness: Array) -> Array:
+    """alpha = sqrt(alpha_x alpha_y): Height-Correlated Smith Masking-Shadowing."""
+    alpha: Array = np.sqrt(roughness[0]) * np.sqrt(roughness[1])
+    return alpha
+
+
+def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
+    """G2 / (4 mu_o mu_i); no limit where both directions graze, and 0 there."""
+    return reciprocal(2.0 * (smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o))
+
+
+def stretched_length(w: Array, roughness: Array) -> Array:
+    """Length of (alpha_x x, alpha_y y, z)."""
+    length: Array = np.hypot(np.hypot(roughness[0] * w[0], roughness[1] * w[1]), w[2])
+    return length
+
+
+def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
+    """G2 / (4 mu_o mu_i) of [Heitz2014], Eqs. (86) and (99): mu Lambda from stretched lengths."""
+    length_o, length_i = stretched_length(wo, roughness), stretched_length(wi, roughness)
+    return reciprocal(2.0 * (length_o * wi[2] + length_i * wo[2]))
+
+
+def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
+    """Unit half vector, and its cosine with either direction; (0, 0, 1) of opposite directions."""
+    total = wo + wi
+    length = np.sqrt(np.sum(total * total, axis=0))
+    opposite = length == 0.0
+    wh = total / np.where(opposite, 1.0, length)
+    z = np.where(opposite, 1.0, wh[2])
+    return np.stack([wh[0], wh[1], z]), np.minimum(0.5 * length, 1.0)
+
+
+def reciprocal(x: Array) -> Array:
+    """1 / x, and 0 where x is so small that a product with D could overflow."""
+    large = x > LEAST
+    return np.where(large, 1.0 / np.where(large, x, 1.0), 0.0)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes and weights of quadratures over the slopes of microfacets that one direction sees.
+
+With the half vector along (alpha_x r cos(phi), alpha_y r sin(phi), 1) an albedo is
+
+    integral of F G2 (wo . wh) / (h_z mu_o) r / (pi (1 + r^2)^2) dr dphi,
+
+without a peak at any alpha. wi lies above the horizon from r = 0 up to one limit, so that no kink
+remains but that of F at a critical angle.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.microfacet.ggx_formulas import mean_alpha, smith_lambda
+
+# Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
+NODES, PANELS, QUADRANT = 20, 3, 20
+# Those of facets above a critical angle: per panel, and per part of a half plane.
+SPLIT_NODES, SPLIT_PART = 28, 32
+
+# Least cosine of wo, and largest r: beyond, less than 1e-12 of the light is left.
+LEAST_MU, LARGEST_R = 1e-12, 1e8
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Slopes that a direction sees, in polar coordinates r and omega, of which 0 is its own azimuth.
+
+    Attributes
+    ----------
+    mu_o, alpha : ndarray
+        Cosine of the direction, and the mean of its two roughnesses.
+    steepness : ndarray
+        A: wo . h / h_z = mu_o + r A cos(omega).
+    axis : tuple of ndarray
+        Cosine and sine of phi at omega 0.
+    roughness : ndarray, shape (2, ...)
+    """
+
+    mu_o: Array
+    alpha: Array
+    steepness: Array
+    axis: tuple[Array, Array]
+    roughness: Array
+
+    @classmethod
+    def seen(cls, wo: Array, roughness: Array) -> "Slopes":
+        """The slopes that `wo`, shape (3, ...), sees."""
+        (x, y, _), (alpha_x, alpha_y) = wo, roughness
+        A = np.hypot(x * alpha_x, y * alpha_y)
+        tilted, length = A > 0.0, np.where(A > 0.0, A, 1.0)
+        axis = (
+            np.where(tilted, x * alpha_x, 1.0) / length,
+            np.where(tilted, y * alpha_y, 0.0) / length,
+        )
+        mu_o = np.clip(wo[2], LEAST_MU, 1.0)
+        return cls(mu_o, mean_alpha(roughness), A, axis, roughness)
+
+    @property
+    def scale(self) -> Array:
+        """Distance from a right angle, and radius, within which lean and limit change."""
+        return self.mu_o / np.maximum(self.steepness, self.mu_o)
+
+    @property
+    def isotropic(self) -> bool:
+        """Whether both halves of every surface are alike."""
+        return bool(np.all(self.roughness[0] == self.roughness[1]))
+
+    def rays(self, omega: Array) -> tuple[Array, Array, Array]:
+        """Of each azimuth: B and g, with the slope's squared length g r^2, and the last r.
+
+        wo . h / h_z = mu_o + B r; wi lies above the horizon where mu_o g r^2 <= 2 B r + mu_o.
+        """
+        (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
+        cosine, sine = np.cos(omega), np.sin(omega)
+        g = (alpha_x * (cos_0 * cosine - sin_0 * sine)) ** 2
+        g = g + (alpha_y * (sin_0 * cosine + cos_0 * sine)) ** 2
+        B = self.steepness * cosine
+        ahead = np.abs(B) + np.sqrt(B * B + self.mu_o * self.mu_o * g)
+        ahead = np.maximum(ahead, self.mu_o / LARGEST_R)
+        beyond = ahead / np.maximum(self.mu_o * g, ahead / LARGEST_R)
+        return B, g, np.where(B < 0.0, self.mu_o / ahead, beyond)
+
+    def facets(self, r: Array, B: Array, g: Array) -> tuple[Array, Array]:
+        """Cosine wo . h, and the integrand without F."""
+        lean = np.maximum(B * r + self.mu_o, 0.0)
+        stretch = 1.0 + g * r * r
+        mu_i = np.clip(2.0 * lean / stretch - self.mu_o, 0.0, 1.0)
+        smith = smith_lambda(self.mu_o, self.alpha) * mu_i
+        smith = smith + smith_lambda(mu_i, self.alpha) * self.mu_o
+        density = r / (np.pi * (1.0 + r * r) ** 2)
+        return np.minimum(lean / np.sqrt(stretch), 1.0), density * 2.0 * mu_i * lean / smith
+
+
+def slope_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
+    """Cosine wo . h and weight of every node, shape (nodes of r, nodes of phi, ...)."""
+    slopes = Slopes.seen(wo, roughness)
+    omega, weight_omega = _quadrants(slopes.scale, slopes.isotropic)
+    B, g, limit = slopes.rays(omega)
+    r, weight = _graded(slopes.scale, limit)
+    cosine, values = slopes.facets(r, B, g)
+    return cosine, weight * weight_omega * values
+
+
+def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array]:
+    """Cosine wo . h and weight of nodes whose cosine is above the critical one.
+
+    There 1 - F begins as a square root: nodes crowd at both ends of r, and where the ends of r end.
+
+    Parameters
+    ----------
+    wo, roughness : ndarray, shapes (3, ...) and (2, ...)
+    squared : ndarray, shape (...)
+        Square of the cosine of the critical angle, at least 0.
+    """
+    slopes = Slopes.seen(wo, roughness)
+    omega, weight_omega = _split_azimuths(slopes, wo, squared)
+    B, g, limit = slopes.rays(omega)
+    low, high = _transmitting(slopes.mu_o, B, g, squared)
+    high = np.minimum(high, limit)
+    r, weight = _between(slopes.scale, np.minimum(low, high), high)
+    cosine, values = slopes.facets(r, B, g)
+    return cosine, weight * weight_omega * values
+
+
+def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:
+    """Ends of r between which (mu_o + B r)^2 > squared (1 + g r^2); none where they are the same."""
+    a, b, d = B * B - squared * g, mu_o * B, mu_o * mu_o - squared
+    root = np.sqrt(np.maximum(b * b - a * d, 0.0))
+    ahead, inside = b > 0.0, d > 0.0
+    none = ~inside & (~ahead | (b * b < a * d))
+    low = np.where(inside, 0.0, -d / np.where(ahead, b + root, 1.0))
+    falling = np.where(a < 0.0, (b + root) / np.where(a < 0.0, -a, 1.0), np.inf)
+    behind = d / np.where(root > b, root - b, 1.0)
+    high = np.where(ahead, falling, behind)
+    return np.where(none, 0.0, low), np.where(none, 0.0, high)
+
+
+def _split_azimuths(slopes: Slopes, wo: Array, squared: Array) -> tuple[Array, Array]:
+    """Nodes and weights of omega, split where the critical cone meets the horizon of wi or ends."""
+    meeting, last = _critical_azimuths(slopes.mu_o, squared)
+    inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
+    nodes = []
+    for center in (0.0, np.pi):  # in front of the view, where lean grows with r, and behind
+        low, high = (
+            np.where(
+                inside, sign * right, _omega(slopes, wo, sign * last) if center == 0.0 else 0.0
+            )
+            for sign in (-1.0, 1.0)
+        )
+        splits = [_omega(slopes, wo, sign * meeting) - sign * center for sign in (-1.0, 1.0)]
+        points = np.stack(np.broadcast_arrays(low, *splits, 0.0, high))
+        points = np.sort(np.clip(points, np.maximum(low, -right), np.minimum(high, right)), axis=0)
+        half = points[2:] if slopes.isotropic else points
+        for first, end in pairwise(half):
+            omega, weight = _piece(slopes.scale, first, end)
+            nodes.append((center + omega, weight * (2.0 if slopes.isotropic else 1.0)))
+    omega, weight = (np.concatenate(each) for each in zip(*nodes, strict=True))
+    return omega[np.newaxis], weight[np.newaxis]
+
+
+def _critical_azimuths(mu_o: Array, squared: Array) -> tuple[Array, Array]:
+    """Azimuths from wo of h on the critical cone around wo: wi at the horizon; and the last one."""
+    sine = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
+    slope = np.sqrt(np.maximum(4.0 * squared / mu_o**2 - 1.0, 0.0))
+    length = np.where(sine * slope > 0.0, sine * slope, 1.0)
+    meeting = np.where(sine * slope > 0.0, (2.0 * squared / mu_o - mu_o) / length, 0.0)
+    last = np.sqrt(np.maximum(squared - mu_o**2, 0.0)) / np.where(sine > 0.0, sine, 1.0)
+    return np.arccos(np.clip(meeting, -1.0, 1.0)), np.arccos(np.minimum(last, 1.0))
+
+
+def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
+    """omega of slopes at an azimuth from that of wo, both in [-pi, pi]."""
+    upright = np.hypot(*wo[:2]) == 0.0
+    x, y = np.where(upright, 1.0, wo[0]), wo[1]
+    cosine, sine = np.cos(azimuth), np.sin(azimuth)
+    across = (x * cosine - y * sine) * slopes.roughness[1]
+    along = (y * cosine + x * sine) * slopes.roughness[0]
+    cos_0, sin_0 = slopes.axis
+    omega = np.arctan2(cos_0 * along - sin_0 * across, cos_0 * across + sin_0 * along)
+    return np.where(np.hypot(across, along) > 0.0, omega, azimuth)
+
+
+def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """Nodes and weights of [low, high], on one side of 0, denser towards its ends and right angles."""
+    t, weight = _crowded(1, SPLIT_PART, np.ndim(low))
+    side = np.where(low + high < 0.0, -1.0, 1.0)
+    near, far = np.minimum(side * low, side * high), np.maximum(side * low, side * high)
+    first, last = (np.arcsinh((0.5 * np.pi - each) / scale) for each in (far, near))
+    x = first + (last - first) * t
+    return side * (0.5 * np.pi - scale * np.sinh(x)), weight * (last - first) * scale * np.cosh(x)
+
+
+def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """Nodes and weights of r in [low, high], denser towards 0 from `scale` on, and at the ends."""
+    t, weight = _crowded(PANELS, SPLIT_NODES, np.ndim(low) - 1)
+    first, last = np.arcsinh(low / scale), np.arcsinh(high / scale)
+    x = first + (last - first) * t
+    return scale * np.sinh(x), weight * (last - first) * scale * np.cosh(x)
+
+
+def _crowded(panels: int, nodes: int, axes: int) -> tuple[Array, Array]:
+    """Nodes and weights of [0, 1] along a first axis, as dense at its ends as squares."""
+    u, weight = _rule(nodes)
+    u = np.concatenate([k + u for k in range(panels)]) / panels
+    weight = np.tile(weight, panels) / panels
+    shape = (-1, *(1,) * axes)
+    return (u * u * (3.0 - 2.0 * u)).reshape(shape), (6.0 * u * (1.0 - u) * weight).reshape(shape)
+
+
+def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
+    """Nodes and weights of phi from that of wo on, denser towards right angles, shape (1, n, ...).
+
+    Halves of an isotropic surface are alike.
+    """
+    x, weight = (v.reshape(-1, *(1,) * np.ndim(scale)) for v in _rule(QUADRANT))
+    extent = np.arcsinh(0.5 * np.pi / scale)
+    omega = 0.5 * np.pi - scale * np.sinh(extent * x)
+    weight = weight * extent * scale * np.cosh(extent * x)
+    if isotropic:
+        omega, weight = np.concatenate([omega, np.pi - omega]), np.concatenate([2.0 * weight] * 2)
+    else:
+        omega = np.concatenate([omega, np.pi - omega, -omega, np.pi + omega])
+        weight = np.concatenate([weight] * 4)
+    return omega[np.newaxis], weight[np.newaxis]
+
+
+def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
+    """Nodes and weights of [0, length], denser towards 0 from `scale` on, along the first axis."""
+    x, weight = (v.reshape(-1, *(1,) * (np.ndim(length) - 1)) for v in _rule(NODES))
+    x = np.concatenate([k + x for k in range(PANELS)]) / PANELS
+    weight = np.concatenate([weight] * PANELS) / PANELS
+    extent = np.arcsinh(length / scale)
+    rise = np.exp(extent * x)
+    fall = 1.0 / rise
+    half = 0.5 * scale
+    # sinh and cosh of one exponential, which takes a third of the time.
+    return half * (rise - fall), weight * extent * half * (rise + fall)
+
+
+@lru_cache(maxsize=4)
+def _rule(nodes: int) -> tuple[Array, Array]:
+    """Nodes and weights of Gauss-Legendre on [0, 1]."""
+    x, weight = np.polynomial.legendre.leggauss(nodes)
+    return 0.5 * (1.0 + x), 0.5 * weight

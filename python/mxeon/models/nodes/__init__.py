@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The BSDF nodes of pbrlib, one row for each mode, as functions of the values of their inputs."""
+
+from mxeon.models.nodes.lobes import LOBE_NODES
+from mxeon.models.nodes.microfacets import MICROFACET_NODES
+from mxeon.models.nodes.node import PbrNode
+
+NODES = (*LOBE_NODES, *MICROFACET_NODES)
+
+
+def node(name: str) -> PbrNode:
+    """The row of NODES with this name.
+
+    Raises
+    ------
+    ValueError
+        If there is none; lists the names.
+
+    Examples
+    --------
+    >>> node("zeltner").category
+    'sheen_bsdf'
+    """
+    rows = {row.name: row for row in NODES}
+    if name not in rows:
+        raise ValueError(f"node must be one of {', '.join(rows)}; got {name!r}")
+    return rows[name]

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rows of pbrlib's nodes that combine two lobes: `layer`, `mix`, `add` and `multiply`.
+
+Both lobes are Zeltner sheens of unit color, `top` and `base`, whose values and albedos have closed
+forms; nested rows combine their sum, whose albedo may exceed 1. Inputs go by their paths.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from mxeon.models.core import layering
+from mxeon.models.core.arrays import Array
+from mxeon.models.core.layering import Bsdf
+from mxeon.models.nodes.node import Inputs, PbrNode, Variant
+from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
+
+ROUGHNESS = ("top/roughness", "base/roughness")
+AMOUNT = "lobe/mix"  # share of `top`, or of the sum
+AMOUNT_ABOVE = "mixed/mix"  # share of the sum in a mix that is the top of a layer
+FACTOR = "lobe/in2"  # of `top`, or of the sum
+Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
+Finish = Callable[[Bsdf], Bsdf]
+
+
+def _sheen(wo: Array, wi: Array, roughness: Array) -> Bsdf:
+    """A Zeltner sheen of unit color."""
+    left = 1.0 - zeltner_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness)
+    value = zeltner_brdf(wo, wi, np.ones(3), roughness)
+    return Bsdf(value, np.repeat(left[:, np.newaxis], 3, axis=1))
+
+
+def _column(inputs: Inputs, name: str) -> Array:
+    """A number or a color of each pair, (N, 1 or 3)."""
+    return np.reshape(inputs[name], (len(inputs[name]), -1))
+
+
+def _values(
+    combine: Combine,
+) -> tuple[Callable[[Array, Array, Inputs], Array], Callable[[Array, Inputs], Array]]:
+    """Value and albedo of a combination of both lobes."""
+
+    def both(wo: Array, wi: Array, inputs: Inputs) -> Bsdf:
+        top, base = (_sheen(wo, wi, inputs[path]) for path in ROUGHNESS)
+        return combine(top, base, inputs)
+
+    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
+        return both(wo, wi, inputs).value
+
+    def albedo(wo: Array, inputs: Inputs) -> Array:
+        return 1.0 - both(wo, wo, inputs).throughput
+
+    return value, albedo
+
+
+def _combined(
+    name: str,
+    title: str,
+    category: str,
+    combine: Combine,
+    inputs: tuple[str, ...] = (),
+    variants: tuple[Variant, ...] = (),
+) -> PbrNode:
+    """Row of a node that combines both lobes."""
+    value, albedo = _values(combine)
+    return PbrNode(
+        name,
+        title,
+        category,
+        (*ROUGHNESS, *inputs),
+        value,
+        albedo,
+        layerable=True,
+        reciprocal=False,
+        variants=variants,
+    )
+
+
+def _ended(lobe: Bsdf) -> Bsdf:
+    """A sum as MaterialX's `add` leaves it: with a throughput of at least 0."""
+    return replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))
+
+
+def _scaled(top: Bsdf, base: Bsdf, inputs: Inputs) -> Bsdf:
+    return layering.multiply(top, _column(inputs, FACTOR))
+
+
+def _sum_scaled(top: Bsdf, base: Bsdf, inputs: Inputs) -> Bsdf:
+    return layering.multiply(layering.add(top, base), _column(inputs, FACTOR))
+
+
+def _sum_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
+    return layering.mix(finish(layering.add(top, base)), top, _column(inputs, AMOUNT))
+
+
+def _sum_layered(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
+    mixed = layering.mix(finish(layering.add(top, base)), top, _column(inputs, AMOUNT_ABOVE))
+    return layering.layer(mixed, base)
+
+
+def _layer_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe: lobe) -> Bsdf:
+    layered = layering.layer(finish(layering.add(top, base)), base)
+    return layering.mix(layered, top, _column(inputs, AMOUNT))
+
+
+def _unscaled(combine: Combine) -> tuple[Variant, ...]:
+    """A scaled lobe that passes what it passes before it is scaled: the text is open on it."""
+    title = "the throughput of the lobe before it is scaled"
+    return (Variant(title, albedo=_values(combine)[1], permitted=True),)
+
+
+def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant, ...]:
+    """A combination of a sum that has lost the excess of its albedo over 1, over a base or not."""
+    value, albedo = _values(partial(combine, finish=_ended))
+    return (Variant("a sum whose throughput ends at 0", value if layered else None, albedo),)
+
+
+COMBINATIONS = (
+    _combined("layer", "a layer", "layer", lambda top, base, i: layering.layer(top, base)),
+    _combined(
+        "mix",
+        "a mix",
+        "mix",
+        lambda top, base, i: layering.mix(top, base, _column(i, AMOUNT)),
+        (AMOUNT,),
+    ),
+    _combined("add", "a sum", "add", lambda top, base, i: layering.add(top, base)),
+    *(
+        _combined(
+            f"multiply_{kind}",
+            title,
+            "multiply",
+            _scaled,
+            (FACTOR,),
+            _unscaled(lambda top, base, i: top),
+        )
+        for kind, title in (("float", "a multiple"), ("color3", "a colored multiple"))
+    ),
+    _combined(
+        "multiply_sum",
+        "a colored multiple of a sum",
+        "multiply",
+        _sum_scaled,
+        (FACTOR,),
+        _unscaled(lambda top, base, i: layering.add(top, base)),
+    ),
+    _combined(
+        "mix_sum",
+        "a mix of a sum",
+        "mix",
+        _sum_mixed,
+        (AMOUNT,),
+        _clamped(_sum_mixed, layered=False),
+    ),
+    _combined(
+        "layer_sum",
+        "a layer under a mix of a sum",
+        "layer",
+        _sum_layered,
+        (AMOUNT_ABOVE,),
+        _clamped(_sum_layered, layered=True),
+    ),
+    _combined(
+        "mix_layer",
+        "a mix of a layer under a sum",
+        "mix",
+        _layer_mixed,
+        (AMOUNT,),
+        _clamped(_layer_mixed, layered=False),
+    ),
+)
+NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer")  # rows of combinations of a sum

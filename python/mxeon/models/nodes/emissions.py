@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rows of pbrlib's EDF nodes, and of those that combine EDFs.
+
+Inputs go by the names of the node's ports; those of nodes that combine two emissions, and the color
+that `generalized_schlick_edf` scales, go by their paths. `base` in `inputs` is a radiance, (N, 3), in
+a graph whose emissions are evaluated already.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.media.emission import (
+    conical_edf,
+    conical_exitance,
+    generalized_schlick_edf,
+    generalized_schlick_exitance,
+    uniform_edf,
+    uniform_exitance,
+)
+from mxeon.models.nodes.node import Inputs
+
+BASE = "base/color"  # of the uniform emission below a Schlick curve
+FIRST, SECOND = "first/color", "second/color"  # of two uniform emissions
+AMOUNT, FACTOR = "emission/mix", "emission/in2"  # share of the first, and factor of it
+Value = Callable[[Array, Inputs], Array]
+
+
+@dataclass(frozen=True)
+class EmissionVariant:
+    """Another radiance that a shader may have in place of a node's own; see `Variant`."""
+
+    title: str
+    value: Value
+    permitted: bool = False
+
+
+@dataclass(frozen=True)
+class Emission:
+    """An EDF node, or one that combines EDFs.
+
+    Attributes
+    ----------
+    name, title : str
+        One word, and the name in print.
+    category : str
+        Category of the node.
+    inputs : tuple of str
+        Names or paths of the inputs that the functions read.
+    value : callable (wo, inputs) -> ndarray, shape (N, 3)
+        Radiance towards `wo`, normal +z; below the horizon that of the back.
+    exitance : callable (inputs) -> ndarray, shape (N, 3)
+        Its integral over the hemisphere times the cosine.
+    variants : tuple of EmissionVariant
+    """
+
+    name: str
+    title: str
+    category: str
+    inputs: tuple[str, ...]
+    value: Value
+    exitance: Callable[[Inputs], Array]
+    variants: tuple[EmissionVariant, ...] = field(default=())
+
+
+def front_only(value: Value) -> Value:
+    """The same radiance, with none from the back."""
+    return lambda wo, inputs: np.where(wo[:, 2:] < 0.0, 0.0, value(wo, inputs))
+
+
+def _radiance(inputs: Inputs) -> Array:
+    """Radiance that a Schlick curve scales, whichever way it comes."""
+    return np.asarray(inputs["base"] if "base" in inputs else inputs[BASE])
+
+
+def _schlick(wo: Array, inputs: Inputs) -> Array:
+    curve = inputs["color0"], inputs["color90"], inputs["exponent"]
+    return generalized_schlick_edf(wo, _radiance(inputs), *curve)
+
+
+def _uniform(wo: Array, inputs: Inputs) -> Array:
+    return uniform_edf(wo, inputs["color"])
+
+
+def _cone(wo: Array, inputs: Inputs) -> Array:
+    return conical_edf(wo, inputs["color"], inputs["inner_angle"], inputs["outer_angle"])
+
+
+def _halves(wo: Array, inputs: Inputs) -> Array:
+    """A cone whose angles count from the axis."""
+    return _of_angles(wo, inputs, lambda angle: np.minimum(2.0 * angle, 360.0))
+
+
+def _of_angles(wo: Array, inputs: Inputs, change: Callable[[Array], Array]) -> Array:
+    angles = (change(np.asarray(inputs[name])) for name in ("inner_angle", "outer_angle"))
+    return conical_edf(wo, inputs["color"], *angles)
+
+
+def _whole(wo: Array, inputs: Inputs) -> Array:
+    """The radiance without the cone."""
+    return np.where(wo[:, 2:] < 0.0, 0.0, inputs["color"])
+
+
+def _column(inputs: Inputs, name: str) -> Array:
+    """A number or a color of each view, (N, 1 or 3)."""
+    return np.reshape(inputs[name], (len(inputs[name]), -1))
+
+
+def _mix(inputs: Inputs) -> Array:
+    share = _column(inputs, AMOUNT)
+    return np.asarray((1.0 - share) * inputs[SECOND] + share * inputs[FIRST])
+
+
+def _scaled(inputs: Inputs) -> Array:
+    return np.asarray(inputs[FIRST] * _column(inputs, FACTOR))
+
+
+def _combined(
+    name: str, title: str, category: str, inputs: tuple[str, ...], color: Callable[[Inputs], Array]
+) -> Emission:
+    """Row of a node that combines uniform emissions, whose result is one of another color."""
+    return Emission(
+        name,
+        title,
+        category,
+        inputs,
+        lambda wo, inputs: uniform_edf(wo, color(inputs)),
+        lambda inputs: uniform_exitance(color(inputs)),
+    )
+
+
+ONE_SIDE = "emission from the front alone"
+EMISSIONS = (
+    Emission(
+        "uniform",
+        "uniform emission",
+        "uniform_edf",
+        ("color",),
+        _uniform,
+        lambda inputs: uniform_exitance(inputs["color"]),
+        (
+            EmissionVariant(ONE_SIDE, front_only(_uniform), permitted=True),
+            EmissionVariant(
+                "the color as an exitance, over pi", lambda wo, i: _uniform(wo, i) / np.pi
+            ),
+        ),
+    ),
+    Emission(
+        "conical",
+        "conical emission",
+        "conical_edf",
+        ("color", "inner_angle", "outer_angle"),
+        _cone,
+        lambda inputs: conical_exitance(
+            inputs["color"], inputs["inner_angle"], inputs["outer_angle"]
+        ),
+        (
+            EmissionVariant("a cone whose angles count from its axis", _halves),
+            EmissionVariant("uniform emission from the front", _whole),
+        ),
+    ),
+    Emission(
+        "schlick_emission",
+        "generalized Schlick emission",
+        "generalized_schlick_edf",
+        ("color0", "color90", "exponent", BASE),
+        _schlick,
+        lambda inputs: generalized_schlick_exitance(
+            _radiance(inputs), inputs["color0"], inputs["color90"], inputs["exponent"]
+        ),
+        (
+            EmissionVariant(ONE_SIDE, front_only(_schlick), permitted=True),
+            EmissionVariant("the base without its curve", lambda wo, i: _radiance(i)),
+            EmissionVariant(
+                "the curve with exponent 5",
+                lambda wo, i: _schlick(wo, {**i, "exponent": np.full(len(wo), 5.0)}),
+            ),
+        ),
+    ),
+)
+COMBINED_EMISSIONS = (
+    _combined("emission_mix", "a mix of emissions", "mix", (FIRST, SECOND, AMOUNT), _mix),
+    _combined(
+        "emission_add",
+        "a sum of emissions",
+        "add",
+        (FIRST, SECOND),
+        lambda inputs: np.asarray(inputs[FIRST] + inputs[SECOND]),
+    ),
+    _combined(
+        "emission_multiply_float", "a multiple of an emission", "multiply", (FIRST, FACTOR), _scaled
+    ),
+    _combined(
+        "emission_multiply_color3",
+        "a colored multiple of an emission",
+        "multiply",
+        (FIRST, FACTOR),
+        _scaled,
+    ),
+)

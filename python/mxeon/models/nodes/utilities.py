@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The utility nodes of pbrlib that feed the lobes, as functions of the values of their inputs.
+
+Inputs come as a mapping by the names of the node's ports, each (N,) or (N, components). A value beyond
+the range of a model is taken for the nearest one inside, `LEAST` and `LARGEST`, as implementations do:
+the specification accepts [0, 1] for most inputs and says nothing of what lies beyond.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.core.colorimetry import XYZ_TO_REC709
+from mxeon.models.hair.parameters import (
+    EUMELANIN,
+    PHEOMELANIN,
+    chiang_hair_absorption_from_color,
+    chiang_hair_roughness,
+    deon_hair_absorption_from_melanin,
+)
+from mxeon.models.media.blackbody import LUMINANCE, blackbody, kang_xyz
+from mxeon.models.microfacet.artistic_ior import artistic_ior
+from mxeon.models.microfacet.roughness import (
+    glossiness_anisotropy,
+    roughness_anisotropy,
+    roughness_dual,
+)
+from mxeon.models.nodes.node import Inputs
+
+LARGEST_REFLECTIVITY = 0.99  # of artistic_ior; its n is infinite at 1
+LEAST_HAIR = 1e-3  # roughnesses and colors of hair: below, a lobe has no width
+LARGEST_MELANIN = 1.0 - 1e-4  # concentration; at 1 the absorption is infinite
+LEAST_PIGMENT = 1e-30  # color of a pigment, whose logarithm is finite
+TEMPERATURES = (800.0, 25000.0)  # K, from about where a body glows to the end of the fits in use
+
+Values = Callable[[Inputs], dict[str, Array]]
+
+
+@dataclass(frozen=True)
+class UtilityVariant:
+    """Another function that a shader may have in place of a node's own.
+
+    Attributes
+    ----------
+    title : str
+    values : callable (inputs) -> dict of str to ndarray, shape (N, components)
+        As in UtilityNode.
+    permitted : bool
+        Whether the specification leaves it open.
+    """
+
+    title: str
+    values: Values
+    permitted: bool = False
+
+
+@dataclass(frozen=True)
+class UtilityNode:
+    """A utility node, by [MaterialX2026].
+
+    Attributes
+    ----------
+    category : str
+    inputs : mapping of str to value
+        The default of each input, a number or a tuple, by name.
+    outputs : mapping of str to str
+        The type of each output, by name.
+    values : callable (inputs) -> dict of str to ndarray, shape (N, components)
+        Every output by name; needs all inputs.
+    variants : tuple of UtilityVariant
+    """
+
+    category: str
+    inputs: Mapping[str, float | tuple[float, ...]] = field(hash=False)
+    outputs: Mapping[str, str] = field(hash=False)
+    values: Values
+    variants: tuple[UtilityVariant, ...] = ()
+
+
+def _share(inputs: Inputs, name: str, least: float = 0.0, largest: float = 1.0) -> Array:
+    """An input, brought into a range."""
+    return np.clip(np.asarray(inputs[name], np.float64), least, largest)
+
+
+def _anisotropy(inputs: Inputs) -> dict[str, Array]:
+    return {"out": roughness_anisotropy(_share(inputs, "roughness"), _share(inputs, "anisotropy"))}
+
+
+def _glossiness(inputs: Inputs) -> dict[str, Array]:
+    return {
+        "out": glossiness_anisotropy(_share(inputs, "glossiness"), _share(inputs, "anisotropy"))
+    }
+
+
+def _without_square(inputs: Inputs) -> dict[str, Array]:
+    """alpha that is not squared."""
+    names = {"roughness", "glossiness"} & set(inputs)
+    roots = {name: np.sqrt(_share(inputs, name)) for name in names}
+    if "glossiness" in roots:
+        roots["glossiness"] = 1.0 - np.sqrt(1.0 - _share(inputs, "glossiness"))
+    own = (
+        _dual
+        if "anisotropy" not in inputs
+        else _glossiness
+        if "glossiness" in roots
+        else _anisotropy
+    )
+    return own({**inputs, **roots})
+
+
+def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
+    """alpha of [Burley2012], whose aspect is sqrt(1 - 0.9 anisotropy)."""
+    alpha = np.square(_roughness(inputs))
+    aspect = np.sqrt(1.0 - 0.9 * _share(inputs, "anisotropy"))
+    return {"out": np.stack([np.minimum(alpha / aspect, 1.0), alpha * aspect], axis=-1)}
+
+
+def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
+    """alpha that keeps the mean of both squares, as OpenPBR has it."""
+    rest = 1.0 - _share(inputs, "anisotropy")
+    along = np.square(_roughness(inputs)) * np.sqrt(2.0 / (1.0 + rest * rest))
+    return {"out": np.stack([along, rest * along], axis=-1)}
+
+
+def _roughness(inputs: Inputs) -> Array:
+    if "glossiness" in inputs:
+        return np.asarray(1.0 - _share(inputs, "glossiness"))
+    return _share(inputs, "roughness")
+
+
+def _dual(inputs: Inputs) -> dict[str, Array]:
+    """Squares; a negative second roughness stands for the first one, as in implementations."""
+    pair = np.asarray(inputs["roughness"], np.float64)
+    second = np.where(pair[..., 1] < 0.0, pair[..., 0], pair[..., 1])
+    return {"out": roughness_dual(np.clip(np.stack([pair[..., 0], second], axis=-1), 0.0, 1.0))}
+
+
+def _artistic(inputs: Inputs) -> dict[str, Array]:
+    reflectivity = _share(inputs, "reflectivity", 0.0, LARGEST_REFLECTIVITY)
+    ior, extinction = artistic_ior(reflectivity, _share(inputs, "edge_color"))
+    return {"ior": ior, "extinction": extinction}
+
+
+def _exchanged_edge(inputs: Inputs) -> dict[str, Array]:
+    """n and k with the ends of n exchanged."""
+    return _artistic({**inputs, "edge_color": 1.0 - _share(inputs, "edge_color")})
+
+
+def _clipped(inputs: Inputs) -> dict[str, Array]:
+    """The color of luminance 1 whose negative channels are then 0."""
+    return {"out": np.maximum(blackbody(_share(inputs, "temperature", *TEMPERATURES)), 0.0)}
+
+
+def _blackbody(inputs: Inputs) -> dict[str, Array]:
+    """The color inside Rec. 709, whose negative channels are 0, with luminance 1."""
+    color = _clipped(inputs)["out"]
+    return {"out": color / (color @ LUMINANCE)[..., np.newaxis]}
+
+
+def _kang(inputs: Inputs) -> dict[str, Array]:
+    """The color by the cubic fits of [Kang2002], clipped."""
+    color = kang_xyz(_share(inputs, "temperature", *TEMPERATURES)) @ XYZ_TO_REC709.T
+    return {"out": np.maximum(color, 0.0)}
+
+
+def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
+    numbers = [_share(inputs, name, LEAST_HAIR) for name in ("longitudinal", "azimuthal")]
+    scales = [np.abs(np.asarray(inputs[name], np.float64)) for name in ("scale_TT", "scale_TRT")]
+    pairs = chiang_hair_roughness(*numbers, *scales)
+    return dict(zip(("roughness_R", "roughness_TT", "roughness_TRT"), pairs, strict=True))
+
+
+def _unsquared_scales(inputs: Inputs) -> dict[str, Array]:
+    """Roughnesses whose variances are scaled by numbers that are not squared."""
+    scales = ("scale_TT", "scale_TRT")
+    return _hair_roughness({**inputs, **{name: np.sqrt(np.abs(inputs[name])) for name in scales}})
+
+
+def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
+    """Roughnesses with a standard deviation in place of the variance."""
+    pairs = _hair_roughness(inputs)
+    return {
+        name: np.stack([np.sqrt(pair[..., 0]), pair[..., 1]], -1) for name, pair in pairs.items()
+    }
+
+
+def _exchanged_melanins(inputs: Inputs) -> dict[str, Array]:
+    """Absorption with the shares of both melanins exchanged."""
+    return _melanin({**inputs, "melanin_redness": 1.0 - _share(inputs, "melanin_redness")})
+
+
+def _melanin(inputs: Inputs) -> dict[str, Array]:
+    colors = [
+        _share(inputs, name, LEAST_PIGMENT) for name in ("eumelanin_color", "pheomelanin_color")
+    ]
+    concentration = _share(inputs, "melanin_concentration", 0.0, LARGEST_MELANIN)
+    redness = _share(inputs, "melanin_redness")
+    return {"absorption": deon_hair_absorption_from_melanin(concentration, redness, *colors)}
+
+
+def _hair_color(inputs: Inputs) -> dict[str, Array]:
+    color = _share(inputs, "color", LEAST_HAIR)
+    roughness = _share(inputs, "azimuthal_roughness")
+    return {"absorption": chiang_hair_absorption_from_color(color, roughness)}
+
+
+def constant(category: str, value: float) -> UtilityVariant:
+    """A variant whose outputs are all one number, whatever the inputs are."""
+
+    def values(inputs: Inputs) -> dict[str, Array]:
+        return {
+            name: np.full_like(each, value) for name, each in node(category).values(inputs).items()
+        }
+
+    return UtilityVariant(f"{value:g}, whatever the inputs are", values)
+
+
+ASPECTS = (
+    UtilityVariant("Burley's aspect of 2012", _burley_aspect, permitted=True),
+    UtilityVariant("OpenPBR's aspect", _openpbr_aspect, permitted=True),
+    UtilityVariant("a roughness that is not squared", _without_square),
+)
+UTILITIES = (
+    UtilityNode(
+        "roughness_anisotropy",
+        {"roughness": 0.0, "anisotropy": 0.0},
+        {"out": "vector2"},
+        _anisotropy,
+        ASPECTS,
+    ),
+    UtilityNode(
+        "roughness_dual", {"roughness": (0.0, 0.0)}, {"out": "vector2"}, _dual, ASPECTS[2:]
+    ),
+    UtilityNode(
+        "glossiness_anisotropy",
+        {"glossiness": 1.0, "anisotropy": 0.0},
+        {"out": "vector2"},
+        _glossiness,
+        ASPECTS,
+    ),
+    UtilityNode(
+        "artistic_ior",
+        {"reflectivity": (0.944, 0.776, 0.373), "edge_color": (0.998, 0.981, 0.751)},
+        {"ior": "color3", "extinction": "color3"},
+        _artistic,
+        (UtilityVariant("the ends of n exchanged", _exchanged_edge),),
+    ),
+    UtilityNode(
+        "blackbody",
+        {"temperature": 5000.0},
+        {"out": "color3"},
+        _blackbody,
+        (
+            UtilityVariant("luminance 1 before negative channels are clipped", _clipped, True),
+            UtilityVariant("Kang's cubic, drawn on below 1667 K", _kang),
+        ),
+    ),
+    UtilityNode(
+        "chiang_hair_roughness",
+        {"longitudinal": 0.1, "azimuthal": 0.2, "scale_TT": 0.5, "scale_TRT": 2.0},
+        {name: "vector2" for name in ("roughness_R", "roughness_TT", "roughness_TRT")},
+        _hair_roughness,
+        (
+            constant("chiang_hair_roughness", 0.0),
+            UtilityVariant("scales that are not squared", _unsquared_scales),
+            UtilityVariant("a deviation in place of the variance", _unsquared_variance),
+        ),
+    ),
+    UtilityNode(
+        "deon_hair_absorption_from_melanin",
+        {
+            "melanin_concentration": 0.25,
+            "melanin_redness": 0.5,
+            "eumelanin_color": tuple(np.exp(-np.array(EUMELANIN)).round(6).tolist()),
+            "pheomelanin_color": tuple(np.exp(-np.array(PHEOMELANIN)).round(6).tolist()),
+        },
+        {"absorption": "vector3"},
+        _melanin,
+        (
+            constant("deon_hair_absorption_from_melanin", 1.0),
+            UtilityVariant("the shares of both melanins exchanged", _exchanged_melanins),
+        ),
+    ),
+    UtilityNode(
+        "chiang_hair_absorption_from_color",
+        {"color": (1.0, 1.0, 1.0), "azimuthal_roughness": 0.2},
+        {"absorption": "vector3"},
+        _hair_color,
+        (constant("chiang_hair_absorption_from_color", 1.0),),
+    ),
+)
+
+
+def node(category: str) -> UtilityNode:
+    """The row of UTILITIES of a category.
+
+    Raises
+    ------
+    ValueError
+        If there is none; lists the categories.
+
+    Examples
+    --------
+    >>> node("roughness_dual").values({"roughness": np.array([[0.5, 1.0]])})["out"]
+    array([[0.25, 1.  ]])
+    """
+    rows = {row.category: row for row in UTILITIES}
+    if category not in rows:
+        raise ValueError(f"category must be one of {', '.join(rows)}; got {category!r}")
+    return rows[category]

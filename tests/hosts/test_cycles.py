@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's Cycles as a host: exact values, exact pixels, exact EON, and what may go wrong."""
+
+import os
+import signal
+import sys
+from dataclasses import replace
+from threading import Timer
+from types import SimpleNamespace
+
+import MaterialX as mx
+import numpy as np
+import pytest
+
+from mxeon.conformance.reference import Host as Reference
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import cycles
+from mxeon.hosts.cycles import process as cycles_process
+from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.shaders.generation import ApproximationWarning, generate
+from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text, node_text
+from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Paths, sphere
+from tests.support.availability import available
+from tests.support.documents import lobe, material
+from tests.support.tolerances import (
+    CYCLES_EON_RELATIVE,
+    CYCLES_FURNACE_MEAN,
+    CYCLES_NORMAL,
+    CYCLES_RIM,
+    CYCLES_SUBSURFACE,
+    CYCLES_TEXCOORD,
+    TWIN_VALUE,
+)
+
+EMIT = "shader emit\n(\n    output closure color out = 0\n)\n{{\n    {}\n}}\n"
+SMALL = replace(FRONT, size=64)
+LIGHTS = [replace(scene, size=64) for scene in (FRONT, SIDE, BACK)]
+
+
+def oren_nayar(flag, color=(0.8, 0.4, 0.1), roughness=1.0):
+    return material_text(OREN_NAYAR, {"color": color, "roughness": roughness, FLAG: flag})
+
+
+def eon(color, roughness):
+    return material_text(EON, {"color": color, "roughness": roughness})
+
+
+def normalized(vectors):
+    """Unit vectors in the upper hemisphere."""
+    vectors = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.concatenate([vectors[:, :2], np.abs(vectors[:, 2:])], axis=-1)
+
+
+def osl(text, **options):
+    return generate(text, "osl", **options)[0]
+
+
+def emit(statement):
+    """A shader in the form of a generated one."""
+    document = mx.createDocument()
+    document.addNode("surface", "emit", "surfaceshader")
+    stages = {"pixel": EMIT.format(statement)}
+    return SimpleNamespace(stages=stages, document=document, element="emit")
+
+
+def lit(scene):
+    """Pixels away from rim and terminator, and those where the light is behind: s < 0."""
+    points = sphere(scene.size)
+    light = np.asarray(scene.light)
+    mu_o, mu_i = points.normal[..., 2], points.normal @ light
+    pixels = points.mask & (mu_o > CYCLES_RIM) & (mu_i > CYCLES_RIM)
+    return pixels, light[2] < mu_o * mu_i
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sources")
+    (folder / "test.osl").write_text(
+        "color same_color(color rho)\n{\n    return rho;\n}\n"
+        "float same_float(float x)\n{\n    return x;\n}\n"
+        "vector scaled(vector wo,\n              float x)\n{\n    return wo * x;\n}\n"
+    )
+    return folder
+
+
+@pytest.fixture(scope="module")
+def host(sources):
+    with available("cycles"):
+        host = cycles.Host(sources)
+        host.identity()
+    with host:
+        yield host
+
+
+def test_a_missing_blender_is_not_run_and_names_the_remedy(monkeypatch):
+    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
+    with pytest.raises(NotRun, match="no interpreter /nowhere/python; pip install bpy"):
+        cycles.Host()
+
+
+def test_a_missing_folder_is_not_run(monkeypatch, tmp_path):
+    monkeypatch.delenv("MXEON_CYCLES_PYTHON", raising=False)
+    monkeypatch.setattr(cycles_process, "CHECKOUT", str(tmp_path))
+    with pytest.raises(NotRun, match="no folder .venv-cycles"):
+        cycles.Host()
+
+
+def test_an_interpreter_in_the_working_folder_is_not_started(monkeypatch, tmp_path):
+    monkeypatch.delenv("MXEON_CYCLES_PYTHON", raising=False)
+    monkeypatch.setattr(cycles_process, "CHECKOUT", str(tmp_path / "elsewhere"))
+    python = tmp_path / ".venv-cycles" / "bin" / "python"
+    python.parent.mkdir(parents=True)
+    python.symlink_to(sys.executable)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(NotRun, match="no folder .venv-cycles"):
+        cycles_process.interpreter()
+
+
+def test_an_interpreter_without_blender_is_not_run(monkeypatch):
+    monkeypatch.setenv("MXEON_CYCLES_PYTHON", sys.executable)
+    with cycles.Host() as host, pytest.raises(NotRun, match="No module named 'bpy'"):
+        host.identity()
+
+
+def test_the_host_says_version_and_device(host):
+    assert host.identity().name == "cycles"
+    assert host.identity().version.startswith("Blender ")
+    assert host.identity().device == "CPU, OSL"
+
+
+@pytest.mark.parametrize("count", [1, 17, 1000])
+def test_values_travel_bit_by_bit(host, count):
+    rng = np.random.default_rng(count)
+    values = rng.standard_normal((count, 3)) * 10.0 ** rng.uniform(-30, 30, (count, 3))
+    values[0] = [1e-6, -1e-6, 0.0]
+    values = values.astype(np.float32)
+    np.testing.assert_array_equal(host.call("same_color", values), values)
+    np.testing.assert_array_equal(host.call("same_float", values[:, 1]), values[:, [1, 1, 1]])
+    np.testing.assert_array_equal(host.call("scaled", values, 2.0), 2.0 * values)
+
+
+def test_the_osl_twin_of_eon_is_the_model(hosts):
+    rng = np.random.default_rng(7)
+    wo, wi = (normalized(rng.normal(size=(10_000, 3)) * [1.0, 1.0, size]) for size in (1.0, 1e-3))
+    rho, roughness = rng.random((10_000, 3)), rng.random(10_000)
+    values = hosts("cycles").call("eon_brdf", wo, wi, rho, roughness)
+    error = np.pi * wi[:, 2:] * (values - eon_brdf(wo, wi, rho, roughness))
+    assert np.abs(error).max() <= TWIN_VALUE
+
+
+def test_an_unknown_function_is_refused(host, sources):
+    with pytest.raises(ValueError, match=f"function must be defined in {sources}; got 'other'"):
+        host.call("other", [0.0])
+
+
+def test_a_wrong_number_of_arguments_is_refused(host):
+    with pytest.raises(ValueError, match="scaled takes 2 arguments; got 1"):
+        host.call("scaled", [[0.0, 0.0, 1.0]])
+
+
+def test_a_pixel_is_its_point_of_the_sphere(host):
+    points = sphere(SMALL.size)
+    picture = host.picture(emit("out = color(N) * emission();"), SMALL)
+    error = np.where(points.mask[..., None], picture - points.normal, picture)
+    assert np.abs(error[..., :2]).max() <= CYCLES_NORMAL
+    assert np.abs(error[..., 2] * points.normal[..., 2]).max() <= CYCLES_NORMAL
+    assert np.array_equal(picture.any(axis=-1), points.mask)
+
+
+def test_a_shader_reads_the_texture_coordinates_of_the_sphere(host):
+    points = sphere(SMALL.size)
+    picture = host.picture(emit("out = color(u, v, 0.0) * emission();"), SMALL)
+    error = picture[..., :2] - points.texcoord
+    assert np.abs(error[points.mask]).max() < CYCLES_TEXCOORD
+
+
+@pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
+@pytest.mark.parametrize("roughness", [0.0, 1e-6, 2e-5, 0.3, 1.0])
+@pytest.mark.parametrize("color", ["0.8, 0.4, 0.1", "1.0, 0.5, 0.0"])
+def test_eon_with_the_profile_is_exact(host, scene, color, roughness):
+    shader = osl(eon(color, roughness), profile="cycles")
+    error = np.abs(host.picture(shader, scene) - Reference().picture(shader, scene))
+    pixels, _ = lit(scene)
+    bound = CYCLES_EON_RELATIVE * Reference().picture(shader, scene)
+    assert np.all(error[pixels] <= bound[pixels])
+
+
+def test_the_flag_and_the_node_of_its_own_give_the_same(host):
+    flag = osl(oren_nayar("true", "0.8, 0.4, 0.1", 0.5), profile="cycles")
+    node = osl(eon("0.8, 0.4, 0.1", 0.5), profile="cycles")
+    np.testing.assert_array_equal(host.picture(flag, SMALL), host.picture(node, SMALL))
+
+
+def test_stock_is_not_exact(host):
+    shader = osl(oren_nayar("true"), library="stock")
+    error = np.abs(host.picture(shader, SMALL) - Reference().picture(shader, SMALL))
+    assert error.max() > 100.0 * CYCLES_EON_RELATIVE
+
+
+@pytest.mark.parametrize("scene", LIGHTS, ids=lambda scene: scene.name)
+def test_qon_with_the_profile_is_exact_in_front_and_darker_behind(host, scene):
+    with pytest.warns(ApproximationWarning):
+        shader = osl(oren_nayar("false"), profile="cycles")
+    expected = Reference().picture(shader, scene)
+    error = host.picture(shader, scene) - expected
+    pixels, behind = lit(scene)
+    front, back = pixels & ~behind, pixels & behind
+    assert np.all(np.abs(error[front]) <= CYCLES_EON_RELATIVE * expected[front])
+    assert np.all(error[back] <= CYCLES_EON_RELATIVE * expected[back])
+
+
+def test_a_white_furnace_returns_all_light(host):
+    scene = replace(FURNACE, size=64)
+    shader = osl(eon("1.0, 1.0, 1.0", 1.0), profile="cycles")
+    picture = host.picture(shader, scene)
+    mask = sphere(scene.size).mask
+    assert abs(picture[mask].mean() - 1.0) < CYCLES_FURNACE_MEAN
+    assert not picture[~mask].any()
+
+
+def test_both_nodes_live_in_one_material(host):
+    lobes = lobe(EON, "a") + lobe(OREN_NAYAR, "b", energy_compensation=True)
+    ports = (
+        '<input name="in1" type="BSDF" nodename="a"/><input name="in2" type="BSDF" nodename="b"/>'
+    )
+    text = material(lobes + node_text("add", "BSDF", "lobe", ports))
+    assert host.picture(osl(text, profile="cycles"), SMALL).any()
+
+
+def test_a_shader_that_does_not_compile_is_the_shaders_error(host):
+    with pytest.raises(ShaderError, match="function 'nothing' was not declared"):
+        host.picture(emit("out = nothing();"), SMALL)
+
+
+def test_a_closure_that_cycles_lacks_is_not_run(host):
+    shader = emit("out = translucent_bsdf(vector(N), color(1.0));")
+    with pytest.raises(NotRun, match="'translucent_bsdf' is not supported"):
+        host.picture(shader, SMALL)
+
+
+def test_an_environment_image_is_not_run(host, tmp_path):
+    with pytest.raises(NotRun, match="environment must be uniform"):
+        host.picture(emit(""), replace(FURNACE, environment=tmp_path / "sky.exr"))
+
+
+def endless(host):
+    """A picture that never ends."""
+    return host.picture(emit("while (P[0] < 2.0) { out = color(P) * emission(); }"), SMALL)
+
+
+def test_a_hang_is_not_run_and_the_next_picture_is(host):
+    host.worker.start()
+    limit, host.worker.limit = host.worker.limit, 1.0
+    with pytest.raises(NotRun, match="no answer within 1 s; last output"):
+        endless(host)
+    host.worker.limit = limit
+    assert host.call("same_float", [0.5])[0, 0] == 0.5
+
+
+def test_a_crash_is_not_run_and_the_next_picture_is(host):
+    host.worker.start()
+    killer = Timer(0.5, os.kill, (host.worker.pid, signal.SIGSEGV))
+    killer.start()
+    with pytest.raises(NotRun, match="ended by SIGSEGV; last output"):
+        endless(host)
+    assert host.call("same_float", [0.5])[0, 0] == 0.5
+
+
+def test_nothing_is_left_behind(sources, host):
+    with cycles.Host(sources) as other:
+        other.worker.start()
+        pid = other.worker.pid
+        log = other.worker.log
+        os.kill(pid, 0)
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+    assert not log.exists()
+
+
+def test_a_picture_that_was_rendered_is_kept_until_it_is_forgotten(host, monkeypatch):
+    shader, asked, ask = osl(eon((0.5, 0.5, 0.5), 0.5)), [], host.worker.ask
+    monkeypatch.setattr(host.worker, "ask", lambda **request: asked.append(1) or ask(**request))
+    first, second = host.picture(shader, SMALL), host.picture(shader, SMALL)
+    assert len(asked) == 1 and not second.flags.writeable
+    host.forget()
+    third = host.picture(shader, SMALL)
+    assert len(asked) == 2
+    assert np.array_equal(first, second) and np.array_equal(first, third)
+
+
+def test_nothing_of_an_earlier_picture_stays_in_the_scene(host):
+    shader = osl(eon((0.5, 0.5, 0.5), 0.5))
+    alone = host.picture(shader, SMALL)
+    host.picture(shader, replace(FURNACE, size=16))
+    host.picture(shader, LIGHTS[1])
+    host.forget()
+    assert np.array_equal(host.picture(shader, SMALL), alone)
+
+
+def test_subsurface_keeps_its_color(host):
+    color = np.array([0.2, 0.5, 0.8])
+    text = material(
+        '<subsurface_bsdf name="lobe" type="BSDF"><input name="color" type="color3" '
+        f'value="{", ".join(map(str, color))}"/><input name="radius" type="color3" '
+        'value="0.01, 0.01, 0.01"/></subsurface_bsdf>'
+    )
+    scene = replace(FURNACE, size=16, paths=Paths(samples=64))
+    means = []
+    for library in ("eonlib", "stock"):
+        profile = "cycles" if library == "eonlib" else None
+        pixels = host.picture(osl(text, library=library, profile=profile), scene)
+        means.append(pixels[sphere(16).mask].mean(axis=0))
+    assert np.abs(means[0] - color).max() < CYCLES_SUBSURFACE
+    assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE  # stock loses it: every color is white

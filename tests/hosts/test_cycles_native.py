@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Blender's own nodes, without OSL, judged as one more renderer."""
+
+from pathlib import Path
+
+import pytest
+
+from mxeon.conformance.nodes import diffuse as nodes
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.run import check
+from mxeon.hosts import open_host
+from mxeon.hosts.cycles.process import interpreter
+from mxeon.shaders.library import examples_folder
+from tests.support.availability import available
+from tests.support.sharing import shared
+
+NATIVE = nodes.NATIVE["cycles-native"]
+EXAMPLE = examples_folder() / "plaster.mtlx"
+
+
+# File below the kernel's folder, line, and a word of it.
+CAUSES = (
+    ("closure/bsdf_oren_nayar.h", 79, "sqr(albedo)"),
+    ("osl/closures_setup.h", 138, "weight * closure->albedo"),
+)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    with available("cycles-native"):
+        open_host("cycles-native").close()
+    libraries = ["eonlib", "stock"]
+    run = shared(tmp_path_factory, "native", lambda: check([EXAMPLE], ["cycles-native"], libraries))
+    return [each for each in run.results if each.host == "cycles-native"]
+
+
+def test_every_node_is_judged_once_whatever_the_libraries(results):
+    results = [each for each in results if each.check != "document"]  # read once for each library
+    keys = [(each.check, each.subject) for each in results]
+    assert len(keys) == len(set(keys)) and {subject for _, subject in keys} == {
+        subject.title for subject in NATIVE
+    }
+    assert all(each.control.caught for each in results)
+
+
+@pytest.mark.parametrize("subject", NATIVE, ids=lambda each: each.title)
+def test_blender_has_one_power_of_the_color_too_many(results, subject):
+    found = {each.check: each for each in results if each.subject == subject.title}
+    assert {key for key, each in found.items() if each.verdict == FAILED} == {
+        "value",
+        "environment",
+    }
+    assert "nearest known model: EON with rho^3" in found["value"].diagnosis
+    assert found["value"].distances["EON with rho^3"] < 1e-6
+    assert {found[key].verdict for key in ("furnace", "black", "lambert", "inputs")} == {PASSED}
+
+
+@pytest.mark.parametrize("file, line, word", CAUSES, ids=lambda each: str(each))
+def test_the_cause_is_at_its_line(file, line, word):
+    with available("cycles-native"):
+        folder = interpreter().parents[1]
+    [path] = folder.glob(
+        f"lib/python*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel/{file}"
+    )
+    assert word in path.read_text("utf-8").splitlines()[line - 1]
+    page = (Path(__file__).parents[2] / "docs" / "upstream" / "cycles_rho_cubed.md").read_text(
+        "utf-8"
+    )
+    assert f"`intern/cycles/kernel/{file}:{line}`" in page

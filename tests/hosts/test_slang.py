@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Slang host: what is missing is said."""
+
+import subprocess
+import sys
+
+import pytest
+
+from mxeon.errors import NotRun
+from mxeon.hosts import slang
+
+OPEN = """
+from mxeon.errors import NotRun
+from mxeon.hosts.slang import Host
+try:
+    Host()
+except NotRun as reason:
+    print(reason)
+"""
+
+
+def test_a_missing_slangpy_is_not_run_and_names_the_remedy(monkeypatch):
+    monkeypatch.setattr(slang, "slangpy", None)
+    with pytest.raises(NotRun, match=r"slangpy is not installed; pip install 'mxeon\[slang\]'"):
+        slang.Host()
+
+
+def test_a_missing_compiler_is_not_run_and_names_the_remedy(tmp_path):
+    pytest.importorskip("slangpy")
+    done = subprocess.run(
+        [sys.executable, "-c", OPEN], env={"PATH": str(tmp_path)}, capture_output=True, text=True
+    )
+    assert done.stdout.startswith("slang: no kernel for the CPU; ")
+    assert "apt-get install g++" in done.stdout

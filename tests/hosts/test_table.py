@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of hosts: a host is one module and one row, and says which verbs it lacks."""
+
+from contextlib import suppress
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from mxeon import hosts
+from mxeon.cli import main
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.run import check
+from mxeon.errors import Unsupported
+from mxeon.hosts import base
+from mxeon.models import table
+from mxeon.shaders.generation import generate
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.scene import SIDE
+from mxeon.shaders.targets import CLASSES
+
+VERBS = {
+    "picture": (None, SIDE),
+    "evaluate": (None, None, None, {}, "direct"),
+    "call": ("eon_brdf",),
+    "plane": (None, SIDE),
+    "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
+    "pairs": ("diffuse", None, None, None, None),
+    "sample": (None, None, None),
+    "density": (None, None, None),
+}
+ENGINES = [row for row in hosts.HOSTS if row.module]
+
+
+class Host(base.Host):
+    """A toy host: EON itself, whatever the shader."""
+
+    name, target = "toy", "glsl"
+
+    def identity(self):
+        return base.Identity(self.name, "1", "paper")
+
+    def evaluate(self, shader, wo, wi, inputs, branch, **options):
+        rho = np.broadcast_to(inputs["color"], wo.shape)
+        above = wi * np.where(wi[:, 2:] < 0.0, [1.0, 1.0, -1.0], 1.0)
+        brdf = table.model("eon").brdf(wo, above, rho, inputs["roughness"])
+        factor = np.maximum(inputs.get("weight", 1.0), 0.0) * inputs.get("occlusion", 1.0)
+        return brdf * np.clip(wi[:, 2:], 0.0, 1.0) * np.reshape(factor, (-1, 1))
+
+
+@pytest.fixture
+def toy(monkeypatch):
+    """The toy host in a row of its own."""
+    row = hosts.Row("toy", "glsl", __name__, "pairs")
+    monkeypatch.setattr(hosts, "HOSTS", (*hosts.HOSTS, row))
+
+
+def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
+    checks = [row for row in CHECKS if row.key in ("value", "twins")]
+    items = import_module("mxeon.conformance.run.plan")
+    monkeypatch.setattr(items, "CHECKS", checks)
+    monkeypatch.setattr(items, "subjects", lambda library: SUBJECTS[2:])
+    monkeypatch.setattr(items, "COMMON_SUBJECTS", ())
+    run = check([examples_folder() / "clay.mtlx"], ["toy"], workers=0)
+    assert [each.device for each in run.hosts] == ["paper"]
+    results = {each.check: each for each in run.results if each.host == "toy"}
+    assert results["value"].verdict == "passed"
+    assert results["twins"].reason == "toy: this host has no calls of a shader function; gl has"
+
+
+def test_the_help_names_every_host(capsys):
+    with suppress(SystemExit):
+        main(["check", "--help"])
+    text = " ".join(capsys.readouterr().out.split())
+    assert f"gl (the default), {', '.join(hosts.host_names()[1:])}, or all" in text
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_verb_that_a_host_lacks_is_unsupported(verb):
+    class Silent(base.Host):
+        name, target = "silent", "glsl"
+        identity = Host.identity
+
+    with (
+        Silent() as host,
+        pytest.raises(Unsupported, match="^silent: this host has no .*; [a-z-]+ has$"),
+    ):
+        getattr(host, verb)(*VERBS[verb])
+
+
+def test_a_host_compiles_for_its_target_and_profile_and_with_lights():
+    class Profiled(Host):
+        target, profile = "osl", "cycles"
+
+    document = SUBJECTS[2].document()
+    assert Host().compile(document) == generate(document, "glsl", lights=True)
+    assert Profiled().compile(document) == generate(document, "osl", profile="cycles")
+
+
+@pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
+def test_a_row_is_that_of_its_module(row):
+    host = import_module(row.module).Host
+    assert issubclass(host, base.Host) and (host.name, host.target) == (row.name, row.target)
+
+
+@pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
+def test_a_host_has_the_verb_by_which_checks_ask_it(row):
+    verb = {
+        "pairs": "evaluate",
+        "pictures": "picture",
+        "planes": "plane",
+        "native": "node",
+        "exact": "node",
+        "facets": "node",
+        "coarse facets": "node",
+        "facet pairs": "pairs",
+    }
+    host = import_module(row.module).Host
+    verbs = {verb[row.probe], *(["picture"] if row.scenes else [])}
+    assert all(getattr(host, name) is not getattr(base.Host, name) for name in verbs)
+
+
+def test_a_row_has_a_module_or_says_what_running_it_needs():
+    assert all(bool(row.module) == bool(row.probe) != bool(row.needs) for row in hosts.HOSTS)
+    assert {row.target for row in hosts.HOSTS} == set(CLASSES)
