@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, ratio
 from mxeon.errors import NotRun
-from mxeon.hosts import open_host
+from mxeon.hosts import open_engine
 
 OTHERS = ("webgl", "vulkan", "wgsl", "slang", "cycles")
 FIELD = ("--host", "all", "--library", "eonlib", "--library", "stock")
@@ -70,7 +70,7 @@ def main_job(rounds, files):
 def runs(host):
     """Whether a host can run here."""
     try:
-        open_host(host).close()
+        open_engine(host).close()
     except NotRun:
         return False
     return True

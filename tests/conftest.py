@@ -7,7 +7,7 @@ import pytest
 from coverage import Coverage
 
 from mxeon.conformance import reference as reference_host
-from mxeon.hosts import open_host
+from mxeon.hosts import open_engine
 from mxeon.jobs.signals import ENDING
 from tests.support.availability import available, required
 
@@ -53,7 +53,7 @@ def hosts():
     def host(name):
         if name not in opened:
             with available(name):
-                opened[name] = open_host(name, reference_host.ROW)
+                opened[name] = open_engine(name, reference_host.ROW)
                 opened[name].identity()
         return opened[name]
 

@@ -299,7 +299,7 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
     def missing(name):
         raise NotRun(f"{name}: nowhere")
 
-    monkeypatch.setattr(judge, "open_host", missing)
+    monkeypatch.setattr(judge, "open_engine", missing)
     run = check(EXAMPLES[:1], ["gl"])
     results = [each for each in run.results if each.host == "gl"]
     assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), plan.TWINS}

@@ -18,7 +18,7 @@ from mxeon.conformance.nodes.renderer_nodes import NATIVE
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun
-from mxeon.hosts import browser, open_host
+from mxeon.hosts import browser, open_engine
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
@@ -129,7 +129,7 @@ def repaired(tmp_path_factory):
             browser.modules_folder(package, name)
             modules = repairs.copied(package, folder)
             patch.setenv(browser.MODULES, str(modules))
-            opened[name] = open_host(name)
+            opened[name] = open_engine(name)
             patch.delenv(browser.MODULES)
         for change in repairs.REPAIRS:
             repairs.repair(modules, change)
@@ -167,7 +167,7 @@ def test_a_repair_of_another_text_is_refused(tmp_path):
 def test_a_missing_package_is_named_with_its_remedy(name, package, tmp_path, monkeypatch):
     monkeypatch.setenv(browser.MODULES, str(tmp_path))
     with pytest.raises(NotRun) as error:
-        open_host(name)
+        open_engine(name)
     remedy = f"npm ci --prefix {browser.packages_folder()}"
     assert str(error.value) == f"{name}: no package {package} in {tmp_path}; {remedy}"
 

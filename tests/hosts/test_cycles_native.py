@@ -8,7 +8,7 @@ import pytest
 from mxeon.conformance.nodes import diffuse as nodes
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run import check
-from mxeon.hosts import open_host
+from mxeon.hosts import open_engine
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
@@ -28,7 +28,7 @@ CAUSES = (
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     with available("cycles-native"):
-        open_host("cycles-native").close()
+        open_engine("cycles-native").close()
     libraries = ["eonlib", "stock"]
     run = shared(tmp_path_factory, "native", lambda: check([EXAMPLE], ["cycles-native"], libraries))
     return [each for each in run.results if each.host == "cycles-native"]

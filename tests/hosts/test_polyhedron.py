@@ -16,7 +16,7 @@ from mxeon.conformance.probes.polyhedron import PROBES, facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
-from mxeon.hosts import host_row, open_host
+from mxeon.hosts import host_row, open_engine
 from mxeon.hosts.polyhedron import eevee, luxcore, mitsuba
 from mxeon.models import table
 from mxeon.shaders.facets import facet_points
@@ -32,7 +32,7 @@ COLOR = (0.8, 0.4, 0.1)
 
 def judged(name):
     """Results of a host, by check and subject."""
-    with available(name), open_host(name) as host:
+    with available(name), open_engine(name) as host:
         host.identity()
         probe = PROBES[host_row(name).probe]
         results = [

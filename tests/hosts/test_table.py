@@ -11,9 +11,11 @@ from mxeon import hosts
 from mxeon.cli import main
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.diffuse import SUBJECTS
+from mxeon.conformance.pictures.documents import generate_document
 from mxeon.conformance.run import check
-from mxeon.errors import Unsupported
+from mxeon.errors import NotRun, Unsupported
 from mxeon.hosts import base
+from mxeon.hosts.renderer import RendererHost
 from mxeon.models import table
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import examples_folder
@@ -25,12 +27,16 @@ VERBS = {
     "evaluate": (None, None, None, {}, "direct"),
     "call": ("eon_brdf",),
     "plane": (None, SIDE),
+}
+RENDERER_VERBS = {
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
     "pairs": ("diffuse", None, None, None, None),
     "sample": (None, None, None),
     "density": (None, None, None),
 }
 ENGINES = [row for row in hosts.HOSTS if row.module]
+CALLS = [(base.Host, verb, call) for verb, call in VERBS.items()]
+CALLS += [(RendererHost, verb, call) for verb, call in RENDERER_VERBS.items()]
 
 
 class Host(base.Host):
@@ -76,9 +82,9 @@ def test_the_help_names_every_host(capsys):
     assert f"gl (the default), {', '.join(hosts.host_names()[1:])}, or all" in text
 
 
-@pytest.mark.parametrize("verb", VERBS)
-def test_a_verb_that_a_host_lacks_is_unsupported(verb):
-    class Silent(base.Host):
+@pytest.mark.parametrize("engine, verb, arguments", CALLS, ids=[verb for _, verb, _ in CALLS])
+def test_a_verb_that_a_host_lacks_is_unsupported(engine, verb, arguments):
+    class Silent(engine):
         name, target = "silent", "glsl"
         identity = Host.identity
 
@@ -86,7 +92,29 @@ def test_a_verb_that_a_host_lacks_is_unsupported(verb):
         Silent() as host,
         pytest.raises(Unsupported, match="^silent: this host has no .*; [a-z-]+ has$"),
     ):
-        getattr(host, verb)(*VERBS[verb])
+        getattr(host, verb)(*arguments)
+
+
+def test_a_renderer_has_no_verb_of_generated_shaders():
+    for verb in ("compile", *VERBS):
+        assert not hasattr(RendererHost, verb)
+
+
+def test_a_renderer_executes_no_shaders(monkeypatch):
+    class Renderer(RendererHost):
+        name = "renderer"
+        identity = Host.identity
+
+    monkeypatch.setattr(hosts, "HOSTS", (hosts.Row("renderer", "", __name__, "native"),))
+    monkeypatch.setitem(globals(), "Host", Renderer)
+    assert isinstance(hosts.open_engine("renderer"), Renderer)
+    with pytest.raises(Unsupported, match="^renderer: this renderer shows materials of its own"):
+        hosts.open_host("renderer")
+
+
+def test_a_document_is_not_run_on_a_renderer():
+    with pytest.raises(NotRun, match="^mitsuba: this renderer .*; it reads no document$"):
+        generate_document(examples_folder() / "clay.mtlx", "mitsuba", "eonlib")
 
 
 def test_a_host_compiles_for_its_target_and_profile_and_with_lights():
@@ -101,7 +129,8 @@ def test_a_host_compiles_for_its_target_and_profile_and_with_lights():
 @pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
 def test_a_row_is_that_of_its_module(row):
     host = import_module(row.module).Host
-    assert issubclass(host, base.Host) and (host.name, host.target) == (row.name, row.target)
+    kind, target = (base.Host, host.target) if row.target else (RendererHost, "")
+    assert issubclass(host, kind) and (host.name, target) == (row.name, row.target)
 
 
 @pytest.mark.parametrize("row", ENGINES, ids=lambda row: row.name)
@@ -118,9 +147,10 @@ def test_a_host_has_the_verb_by_which_checks_ask_it(row):
     }
     host = import_module(row.module).Host
     verbs = {verb[row.probe], *(["picture"] if row.scenes else [])}
-    assert all(getattr(host, name) is not getattr(base.Host, name) for name in verbs)
+    kind = base.Host if row.target else RendererHost
+    assert all(getattr(host, name) is not getattr(kind, name) for name in verbs)
 
 
 def test_a_row_has_a_module_or_says_what_running_it_needs():
     assert all(bool(row.module) == bool(row.probe) != bool(row.needs) for row in hosts.HOSTS)
-    assert {row.target for row in hosts.HOSTS} == set(CLASSES)
+    assert {row.target for row in hosts.HOSTS if row.target} == set(CLASSES)

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import cast
 
-from mxeon.errors import InputError, NotRun
+from mxeon.errors import InputError, NotRun, Unsupported
 from mxeon.hosts.base import Host
+from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 
@@ -21,7 +22,7 @@ class Row:
     name : str
         On the command line.
     target : str
-        Target of the shaders that it executes.
+        Target of the shaders that it executes; "" for a renderer of its own materials alone.
     module : str
         Module with its class `Host`; "" where only the text of the target is checked.
     probe : str
@@ -72,13 +73,13 @@ HOSTS = (
         scenes=(SIDE, BACK),
         front_lit=("qon",),
     ),
-    Row("cycles-native", "osl", "mxeon.hosts.cycles.native", "native"),
-    Row("three", "essl", "mxeon.hosts.browser.three", "exact"),
-    Row("babylon", "essl", "mxeon.hosts.browser.babylon", "exact"),
-    Row("three-gpu-pathtracer", "essl", "mxeon.hosts.browser.pathtracer", "facet pairs"),
-    Row("mitsuba", "glsl", "mxeon.hosts.polyhedron.mitsuba", "facet pairs"),
-    Row("eevee", "osl", "mxeon.hosts.polyhedron.eevee", "coarse facets"),
-    Row("luxcore", "glsl", "mxeon.hosts.polyhedron.luxcore", "facets"),
+    Row("cycles-native", "", "mxeon.hosts.cycles.native", "native"),
+    Row("three", "", "mxeon.hosts.browser.three", "exact"),
+    Row("babylon", "", "mxeon.hosts.browser.babylon", "exact"),
+    Row("three-gpu-pathtracer", "", "mxeon.hosts.browser.pathtracer", "facet pairs"),
+    Row("mitsuba", "", "mxeon.hosts.polyhedron.mitsuba", "facet pairs"),
+    Row("eevee", "", "mxeon.hosts.polyhedron.eevee", "coarse facets"),
+    Row("luxcore", "", "mxeon.hosts.polyhedron.luxcore", "facets"),
     Row("testrender", "osl", "mxeon.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
@@ -110,7 +111,22 @@ def front_lit_only(host: str, model: str) -> bool:
 
 
 def open_host(name: str, *others: Row) -> Host:
-    """The host of a name, started.
+    """The host of a name, started; arguments and errors are those of `open_engine`.
+
+    Raises
+    ------
+    Unsupported
+        If it is a renderer that shows materials of its own alone.
+    """
+    engine = open_engine(name, *others)
+    if isinstance(engine, Host):
+        return engine
+    engine.close()
+    raise Unsupported(f"{name}: this renderer shows materials of its own alone; gl has others")
+
+
+def open_engine(name: str, *others: Row) -> Host | RendererHost:
+    """The host or renderer of a name, started.
 
     Parameters
     ----------
@@ -130,9 +146,9 @@ def open_host(name: str, *others: Row) -> Host:
     row = host_row(name, *others)
     if not row.module:
         raise NotRun(f"{name}: running it needs {row.needs}; its text is checked")
-    if row.target not in TARGETS:
+    if row.target and row.target not in TARGETS:
         raise NotRun(_no_generator(row))
-    return cast(Host, import_module(row.module).Host())
+    return cast(Host | RendererHost, import_module(row.module).Host())
 
 
 def _no_generator(row: Row) -> str:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The base class of all hosts: their verbs, and the error of those that a host lacks."""
+"""The base classes of all hosts: their verbs, and the error of those that a host lacks."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -44,32 +44,68 @@ class Identity:
     device: str
 
 
-class Host(ABC):
-    """An engine that executes shaders; a context manager, which closes it.
-
-    A host overrides the verbs that it has.
+class Engine(ABC):
+    """A program that executes shaders or renders; a context manager, which closes it.
 
     Attributes
     ----------
     name : str
         On the command line.
-    target : str
-        Target of the shaders that it executes.
-    profile : str or None
-        Profile of the data library; see `mxeon.shaders.library.load_library`.
-    faceted : bool
-        Whether `node` shows the polyhedron of `mxeon.shaders.facets` in place of the sphere.
     """
 
     name: str
-    target: ClassVar[str]
-    profile: ClassVar[str | None] = None
-    language: ClassVar[str] = "glsl"  # of the shader functions that it executes
-    faceted: ClassVar[bool] = False
 
     @abstractmethod
     def identity(self) -> Identity:
         """Name, version and device, as the engine has them."""
+
+    def close(self) -> None:  # noqa: B027, a host may hold nothing
+        """Release what the host holds."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def refuse_paths(self, scene: Scene) -> None:
+        """Raise InputError if a scene asks for paths: where none are traced, or their number is fixed.
+
+        Raises
+        ------
+        ValueError
+            If the samples or the bounces of the scene are set.
+        """
+        if scene.paths != Paths():
+            raise InputError(
+                f"{self.name}: this host takes no number of samples or bounces; cycles does"
+            )
+
+    def _unsupported(self, verb: str, other: str) -> Unsupported:
+        return Unsupported(f"{self.name}: this host has no {verb}; {other} has")
+
+
+class Host(Engine):
+    """An engine that executes generated shaders.
+
+    A caller may rely on this: a verb that a host lacks raises `Unsupported`, here and nowhere else;
+    `compile` alone knows the target, the profile and the lights; pairs, rows and pixels come back
+    in the order in which they were asked for, as linear radiance or 1/sr, and never silently from
+    another shader. A host overrides the verbs that it has.
+
+    Attributes
+    ----------
+    target : str
+        Target of the shaders that it executes.
+    profile : str or None
+        Profile of the data library; see `mxeon.shaders.library.load_library`.
+    language : str
+        Language of the shader functions that it executes, "glsl" or "osl".
+    """
+
+    target: ClassVar[str]
+    profile: ClassVar[str | None] = None
+    language: ClassVar[str] = "glsl"
 
     def compile(
         self,
@@ -212,89 +248,3 @@ class Host(ABC):
             If the host has no such verb.
         """
         raise self._unsupported("pictures of a plane", "testrender")
-
-    def node(
-        self, title: str, color: Sequence[float], roughness: float, scene: Scene
-    ) -> NDArray[Any]:
-        """Picture of the unit sphere with a node of the renderer's own on it; see `picture`."""
-        raise self._unsupported("nodes of its own", "cycles-native")
-
-    def pairs(
-        self,
-        title: str,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        color: NDArray[Any],
-        roughness: NDArray[Any],
-    ) -> NDArray[Any]:
-        """Values of a node of the renderer's own for pairs of directions.
-
-        Parameters
-        ----------
-        title : str
-        wo, wi, color : ndarray, shape (N, 3)
-            The directions are unit vectors, normal +z.
-        roughness : ndarray, shape (N,)
-
-        Returns
-        -------
-        ndarray, shape (N, 3)
-            f cos(theta_i), in 1/sr.
-
-        Raises
-        ------
-        Unsupported
-            If the host has no such verb.
-        """
-        raise self._unsupported("values of its own nodes", "mitsuba")
-
-    def sample(self, wo: NDArray[Any], u: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
-        """Directions to the light that the renderer draws for EON.
-
-        Parameters
-        ----------
-        wo : ndarray, shape (N, 3)
-            Unit vectors, normal +z.
-        u : ndarray, shape (N, 2)
-            Random numbers in [0, 1).
-        roughness : ndarray, shape (N,)
-
-        Returns
-        -------
-        ndarray, shape (N, 3)
-
-        Raises
-        ------
-        Unsupported
-            If the host has no such verb.
-        """
-        raise self._unsupported("sampling of its own", "three-gpu-pathtracer")
-
-    def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
-        """Density in solid angle of the directions that `sample` draws, (N,); see there."""
-        raise self._unsupported("density of its own", "three-gpu-pathtracer")
-
-    def close(self) -> None:  # noqa: B027, a host may hold nothing
-        """Release what the host holds."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self.close()
-
-    def refuse_paths(self, scene: Scene) -> None:
-        """Raise InputError if a scene asks for paths: where none are traced, or their number is fixed.
-
-        Raises
-        ------
-        ValueError
-            If the samples or the bounces of the scene are set.
-        """
-        if scene.paths != Paths():
-            raise InputError(
-                f"{self.name}: this host takes no number of samples or bounces; cycles does"
-            )
-
-    def _unsupported(self, verb: str, other: str) -> Unsupported:
-        return Unsupported(f"{self.name}: this host has no {verb}; {other} has")

@@ -9,12 +9,12 @@ from typing import Any, Concatenate, ParamSpec, TypeVar, cast
 
 import moderngl
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts import base, fragment, points, raster
+from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import Identity
-from mxeon.shaders import functions
+from mxeon.hosts.fragment_host import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
@@ -43,7 +43,7 @@ def _current(verb: Callable[Concatenate[Host, P], T]) -> Callable[Concatenate[Ho
     return wrapped
 
 
-class Host(base.Host):
+class Host(FragmentHost):
     """OpenGL through EGL.
 
     Raises
@@ -88,33 +88,6 @@ class Host(base.Host):
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
         return raster.picture(self._draw(program, textures, (size, size)), size)
-
-    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        """What takes the place of lobes below the surface; see `mxeon.hosts.base.Host`."""
-        return raster.approximations(shader)
-
-    @_current
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
-        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
-        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
-        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
-
-    @_current
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a GLSL function; see `mxeon.hosts.base.Host`."""
-        parameters = functions.parameters(source, function)
-        pixel, texels = fragment.function_evaluation(source, function, parameters, arguments)
-        return self._evaluate(fragment.DIALECTS["glsl"].vertex, pixel, texels)
 
     @_current
     def accumulate(
@@ -167,6 +140,7 @@ class Host(base.Host):
         self._points.cache_clear()
         self._context.release()
 
+    @_current
     def _evaluate(
         self,
         vertex: str,

@@ -18,13 +18,12 @@ from tempfile import TemporaryDirectory
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts import base, fragment, raster
+from mxeon.hosts import fragment, raster
 from mxeon.hosts.base import TURN, Identity
-from mxeon.shaders import functions
-from mxeon.shaders.generation import Shader
+from mxeon.hosts.fragment_host import FragmentHost
 
 try:
     import wgpu
@@ -65,7 +64,7 @@ PROGRAMS = 8  # kept: the checks of a node evaluate one shader many times
 Bindings: TypeAlias = dict[int, tuple[dict[str, Any], Any]]  # kind and resource by number
 
 
-class Host(base.Host):
+class Host(FragmentHost):
     """The first Vulkan adapter that wgpu finds.
 
     Raises
@@ -97,30 +96,6 @@ class Host(base.Host):
         version = f"{self.path}, {info['description']}; wgpu {wgpu.__version__}"
         return Identity(self.name, version, info["device"])
 
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
-        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
-        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
-        environment = {} if irradiance is None else raster.environment(irradiance)
-        return self._evaluate(pixel, arguments, environment)
-
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a GLSL function; see `mxeon.hosts.base.Host`."""
-        parameters = functions.parameters(source, function)
-        pixel, texels = fragment.function_evaluation(
-            source, function, parameters, arguments, self.target
-        )
-        return self._evaluate(pixel, texels)
-
     def _find_adapter(self) -> Any:
         for adapter in wgpu.gpu.enumerate_adapters_sync():
             if adapter.info["backend_type"] == "Vulkan":
@@ -135,11 +110,16 @@ class Host(base.Host):
 
     def _evaluate(
         self,
+        vertex: str,
         pixel: str,
         arguments: Mapping[str, NDArray[Any]],
-        environment: Mapping[str, NDArray[Any]] = {},
+        irradiance: NDArray[Any] | None = None,
     ) -> NDArray[Any]:
-        """Values, one pixel per element, as many as the longest argument has."""
+        """Values, one pixel per element, as many as the longest argument has.
+
+        The vertex stage is that of the dialect: the pipeline has one block for both stages.
+        """
+        environment = {} if irradiance is None else raster.environment(irradiance)
         count, size = fragment.frame(arguments)
         texels = [fragment.texels(rows, size) for rows in arguments.values()]
         sets = (

@@ -21,12 +21,12 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts import base, fragment, points, raster
+from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import TURN, Identity
-from mxeon.shaders import functions
+from mxeon.hosts.fragment_host import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
@@ -59,7 +59,7 @@ UNIFORMS = {
 IMAGE = {"uv_scale": (1.0, 1.0), "uv_offset": (0.0, 0.0)}  # of every image that is no atlas
 
 
-class Host(base.Host):
+class Host(FragmentHost):
     """A browser, started anew after it died.
 
     Playwright wants a thread without an event loop, and always the same: it gets one of its own.
@@ -108,33 +108,6 @@ class Host(base.Host):
         if captured:
             textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
         return raster.picture(self._draw(stages, uniforms, textures, (size, size)), size)
-
-    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        """What takes the place of lobes below the surface; see `mxeon.hosts.base.Host`."""
-        return raster.approximations(shader)
-
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
-        """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
-        pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
-        return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
-
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
-        """Values of a GLSL function; see `mxeon.hosts.base.Host`."""
-        parameters = functions.parameters(source, function)
-        pixel, texels = fragment.function_evaluation(
-            source, function, parameters, arguments, self.target
-        )
-        return self._evaluate(VERTEX, pixel, texels)
 
     def close(self) -> None:
         """End the browser; the next request starts another."""

@@ -25,9 +25,13 @@ def generate_document(
     DocumentError
         If no shader can be made from the document.
     NotRun
-        If this MaterialX has no generator for the target.
+        If the host reads no documents, or this MaterialX has no generator for its target.
     """
     target = host_row(host).target
+    if not target:
+        raise NotRun(
+            f"{host}: this renderer shows materials of its own alone; it reads no document"
+        )
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
     with warnings.catch_warnings(record=True) as records:

@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.nodes.subject import Values
 from mxeon.conformance.probes.pictures import PICTURE_SIZE, PictureProbe, picture_pairs, scene_of
 from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.hosts.base import Host
+from mxeon.hosts.renderer import RendererHost
 from mxeon.models import table as reference
 from mxeon.shaders.scene import sphere
 
@@ -27,7 +29,11 @@ EXACT_INPUTS: tuple[dict[str, Any], ...] = (
 class NativeProbe(PictureProbe):
     """A node that a renderer has of its own, on a sphere."""
 
+    host: RendererHost  # type: ignore[assignment]  # in place of a host of generated shaders
     subject: RendererNode
+
+    def __init__(self, host: RendererHost, subject: RendererNode, library: str) -> None:
+        super().__init__(cast(Host, host), subject, library)  # which keeps it, and asks it nothing
 
     @property
     def claims(self) -> dict[str, str]:

@@ -39,8 +39,9 @@ from mxeon.conformance.run.plan import (
 )
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
-from mxeon.hosts import host_row, open_host
+from mxeon.hosts import host_row, open_engine
 from mxeon.hosts.base import Host
+from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.library import examples_folder
 
@@ -92,7 +93,7 @@ class Judge:
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
-        self._hosts: dict[str, Host | NotRun] = {}  # or the reason why there is none
+        self._hosts: dict[str, Host | RendererHost | NotRun] = {}  # or the reason why there is none
         self._reference = Reference()
         self._probe = lru_cache(maxsize=1)(_probe)  # its pairs take some memory
 
@@ -126,11 +127,11 @@ class Judge:
             if not isinstance(host, NotRun):
                 host.close()
 
-    def _host(self, name: str) -> Host:
+    def _host(self, name: str) -> Host | RendererHost:
         """The host of that name; it is opened, or its absence noticed, once."""
         if name not in self._hosts:
             try:
-                self._hosts[name] = open_host(name)
+                self._hosts[name] = open_engine(name)
             except NotRun as reason:
                 self._hosts[name] = reason
         host = self._hosts[name]
@@ -148,13 +149,15 @@ class Judge:
         host = self._host(task.host)
         return self._on_host(task, host) | {"hosts": (host.identity(),)}
 
-    def _on_host(self, task: Task, host: Host) -> dict[str, Any]:
-        if task.check == PICTURE:
-            return self._document(task, host)
-        if task.check == INVERSION:
-            return {"results": judge_inversion(InversionProbe(host, task.subject, task.library))}
-        if task.check == FUNCTIONS:
-            return {"results": judge_functions(FunctionProbe(host, task.library))}
+    def _on_host(self, task: Task, host: Host | RendererHost) -> dict[str, Any]:
+        if isinstance(host, Host):
+            if task.check == PICTURE:
+                return self._document(task, host)
+            if task.check == INVERSION:
+                inversion = InversionProbe(host, task.subject, task.library)
+                return {"results": judge_inversion(inversion)}
+            if task.check == FUNCTIONS:
+                return {"results": judge_functions(FunctionProbe(host, task.library))}
         probe = self._probe(host, task.subject, task.library)
         if task.check == CURVE:
             return {"curves": judge_curve(probe)}
@@ -200,16 +203,18 @@ def _with_pages(findings: Findings) -> Findings:
     return replace(findings, results=tuple(map(with_page, findings.results)))
 
 
-def _probe(host: Host, title: str, library: str) -> Probe:
+def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
     """The probe of a subject on a host."""
-    probe = PROBES[host_row(host.name).probe]
+    probe: Any = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}
     nodes = {subject.title: subject for subject in PBR_SUBJECTS}
     if title in nodes:
+        assert isinstance(host, Host)  # a renderer of its own materials has none
         kind = probe_type_of(nodes[title], probe)
         assert kind is not None  # or there were no task
         return kind(host, nodes[title], library)
     if title in surfaces:
+        assert isinstance(host, Host)  # a renderer of its own materials has none
         return SURFACE_PROBES[probe](host, surfaces[title], library)
     rows = NATIVE.get(host.name, SUBJECTS)
     made = probe(host, next(row for row in rows if row.title == title), library)

@@ -11,8 +11,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from mxeon.hosts import base, browser
+from mxeon.hosts import browser
 from mxeon.hosts.base import Identity
+from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import Scene
 
 PACKAGE = "@babylonjs/core"
@@ -42,7 +43,7 @@ NODES = {
 }
 
 
-class Host(base.Host):
+class Host(RendererHost):
     """Babylon.js in a headless Chromium.
 
     Raises
@@ -52,7 +53,6 @@ class Host(base.Host):
     """
 
     name = "babylon"
-    target = "essl"  # nothing is generated for this host
 
     def __init__(self, limit: float = browser.LIMIT) -> None:
         modules = browser.modules_folder(PACKAGE, self.name)
@@ -71,7 +71,7 @@ class Host(base.Host):
     def node(
         self, title: str, color: Sequence[float], roughness: float, scene: Scene
     ) -> NDArray[Any]:
-        """Picture of the unit sphere with one of NODES on it; see `mxeon.hosts.base.Host`."""
+        """Picture of the unit sphere with one of NODES on it; see `RendererHost`."""
         self.refuse_paths(scene)
         backend, model = NODES[title]
         job = {

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun
-from mxeon.hosts import base, browser, webgl
+from mxeon.hosts import browser, webgl
 from mxeon.hosts.base import Identity
 from mxeon.hosts.browser import three
+from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import Scene
 
 PACKAGE = "three-gpu-pathtracer"
@@ -50,7 +51,7 @@ vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 """
 
 
-class Host(base.Host):
+class Host(RendererHost):
     """three-gpu-pathtracer in a headless Chromium.
 
     Raises
@@ -60,7 +61,6 @@ class Host(base.Host):
     """
 
     name = "three-gpu-pathtracer"
-    target = "essl"  # nothing is generated for this host
 
     def __init__(self) -> None:
         self._modules = browser.modules_folder(PACKAGE, self.name)
@@ -83,7 +83,7 @@ class Host(base.Host):
         color: NDArray[Any],
         roughness: NDArray[Any],
     ) -> NDArray[Any]:
-        """f cos(theta_i) by the package's own function; see `mxeon.hosts.base.Host`."""
+        """f cos(theta_i) by the package's own function; see `RendererHost`."""
         if NODES[title]:
             return self._execute(NODES[title], wo, wi, color, roughness)
         scale = np.full(len(wo), SHORTER if title.endswith("shorter wh") else 1.0)
@@ -100,11 +100,11 @@ class Host(base.Host):
         )
 
     def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
-        """Density of the directions that `sample` draws; see `mxeon.hosts.base.Host`."""
+        """Density of the directions that `sample` draws; see `RendererHost`."""
         return self._execute("density", wo, wi, np.zeros_like(wo), roughness)[:, 0]
 
     def sample(self, wo: NDArray[Any], u: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
-        """Directions drawn by the package; see `mxeon.hosts.base.Host`."""
+        """Directions drawn by the package; see `RendererHost`."""
         numbers = np.concatenate([u, np.zeros((len(u), 1))], axis=1)
         return self._execute("sample", wo, numbers, np.zeros_like(wo), roughness)
 

@@ -10,8 +10,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from mxeon.hosts import base, browser
+from mxeon.hosts import browser
 from mxeon.hosts.base import Identity
+from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.shaders.scene import Scene
 
@@ -37,7 +38,7 @@ INPUTS = {
 }
 
 
-class Host(base.Host):
+class Host(RendererHost):
     """three.js in a headless Chromium.
 
     Raises
@@ -47,7 +48,6 @@ class Host(base.Host):
     """
 
     name = "three"
-    target = "essl"  # nothing is generated for this host
 
     def __init__(self, limit: float = browser.LIMIT) -> None:
         modules = browser.modules_folder(PACKAGE, self.name)
@@ -64,7 +64,7 @@ class Host(base.Host):
     def node(
         self, title: str, color: Sequence[float], roughness: float, scene: Scene
     ) -> NDArray[Any]:
-        """Picture of the unit sphere with one of NODES on it; see `mxeon.hosts.base.Host`."""
+        """Picture of the unit sphere with one of NODES on it; see `RendererHost`."""
         self.refuse_paths(scene)
         backend, category = NODES[title]
         job = {

@@ -8,8 +8,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from mxeon.hosts import base, cycles
+from mxeon.hosts import cycles
 from mxeon.hosts.base import Identity
+from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import Scene
 
 # Title of a node -> Blender's type, its sockets for color and roughness, and what switches all
@@ -25,7 +26,7 @@ NODES: dict[str, tuple[str, str, str, dict[str, float]]] = {
 }
 
 
-class Host(base.Host):
+class Host(RendererHost):
     """Blender's Cycles with its own shading nodes.
 
     Raises
@@ -35,7 +36,6 @@ class Host(base.Host):
     """
 
     name = "cycles-native"
-    target = "osl"  # of its sibling: nothing is generated for this host
 
     def __init__(self) -> None:
         self._cycles = cycles.Host()

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
-from mxeon.hosts import base
 from mxeon.hosts.base import Identity
 from mxeon.hosts.process import Worker
+from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.facets import polyhedron
 from mxeon.shaders.scene import Scene
 
@@ -29,7 +29,7 @@ PICTURES = 64  # that are kept: the checks of a node ask for some of them again
 MESH = "polyhedron.npz"
 
 
-class PolyhedronHost(base.Host):
+class PolyhedronHost(RendererHost):
     """A renderer that shows its own nodes on the polyhedron, with a process and a folder.
 
     Parameters
@@ -46,8 +46,6 @@ class PolyhedronHost(base.Host):
         Samples per pixel under an environment, 1 being enough under a distant light.
     """
 
-    target = "glsl"  # nothing is generated for this host
-    faceted = True
     nodes: ClassVar[dict[str, dict[str, Any]]]
     samples: ClassVar[int]
     device: ClassVar[str]

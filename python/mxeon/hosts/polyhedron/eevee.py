@@ -20,7 +20,6 @@ class Host(PolyhedronHost):
     """
 
     name = "eevee"
-    target = "osl"  # of its sibling `cycles`: nothing is generated for this host
     samples = 1  # it has no noise
     device = "OpenGL"
     nodes: ClassVar[dict[str, dict[str, Any]]] = {

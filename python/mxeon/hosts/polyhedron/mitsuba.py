@@ -42,7 +42,7 @@ class Host(PolyhedronHost):
         color: NDArray[Any],
         roughness: NDArray[Any],
     ) -> NDArray[Any]:
-        """f cos(theta_i) of a BSDF by its own function; see `mxeon.hosts.base.Host`."""
+        """f cos(theta_i) of a BSDF by its own function; see `RendererHost`."""
         path = self._folder / "pairs.npz"
         np.savez(path, wo=wo, wi=wi, color=color, roughness=roughness)
         material = self._material(title, "{color}", "{roughness}")
