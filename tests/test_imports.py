@@ -1,16 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Imports: the floors of the package, and what an import loads."""
 
+import inspect
 import json
+import pydoc
+import re
 import subprocess
 import sys
 import tomllib
+import typing
+from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
+from numpy.typing import ArrayLike
 
 import mxeon
+from mxeon import models
 
 ROOT = Path(__file__).parents[1]
 MODELS = ("models", "albedo", "inversion", "sampling", "models.table")
@@ -128,6 +136,38 @@ def test_asking_for_help_loads_no_engine():
 def test_public_names_stay_functions_whatever_was_imported_before(name):
     code = f"import mxeon.conformance, mxeon.cli; mxeon.{name}; assert callable(mxeon.{name})"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_public_names_are_listed_before_their_first_use():
+    code = (
+        "import mxeon; assert set(mxeon.__all__) <= set(dir(mxeon)); assert 'check' in dir(mxeon)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_modules_of_models_have_their_documented_names():
+    for place in models._SHORT:
+        short = import_module(f"mxeon.models.{place.rpartition('.')[2]}")
+        assert short is import_module(f"mxeon.models.{place}")
+
+
+def public():
+    """Functions and classes that the API reference shows, by their names there."""
+    pages = (ROOT / "docs" / "api").glob("*.md")
+    names = [name for page in pages for name in re.findall(r"^::: (\S+)", page.read_text(), re.M)]
+    return [pytest.param(resolve_name(name), id=name) for name in names]
+
+
+@pytest.mark.parametrize("function", public())
+def test_signatures_show_types_by_their_names(function):
+    shown = str(inspect.signature(function))
+    assert "Union" not in shown and "numpy." not in shown
+
+
+def test_help_shows_an_argument_on_a_few_characters():
+    heading = pydoc.render_doc(models.eon_brdf, renderer=pydoc.plaintext).splitlines()[2]
+    assert heading.startswith("eon_brdf(wo: 'ArrayLike', wi: 'ArrayLike', ") and len(heading) < 110
+    assert typing.get_type_hints(models.eon_brdf)["wo"] == ArrayLike
 
 
 def test_an_unknown_public_name_is_an_attribute_error():

@@ -175,7 +175,8 @@ def base(function):
 
 
 def _parameters(function):
-    return inspect.signature(function).parameters
+    """Parameters by name, with types in place of their names."""
+    return inspect.signature(function, eval_str=True).parameters
 
 
 def _valid(parameter):

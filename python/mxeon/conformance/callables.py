@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of a Python function, for renderers and libraries with bindings."""
 
+from __future__ import annotations
+
 import platform
 from collections.abc import Callable
 from dataclasses import dataclass

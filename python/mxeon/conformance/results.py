@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The results of a conformance run as plain data, and the verdict on them."""
 
+from __future__ import annotations
+
 import re
 from collections import Counter
 from collections.abc import Sequence

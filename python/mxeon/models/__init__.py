@@ -4,6 +4,9 @@
 The models import NumPy alone. A call uses the caller's thread, unless `threads` asks for more.
 """
 
+import sys
+from importlib import import_module
+
 from mxeon.models.core.evaluation import threads
 from mxeon.models.diffuse.brdf import (
     eon_brdf,
@@ -50,3 +53,20 @@ __all__ = [
     "smith_g2_anisotropic",
     "threads",
 ]
+
+# Modules that are public by a shorter name than that of their place.
+_SHORT = (
+    "core.layering",
+    "diffuse.burley",
+    "diffuse.translucent",
+    "media.blackbody",
+    "media.emission",
+    "media.shading",
+    "media.subsurface",
+    "media.volume",
+    "microfacet.artistic_ior",
+    "microfacet.roughness",
+)
+for _place in _SHORT:
+    _name = f"{__name__}.{_place.rpartition('.')[2]}"
+    sys.modules[_name] = import_module(f"{__name__}.{_place}")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of models, one row each, and the table of known wrong variants."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -4,6 +4,8 @@
 Directions leave the surface, in a local frame with the normal +z.
 """
 
+from __future__ import annotations
+
 from collections.abc import Collection, Mapping
 from typing import NoReturn
 

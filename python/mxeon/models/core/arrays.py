@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of arrays in the signatures of the models."""
 
+from __future__ import annotations
+
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np

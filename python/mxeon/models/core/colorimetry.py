@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Colors of spectra: the CIE 1931 standard observer, and linear Rec. 709."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_numbers

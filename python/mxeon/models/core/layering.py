@@ -7,6 +7,8 @@ nothing: the text is silent on E above 1, and `layer` alone ends there. A value 
 or not: all four operations are linear in it.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Directional albedo of any model, by Gauss-Legendre rules between the kinks of this family."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import lru_cache
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tiling of large arrays into blocks that fit a cache."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 
 import numpy as np

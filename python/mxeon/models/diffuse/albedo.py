@@ -6,6 +6,8 @@ and work on the closed domain; of numbers alone, those without channels return a
 `fon_loss`.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_colors, checked_numbers

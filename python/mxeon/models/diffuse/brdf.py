@@ -7,6 +7,8 @@ several share a large call. Where both directions graze the surface and s > 0,
 s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 there for any choice.
 """
 
+from __future__ import annotations
+
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate
 from mxeon.models.diffuse import formulas

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Burley's diffuse model, as in [MaterialX2026], section `burley_diffuse_bsdf`."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, lead_shape

@@ -6,6 +6,8 @@ Names and arguments are those of the shader functions in `genglsl/eon.glsl` and
 channels on the first axis, so that it broadcasts against the rest.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array, Number

@@ -4,6 +4,8 @@
 Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no other color is.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_colors

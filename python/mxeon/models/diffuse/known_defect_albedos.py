@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Directional albedos of the wrong variants of models, and wrong albedos of right ones."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_colors

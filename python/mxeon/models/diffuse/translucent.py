@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Diffuse transmission, as in [MaterialX2026], section `translucent_bsdf`."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_transmitted, checked_triples

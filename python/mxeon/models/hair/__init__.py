@@ -4,6 +4,8 @@
 The fiber is +x, and the normal +z is turned to the viewer. Light comes from the whole sphere.
 """
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of the hair model that shaders have in place of the text's."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np

@@ -5,6 +5,8 @@ Sections are those of [MaterialX2026], Chiang Hair Model. The fiber is +x, and t
 to the viewer. A direction has the inclination theta, sin(theta) = x, and an azimuth about the fiber.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Roughnesses and absorption of hair from what an artist sets."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_triples, lead_shape

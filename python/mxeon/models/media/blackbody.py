@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Color of a black body: Planck's law seen by the CIE 1931 observer, in linear Rec. 709."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_numbers

@@ -6,6 +6,8 @@ cosine, pi times that unit. Directions leave the surface, normal +z; one below t
 back of the surface. `measured_edf` has no function here: its values are those of a file.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Radiance of surfaces, lights and media by the shader nodes of [MaterialX2026]."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_colors

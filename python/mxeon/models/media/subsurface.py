@@ -5,6 +5,8 @@ The albedo inversion is that of van de Hulst's fit for a half space, solved for 
 `subsurface_reflectance`. NumPy only.
 """
 
+from __future__ import annotations
+
 from functools import cache
 
 import numpy as np

@@ -5,6 +5,8 @@ Coefficients are per channel, in 1/m. Directions point away from the position wh
 scattered, so that light that goes straight on has wi = -wo.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import (

@@ -8,6 +8,8 @@ value grows beyond bounds and counts as 0; value times cosine is 0 there for any
 In retroreflective mode wo is replaced by its mirror image about the normal.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_switch

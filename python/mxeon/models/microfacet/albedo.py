@@ -4,6 +4,8 @@
 An albedo in retroreflective mode is the same: a surface turned by half a turn is the same surface.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
 import numpy as np

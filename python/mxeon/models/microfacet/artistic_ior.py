@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Complex index of refraction of a metal from two colors, and back."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_numbers

@@ -4,6 +4,8 @@
 F_ss, the cosine-weighted average over the hemisphere, is 2 times the integral of F(mu) mu.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

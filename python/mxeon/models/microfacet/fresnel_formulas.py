@@ -4,6 +4,8 @@
 Sections are those of [MaterialX2026].
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array

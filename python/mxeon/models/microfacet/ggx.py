@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Terms of the microfacet nodes of pbrlib: distribution, masking and shadowing."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_directions, checked_pairs

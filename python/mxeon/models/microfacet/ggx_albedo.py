@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Directional albedo of GGX microfacets that reflect everything: E_ss of the specification."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked

@@ -5,6 +5,8 @@ Directions and pairs have their components on the first axis; sections are those
 [MaterialX2026], Microfacet Model.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A microfacet lobe put together from its terms, and its evaluation over arguments."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

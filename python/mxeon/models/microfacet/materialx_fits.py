@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Albedos as MaterialX 1.39 fits them, in its GLSL library of pbrlib, to recognize them by."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
 import numpy as np

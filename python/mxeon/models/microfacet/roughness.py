@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Roughness of microfacets, alpha along tangent and bitangent, from what an artist sets."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_numbers, checked_pairs

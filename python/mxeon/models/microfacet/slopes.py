@@ -9,6 +9,8 @@ without a peak at any alpha. wi lies above the horizon from r = 0 up to one limi
 remains but that of F at a critical angle.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -49,7 +51,7 @@ class Slopes:
     roughness: Array
 
     @classmethod
-    def seen(cls, wo: Array, roughness: Array) -> "Slopes":
+    def seen(cls, wo: Array, roughness: Array) -> Slopes:
         """The slopes that `wo`, shape (3, ...), sees."""
         (x, y, _), (alpha_x, alpha_y) = wo, roughness
         A = np.hypot(x * alpha_x, y * alpha_y)

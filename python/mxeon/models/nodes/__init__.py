@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The BSDF nodes of pbrlib, one row for each mode, as functions of the values of their inputs."""
 
+from __future__ import annotations
+
 from mxeon.models.nodes.lobes import LOBE_NODES
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from mxeon.models.nodes.node import PbrNode

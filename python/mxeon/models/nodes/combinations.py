@@ -5,6 +5,8 @@ Both lobes are Zeltner sheens of unit color, `top` and `base`, whose values and 
 forms; nested rows combine their sum, whose albedo may exceed 1. Inputs go by their paths.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial

@@ -6,6 +6,8 @@ that `generalized_schlick_edf` scales, go by their paths. `base` in `inputs` is 
 a graph whose emissions are evaluated already.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Row of pbrlib's hair node. Its inputs have the names of `mxeon.models.hair.chiang_hair_bcsdf`."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's sheens and diffuse nodes but the rough ones."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

@@ -6,6 +6,8 @@ text gives no equation for the combination of media: here it is that of their co
 transmittances would exceed 1.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

@@ -4,6 +4,8 @@
 Their functions have a thin film where the inputs have `thinfilm_thickness` and `thinfilm_ior`.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

@@ -5,6 +5,8 @@ Inputs come as a mapping by the names of the node's ports, each (N,) or (N, comp
 `weight` is left to the caller, since every node has it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias

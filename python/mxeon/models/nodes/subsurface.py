@@ -5,6 +5,8 @@ There every point has the same light, so that the profile, whose integral is 1, 
 node is Lambert of its color, whatever its radius and its anisotropy.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array

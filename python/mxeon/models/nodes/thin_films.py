@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's microfacet nodes under a thin film, scatter mode R."""
 
+from __future__ import annotations
+
 from functools import partial
 
 import numpy as np

@@ -5,6 +5,8 @@ A rasterizer has no light behind the surface. It looks up an environment instead
 promised of it is the share of the light that passes, and where from.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -6,6 +6,8 @@ the range of a model is taken for the nearest one inside, `LEAST` and `LARGEST`,
 the specification accepts [0, 1] for most inputs and says nothing of what lies beyond.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 

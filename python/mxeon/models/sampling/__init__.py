@@ -6,6 +6,8 @@ which only the exact sampler of EON takes, is a keyword. Random numbers `u` have
 lie in [0, 1). Densities are in solid angle, 1/sr.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -5,6 +5,8 @@ Of the clamped cosine, CLTC keeps only what its matrix maps above the horizon, d
 rest has the shape of a lune. See `mxeon.models.sampling.ltc` for the matrix and its density.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike

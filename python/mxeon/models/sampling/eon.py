@@ -21,6 +21,8 @@ the four parts. Directions follow it with a relative error of at most 1.3e-5 of 
 the parts' errors under non-negative weights, so that the sum has no larger error anywhere.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike

@@ -4,6 +4,8 @@
 Directions leave the surface, local frame with the normal +z. Random numbers `u` lie in [0, 1).
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_directions, checked_pairs, lead_shape

@@ -7,6 +7,8 @@ under a clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
     wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike

@@ -5,6 +5,8 @@ The surface is stretched until its microfacets are a hemisphere; their visible n
 half vectors of the stretched `wo` and a direction drawn uniformly on a spherical cap.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_directions, checked_pairs, lead_shape

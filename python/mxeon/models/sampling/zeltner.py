@@ -6,6 +6,8 @@ M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]: wi = M wh / |M wh|. M keeps z, so 
 and the value times the cosine over the density is color E(mu_o) for every sample.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike

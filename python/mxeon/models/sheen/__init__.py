@@ -4,6 +4,8 @@
 The node's input `color` is a tint that scales the lobe; its albedos are those at unit color.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

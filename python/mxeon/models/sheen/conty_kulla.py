@@ -11,6 +11,8 @@ for all phi where l >= pi/2 - delta, and for tan(phi / 2)^2 <= sin(2 (l - delta)
 where delta <= l <= pi/2 - delta.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np

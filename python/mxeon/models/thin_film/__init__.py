@@ -4,6 +4,8 @@
 A film of thickness 0 is the node's own Fresnel curve. `Form` says what the specification leaves open.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_rgb, lead_shape

@@ -6,6 +6,8 @@ what becomes of an index for each color channel in a sum over CIE XYZ, and of va
 which it clamps at the very end.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -5,6 +5,8 @@ Sections are those of [MaterialX2026], appendix Thin-Film Iridescence Model. Eac
 polarization unless it returns both, p before s. The film is at least as dense as the vacuum above it.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

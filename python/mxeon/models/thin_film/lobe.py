@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values and albedos of the microfacet nodes of pbrlib under a thin film, by the names of their ports."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
 import numpy as np

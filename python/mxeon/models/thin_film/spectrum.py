@@ -5,6 +5,8 @@ It is what the specification approximates by Gaussians and a few orders: the amp
 interfaces and the phase of one passage give the sum of all reflections in closed form.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_numbers

@@ -9,6 +9,8 @@ Two forms differ by the square of the index. Radiance is scaled as light enters 
 that is counted in energy, or paths that are traced from the view, are not.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

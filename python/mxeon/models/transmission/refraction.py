@@ -4,6 +4,8 @@
 An index of refraction is that of the far side relative to the side of the first direction.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_directions, checked_transmitted
@@ -122,7 +124,7 @@ class Facet:
         self.jacobian = jacobian
 
     @classmethod
-    def of(cls, wo: Array, wi: Array, ior: Array, anywhere: bool = False) -> "Facet":
+    def of(cls, wo: Array, wi: Array, ior: Array, anywhere: bool = False) -> Facet:
         """The facet between wo and wi; `anywhere` keeps vectors with both directions on one side.
 
         |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|: [Walter2007], Eq. (17).

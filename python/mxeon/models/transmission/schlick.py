@@ -5,6 +5,8 @@ Its BTDF needs an index of refraction, which the node does not have, and 1 - F o
 [0, 1]. A Reading says what takes their place.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

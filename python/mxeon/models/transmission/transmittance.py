@@ -5,6 +5,8 @@ With the normals drawn as they are seen, the transmitted share of the light from
 (1 - F) G2 / G1(wo). The specification has no compensation for what transmission loses between facets.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import lru_cache
 
