@@ -139,6 +139,13 @@ def test_the_installed_command_answers(environment, tmp_path):
     assert answer == f"mxeon {mxeon.__version__}\n"
 
 
+def test_the_installed_command_says_where_the_figures_of_the_paper_are(environment, tmp_path):
+    command = [environment / "bin" / "mxeon", "figures", tmp_path]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    [line] = done.stderr.splitlines()
+    assert done.returncode == 3 and "install a checkout of the repository" in line
+
+
 @pytest.mark.parametrize(
     "options", [("--path", "{}", "--library", "eonlib"), ("--library", "{}/eonlib")], ids="_".join
 )
