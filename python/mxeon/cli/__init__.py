@@ -70,12 +70,15 @@ def parser() -> argparse.ArgumentParser:
 def _run(arguments: Sequence[str]) -> int:
     """The exit status of the command with these arguments; prints the reason unless it is 0."""
     try:
+        # Read the arguments.
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
+        # Run the sub-command, with its warnings on standard error.
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
             return int(options.run(options))
     except SystemExit as end:  # of the parser, which has printed the reason
+        # Turn errors with words for the user into one line and a status.
         return int(end.code or 0)
     except BrokenPipeError:  # the reader of our output has closed it
         discard(sys.stdout)

@@ -68,13 +68,16 @@ def run_batch(
     InputError
         If `workers` is negative or `timeout` is out of range.
     """
+    # Check the options before any work.
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
     check_timeout(timeout)
     work = partial(_work, work)
+    # Work in this process if there are no workers.
     if workers == 0:
         yield from map(work, documents)
         return
+    # Work in processes, and answer in the order of the documents.
     from mxeon.jobs import pool
 
     outcomes = pool.in_order(pool.run(work, documents, workers, timeout))
@@ -163,9 +166,11 @@ def picture(
     from mxeon.hosts.base import LobeWarning
     from mxeon.shaders import scene as scenes
 
+    # Choose the light.
     setting = scenes.scene(scene)
     if environment:
         setting = scenes.Scene("environment", environment=Path(environment))
+    # Generate the shader, and draw it.
     with open_host(host, reference.ROW) as engine:
         shader = _one_shader(file, engine, element, library, policy)
         setting = replace(setting, size=size, paths=paths)
@@ -173,6 +178,7 @@ def picture(
         for reason in engine.approximations(shader, setting):
             warnings.warn(LobeWarning(shader.element, reason), stacklevel=2)
         identity = engine.identity()
+    # Say what made the picture.
     return image, {
         "version": mxeon.__version__,
         "host": f"{identity.name} {identity.version}",

@@ -16,6 +16,7 @@ def add_parser(commands: arguments.Commands) -> None:
     default, *others = host_names()
     summary = "run the checks on hosts, and compare pictures of documents with the reference"
     command = arguments.add_command(commands, "check", summary, run)
+    # Choose documents, hosts, libraries and nodes.
     command.add_argument(
         "files", nargs="*", metavar="FILE", help="MaterialX documents; none: the examples"
     )
@@ -37,6 +38,7 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="NAME",
         help="judge the nodes of this category alone (sheen_bsdf), or all; may be repeated",
     )
+    # Choose the report, and how the run is done.
     arguments.add_report(command)
     command.add_argument(
         "--resume", action="store_true", help="continue the interrupted run in the report's DIR"

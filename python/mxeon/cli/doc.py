@@ -38,12 +38,14 @@ def run(options: argparse.Namespace) -> int:
     from mxeon.doc import compare, fill, library_tables, read_tables
     from mxeon.doc.markdown import MARKER
 
+    # Check the options, and read the text and the library.
     if options.json and not options.compare:
         raise InputError("--json must come with --compare: a template has no differences")
     arguments.assert_other(options.output, [options.file])
     text = _text(options.file)
     tables = library_tables(options.library)
     try:
+        # Fill the template, unless it is to be compared.
         if not options.compare:
             if not MARKER.search(text):
                 warn(f"{options.file}: there is no @MX_TABLE_node@ to fill")
@@ -52,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
         differences = compare(read_tables(text), tables)
     except DocumentError as error:
         raise DocumentError(f"{options.file}: {error}") from None
+    # Write the differences.
     if options.json:
         _write(json.dumps([vars(each) for each in differences], indent=1) + "\n", options.output)
     else:

@@ -36,6 +36,7 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the shaders of all documents for all targets; return the exit status."""
+    # Plan one piece of work for each document and target.
     sources = [Source(file, target) for file in options.files for target in options.target]
     work = partial(
         shader_texts,
@@ -44,6 +45,7 @@ def run(options: argparse.Namespace) -> int:
         profile=options.profile,
         policy=arguments.policy(options),
     )
+    # Write the texts as they come, and keep the errors.
     results = run_batch(work, sources, options.workers, options.timeout)
     written: list[str] = []
     errors: list[Exception] = []
@@ -55,6 +57,7 @@ def run(options: argparse.Namespace) -> int:
             errors.append(error)
         else:
             written += _write(result.value, options.outputPath)
+    # Print what was written.
     outcome = {"files": written, "errors": list(map(str, errors))}
     for line in [json.dumps(outcome)] if options.json else written:
         print(line)

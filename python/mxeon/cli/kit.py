@@ -11,15 +11,18 @@ from mxeon.errors import PASSED
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its actions."""
+    # Add the command.
     summary = "test a renderer by its images of the conformance kit"
     actions = commands.add_parser("kit", help=summary, description=summary)
     actions = actions.add_subparsers(required=True, metavar="ACTION")
+    # Add the action that writes the kit.
     summary = "write scenes, materials and a page of instructions"
     export = arguments.add_command(actions, "export", summary, run_export)
     export.add_argument("folder", metavar="DIR", help="where to write")
     export.add_argument(
         "--size", type=int, default=128, help="width and height in pixels; %(default)s"
     )
+    # Add the action that judges pictures.
     check = arguments.add_command(actions, "check", "check the images in DIR/renders", run_check)
     check.add_argument("folder", metavar="DIR", help="the folder of the kit")
     check.add_argument(

@@ -20,6 +20,7 @@ def open_streams() -> None:
 
 def flush(status: int) -> int:
     """The exit status once all output is written; misuse if that fails."""
+    # Write what standard output still holds; its failure is the status.
     try:
         if sys.stdout:
             sys.stdout.flush()
@@ -27,6 +28,7 @@ def flush(status: int) -> int:
         discard(sys.stdout)
         error.filename = "standard output"
         status = 141 if isinstance(error, BrokenPipeError) else status or fail(*status_of(error))
+    # Write what standard error still holds; nobody can be told of a failure.
     try:
         if sys.stderr:
             sys.stderr.flush()

@@ -14,9 +14,11 @@ from mxeon.shaders.scene import Paths
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its options."""
+    # Name the hosts that make pictures.
     rows = (row.name for row in HOSTS if row.scenes and row.name != "gl")
     hosts = ", ".join((*rows, "reference"))
     command = arguments.add_command(commands, "render", "draw a material on a sphere", run)
+    # Choose the material, the light and the size.
     command.add_argument("file", metavar="FILE", help="a MaterialX document")
     command.add_argument("--host", default="gl", metavar="NAME", help=f"gl (the default), {hosts}")
     command.add_argument("--element", metavar="NAME", help="needed where there are several")
@@ -36,6 +38,7 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument(
         "--bounces", type=int, metavar="N", help="times that such a path may be scattered"
     )
+    # Choose the library and the limits.
     arguments.add_library(command)
     arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True)
@@ -46,14 +49,17 @@ def run(options: argparse.Namespace) -> int:
     from mxeon.io.images import write_picture
 
     arguments.assert_other(options.output, [options.file, options.environment])
+    # Draw the picture in a worker process.
     names = ("host", "scene", "environment", "size", "element", "library")
     known = {name: getattr(options, name) for name in names}
     paths = Paths(options.samples, options.bounces)
     work = partial(picture, policy=arguments.policy(options), paths=paths, **known)
     [result] = run_batch(work, [options.file], options.workers, options.timeout)
+    # Report what happened there.
     for warning in result.warnings:
         warn(warning)
     if result.error:
         raise result.error
+    # Write the picture.
     write_picture(options.output, *result.value)
     return PASSED

@@ -11,17 +11,21 @@ from mxeon.errors import FAILED, PASSED, one_line
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its actions."""
+    # Add the command.
     summary = "write the report of a run, compare two, or show many renderers on one page"
     actions = commands.add_parser("report", help=summary, description=summary)
     actions = actions.add_subparsers(required=True, metavar="ACTION")
+    # Add the action that writes a report.
     summary = "write the report of a run, finished or not"
     make = arguments.add_command(actions, "make", summary, run_make)
     make.add_argument("report", metavar="DIR", help="the folder of the run")
     arguments.add_json(make)
+    # Add the action that compares two.
     diff = arguments.add_command(actions, "diff", "compare two reports", run_diff)
     diff.add_argument("before", metavar="A", help="folder of a report, or its results.json")
     diff.add_argument("after", metavar="B", help="the same of another run")
     arguments.add_json(diff)
+    # Add the action that shows many renderers.
     summary = "one page with the renderers of any number of reports"
     field = arguments.add_command(actions, "field", summary, run_field)
     field.add_argument(

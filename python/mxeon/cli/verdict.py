@@ -18,8 +18,10 @@ def show_run(run: Run, options: argparse.Namespace) -> int:
     """Write the report of a run and print its verdict; return the exit status."""
     from mxeon import report
 
+    # Write the report.
     page = report.write(run, options.report) if options.report else None
     summary = run.summary
+    # Print the results, or what a person has to know of them.
     if options.json:
         print(report.to_json(run))
     else:
@@ -30,8 +32,10 @@ def show_run(run: Run, options: argparse.Namespace) -> int:
         print(printable(summary.sentence))
         if page:
             print(f"report: {page}")
+    # Print the documents that were refused.
     for error in run.errors:
         fail(MISUSE, error)
+    # Turn the verdict into a status.
     if run.errors:
         return MISUSE
     return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[summary.verdict]

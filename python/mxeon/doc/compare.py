@@ -63,15 +63,18 @@ def compare(
 
 
 def _of_node(table: Table, defined: Table | None) -> Iterator[Difference]:
+    # Name a node that the library lacks.
     if defined is None:
         yield Difference(table.node, "", "node", table.node, "")
         return
+    # Compare the ports that the specification states.
     ours = {port.name: port for port in defined.ports}
     for port in table.ports:
         if port.name in ours:
             yield from _of_port(table.node, port, ours[port.name])
         else:
             yield Difference(table.node, port.name, "port", port.name, "")
+    # Name the ports that it leaves out.
     stated = {port.name for port in table.ports}
     for name in (name for name in ours if name not in stated):
         yield Difference(table.node, name, "port", "", name)

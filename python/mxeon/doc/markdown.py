@@ -68,14 +68,17 @@ def read_tables(text: str) -> dict[str, Table]:
     """
     tables: dict[str, Table] = {}
     for heading, rows in _headed_tables(text):
+        # Skip tables of something else.
         columns = [cell.lower() for cell in rows[0]]
         if columns[:1] != ["port"]:
             continue
+        # Refuse a table without a node, or a second one.
         node = heading.strip("` ")
         if not node:
             raise DocumentError("a table of ports must follow a heading that names its node")
         if node in tables:
             raise DocumentError(f"there must be one table of ports below the heading {node}")
+        # Read the rows.
         ports = tuple(_port(dict(zip(columns, row, strict=True))) for row in rows[1:] if row[0])
         tables[node] = Table(node, _resolved(ports))
     if not tables:
@@ -125,11 +128,13 @@ def _resolved(ports: Sequence[Port]) -> tuple[Port, ...]:
 
 def _headed_tables(text: str) -> list[tuple[str, list[list[str]]]]:
     """Every table as its rows of cells, with the heading above it."""
+    # Load the parser of Markdown.
     try:
         from markdown_it import MarkdownIt
     except ImportError:
         raise PackageError("doc --compare needs markdown-it-py: pip install 'mxeon[doc]'") from None
 
+    # Collect cells between the marks of headings, tables, rows and cells.
     heading = ""
     tables: list[tuple[str, list[list[str]]]] = []
     tokens = MarkdownIt("commonmark").enable("table").parse(text)

@@ -53,6 +53,7 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
     name = " ".join(printable(Path(file).name).split())
     sources: list[ShaderSource] = []
     for library in LIBRARIES:
+        # Generate with each library; a node may be in eonlib alone.
         try:
             shaders = generate(file, "essl", library=library, lights=True, policy=policy)
         except MxeonError:
@@ -60,6 +61,7 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
                 raise
             continue  # a node that stock MaterialX lacks
         text = document_text(shaders[0].document) if shaders else ""  # one for all of them
+        # Describe each shader to the page.
         for shader in shaders:
             title = f"{shader.element}, {library}"
             source = shader_source(shader, text, f"{shader.name}/{library}", title, name, library)
@@ -111,6 +113,7 @@ def shader_source(
     -------
     ShaderSource
     """
+    # Begin with a source without controls.
     source = ShaderSource(
         id=name,
         title=title,
@@ -122,6 +125,7 @@ def shader_source(
         controls=Controls(),
         document=document,
     )
+    # Find the inputs for the controls of the one diffuse node.
     node = _only_diffuse_node(shader)
     if node is None:
         return source
@@ -131,6 +135,7 @@ def shader_source(
         names.get(f"{path}/{each}", "") for each in ("color", "roughness", FLAG)
     )
     source = replace(source, controls=Controls(color, roughness, flag))
+    # Name the model that it means, if nothing else changes its inputs.
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
@@ -234,11 +239,14 @@ def _texels(path: str) -> Texels | None:
     """An image, reduced to LARGEST_IMAGE; None if there is no such file."""
     if not Path(path).is_file():
         return None
+    # Choose blocks of pixels that make the image small enough.
     pixels = read_texture(path)
     high, wide = (-(-size // LARGEST_IMAGE) for size in pixels.shape[:2])
     rows, columns = pixels.shape[0] // high, pixels.shape[1] // wide
+    # Average the blocks.
     blocks = pixels[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
     mean = blocks.mean(axis=(1, 3))
+    # Encode them as 8-bit RGBA.
     rgba = np.ones((rows, columns, 4))
     rgba[..., : mean.shape[-1]] = mean
     codes = np.rint(255.0 * np.clip(np.nan_to_num(rgba), 0.0, 1.0)).astype(np.uint8)

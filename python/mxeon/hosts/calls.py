@@ -84,16 +84,19 @@ def bsdf_call(
     ValueError
         If the shader calls no BSDF or, for GRAPH, no uniform EDF, or branch or output is unknown.
     """
+    # Refuse unknown branches and outputs.
     branches = (GRAPH, *CLOSURES)
     for rule, word, known in (("branch", branch, branches), ("output", output, OUTPUTS)):
         if word not in known:
             raise InputError(f"{rule} must be one of {', '.join(known)}; got {word!r}")
     if branch == GRAPH:
         return _graph_call(shader, wo, inputs)
+    # Find the statements of the branch in the shader.
     emitted = output == "radiance"
     called, closure = (EMISSION, EMISSION) if emitted else CLOSURES[branch]
     text = shader.stages["pixel"]
     start, statements, result, names = _find_calls(text, called, shader.element)
+    # Give directions, occlusion and node inputs their values.
     arguments: Arguments = {"V": ("vector3", wo), "L": ("vector3", wi), "N": ("vector3", NORMAL)}
     arguments["occlusion"] = ("float", inputs.get("occlusion", 1.0))
     if not emitted:
@@ -104,6 +107,7 @@ def bsdf_call(
     else:
         ports = _ports(shader)
         arguments |= {name: _argument(name, ports, inputs) for name in names}
+    # Choose what the statements leave behind.
     value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
     return Call(statements.replace(called, closure), value, arguments)
 
@@ -115,15 +119,18 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, l
     The last call combines what the others before it return, or is the only one.
     """
     # MaterialX before 1.39.5 calls the constructor itself.
+    # Find the block of the closure type.
     constructor = r"(?:makeClosureData|ClosureData)"
     match = re.search(rf"ClosureData closureData = {constructor}\({closure}[^}}]*", text)
     block = match[0] if match else ""
+    # Find the closures that it calls.
     calls = re.findall(r"\w+\(closureData, ([^;]*), (\w+)\);", block)
     if not calls:
         kind = "an EDF" if closure == EMISSION else "a BSDF"
         raise InputError(
             f"element {element!r} must call {kind} to be evaluated; its shader calls none"
         )
+    # Take the arguments that no call before it makes.
     end, results = f", {calls[-1][1]});", [result for _, result in calls]
     names = [name for arguments, _ in calls for name in arguments.split(", ")]
     arguments = [name for name in dict.fromkeys(names) if name not in results]
@@ -143,15 +150,18 @@ def _surface_arguments(shader: Shader, before: Prelude, inputs: Mapping[str, Any
 
 def _graph_call(shader: Shader, wo: ArrayLike, inputs: Mapping[str, Any]) -> Call:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
+    # Find the uniform EDF.
     text = shader.stages["pixel"]
     color = re.search(r"\bmx_uniform_edf\(closureData, (\w+), \w+\);", text)
     if not color:
         raise InputError(
             f"element {shader.element!r} must call a uniform EDF; its shader calls none"
         )
+    # Take the statements of main before its surface.
     before = re.split(r"\n *surfaceshader \w+ = ", text)[0]
     # Slang's own main begins with its stage's inputs and outputs.
     statements = re.split(r"\n\{\n|_vd;\n|float4 out1;\n", before)[-1]
+    # Give the words that are inputs their values.
     ports = _ports(shader)
     words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
     arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing

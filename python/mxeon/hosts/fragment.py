@@ -206,6 +206,7 @@ def _main(
     dialect: Dialect, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str]
 ) -> tuple[str, Columns]:
     """A main that reads the arguments and then executes `body`, and the arguments' texels."""
+    # Lay the arguments out as textures, stacked where they are many.
     rows = columns(arguments)
     if len(rows) <= MOST:
         values = {f"mxeon_{name}": each for name, each in rows.items()}
@@ -213,11 +214,13 @@ def _main(
     else:
         values = {STACK: _stacked(rows)}
         texels = [LAYER.format(index, len(rows)) for index in range(len(rows))]
+    # Read them at the pixel.
     fetches = [
         FETCH[kind].format(name, texel)
         for (name, (kind, _)), texel in zip(arguments.items(), texels, strict=True)
     ]
     lines = ["ivec2 mxeon_pixel = ivec2(gl_FragCoord.xy);", *fetches, *body]
+    # Write samplers and main.
     samplers = [
         dialect.sampler.format(name=name, number=number) for number, name in enumerate(values)
     ]

@@ -115,20 +115,24 @@ class Host(FragmentHost):
         ndarray, shape (height, width, 4), float32
             Row 0 at the bottom.
         """
+        # Compile the program.
         context = self._context
         program = self._program(fragment.DIALECTS["glsl"].vertex, pixel)
         _set(program, uniforms)
         triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
+        # Prepare a frame that adds.
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
         frame.clear()
         context.enable(context.BLEND)
         context.blend_func = context.ONE, context.ONE
+        # Draw the passes.
         for index in passes:
             _set(program, {"tracer_pass": index})
             triangle.render()
             context.finish()
         context.disable(context.BLEND)
+        # Read the sum.
         image: NDArray[np.float32] = np.frombuffer(
             frame.read(components=4, dtype="f4"), dtype=np.float32
         )

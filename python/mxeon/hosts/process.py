@@ -89,14 +89,17 @@ class Worker:
 
     def _reply(self) -> dict[str, Any]:
         assert self._process and self._process.stdout
+        # Read one line within the limit.
         begin = time.monotonic()
         killer = Timer(self.limit, self._process.kill)
         killer.start()
         line = self._process.stdout.readline()
         killer.cancel()
+        # Return a whole answer.
         if line.endswith("}\n"):
             reply: dict[str, Any] = json.loads(line)
             return reply
+        # Say how the process ended.
         if line:  # an answer cut short: the process is on its way out
             self._process.kill()
         status = self._process.wait()

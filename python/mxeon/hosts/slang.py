@@ -92,9 +92,11 @@ class Host(base.Host):
     target = "slang"
 
     def __init__(self) -> None:
+        # Check that slangpy is there.
         if slangpy is None:
             raise NotRun("slang: slangpy is not installed; pip install 'mxeon[slang]'")
         slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
+        # Take the first device that fills a texture.
         for device in DEVICES:
             self._kernels: dict[str, Any] = {}
             self._names = itertools.count()

@@ -89,14 +89,17 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
     """
     if radiance.shape[:2] == (1, 1):
         return radiance
+    # Reduce the map to a coarse one.
     high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
     rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
     blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
     coarse = blocks.mean(axis=(1, 3)).reshape(rows * columns, -1)
+    # Weight its texels by the cosine with each normal.
     incoming, solid_angle = latlong_directions(rows, columns)
     normals, _ = latlong_directions(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE)
     weights = np.maximum(0.0, normals @ incoming.T) * solid_angle
     weights /= weights.sum(axis=1, keepdims=True)
+    # Sum over the texels.
     pixels = (weights @ coarse).reshape(IRRADIANCE_SIZE, 2 * IRRADIANCE_SIZE, -1)
     irradiance: NDArray[np.float32] = pixels.astype(np.float32)
     return irradiance

@@ -144,9 +144,11 @@ class Host(FragmentHost):
 
     def _draw(self, pipeline: Any, groups: Iterable[Any], size: tuple[int, int]) -> NDArray[Any]:
         """One frame as float32 rows, pixel after pixel."""
+        # Prepare the frame.
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
         target = self._device.create_texture(size=size, format=FLOATS[4], usage=usage)
         attachment = {"view": target.create_view(), "load_op": "clear", "store_op": "store"}
+        # Record one triangle that covers it.
         commands = self._device.create_command_encoder()
         render = commands.begin_render_pass(color_attachments=[attachment])
         render.set_pipeline(pipeline)
@@ -156,6 +158,7 @@ class Host(FragmentHost):
         render.set_vertex_buffer(0, corners)
         render.draw(3)
         render.end()
+        # Draw, and read the frame.
         queue = self._device.queue
         queue.submit([commands.finish()])
         layout = {"bytes_per_row": 16 * size[0]}
@@ -269,10 +272,13 @@ def _std140(members: str) -> bytes:
     """Bytes of a block: up to the first structure, after which none of UNIFORMS comes."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):
+        # End at the first structure.
         if kind not in STD140:
             break
+        # Align the member.
         alignment, size = STD140[kind]
         offset = -(-offset // alignment) * alignment
+        # Write its values.
         values = UNIFORMS.get(name, ())
         form = "i" if kind == "int" else "f"
         struct.pack_into(f"<{len(values)}{form}", data, offset, *values)

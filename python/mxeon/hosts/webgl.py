@@ -79,14 +79,17 @@ class Host(FragmentHost):
     target = "essl"
 
     def __init__(self, limit: float = 300.0) -> None:
+        # Check that Playwright and a browser are there.
         if sync_api is None:
             raise NotRun("webgl: Playwright is not installed; pip install 'mxeon[webgl]'")
         self._program = program()
+        # Prepare the page, which the first request opens.
         self._limit = 1000.0 * limit
         self._page: Any = None
         self._points = lru_cache(maxsize=POINTS)(self._capture)
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
+        # Ask for the device at once: there may be no WebGL2.
         try:
             self._ask("identify")
         except NotRun:

@@ -32,15 +32,18 @@ def replacing(path: AnyPath) -> Iterator[Path]:
         If the folder or the file cannot be written, or something else than a file has the name;
         nothing half-written stays behind.
     """
+    # Refuse what is not the name of a regular file.
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     if not path.name:
         raise OSError(errno.EINVAL, "not the name of a file", str(path))
     if path.exists() and not path.is_file():  # a device that is replaced is gone
         raise OSError(errno.EINVAL, "not a regular file", str(path))
+    # Let the caller write a file beside it.
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{os.getpid()}.{path.name}")
     try:
         yield beside
+        # Move the whole file onto the path.
         with beside.open("rb") as file:
             os.fsync(file.fileno())  # some file systems report a full disk only here
         os.replace(beside, path)

@@ -155,10 +155,12 @@ def read_image(path: AnyPath) -> Pixels:
     """
     import OpenImageIO as oiio
 
+    # Ask for its size.
     file = open_image(path)
     values = file.spec().image_pixels() * file.spec().nchannels
     if values > LARGEST:
         raise ImageError(f"{path}: must be an image of at most {LARGEST} values; got {values}")
+    # Read the pixels.
     pixels: Pixels | None = file.read_image(oiio.FLOAT)
     reason = words(file.geterror)
     if pixels is None:
@@ -228,13 +230,16 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
     """
     import OpenImageIO as oiio
 
+    # Refuse a name that OpenImageIO cannot take.
     try:
         str(path).encode()
     except UnicodeEncodeError:
         raise OSError(errno.EILSEQ, "the name must be UTF-8", str(path)) from None
+    # Attach the metadata.
     image = oiio.ImageBuf(pixels)
     for name, value in attributes.items():
         image.specmod().attribute(name, value)
+    # Write the file, and read it again.
     with replacing(path) as beside:
         if not image.write(str(beside)):
             raise OSError(errno.EIO, words(image.geterror).replace(str(beside), str(path)))

@@ -111,6 +111,7 @@ def _outcomes(
     waiting = deque(_Task(index, item) for index, item in enumerate(items))
     running: dict[Any, _Task] = {}
     while waiting or running:
+        # Keep the workers busy.
         compatible = workers.compatible()
         while waiting and len(running) < WINDOW * len(compatible):
             task = waiting.popleft()
@@ -120,8 +121,10 @@ def _outcomes(
         if not running:
             workers.await_compatible()
             continue
+        # Wait for answers.
         with suppress(TimeoutError):
             wait(list(running), timeout=POLL, return_when="FIRST_COMPLETED")
+        # Take what has ended, and try again what a worker lost.
         for future, task in list(running.items()):
             outcome, retry = _progress(future, task, compatible)
             if outcome or retry:
@@ -158,12 +161,14 @@ def _client(address: str, wait: float) -> Any:
         from distributed import Client
     except ModuleNotFoundError:
         raise PackageError("--scheduler needs distributed: pip install 'mxeon[dask]'") from None
+    # Silence what is told here in one line.
     for name in (*LOGGERS, *logging.root.manager.loggerDict):
         if name.partition(".")[0] in LOGGERS:  # what these tell is told here in one line
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
     if not address.strip():
         raise InputError(rule)
+    # Connect.
     try:
         client = _in_time(partial(Client, address, timeout=min(ANSWER, wait)), wait)
     except (OSError, ValueError) as error:
@@ -178,6 +183,7 @@ def _in_time(work: Callable[[], Any], seconds: float) -> Any:
 
     Dask waits for a scheduler that takes a connection and says nothing for minutes.
     """
+    # Work in a thread that nobody waits for.
     answers: SimpleQueue[tuple[Any, Exception | None]] = SimpleQueue()
 
     def answer() -> None:
@@ -187,6 +193,7 @@ def _in_time(work: Callable[[], Any], seconds: float) -> Any:
             answers.put((None, error))
 
     Thread(target=answer, daemon=True).start()
+    # Take its answer.
     try:
         value, error = answers.get(timeout=seconds)
     except Empty:
@@ -255,10 +262,12 @@ class Workers:
 
     def compatible(self) -> frozenset[str]:
         """Addresses of the compatible workers; warns once of each other one."""
+        # List the workers.
         info = self.client.scheduler_info(n_workers=-1)
         if "workers" not in info:  # the client has closed
             raise NotRun(GONE)
         threads = {address: worker["nthreads"] for address, worker in info["workers"].items()}
+        # Ask new ones for their versions, and warn of those that differ.
         new = sorted(threads.keys() - self._compatible.keys())
         versions = self.client.run(_version, workers=new, on_error="return") if new else {}
         for address, version in versions.items():

@@ -99,11 +99,13 @@ def run(
     so results do not pile up in memory. What a worker prints goes to a file; its last lines are
     quoted when it fails.
     """
+    # Check the options.
     if workers < 1:
         raise InputError(f"workers must be at least 1; got {workers}")
     check_timeout(timeout)
     _check_working_folder()
     workers = min(workers, len(items))
+    # Serve the items; a pool that breaks is started again.
     waiting = deque(_Attempt(index, item) for index, item in enumerate(items))
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
         breaks = 0
@@ -112,6 +114,7 @@ def run(
             for outcome in _serve(work, waiting, workers, timeout, logs):
                 breaks = 0
                 yield outcome
+    # Give up what no process begins.
     for attempt in waiting:
         failure = "worker processes end before they begin to work"
         yield attempt.index, Outcome(None, failure, attempt.number)
@@ -148,8 +151,10 @@ def _serve(
     pool = ProcessPool(workers, initializer=_prepare, context=Context())
     running: dict[Future[Any], _Attempt] = {}
     try:
+        # Start the processes.
         active = _start(pool)
         while active and (waiting or running) and pool.active:
+            # Keep two tasks a worker scheduled.
             while waiting and len(running) < 2 * workers:
                 attempt = waiting.popleft()
                 attempt = replace(
@@ -157,9 +162,11 @@ def _serve(
                 )
                 arguments = (work, attempt.item, attempt.log)
                 running[pool.schedule(_work_logged, args=arguments, timeout=timeout)] = attempt
+            # Wait for outcomes.
             done = wait(running, timeout=START + timeout, return_when=FIRST_COMPLETED).done
             for future in done or tuple(running):  # none: the processes hang before they begin
                 attempt = running.pop(future)
+                # Yield an outcome, or try a task once more.
                 outcome = _outcome(future, attempt, timeout)
                 if outcome.failure and attempt.number < ATTEMPTS:
                     waiting.append(replace(attempt, number=attempt.number + 1))
@@ -191,12 +198,15 @@ def _start(pool: ProcessPool) -> bool:
 
 
 def _outcome(future: Future[Any], attempt: _Attempt, timeout: float) -> Outcome:
+    # Return a result.
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt.number)
+    # Log a bug at the last attempt.
     raised = error.__cause__ is not None  # by the work; pebble chains its traceback
     if raised and attempt.number == ATTEMPTS:
         log_bug(error)
+    # Say how the attempt ended, with its last output.
     end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)
     path = Path(attempt.log)
     lines = path.read_text(errors="replace").split("\n") if path.exists() else []

@@ -34,14 +34,17 @@ class SignalExit(KeyboardInterrupt):
 def raise_signals() -> Iterator[None]:
     """Raise SignalExit at such a signal, so that all is cleaned up; an ignored one stays ignored."""
 
+    # Raise at a signal, unless signals are blocked.
     def end(number: int, _: FrameType | None) -> None:
         if _pending is None:
             raise SignalExit(number)
         _pending.append(number)
 
+    # Listen to the signals that are not ignored.
     main = threading.current_thread() is threading.main_thread()  # Python lets no other listen
     numbers = [each for each in ENDING if main and signal.getsignal(each) != signal.SIG_IGN]
     before = {number: signal.signal(number, end) for number in numbers}
+    # Put the former handlers back.
     try:
         yield
     finally:

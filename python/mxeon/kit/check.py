@@ -62,12 +62,14 @@ def check_kit(
     ImportError
         If scipy, of the `kit` extra, is not installed.
     """
+    # Read the kit and the submitted pictures.
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
     pictures, depth = views(_size(folder)), unit_sphere().depth
     place: dict[str, Any] = {"host": renderer, "library": LIBRARY}
     images, results = _read(folder / RENDERS, pictures, place)
+    # Answer the questions, in an order in which each needs the one before.
     notes, obstacle = [], ""
     for question in progress(QUESTIONS):
         # If light or encoding are wrong, no model can be told.
@@ -77,6 +79,7 @@ def check_kit(
             obstacle = words
         if words:
             notes.append(f"{question.title}: {words}")
+    # Make a run of the answers.
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version()} | {name: version(name) for name in SOFTWARE},
@@ -90,14 +93,17 @@ def check_kit(
 
 def _size(folder: Path) -> int:
     """Width of the kit's pictures; refuse a description that another version wrote."""
+    # Check the format.
     file = folder / DESCRIPTION
     kit = _description(file)
     if type(kit.get("format")) is not int or kit["format"] != KIT_FORMAT:
         got = repr(kit.get("format"))
         raise InputError(f"{file}: format must be {KIT_FORMAT}; got {got}: export it again")
+    # Check the size.
     size = kit.get("size")
     if type(size) is not int:
         raise InputError(f"{file}: size must be a whole number; got {size!r}: export it again")
+    # Compare the description with that of this version.
     try:
         exported = json.loads(json.dumps(description(views(size), size)))
     except ValueError as error:

@@ -48,14 +48,17 @@ def fault(image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]) 
     str
         "" if the picture is right within LIKENESS.
     """
+    # Name a black picture.
     if not image[mask].any():
         return "black"
+    # Try each known encoding.
     likeness = {words: _likeness(undo(image)[mask], model, mask) for words, undo in FAULTS}
     words = min(likeness, key=lambda each: likeness[each][1])
     factor, miss = likeness[words]
     if miss <= LIKENESS:
         scale = "" if abs(factor - 1.0) <= SAME_SCALE else f"{_spelled(factor)} times as bright"
         return " and ".join(filter(None, (words, scale)))
+    # Name what is left.
     if _clipped(image[mask], model.value):
         return "clipped"
     return "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise"

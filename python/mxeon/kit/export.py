@@ -48,13 +48,16 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
         If a file cannot be written.
     """
     _assert_own(folder)
+    # Write materials and scenes.
     folder, pictures, mesh = Path(folder), views(size), unit_sphere()
     for material in MATERIALS:
         write_text(folder / "materials" / f"{material.name}.mtlx", material_document(material))
     for view in pictures:
         write_text(folder / "scenes" / f"{view.name}.usda", scene_layer(view))
+    # Write the sphere.
     write_text(folder / "sphere.obj", to_obj(mesh))
     write_text(folder / "sphere.usda", mesh_layer(mesh))
+    # Write the description, and the page for a person.
     write_text(folder / DESCRIPTION, json.dumps(description(pictures, size), indent=1) + "\n")
     (folder / RENDERS).mkdir(exist_ok=True)
     write_text(folder / "README.md", _page(pictures, size, mesh))
@@ -63,6 +66,7 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
 
 def _assert_own(folder: str | PathLike[str]) -> None:
     """Raise InputError unless a folder is new, empty or a kit's, whose files are no links."""
+    # Refuse a folder with other files.
     if not str(folder):
         raise InputError("folder must have a name; got ''")
     path = Path(folder)
@@ -70,6 +74,7 @@ def _assert_own(folder: str | PathLike[str]) -> None:
         return
     if any(path.iterdir()) and not (path / DESCRIPTION).exists():
         raise InputError(f"{folder}: must be new, empty or a kit; it holds other files")
+    # Refuse links, through which other files would be replaced.
     names = (DESCRIPTION, "README.md", "sphere.obj", "sphere.usda", "materials", "scenes")
     links = [each for name in names for each in (path / name, *path.glob(f"{name}/*"))]
     for link in filter(Path.is_symlink, links):

@@ -62,13 +62,16 @@ def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[
     -------
     Tiles
     """
+    # Split the error into squares of 2 x 2 pixels.
     whole = np.asarray(_squares(mask[..., None]).all(axis=(-1, -2)))
     square = _squares(_spread(error, mask))
     contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
+    # Keep the tiles with enough whole squares.
     count = _sum(whole[..., None])[:, 0]
     kept = np.asarray(count >= FEWEST)
     count = count[kept]
     weight = whole[..., None]
+    # Average over each tile; a contrast whose weights sum to 0 is noise alone.
     mean = _sum(weight * square.mean(axis=-1))[kept] / count[:, None]
     variance = _sum(weight * contrast**2)[kept] / count[:, None]
     allowed = _sum(weight * _squares(_spread(slack, mask)).mean(axis=-1))[kept] / count[:, None]

@@ -133,12 +133,14 @@ def answer(
     str
         The model or fault that the pictures show; "" if the question does not determine one.
     """
+    # Find the pictures of the question.
     chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
     missing = [view.name for view in chosen if view.name not in images]
     if obstacle or missing:
         reason = obstacle or f"no usable picture: {', '.join(missing)}"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
+    # Compare them with the model, and with its mistake.
     masks = [judged(view.scene) for view in chosen]
     cases = [
         Case(view, mask, images[view.name][mask]) for view, mask in zip(chosen, masks, strict=True)
@@ -148,12 +150,14 @@ def answer(
     error = _ratio(errors)
     wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in chosen]))
     noise = float(np.sqrt(np.mean([each.pixel_noise**2 for each in errors])))
+    # Refuse an answer that noise could give.
     if max(error, wrong) <= 1.0:
         reason = (
             f"too noisy to detect that {question.variant}: {noise:.2g} rms per pixel; "
             "render with more samples"
         )
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
+    # Say which model or fault it is.
     ranking = candidates(cases, depth) if question.key == "model" else []
     words = ranking_sentence(ranking) if ranking else ""
     if question.key == "setup" and error > 1.0:

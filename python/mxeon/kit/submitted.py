@@ -57,13 +57,16 @@ def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
         and blue, eight bits (also in a float file), or a pixel on the sphere that is missing or not
         finite.
     """
+    # Find the one file of the view.
     files = sorted(Path(folder).glob(f"{view.name}.*"))
     if not files:
         raise Missing(f"{view.name}.exr: must be in {folder}; got no such file")
     file, size = files[0], view.scene.size
     if len(files) > 1:
         raise Unusable(f"{view.name}: must be one file; got {', '.join(f.name for f in files)}")
+    # Read it.
     image = _read_csv(file, size) if file.suffix.lower() == ".csv" else _read_image(file, size)
+    # Refuse pixels of the sphere that are not finite.
     mask = sphere(size).mask
     bad = ~np.isfinite(image).all(axis=-1) & mask
     if bad.any():
@@ -77,11 +80,13 @@ def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
 
 
 def _read_image(file: Path, size: int) -> NDArray[np.float64]:
+    # Open the file.
     try:
         image = open_image(file)
     except ImageError as error:
         reason = str(error).partition("; ")[2]
         raise Unusable(f"{file.name}: must be an EXR or CSV file; {reason}") from None
+    # Refuse another size, offset or type.
     spec = image.spec()
     if (spec.width, spec.height) != (size, size):
         raise Unusable(
@@ -92,6 +97,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
     if str(spec.format) not in FLOATS:
         raise Unusable(f"{file.name}: must hold half or float numbers; got {spec.format}")
     try:
+        # Read the three channels.
         channels = _channels(file, spec.channelnames)
     except UnicodeDecodeError:
         raise Unusable(f"{file.name}: must have names of channels in UTF-8") from None
@@ -126,9 +132,11 @@ def _read_csv(file: Path, size: int) -> NDArray[np.float64]:
 
 
 def _table(file: Path, lines: Any, size: int) -> NDArray[np.float64]:
+    # Check the columns.
     header: list[str] = next(lines, [])
     if header != COLUMNS:
         raise Unusable(f"{file.name}: must begin with {','.join(COLUMNS)}; got {','.join(header)}")
+    # Read a pixel from each line.
     image, present = np.full((size, size, 3), np.nan), np.zeros((size, size), dtype=bool)
     for line in filter(None, lines):
         try:
@@ -136,6 +144,7 @@ def _table(file: Path, lines: Any, size: int) -> NDArray[np.float64]:
             fits = min(row, column) >= 0 and len(values) == 3 and not present[row, column]
         except (ValueError, IndexError):
             fits = False
+        # Refuse a line that is no pixel, or repeats one.
         if not fits:
             raise Unusable(
                 f"{file.name}: line {lines.line_num} must hold row and column of a pixel, of "

@@ -84,12 +84,15 @@ def to_json(run: Run) -> str:
 def _picture_fields(run: Run) -> list[dict[str, Any]]:
     keys = ("document", "element", "host", "library", "scene")
     fields: list[dict[str, Any]] = []
+    # Find the file of each reference picture.
     pictures = _with_references(run.pictures)
     stems = dict(zip(map(_place, pictures), image_names(pictures), strict=True))
     for picture, stem in zip(run.pictures, run.image_names, strict=True):
+        # Measure the largest difference.
         largest = None
         if picture.reference is not None:
             largest = float(difference(picture.image, picture.reference).max())
+        # Name the files.
         files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
         named = {key: getattr(picture, key) for key in keys}
         reference = stems.get((REFERENCE, *_subject(picture)))
@@ -127,13 +130,16 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
         If jinja2 or matplotlib, the `report` extra, is not installed.
     """
     folder = Path(folder)
+    # Write the results for machines.
     write_text(folder / "results.json", to_json(run))
     write_text(folder / "junit.xml", to_junit(run))
+    # Write the pictures.
     pictures = _with_references(run.pictures)
     for picture, stem in zip(pictures, image_names(pictures), strict=True):
         path = folder / "pictures" / stem
         write_exr(f"{path}.exr", picture.image, picture.metadata)
         write_png(f"{path}.png", picture.image, picture.metadata)
+    # Write the page, piece by piece.
     with replacing(folder / "report.html") as beside, open(beside, "w", encoding="utf-8") as page:
         for text in html(run):
             page.write(text)

@@ -112,11 +112,13 @@ def read_results(folder: str | PathLike[str]) -> Report:
     ValueError
         If the file is missing or not of this format; names the first wrong value.
     """
+    # Read the file.
     path = Path(folder) / "results.json" if Path(folder).is_dir() else Path(folder)
     rule = f"{path}: must be the results.json of a report"
     try:
         with open(path, encoding="utf-8", opener=regular) as file:
             content = json.load(file)
+        # Check its format.
         if (written := content["format"]) == JSON_FORMAT:
             return read_record(content, Report)
     except OSError as error:
@@ -164,11 +166,13 @@ def _results(
 ) -> Iterator[Change]:
     for key in dict.fromkeys((*before, *after)):
         place, old, new = ", ".join(key), before.get(key), after.get(key)
+        # Name results that one of both lacks.
         if new is None:
             yield Change(WORSE, place, before[key].verdict, "none")
         elif old is None:
             yield Change(OTHER, place, "none", new.verdict)
         elif old.verdict != new.verdict:
+            # Compare the verdicts, then the errors.
             worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
             yield Change(WORSE if worse else BETTER, place, _with_error(old), _with_error(new))
         elif _apart(old.error, new.error):

@@ -151,6 +151,7 @@ def _reports(folder: Path) -> list[Path]:
 
 def _entries(report: Report, folder: Path) -> Iterator[Entry]:
     """Entries of a report, in its order."""
+    # Group the results by host, library and node.
     nodes: tuple[DiffuseSubject | DiffuseLobe, ...] = (
         *SUBJECTS,
         *SURFACES,
@@ -162,9 +163,11 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
         place = result.host, result.library, result.subject
         places.setdefault(place, {})[result.check] = result
     for place, results in places.items():
+        # Take the nodes that claim a model and are judged in direct light.
         direct = next((results[key] for key in DIRECT if key in results), None)
         claimed = direct and (direct.claimed or claims.get(direct.subject))
         if direct and claimed:
+            # Collect cells, pages and pictures.
             portraits = {each.scene: each for each in _portraits(report, place, folder)}
             cells = _cells(results, direct, portraits.get(BACK))
             pages = _pages(results.values())

@@ -27,13 +27,16 @@ def to_junit(run: Run) -> str:
     """
     root = ElementTree.Element("testsuites", name="mxeon")
     for name in dict.fromkeys(result.location for result in run.results):
+        # Begin a suite with its properties.
         results = [result for result in run.results if result.location == name]
         suite = ElementTree.SubElement(root, "testsuite", {"name": _xml(name)} | _totals(results))
         properties = ElementTree.SubElement(suite, "properties")
         for key, value in _properties(run, results[0].host).items():
             ElementTree.SubElement(properties, "property", name=_xml(key), value=_xml(value))
+        # Add its cases.
         for result in results:
             _add_case(suite, result)
+    # Add the documents that were refused.
     if run.errors:
         _add_errors(root, run.errors)
     ElementTree.indent(root)

@@ -181,14 +181,17 @@ def materials(
 def panels(pictures: Iterable[Picture]) -> list[dict[str, Any]]:
     """Panels of one scene: the reference if there is one, then pictures and differences."""
     pictures = tuple(pictures)
+    # Begin with the reference.
     references = [one.reference for one in pictures if one.reference is not None]
     row = []
     if references:
         row.append(_panel("reference", "reference", "NumPy, float64", srgb_encoded(references[0])))
     for one in pictures:
+        # Add each picture.
         place = {"host": one.host, "library": one.library}
         row.append(_panel("image", one.host, one.library, srgb_encoded(one.image), **place))
         if one.reference is not None:
+            # Add its difference from the reference.
             apart = difference(one.image, one.reference)
             scale = difference_scale(apart)
             note = f"{one.host}, max {number(apart.max(), 2)}"

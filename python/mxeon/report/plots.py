@@ -109,6 +109,7 @@ def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: s
     buffer = io.StringIO()
     # The defaults, not a matplotlibrc of the working folder, which could start LaTeX.
     with style.context(["default", STYLE]):
+        # Draw the channels.
         figure = Figure(figsize=(3.6, 2.4), layout="constrained")
         axes = figure.subplots()
         for channel, color in enumerate((TEXT_COLOR,) if gray else CHANNEL_COLORS):
@@ -116,6 +117,7 @@ def albedo_plot(curves: Sequence[AlbedoCurve], markers: Sequence[str], prefix: s
         axes.set(xlim=(-0.03, 1.03), xlabel="cosine of the polar angle", ylabel="albedo")
         axes.margins(y=0.15)
         figure.savefig(buffer, format="svg", transparent=True, metadata=NO_METADATA)
+    # Make a part of a page of it: no prolog, its colors, names of its own.
     svg = buffer.getvalue()
     svg = svg[svg.index("<svg") :].replace(TEXT_COLOR, "currentColor")
     return re.sub(r'((?:\bid="|href="#|url\(#))', rf"\g<1>{prefix}", svg)

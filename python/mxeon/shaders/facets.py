@@ -60,16 +60,19 @@ def polyhedron() -> Polyhedron:
     Its facets are trapezoids, which are flat, and triangles at the poles. The vertices are float32
     numbers, as renderers read them.
     """
+    # Place the vertices around AXIS, in float32.
     polar, azimuth = np.linspace(0.0, np.pi, RINGS + 1), np.arange(SECTORS) * 2.0 * np.pi / SECTORS
     theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
     ring = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
     local = np.concatenate([[[0.0, 0.0, 1.0]], ring.reshape(-1, 3), [[0.0, 0.0, -1.0]]])
     vertices = (local @ _frame()).astype(np.float32).astype(np.float64)
+    # Split quadrilaterals into triangles, without the empty ones at the poles.
     quads = np.array([_quad(row, column) for row in range(RINGS) for column in range(SECTORS)])
     triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
     corners = vertices[triangles]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     triangles = triangles[np.linalg.norm(areas, axis=1) > 0.0]
+    # Find the plane of each facet.
     one, two, three, four = (vertices[quads[:, index]] for index in range(4))
     normals = np.cross(three - one, four - two)  # of the diagonals: that of a triangle as well
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -80,13 +83,16 @@ def polyhedron() -> Polyhedron:
 @lru_cache(maxsize=4)
 def facet_points(size: int) -> Points:
     """Normals at the pixels of a `size` x `size` picture."""
+    # Find the facets at the corners of each pixel.
     axis = (2.0 * np.arange(size) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     reach = MARGIN / size
     facets = [_facets(x + dx * reach, y + dy * reach) for dx in (-1.0, 1.0) for dy in (-1.0, 1.0)]
+    # Keep the pixels that lie within one facet.
     mask = facets[0] >= 0
     for other in facets[1:]:
         mask &= other == facets[0]
+    # Look up its normal.
     normal = polyhedron().normals[facets[0]]
     for array in (normal, mask):
         array.flags.writeable = False  # shared by all callers
@@ -96,11 +102,13 @@ def facet_points(size: int) -> Points:
 def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
     """Index of the facet that each line along z meets first; -1 for none."""
     _, _, normals, offsets = polyhedron()
+    # Sort the facets into those that face the view and those that do not.
     above, below = normals[:, 2] > 0.0, normals[:, 2] < 0.0
     first, top = np.full(x.shape, -1), np.full(x.shape, np.inf)
     bottom = np.full(x.shape, -np.inf)
     for index in range(len(normals)):
         if above[index] or below[index]:
+            # Find the height of the plane over each point.
             nx, ny, nz = normals[index]
             height = (offsets[index] - nx * x - ny * y) / nz
             if above[index]:
@@ -108,6 +116,7 @@ def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]
                 top = np.minimum(top, height)
             else:
                 bottom = np.maximum(bottom, height)
+    # Keep the points over the polyhedron.
     return np.where(top > bottom, first, -1)
 
 

@@ -178,10 +178,12 @@ def generate(
     >>> [shader.name for shader in generate(text, "osl")]
     ['look']
     """
+    # Read and check the document.
     if target not in GENERATORS:
         raise InputError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
     checked = read_document(document, library, profile, policy)
     content, names = checked.content, shader_names(checked.renderables)
+    # Generate each shader.
     generator = generator_of(content, target, library, profile)
     context = context_of(content, target, generator, lights, policy.path)
     elements = _select(checked.renderables, element)
@@ -193,6 +195,7 @@ def generate(
             source = _generate(content, each, names[each.getNamePath()], target, context, sources)
             check_closure_calls(source.getStage("pixel"), target, library, profile)
             shaders.append(_shader(source, each.getNamePath(), target, content))
+    # Warn of what the shaders lack.
     warn_of_files(_files(shaders), content)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)

@@ -42,11 +42,14 @@ def generator_of(
 
 def _new_generator(target: str, library: str, profile: str | None) -> mx_gen.ShaderGenerator:
     """A generator with the types, the color system and the unit system of a data library."""
+    # Register the types.
     data, generator = load_library(library, profile), GENERATORS[target].create()
     generator.registerTypeDefs(data)
+    # Add the color system.
     colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())
     colors.loadLibrary(data)
     generator.setColorManagementSystem(colors)
+    # Add the unit system, with its converters.
     units = mx_gen.UnitSystem.create(generator.getTarget())
     converters = mx.UnitConverterRegistry.create()
     for name in ("distance", "angle"):

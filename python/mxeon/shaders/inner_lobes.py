@@ -72,15 +72,18 @@ class _Walk:
     def parts(self, path: Path) -> tuple[Path, ...]:
         """Paths of the nodes from which a node's light comes."""
         node = self._nodes[path]
+        # Note the kind of lobe.
         kind = KINDS.get(node.getCategory())
         if _text(node, "scatter_mode") in ("T", "RT"):
             kind = TRANSMISSION
         if kind and self._constant(path, "weight") != 0.0:
             self.kinds.add(kind)
+        # Go on inside of a node that is a graph.
         inside = node.getImplementation()
         if inside and inside.isA(mx.NodeGraph):
             outputs = (output.getConnectedNode() for output in inside.getOutputs())
             return tuple(self.path(path, output) for output in outputs if output)
+        # Go on to the nodes before it.
         sources = (self._source(path, name) for name in self._effective(path, node))
         return tuple(source for source in sources if source)
 

@@ -199,6 +199,7 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
     check_version()
     if note := untested(mx.getVersionString()):
         warnings.warn(UntestedVersionWarning(note), stacklevel=2)
+    # Load the folders.
     document = mx.createDocument()
     try:
         mx.loadLibraries(
@@ -209,6 +210,7 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
         )
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
         raise InputError(f"library {library}: {error}") from None
+    # Check what is not MaterialX's own.
     if library not in LIBRARIES:
         check_sources(document, library_name(library))
     if library in ("eonlib", "diffuse"):

@@ -113,9 +113,11 @@ def shader_names(elements: Iterable[mx.TypedElement]) -> dict[str, str]:
     last: dict[str, str] = {}  # name by stem, before which all are in use
     used: set[str] = set()
     for element in elements:
+        # Make a word of the path.
         stem = re.sub(r"\W", "_", element.getNamePath(), flags=re.ASCII)
         if stem[0].isdigit() or stem in RESERVED:
             stem = f"shader_{stem}"
+        # Number it until it is new.
         name = last.get(stem, stem)
         while name in used:
             name = mx.incrementName(name)

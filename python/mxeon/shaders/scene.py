@@ -153,14 +153,17 @@ def sphere(size: int, margin: int = 0) -> Sphere:
 
     A `margin` adds as many rows and columns of pixel centers around the frame.
     """
+    # Find the points under the centers of the pixels.
     axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
     x, y = np.meshgrid(axis, -axis)
     radius = np.hypot(x, y)
     mask = radius < 1.0
     scale = 1.0 / np.maximum(radius, 1.0)
     z = np.sqrt(np.maximum(0.0, 1.0 - radius * radius))
+    # Find positions and normals.
     position = np.stack([x, y, z], axis=-1)
     normal = np.stack([x * scale, y * scale, z], axis=-1)
+    # Find texture coordinates.
     u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
     points = Sphere(mask, position, normal, np.stack([u, v], axis=-1))

@@ -114,6 +114,7 @@ class Browser:
     ) -> None:
         if sync_api is None:
             raise NotRun(f"{host}: Playwright is not installed; pip install 'mxeon[webgl]'")
+        # Keep what the page is made of.
         self._host = host
         self._script = page
         self._imports = {name: f"/{path}" for name, path in imports.items()}
@@ -121,6 +122,7 @@ class Browser:
         self._assets = assets or {}
         self._program = webgl.program(host)
         self._limit = 1000.0 * limit
+        # Prepare the browser, which the first request starts.
         self._page: Any = None
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
@@ -185,15 +187,18 @@ class Browser:
 
     def _serve(self, route: Any) -> None:
         """Answer a request of the page from this machine."""
+        # Answer with an asset.
         if route.request.url in self._assets:
             body = self._assets[route.request.url]
             route.fulfill(body=body, content_type="image/png", headers=SHARED)
             return
+        # Answer with the page itself.
         path = route.request.url.removeprefix(ORIGIN)
         if not path:
             imports = json.dumps({"imports": self._imports})
             route.fulfill(body=HTML.format(imports=imports), content_type="text/html")
             return
+        # Answer with a module, or with nothing.
         own = {"page.js": self._script, "sphere.js": Path(__file__).with_name("sphere.js")}
         file = own.get(path, self._modules / path)
         if file.suffix in TYPES and file.is_file():

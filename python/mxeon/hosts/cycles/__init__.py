@@ -193,12 +193,14 @@ class Host(base.Host):
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""
+        # Bring the arguments into columns of one length.
         types = [kind for kind, _ in functions.parameters(source, function)]
         if len(types) != len(arguments):
             raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
         columns = [_columns(*pair) for pair in zip(types, arguments, strict=True)]
         count = max(map(len, columns))
         size = max(4, math.isqrt(count - 1) + 1)  # Blender renders no smaller picture.
+        # Write each column as an image that the shader reads.
         names = [f"argument{index}" for index in range(len(types))]
         with self._folder() as folder:
             path = Path(folder, "functions.osl")
@@ -208,12 +210,14 @@ class Host(base.Host):
                 image = Path(folder, f"{name}.exr")
                 _write(image, np.broadcast_to(column, (count, column.shape[1])), size)
                 reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
+            # Write the shader that calls the function for its pixel.
             text = CALL.format(
                 source=path.as_posix(),
                 reads="\n".join(reads),
                 function=function,
                 names=", ".join(names),
             )
+            # Render it as the emission of a plane.
             frame = tracing.request(EMITTER, ()) | {"size": size, "radius": 2.0}
             pixels = self._render(Path(folder), text, **frame)
         return pixels.reshape(-1, 3)[:count]
@@ -280,6 +284,7 @@ class Host(base.Host):
 
     def _request(self, folder: Path, **request: Any) -> NDArray[Any]:
         """Picture that the worker renders."""
+        # Ask the worker for a picture.
         output = folder / "output.exr"
         reply = self.worker.ask(output=str(output), **request)
         if "error" in reply:
@@ -289,6 +294,7 @@ class Host(base.Host):
         for line in self.worker.printed():
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")
+        # Read the picture.
         try:
             return read_image(output)
         except ImageError as error:

@@ -37,6 +37,7 @@ def graph_function(shader: Shader, inputs: Mapping[str, Any]) -> tuple[str, list
     ValueError
         If the shader has no uniform EDF.
     """
+    # Find the uniform EDF, and the statements before it.
     text = shader.stages["pixel"]
     head, _, body = text.rpartition("\n)\n{\n")
     call = re.search(r"\n *EDF \w+ = uniform_edf\((\w+)\);", "\n" + body)
@@ -46,6 +47,7 @@ def graph_function(shader: Shader, inputs: Mapping[str, Any]) -> tuple[str, list
         )
     statements = ("\n" + body)[: call.start()]
     functions = head[: head.rindex("\nshader ")]
+    # Turn the inputs that these read into parameters.
     words = set(re.findall(r"\w+", statements + call[1]))
     count = max([np.shape(value)[0] for value in inputs.values() if np.ndim(value)], default=1)
     parameters, locals_ = ["float mxeon_row"], []  # of a graph that reads nothing
@@ -64,6 +66,7 @@ def graph_function(shader: Shader, inputs: Mapping[str, Any]) -> tuple[str, list
             kind = {"color3": "color", "vector3": "vector"}.get(port.type, port.type)
             parameters.append(f"{kind} {port.name}")
             arguments.append(value)
+    # Write the function.
     lines = [
         functions,
         f"color {FUNCTION}({', '.join(parameters)})",

@@ -73,14 +73,17 @@ class Host(base.Host):
             pi f cos(theta_i), or radiance.
         """
         self.refuse_paths(scene)
+        # Compile the shaders, and write the scene.
         for name, text in {shader.name: shader.stages["pixel"], **HELPERS}.items():
             self._compile(name, text)
         for name, text in planes.files(shader.name, scene).items():
             (self._folder / name).write_text(text, encoding="utf-8")
+        # Render it.
         samples = SKY_SAMPLES if scene.light is None else LIGHT_SAMPLES
         # A worker has one core.
         options = ["-t", "1", "-aa", str(samples), "--res", str(scene.size), str(scene.size)]
         pixels = self._image([self._testrender, *options, planes.SCENE])
+        # Divide by the light that falls on each pixel.
         radiance = pixels[..., :3].reshape(-1, 3)
         if scene.light is None:
             return radiance
@@ -88,15 +91,18 @@ class Host(base.Host):
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""
+        # Compile a shader that calls the function.
         parameters = functions.parameters(source, function)
         kinds = {name: kind for kind, name in parameters}
         self._compile(calls.SHADER, calls.text(source, function, parameters))
+        # Write the arguments as textures.
         values = {name: (kinds[name], value) for name, value in zip(kinds, arguments, strict=True)}
         columns = fragment.columns(values)
         count, (width, height) = fragment.frame(columns)
         for name, rows in columns.items():
             image = fragment.texels(rows, (width, height))
             write_image(self._folder / calls.texture(name), image, {})
+        # Run it for each pixel.
         size = ["-t", "1", "--res", str(width), str(height)]
         pixels = self._image([find_program("testshade"), *size, *calls.OPTIONS])
         return pixels.reshape(-1, 3)[:count]

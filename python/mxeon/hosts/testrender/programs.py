@@ -68,12 +68,14 @@ def output(
     failure : type
         Of the error that is raised with the program's last lines where it fails.
     """
+    # Run the program.
     try:
         process = subprocess.run(
             command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise NotRun(f"testrender: {error}") from None
+    # Raise its failure.
     lines = (process.stdout + process.stderr).strip().splitlines()
     program = Path(command[0]).name
     if process.returncode:
@@ -81,6 +83,7 @@ def output(
         raise failure(
             f"testrender: {program}: exit status {process.returncode}; last output: {last}"
         )
+    # Pass its warnings on.
     for line in dict.fromkeys(lines):
         if line.startswith(("WARNING", "ERROR")):
             warnings.warn(f"{program}: {line}", RendererWarning, stacklevel=2)

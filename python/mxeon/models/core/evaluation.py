@@ -95,14 +95,17 @@ def evaluate(
     >>> evaluate(lambda wo, wi, rho: rho * wi[..., 2], [0, 0, 1], [0.6, 0, 0.8], [0.5, 1.0])
     array([0.4, 0.8])
     """
+    # Check the arguments.
     arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
     arguments["rho"] = np.atleast_1d(checked("rho", rho))
     numbers = {name: checked(name, value) for name, value in parameter.items()}
+    # Broadcast them.
     shape = lead_shape(arguments, numbers)
     arguments |= {name: array[..., np.newaxis] for name, array in numbers.items()}
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty(shape + arrays["rho"].shape[-1:])
 
+    # Evaluate a block.
     def fill(block: tuple[slice, ...]) -> None:
         parts = {name: tile(array, block) for name, array in arrays.items()}
         for name in ("wo", "wi"):
@@ -113,6 +116,7 @@ def evaluate(
         for channel, value in enumerate(values):
             out[block][..., channel] = value
 
+    # Fill all blocks, on as many threads as are set.
     _for_each(fill, list(blocks(shape)))
     return out
 

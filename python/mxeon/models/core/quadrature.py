@@ -60,12 +60,14 @@ def albedo_dir_quadrature(
     array([0.47804055, 1.        ])
     """
     checked_count("nodes", nodes)
+    # Check and broadcast the arguments.
     mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
     parameters = [np.asarray(value) for value in parameter]
     numbers = {"mu": mu} | {f"parameter {k}": value for k, value in enumerate(parameters)}
     lead = lead_shape({"rho": rho}, numbers)
     mu, rho = np.broadcast_to(mu, lead), np.broadcast_to(rho, lead + rho.shape[-1:])
     parameters = [np.broadcast_to(value, lead) for value in parameters]
+    # Sum the model over the nodes of each cosine.
     albedo = np.empty(rho.shape)
     for index in np.ndindex(lead):
         wo, wi, weights = hemisphere_nodes(float(mu[index]), nodes)
@@ -75,13 +77,16 @@ def albedo_dir_quadrature(
 
 def hemisphere_nodes(mu: float, nodes: int) -> tuple[Array, Array, Array]:
     """wo at azimuth 0, wi in half the hemisphere, and their weights, which sum to pi."""
+    # Split the polar angle at wo, graded towards it.
     x, weight = _unit_interval_rule(nodes)
     theta_o = np.arccos(mu)
     rest = np.pi / 2.0 - theta_o
     theta = np.concatenate([theta_o * (1.0 - x**5), theta_o + rest * x])
     d_theta = np.concatenate([theta_o * 5.0 * x**4 * weight, rest * weight])
+    # Split the azimuth at a right angle.
     phi = np.pi / 2.0 * np.concatenate([x, 1.0 + x])
     d_phi = np.pi / 2.0 * np.concatenate([weight, weight])
+    # Form the directions, and their weights with both halves.
     theta, phi = (grid.ravel() for grid in np.meshgrid(theta, phi, indexing="ij"))
     x, y, z = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
     wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])

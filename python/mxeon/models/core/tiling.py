@@ -33,14 +33,17 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
     >>> list(blocks((2, BLOCK)))
     [(slice(0, 1, None), slice(None, None, None)), (slice(1, 2, None), slice(None, None, None))]
     """
+    # Take as many inner axes as fit into a block.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:
         axis -= 1
         inner *= shape[axis]
+    # Yield the whole array if it fits.
     whole = (slice(None),) * (len(shape) - axis)
     if axis == 0:
         yield whole
         return
+    # Split the next axis, for each index of the outer ones.
     step = max(1, size // inner)
     for outer in np.ndindex(shape[: axis - 1]):
         for start in range(0, shape[axis - 1], step):

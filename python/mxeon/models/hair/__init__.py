@@ -84,18 +84,21 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     >>> chiang_hair_bcsdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]).round(6)
     array([0.137704, 0.137704, 0.137704])
     """
+    # Check the inputs.
     form: Form = inputs.pop("form", TEXT)
     values = _checked(inputs)
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
     numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
     colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
 
+    # Sum the tinted lobes; that of the higher orders has the tint of TRT.
     def formula(wo: Array, wi: Array, **inputs: Array) -> Array:
         lobes = _lobes(wo, wi, inputs, form)
         tints = [inputs[name] for name in (*TINTS, TINTS[-1])]
         first, *others = (tint * lobe for tint, lobe in zip(tints, lobes, strict=True))
         return form.factor * sum(others, first)
 
+    # Evaluate all pairs.
     return evaluate_material(formula, vectors | values, numbers, channel_count(colors), BLOCK)
 
 
@@ -226,14 +229,17 @@ DEFAULTS: dict[str, ArrayLike] = {
 
 def _checked(inputs: dict[str, ArrayLike]) -> dict[str, Array]:
     """Values of all ports of the node, as arrays; those of tints and absorption (..., C)."""
+    # Refuse unknown names.
     unknown = set(inputs) - set(DEFAULTS)
     if unknown:
         known = ", ".join(DEFAULTS)
         raise TypeError(f"inputs must be among {known}; got {', '.join(sorted(unknown))}")
+    # Check the values.
     values = {}
     for name, value in {**DEFAULTS, **inputs}.items():
         check = checked_pairs if name in ROUGHNESSES else checked
         values[name] = np.asarray(check(name, value), np.float64)
+    # Give colors their channels.
     for name in (*TINTS, "absorption_coefficient"):
         values[name] = np.atleast_1d(values[name])
     return values

@@ -161,7 +161,9 @@ def distribution(
     form: Form,
 ) -> Array:
     """M_p N_p of a lobe: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
+    # Limit the roughness.
     v, s = (np.clip(each, *form.limits) for each in roughness)
+    # Tilt the light, or the view, by the angle of the cuticle.
     inclined = [(wi[0], np.hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
     if lobe < 3:
         tilt = (2.0 - 3.0 * lobe) * alpha
@@ -171,8 +173,10 @@ def distribution(
             cosine * np.cos(tilt) - sine * np.sin(tilt),
         )
         inclined[not form.tilts_light] = turned
+    # Scatter longitudinally.
     (sin_i, cos_i), (sin_o, cos_o) = inclined
     M = form.longitudinal(sin_i, cos_i, sin_o, np.abs(cos_o), v)
+    # Scatter in azimuth about the exit angle of the lobe.
     if lobe == 3:
         return M * form.uniform
     exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi

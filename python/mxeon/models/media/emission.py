@@ -178,16 +178,20 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     >>> conical_exitance([1.0], 90.0, 0.0).round(6)  # pi sin^2 of 45 degrees
     array([1.570796])
     """
+    # Check the arguments.
     angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
     (c,), (inner, outer) = checked_colors({"radiance": radiance}, **angles)
     a, b = cone_cosine(outer), cone_cosine(inner)
+    # Find where the ramp between both cones begins above the horizon.
     h = np.where(outer > inner, cone_width(inner, outer), 0.0)
     start = np.clip(np.where(h > 0.0, -a / np.where(h > 0.0, h, 1.0), 1.0), 0.0, 1.0)
 
+    # Integrate the smoothstep times the cosine over the ramp.
     def antiderivative(t: Array | float) -> Array:
         return np.asarray(h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t)))
 
     ramp = antiderivative(1.0) - antiderivative(start)
+    # Add the inner cone.
     cone = 0.5 * np.sin(HALF_TURN * inner) ** 2
     share = np.where(b <= 0.0, 0.5, cone + ramp)
     return np.asarray(2.0 * np.pi * c * share)

@@ -197,15 +197,19 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     >>> wi.round(12) + 0.0, round(float(pdf), 6)
     (array([0., 1., 0.]), 0.079577)
     """
+    # Check the arguments.
     views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), checked_numbers(g=g)
     shape = lead_shape({"wo": views, "u": pairs}, {"g": mean})
     x, azimuth = 2.0 * pairs[..., 0] - 1.0, 2.0 * np.pi * pairs[..., 1]
+    # Invert the distribution, as 1 - cos and 1 + cos, which do not cancel.
     square = 2.0 * (1.0 + mean * x) ** 2
     less = (1.0 - mean) ** 2 * (1.0 - x) * (2.0 + mean * (1.0 + x)) / square  # 1 - cos
     more = (1.0 + mean) ** 2 * (1.0 + x) * (2.0 - mean * (1.0 - x)) / square  # 1 + cos
+    # Turn the deflection about the direction of the light.
     sine = np.sqrt(np.maximum(less * more, 0.0))
     local = np.stack([sine * np.cos(azimuth), sine * np.sin(azimuth), 0.5 * (more - less)], axis=-1)
     wi = _around(-np.asarray(views, np.float64), np.broadcast_to(local, (*shape, 3)))
+    # Evaluate its density.
     density = _phase(np.where(mean < 0.0, more, less), mean)
     return wi, np.array(np.broadcast_to(density, shape))[()]
 

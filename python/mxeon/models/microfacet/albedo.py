@@ -215,11 +215,13 @@ def lobe_albedo(
     checked_switch("compensate", compensate)
 
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
+        # Integrate the curve over the slopes.
         c, weight = slope_nodes(wo, roughness)
         spread = {
             k: v[:, np.newaxis, np.newaxis] if k in vectors else v for k, v in material.items()
         }
         E: Array = np.sum(curve.at(c, **spread) * weight, axis=(1, 2))
+        # Split the integral at a critical angle.
         squared = curve.critical(**material)
         if np.any(squared > 0.0):  # all light, but what passes above the critical angle
             isotropic = roughness[0] == roughness[1]
@@ -227,6 +229,7 @@ def lobe_albedo(
             c, weight = transmitting_nodes(wo, roughness, np.maximum(squared, 0.0))
             lost = np.sum((1.0 - curve.at(c, **spread)) * weight, axis=(1, 2))
             E = np.where(squared > 0.0, lossless - lost, E)
+        # Add what more scattering returns, and tint.
         if compensate:
             E = E * (1.0 + curve.average(**material) * missing(wo[2], roughness))
         return E * material["tint"] if "tint" in material else E

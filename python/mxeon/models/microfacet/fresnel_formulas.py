@@ -68,6 +68,7 @@ def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
 
 def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
     """`polarized` from |n^2 - 1|."""
+    # Find the complex root a + ib.
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
     length = np.hypot(real, 2.0 * ior * extinction)
@@ -75,6 +76,7 @@ def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Ar
     larger = np.sqrt(0.5 * (length + np.abs(real)))
     smaller = ior * extinction / np.where(larger > 0.0, larger, 1.0)
     a, b = np.where(real >= 0.0, larger, smaller), np.where(real >= 0.0, smaller, larger)
+    # Compose the amplitudes of both polarizations.
     total = (a + mu) ** 2 + b * b
     Rs = np.minimum((gap / np.where(total > 0.0, total, 1.0)) ** 2, 1.0)
     minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
@@ -120,10 +122,12 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
 def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) -> Array:
     """Integral of c F over [low, low + length] of the cosine c, of materials (N,)."""
     total = np.zeros(len(low))
+    # Form the nodes of the double exponential rule.
     t = STEP * np.arange(-STEPS, STEPS + 1)
     X = np.exp(np.pi * np.sinh(t))
     rule = X / (1.0 + X), STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2
     count = max(1, GROUP // max(len(low), 1))  # nodes at once
+    # Sum over groups of them.
     for start in range(0, len(t), count):
         x, weight = (values[start : start + count, np.newaxis] for values in rule)
         mu = low + length * x

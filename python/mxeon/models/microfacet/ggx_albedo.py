@@ -79,10 +79,12 @@ def albedo(mu: Array, alpha: Array) -> Array:
 
 def _albedo(mu: Array, alpha: Array) -> Array:
     """E_ss by quadrature."""
+    # Choose the scale on which the integrand changes.
     rough = np.maximum(alpha, LEAST_ALPHA)
     scaled = np.minimum(mu * (rough / np.maximum(alpha, 1e-300)), 1.0)
     elevation = np.maximum(np.arcsin(scaled), LEAST_ELEVATION)
     graded = 2.0 * np.minimum(rough, np.maximum(elevation, LEAST_SCALE))
+    # Integrate the three parts.
     total = np.zeros(np.broadcast_shapes(mu.shape, rough.shape))
     # From wo to the normal, from wo to half its elevation, and from there to the horizon.
     for d, weight in _graded(graded, 0.5 * np.pi - elevation, PANELS):
@@ -111,15 +113,18 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
     X = S_d + alpha^2 C,  Y = S + alpha^2 c;  C, S_d, c, S: squared cosines and sines of half
     the difference and half the sum of the polar angles;  p = a - k,  q^2 = p^2 - b^2
     """
+    # Find sines and cosines of half of the difference and half of the sum.
     alpha2 = alpha * alpha
     sin_d, cos_d = np.sin(0.5 * d), np.cos(0.5 * d)
     half = 0.5 * (e_o + e_i)
     sin_s, cos_s = np.cos(half), np.sin(half)
+    # Integrate the distribution over the azimuth in closed form.
     X = np.sqrt(sin_d * sin_d + alpha2 * cos_d * cos_d)
     Y = np.sqrt(sin_s * sin_s + alpha2 * cos_s * cos_s)
     kq = (1.0 - alpha) * (1.0 + alpha) * cos_s * cos_d / (X * Y)
     r = cos_s * X / (cos_d * Y)
     azimuth = 1.0 + kq * (2.0 + 0.5 * kq * (r + 1.0 / r))
+    # Mask it.
     mu_o, mu_i = np.sin(e_o), np.sin(e_i)
     smith = smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o
     density: Array = alpha2 * mu_i * np.cos(e_i) * azimuth / smith

@@ -145,6 +145,7 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
 
 def _split_azimuths(slopes: Slopes, wo: Array, squared: Array) -> tuple[Array, Array]:
     """Nodes and weights of omega, split where the critical cone meets the horizon of wi or ends."""
+    # Find where the critical cone meets the hemisphere.
     meeting, last = _critical_azimuths(slopes.mu_o, squared)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
@@ -155,9 +156,11 @@ def _split_azimuths(slopes: Slopes, wo: Array, squared: Array) -> tuple[Array, A
             )
             for sign in (-1.0, 1.0)
         )
+        # Split the azimuths there.
         splits = [_omega(slopes, wo, sign * meeting) - sign * center for sign in (-1.0, 1.0)]
         points = np.stack(np.broadcast_arrays(low, *splits, 0.0, high))
         points = np.sort(np.clip(points, np.maximum(low, -right), np.minimum(high, right)), axis=0)
+        # Place the nodes of each piece.
         half = points[2:] if slopes.isotropic else points
         for first, end in pairwise(half):
             omega, weight = _piece(slopes.scale, first, end)

@@ -186,11 +186,13 @@ def _tinted(
 
 def _conty_kulla_formula(wo: Array, wi: Array, unit: Array, roughness: Array) -> Array:
     """Conty and Kulla's lobe, (1, ...), on valid arrays."""
+    # Find the squared sine and cosine of the half vector.
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = np.square(wo[..., 0] + wi[..., 0]) + np.square(wo[..., 1] + wi[..., 1])
     upright = np.square(mu_o + mu_i)
     length = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
+    # Evaluate the lobe in logarithms.
     shape = 0.5 / np.maximum(roughness, LEAST)
     with np.errstate(divide="ignore", over="ignore"):
         ratio = flat / np.maximum(length, LEAST)
@@ -199,6 +201,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, unit: Array, roughness: Array) ->
             ratio < 0.5, np.log(ratio), np.log1p(-upright / np.maximum(length, LEAST))
         )
         lobe = (1.0 + shape) * np.exp(shape * log_sine) / (4.0 * np.pi * np.maximum(divisor, LEAST))
+    # Set the limits to 0.
     counted = (roughness > 0.0) & (divisor >= LEAST)
     return unit * np.where(counted, np.minimum(lobe, np.finfo(np.float64).max), 0.0)
 

@@ -66,10 +66,12 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     >>> round(float(conty_kulla_albedo_dir(1.0, 0.5)), 12)
     0.083333333333
     """
+    # Check and broadcast the arguments.
     mu, roughness = np.broadcast_arrays(*checked_numbers(mu=mu, roughness=roughness))
     cosines, shapes = mu.ravel(), np.where(roughness > 0.0, np.maximum(roughness, LEAST), 0.0)
     shapes = shapes.ravel()
     albedo = np.zeros(cosines.shape)
+    # Integrate blocks on each side of STEEP.
     step = max(1, BLOCK // len(_rule()[0]))
     for steep in (False, True):
         chosen = np.flatnonzero(((cosines > STEEP) == steep) & (shapes > 0.0))
@@ -82,6 +84,7 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 def _albedo(mu: Array, roughness: Array, steep: bool) -> Array:
     """Albedo for cosines on one side of `STEEP`, roughness above 0."""
     delta = 0.5 * np.arcsin(mu)
+    # Integrate over the latitude of the half vector, on both sides of a kink.
     x, weight = _rule()
     p = 0.5 / roughness
     albedo = np.zeros(mu.shape)
@@ -93,8 +96,10 @@ def _albedo(mu: Array, roughness: Array, steep: bool) -> Array:
         width = np.minimum(span, 10.0 * np.sqrt(roughness))
         above = width[:, None] * x  # latitude above the lower end, and below the upper one
         below = width[:, None] * x[::-1] + (span - width)[:, None]
+        # Integrate over its azimuth.
         latitude = low[:, None] + above
         inner = _azimuths(mu[:, None], latitude, above, below, partial, steep)
+        # Weight it by the distribution.
         with np.errstate(divide="ignore"):
             density = np.exp(p[:, None] * np.log1p(-np.square(np.sin(latitude))))
         integrand = (density * np.cos(latitude) * inner) @ weight

@@ -184,6 +184,7 @@ def _reflectance(
     category: str, form: Form, colors: dict[str, ArrayLike], numbers: dict[str, ArrayLike]
 ) -> Array:
     """Curve of a node under a film over arguments that broadcast."""
+    # Find the curve.
     if not isinstance(form, Form):
         raise ValueError(f"form must be a Form; got {form!r}")
     curve = film_curve(category, form)
@@ -193,6 +194,7 @@ def _reflectance(
             material["tint"] = np.ones(1)  # which the curve leaves alone
         return curve.at(mu, **material)
 
+    # Check the arguments and evaluate.
     vectors = {name: checked_rgb(name, value) for name, value in colors.items()}
     values = {name: checked(name, value) for name, value in numbers.items()}
     lead_shape(vectors, values)

@@ -69,6 +69,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
     """
     bare = CURVES[category]
 
+    # Coat the curve where there is a film.
     def at(
         mu: Array, *, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array
     ) -> Array:
@@ -76,6 +77,7 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
         coated = _airy(category, form, mu, thinfilm_thickness, thinfilm_ior, material)
         return np.where(thinfilm_thickness > 0.0, coated, plain)
 
+    # Average it over the cosine, by quadrature.
     def average(**material: Array) -> Array:
         x, w = np.polynomial.legendre.leggauss(AVERAGE_NODES)
         mu = 0.5 * (1.0 + x)

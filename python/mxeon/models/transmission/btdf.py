@@ -110,11 +110,13 @@ def evaluate_btdf(
     anywhere : bool
         Whether directions count that lie on one side of the microfacet.
     """
+    # Check the arguments.
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_pairs("roughness", roughness)}
     checked_switch("radiance", radiance)
     checked_switch("anywhere", anywhere)
 
+    # Evaluate the lobe at the facet that refracts one direction into the other.
     def value(wo: Array, wi: Array, roughness: Array, ior: Array, **material: Array) -> Array:
         facet = Facet.of(wo, wi, ior, anywhere)
         F = at(facet.cosine_o, ior=ior, **material)
@@ -125,6 +127,7 @@ def evaluate_btdf(
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
         return f * material["tint"] if "tint" in material else f
 
+    # Evaluate all pairs.
     return evaluate_material(
         value,
         directions | pairs | vectors,

@@ -89,24 +89,30 @@ def evaluate_transmittance(
     shadow: bool,
 ) -> Array:
     """Transmittance, shape (..., C), of checked inputs; `numbers` has the index."""
+    # Check the arguments.
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_pairs("roughness", roughness)}
     checked_switch("shadow", shadow)
 
+    # Integrate over the facets that the view sees.
     def value(wo: Array, roughness: Array, **material: Array) -> Array:
         wo, roughness = wo + 0.0 * roughness[:1], roughness + 0.0 * wo[:1]
+        # Draw the visible facets.
         nodes, weight = _nodes(wo.ndim)
         view = wo[:, np.newaxis]
         wh = visible_normal(view, *nodes, roughness[:, np.newaxis])
+        # Refract the view through each.
         cosine = np.clip(np.sum(view * wh, axis=0), 0.0, 1.0)
         wi = refracted(view, wh, material["ior"])
         spread = {k: v[:, np.newaxis] if k in vectors else v for k, v in material.items()}
+        # Sum what passes and is not shadowed.
         passed = (1.0 - at(cosine, **spread)) * np.where(wi[2] < 0.0, 1.0, 0.0)
         if shadow:
             passed = passed * _shadow(wo, -wi[2], roughness)
         T: Array = np.sum(passed * weight, axis=1)
         return T * material["tint"] if "tint" in material else T
 
+    # Evaluate all views.
     arguments = {**directions, **pairs, **vectors}
     return evaluate_material(value, arguments, numbers, channel_count(vectors), BLOCK)
 

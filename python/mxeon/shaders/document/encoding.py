@@ -57,11 +57,13 @@ def decode(data: bytes, location: str) -> str:
     DocumentError
         If it is in another encoding.
     """
+    # Tell the encoding from the first bytes.
     encoding = next((name for start, name in STARTS if data.startswith(start)), "utf-8")
     if data.startswith(b"<?xml"):
         declared = DECLARED.match(data[:LONGEST_DECLARATION].decode("latin-1"))
         if declared and declared[1].lower() in LATIN:
             encoding = "iso-8859-1"
+    # Decode the text.
     try:
         text = data.decode(encoding).removeprefix("\ufeff")
     except UnicodeDecodeError as error:
@@ -69,6 +71,7 @@ def decode(data: bytes, location: str) -> str:
             f"{location}: must be a MaterialX document in {encoding.upper()}; {error.reason} at byte "
             f"{error.start}"
         ) from None
+    # Refuse another encoding than the declared one.
     if declared := DECLARED.match(text[:LONGEST_DECLARATION]):
         _check_declared(declared[1], text, location)
     return text

@@ -25,14 +25,17 @@ def check_shaders(
     Refused are nodes and nodegraphs that lead back to themselves, and too many of them, or of
     their inputs: in all, in a row or within each other.
     """
+    # Limit the number of shaders.
     title, rule = label(document), f"{label(document)}: must have"
     weights, total, ports = _Weights(document, policy), 0, 0
     policy.check_limit("shaders", len(elements), rule, "renderable elements")
     for element in elements:
+        # Limit the length of chains, and refuse cycles.
         graph = reachable([element.getNamePath()], lambda path: _upstream(document, path))
         order = _ordered(graph, f"{title}: node", "be upstream of itself")
         longest = max(heights(graph, order).values())
         policy.check_limit("chain", longest, rule, "nodes in a row")
+        # Count nodes and inputs, with those inside of nodes.
         for path in order:
             definition = _definition(document.getDescendant(path))
             total += weights[definition]

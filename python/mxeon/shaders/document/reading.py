@@ -90,6 +90,7 @@ def read_document(
     CodeWarning
         If it brings shader code of its own.
     """
+    # Read the source, with all that it includes.
     data = load_library(library, profile)
     content = mx.createDocument()
     if isinstance(source, mx.Document):
@@ -102,10 +103,12 @@ def read_document(
         _Reader(policy, Path(source).resolve().parent).read_file(content, str(source))
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
+    # Check what the content says.
     _check_tokens(content)
     _resolve_files(content, [folder(content), *map(Path, policy.path)])
     content.setDataLibrary(data)
     _check(content, policy)
+    # Limit what shaders would grow from it.
     elements = _renderables(content)
     nodes = check_shaders(content, elements, policy)
     warn_of_elements(content)
@@ -180,14 +183,17 @@ class _Reader:
         self._parse(document, data.decode().removeprefix("\ufeff"), TEXT)
 
     def _parse(self, document: mx.Document, text: str, title: str) -> None:
+        # Check the text before MaterialX sees it.
         text = strict(text)
         self._checker.check(text, title)
 
+        # Let MaterialX ask for each file that it includes.
         def include(part: mx.Document, name: mx.FilePath, *_: Any) -> None:
             self._include(part, name.asString(), title)
 
         options = mx.XmlReadOptions()
         options.readXIncludeFunction = include
+        # Parse it.
         try:
             mx.readFromXmlString(document, text, mx.FileSearchPath(), options)
         except (*ERRORS, mx.ExceptionParseError) as error:
@@ -197,16 +203,19 @@ class _Reader:
 
     def _include(self, document: mx.Document, name: str, title: str) -> None:
         """Read a file that the document `title` includes, by its real path."""
+        # Find the file.
         base = self._home if title == TEXT else Path(title).parent
         folders = [base, self._home, *map(Path, self._policy.path)]
         paths = [os.path.realpath(each / name) for each in folders]
         path, rule = next(filter(os.path.isfile, paths), paths[0]), f"{title}: include must"
+        # Refuse what lies outside, repeats itself, or is missing.
         check_inside(path, self._home, self._policy, f"{title}: include")
         if path in self._open:
             raise DocumentError(f"{rule} not lead back to the same document; got {name}")
         self._policy.check_limit("includes", len(self._open), f"{rule} be", "in a row")
         if not os.path.isfile(path):
             raise DocumentError(f"{rule} name a file that exists; got {name}")
+        # Read it.
         self.read_file(document, path)
 
 

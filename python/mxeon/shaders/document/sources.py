@@ -51,10 +51,12 @@ def copied_sources(
         If a source of that target lies where the document may name no files, is no regular file of
         text in UTF-8, or exceeds a limit, or one that it includes.
     """
+    # Find the sources that the document brings.
     target = context.getShaderGenerator().getTarget()
     code = [] if target == UNREAD else foreign_code(document)
     files = [(each, each.getFile()) for each in code if each.hasFile()]
     with TemporaryDirectory(prefix="mxeon-sources-") if files else nullcontext("") as copies:
+        # Name copies in their place, and the files again afterwards.
         sources = Sources(document, context, policy, copies, tokens)
         try:
             for element, _ in files:
@@ -138,11 +140,13 @@ class Sources:
 
     def _new_copy(self, name: str, local: str, title: str, depth: int | None) -> str:
         """Path of the copy of a file that has another name than those before."""
+        # Leave what belongs to MaterialX.
         path = os.path.abspath(self._resolved(name, local))
         if "\0" in path:  # where the system ends the name, and MaterialX does not
             return self.missing()
         if library := library_path(path):
             return library
+        # Copy what is new.
         if path not in self._copies:
             copy = str(self._folder / f"{len(self._copies)}.txt")
             self._copies[path], self._names[copy] = copy, name
@@ -154,6 +158,7 @@ class Sources:
     def _write(self, copy: str, path: str, depth: int | None) -> None:
         """Check a file, and all that it includes, and write its copy."""
         rule, title = f"{path}: must", label(self._document)
+        # Read it within the limits.
         self._policy.check_limit("includes", depth or 0, f"{rule} be included by", "files in a row")
         try:
             data = read_source(path, self._policy.size - self._size)
@@ -163,6 +168,7 @@ class Sources:
             text = decode_source(data, path)
         except InputError as error:
             raise DocumentError(f"{title}: source {error}") from None
+        # Write it, with its includes.
         if depth is None:
             self._expressions = max(self._expressions, len(text))
         else:

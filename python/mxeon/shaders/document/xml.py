@@ -71,17 +71,20 @@ class XmlChecker:
             self._refuse(f"must be a MaterialX document; XML parse error: {error}")
 
     def _start(self, category: str, attributes: Mapping[str, str]) -> None:
+        # Limit depth and numbers.
         self._depth += 1
         self._elements += 1
         self._limit("depth", self._depth, "elements within each other")
         self._attributes += len(attributes)
         self._limit("elements", self._elements, "elements, with all that it includes")
         self._limit("attributes", self._attributes, "attributes, with all that it includes")
+        # Limit the attributes, and refuse control characters.
         for key, value in attributes.items():
             self._limit("length", len(value), f"characters in {key!r} of {category!r}")
             if STEERING.search(value):
                 rule = f"must have no control characters in {key!r}"
                 self._refuse(f"{category} {rule}; got {value!r}")
+        # Limit the name.
         if len(name := attributes.get("name", "")) > LONGEST_NAME:
             rule = f"must have a name of at most {LONGEST_NAME} characters"
             self._refuse(f"{category} {rule}; got {name}")
