@@ -83,7 +83,7 @@ vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
 }
 
 // A divisor at or below 1e-37, a cosine or sine, counts as 0, and the quotient as 0: there it might
-// overflow, and overflow times a cosine of 0 is no number.
+// overflow, and overflow times a cosine of 0 is NaN.
 float oren_nayar_quotient(float value, float divisor)
 {
     return divisor > 1.0e-37 ? value / divisor : 0.0;

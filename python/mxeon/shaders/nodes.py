@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 OREN_NAYAR = "oren_nayar_diffuse_bsdf"
 EON = "eon_diffuse_bsdf"
 
-# Categories of the nodes that eonlib implements. Its GLSL functions have the same names.
+# Categories of the rough diffuse nodes. eonlib's GLSL functions have the same names.
 DIFFUSE_NODES = (OREN_NAYAR, EON)
 NODEDEFS = tuple(f"ND_{category}" for category in DIFFUSE_NODES)
 

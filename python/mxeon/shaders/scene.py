@@ -192,12 +192,3 @@ def tangents(normal: NDArray[np.float64]) -> NDArray[np.float64]:
         np.linalg.norm(east, axis=1, keepdims=True), 1e-30
     )
     return unit
-
-
-@lru_cache(maxsize=16)
-def sphere_directions(size: int, direction: tuple[float, float, float]) -> NDArray[np.float64]:
-    """A direction in the frames of the visible points of the sphere, row after row, (N, 3)."""
-    points = sphere(size)
-    local = local_directions(points.normal[points.mask], direction)
-    local.flags.writeable = False  # shared by all callers
-    return local

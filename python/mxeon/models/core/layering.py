@@ -53,7 +53,7 @@ def throughput(albedo: ArrayLike) -> Array:
     Raises
     ------
     ValueError
-        If an albedo is infinite or no number.
+        If an albedo is infinite or NaN.
 
     Notes
     -----
@@ -184,7 +184,7 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
     Raises
     ------
     ValueError
-        If `weight` is negative or no number.
+        If `weight` is negative or NaN.
 
     Notes
     -----
