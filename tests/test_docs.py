@@ -13,10 +13,12 @@ from pathlib import Path
 from pkgutil import resolve_name
 from urllib.parse import unquote, urldefrag
 
+import griffe
 import pytest
 import yaml
 from playwright.sync_api import sync_playwright
 
+from docs.siblings import names, sections
 from docs.upstream.update import figures, written
 from mxeon import albedo, inversion, models, sampling
 from mxeon.conformance.known_issues import ISSUES
@@ -249,3 +251,39 @@ def test_prose_has_american_spelling():
     files = [ROOT / name for name in PROSE] + sorted((ROOT / "docs").rglob("*.md"))
     named = {file.name: british.findall(file.read_text(encoding="utf-8")) for file in files}
     assert {name: words for name, words in named.items() if words and name != "CHANGELOG.md"} == {}
+
+
+@pytest.fixture(scope="module")
+def described():
+    """Functions of the API reference as the site describes them, by their names there."""
+    extensions = griffe.load_extensions(ROOT / "docs" / "siblings.py")
+    package = griffe.load(
+        "mxeon", search_paths=[ROOT / "python"], extensions=extensions, allow_inspection=False
+    )
+    pages = "\n".join(page.read_text() for page in (ROOT / "docs" / "api").glob("*.md"))
+    paths = re.findall(r"^::: mxeon\.((?:models|albedo|inversion|sampling)\.\S+)", pages, re.M)
+    found = {path: package[path] for path in paths}
+    functions = {path: getattr(each, "final_target", each) for path, each in found.items()}
+    return {path: each for path, each in functions.items() if isinstance(each, griffe.Function)}
+
+
+def test_the_site_shows_docstrings_of_siblings_in_full(described):
+    one, two = (
+        sections(described[f"models.{name}"].docstring.value)
+        for name in ("qon_brdf", "qon_footnote_brdf")
+    )
+    assert "wo, wi : array_like, shape (..., 3)" in one["Parameters"]
+    assert all(one[title] == two[title] for title in ("Parameters", "Raises"))
+    reference = re.compile(r"^ *As those of `[\w.]+`\.$", re.MULTILINE)
+    assert [
+        path for path, each in described.items() if reference.search(each.docstring.value)
+    ] == []
+
+
+def test_every_parameter_of_a_public_function_is_described(described):
+    missing = {}
+    for path, each in described.items():
+        text = sections(each.docstring.value).get("Parameters", "")
+        known = {name for line in text.splitlines() if line[:1].strip() for name in names(line)}
+        missing[path] = {parameter.name for parameter in each.parameters} - known
+    assert {path: words for path, words in missing.items() if words} == {}

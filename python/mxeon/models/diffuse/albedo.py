@@ -21,6 +21,8 @@ def fon_loss(mu: ArrayLike) -> Array:
 
         H(mu) = c1 - G_F(mu) / pi,  1 - E_FON = roughness A H
 
+    Errors as those of `eon_albedo_dir`.
+
     Parameters
     ----------
     mu : array_like, shape (...)
@@ -30,11 +32,6 @@ def fon_loss(mu: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         Dimensionless, in [0, c1]: 0 at grazing, c1 = 1/2 - 2 / (3 pi) at normal incidence.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -58,6 +55,8 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
 
         E(mu) = A + B G(mu) / pi,  G = pi (c1 - H(mu)) + 2/3 sqrt(1 - mu^2)
 
+    Errors as those of `eon_albedo_dir`.
+
     Parameters
     ----------
     mu : array_like, shape (...)
@@ -69,11 +68,6 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         Dimensionless, positive; above 1, to 1.02, near grazing for sigma < 0.6.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -98,6 +92,8 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
 
         <E> = A + (2/3 - 64 / (45 pi)) B
 
+    Errors as those of `eon_albedo_dir`.
+
     Parameters
     ----------
     sigma : array_like, shape (...)
@@ -107,11 +103,6 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         Dimensionless, in (0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------
@@ -131,22 +122,17 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = 1 - roughness A H(mu),  A = 1 / (1 + c1 roughness)
 
+    Errors as those of `eon_albedo_dir`.
+
     Parameters
     ----------
-    mu : array_like, shape (...)
-        Cosine of the polar angle, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    mu, roughness
+        As those of `eon_albedo_dir`.
 
     Returns
     -------
     float64 or ndarray, shape (...)
         Dimensionless, in (0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -170,22 +156,12 @@ def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) ~ (1 + roughness (g1 m + g2 m^2 + g3 m^3 + g4 m^4)) A,  m = 1 - mu
 
-    Parameters
-    ----------
-    mu : array_like, shape (...)
-        Cosine of the polar angle, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters as those of `fon_albedo_dir`. Errors as those of `eon_albedo_dir`.
 
     Returns
     -------
     float64 or ndarray, shape (...)
         Dimensionless, positive; above 1, by up to 3.6e-4, for mu < 0.0014.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -209,6 +185,8 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
 
         <E> = (1 + c2 roughness) / (1 + c1 roughness),  c2 = 2/3 - 28 / (15 pi)
 
+    Errors as those of `eon_albedo_dir`.
+
     Parameters
     ----------
     roughness : array_like, shape (...)
@@ -218,11 +196,6 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         Dimensionless, in (0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------
@@ -285,24 +258,12 @@ def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -
 
         E(mu) as in `eon_albedo_dir`,  H = c1 - (g1 m + g2 m^2 + g3 m^3 + g4 m^4),  m = 1 - mu
 
-    Parameters
-    ----------
-    mu : array_like, shape (...)
-        Cosine of the polar angle, dimensionless, in [0, 1].
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters and errors as those of `eon_albedo_dir`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1]; above rho, by up to 1e-4, for mu < 0.0014.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -328,22 +289,17 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
         <E> = rho (1 + c2 roughness) / D = rho <E_FON> / (1 - rho (1 - <E_FON>)),
         D = 1 + c1 roughness - rho roughness (c1 - c2)
 
+    Errors as those of `eon_albedo_dir`.
+
     Parameters
     ----------
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    rho, roughness
+        As those of `eon_albedo_dir`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, rho].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------

@@ -19,22 +19,17 @@ def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
 
         f = rho / pi
 
+    Errors as those of `eon_brdf`.
+
     Parameters
     ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
+    wo, wi, rho
+        As those of `eon_brdf`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, in [0, 1/pi].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -57,24 +52,12 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
         C2 = 0.45 k (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
         C3 = 0.125 k (4 alpha beta / pi^2)^2
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    sigma : array_like, shape (...)
-        Deviation of the facets' slope angle, in radian, in [0, pi/2].
+    Parameters as those of `qon_brdf`. Errors as those of `eon_brdf`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -103,12 +86,12 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
 
         f = rho / pi (A + B s / t),  1/t = 0 where s <= 0, else 1 / max(mu_o, mu_i)
 
+    Errors as those of `eon_brdf`.
+
     Parameters
     ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
+    wo, wi, rho
+        As those of `eon_brdf`.
     sigma : array_like, shape (...)
         Deviation of the facets' slope angle, in radian, in [0, pi/2].
 
@@ -116,11 +99,6 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, at least 0, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -144,24 +122,12 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
 
         f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    sigma : array_like, shape (...)
-        Deviation of the facets' slope angle, in radian, in [0, pi/2].
+    Parameters as those of `qon_brdf`. Errors as those of `eon_brdf`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, at least 0, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -186,24 +152,12 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
         f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
         1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    sigma : array_like, shape (...)
-        Deviation of the facets' slope angle, in radian, in [0, pi/2].
+    Parameters as those of `qon_brdf`. Errors as those of `eon_brdf`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, at least 0, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -227,24 +181,12 @@ def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
 
         f = rho / pi A (1 + roughness s / t),  1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters and errors as those of `eon_brdf`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, at least 0, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -312,24 +254,12 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters and errors as those of `eon_brdf`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, at least 0, unbounded at grazing.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----

@@ -71,6 +71,8 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
 
         rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
 
+    Errors as those of `eon_rho_from_albedo_normal`.
+
     Parameters
     ----------
     color : array_like, shape (..., C)
@@ -82,11 +84,6 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -109,22 +106,12 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by the paper's polynomial.
 
-    Parameters
-    ----------
-    color : array_like, shape (..., C)
-        Wanted directional albedo at normal incidence, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters and errors as those of `eon_rho_from_albedo_normal`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -146,22 +133,12 @@ def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) ->
 def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
 
-    Parameters
-    ----------
-    color : array_like, shape (..., C)
-        Wanted directional albedo at normal incidence, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters and errors as those of `eon_rho_from_albedo_normal`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -183,22 +160,12 @@ def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLi
 def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by the paper's polynomial.
 
-    Parameters
-    ----------
-    color : array_like, shape (..., C)
-        Wanted average albedo, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters as those of `eon_rho_from_albedo_avg`. Errors as those of `eon_rho_from_albedo_normal`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -219,22 +186,12 @@ def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Ar
 def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
 
-    Parameters
-    ----------
-    color : array_like, shape (..., C)
-        Wanted average albedo, dimensionless, in [0, 1].
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters as those of `eon_rho_from_albedo_avg`. Errors as those of `eon_rho_from_albedo_normal`.
 
     Returns
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----

@@ -41,6 +41,8 @@ def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike)
 def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of `qon_degrees_brdf`.
 
+    Errors as those of `qon_tinted_twice_albedo_dir`.
+
     Parameters
     ----------
     mu, rho, sigma
@@ -50,11 +52,6 @@ def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> A
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Examples
     --------
@@ -73,6 +70,8 @@ def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike
 
         E = rho (E_EON + (1 - rho) E_FON)
 
+    Errors as those of `qon_tinted_twice_albedo_dir`.
+
     Parameters
     ----------
     mu, rho, roughness
@@ -82,11 +81,6 @@ def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Examples
     --------
@@ -102,6 +96,8 @@ def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLik
 
         E = 1 - (1 - rho) E_FON
 
+    Errors as those of `qon_tinted_twice_albedo_dir`.
+
     Parameters
     ----------
     mu, rho, roughness
@@ -111,11 +107,6 @@ def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLik
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1]; not 0 where rho is 0.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Examples
     --------
@@ -128,6 +119,8 @@ def fon_white_lobe_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLik
 
 def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of QON as MaterialX fits it: a quotient of polynomials.
+
+    Errors as those of `qon_tinted_twice_albedo_dir`.
 
     Parameters
     ----------
@@ -142,11 +135,6 @@ def qon_fitted_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Ar
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1]; off by up to 0.068 at rho 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----

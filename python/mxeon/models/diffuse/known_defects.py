@@ -51,6 +51,8 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
 def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of Burley's diffuse model at roughness^2, multiplied by mu_i.
 
+    Errors as those of `eon_clamped_brdf`.
+
     Parameters
     ----------
     wo, wi, rho, roughness
@@ -60,11 +62,6 @@ def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     -------
     ndarray, shape (..., C), float64
         In 1/sr; not reciprocal, and a white surface reflects two thirds of the light.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -88,6 +85,8 @@ def burley_schlick_brdf(
         f = rho / pi ((1 - F_o / 2) (1 - F_i / 2) + R (F_o + F_i + F_o F_i (R - 1))),
         R = 1/2 + 2 roughness F_i^2,  F = (1 - mu)^5
 
+    Errors as those of `eon_clamped_brdf`.
+
     Parameters
     ----------
     wo, wi, rho, roughness
@@ -97,11 +96,6 @@ def burley_schlick_brdf(
     -------
     ndarray, shape (..., C), float64
         In 1/sr; not reciprocal. It is Lambert at roughness 0, and Burley where mu_o and mu_i are 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -118,6 +112,8 @@ def burley_schlick_brdf(
 def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of EON whose multiple-scattering lobe carries rho^3 for rho^2.
 
+    Errors as those of `eon_clamped_brdf`.
+
     Parameters
     ----------
     wo, wi, rho, roughness
@@ -127,11 +123,6 @@ def eon_rho_cubed_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     -------
     ndarray, shape (..., C), float64
         In 1/sr; too dark, and correct where rho is 0 or 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -150,6 +141,8 @@ def fon_white_lobe_brdf(
 ) -> Array:
     """Reflection of FON plus the multiple-scattering lobe of a white surface.
 
+    Errors as those of `eon_clamped_brdf`.
+
     Parameters
     ----------
     wo, wi, rho, roughness
@@ -159,11 +152,6 @@ def fon_white_lobe_brdf(
     -------
     ndarray, shape (..., C), float64
         In 1/sr; too bright, and correct where rho is 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -182,6 +170,8 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
 
         f = rho f_EON(max(rho, 0.1)) / max(rho, 0.1)
 
+    Errors as those of `eon_clamped_brdf`.
+
     Parameters
     ----------
     wo, wi, rho, roughness
@@ -191,11 +181,6 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
     -------
     ndarray, shape (..., C), float64
         In 1/sr; too bright where rho lies between 0 and 0.1, and correct elsewhere.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -213,6 +198,8 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
 def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON that is multiplied by its own color once more.
 
+    Errors as those of `eon_clamped_brdf`.
+
     Parameters
     ----------
     wo, wi, rho, sigma
@@ -222,11 +209,6 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
     -------
     ndarray, shape (..., C), float64
         In 1/sr; too dark, and correct where rho is 0 or 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -243,6 +225,8 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
 def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON that takes the number of degrees for radians.
 
+    Errors as those of `eon_clamped_brdf`.
+
     Parameters
     ----------
     wo, wi, rho, sigma
@@ -252,11 +236,6 @@ def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayL
     -------
     ndarray, shape (..., C), float64
         In 1/sr; from a few degrees on it is the limit of large sigma, and correct at 0.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----

@@ -187,6 +187,8 @@ def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLik
 def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
     """Azimuthal scattering function N, the logistic density trimmed to [-pi, pi].
 
+    Errors as those of `hair_longitudinal`.
+
     Parameters
     ----------
     phi : array_like
@@ -198,11 +200,6 @@ def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
     -------
     ndarray, float64
         Per radian, at least 0. Its integral over [-pi, pi] is 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------

@@ -80,6 +80,8 @@ def deon_hair_absorption_from_melanin(
         sigma_a = m ((1 - redness) (-log eumelanin) + redness (-log pheomelanin)),
         m = -log(1 - concentration)
 
+    Errors as those of `chiang_hair_roughness`.
+
     Parameters
     ----------
     melanin_concentration, melanin_redness : array_like, shape (...)
@@ -91,11 +93,6 @@ def deon_hair_absorption_from_melanin(
     -------
     ndarray, shape (..., 3), float64
         Per radius of the fiber, in [0, inf).
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range, or they do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -136,6 +133,8 @@ def chiang_hair_absorption_from_color(
 
         sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
 
+    Errors as those of `chiang_hair_roughness`.
+
     Parameters
     ----------
     hair_color : array_like, shape (..., 3)
@@ -147,11 +146,6 @@ def chiang_hair_absorption_from_color(
     -------
     ndarray, shape (..., 3), float64
         Per radius of the fiber, in [0, inf).
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range, or they do not broadcast; names the first bad element.
 
     References
     ----------

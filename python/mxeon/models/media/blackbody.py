@@ -110,20 +110,12 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
 def blackbody(temperature: ArrayLike) -> Array:
     """Color of a black body in linear Rec. 709, with luminance 1.
 
-    Parameters
-    ----------
-    temperature : array_like, shape (...)
-        In kelvin, in [1, 1e9].
+    Parameters and errors as those of `blackbody_xyz`.
 
     Returns
     -------
     ndarray, shape (..., 3), float64
         Channels are negative outside Rec. 709's gamut: blue below 1900 K, green below 964 K.
-
-    Raises
-    ------
-    ValueError
-        If `temperature` leaves its range; names the first bad element.
 
     Notes
     -----
@@ -146,19 +138,11 @@ def blackbody(temperature: ArrayLike) -> Array:
 def kang_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
 
-    Parameters
-    ----------
-    temperature : array_like, shape (...)
-        In kelvin, in [1, 1e9].
+    Parameters and errors as those of `blackbody_xyz`.
 
     Returns
     -------
     ndarray, shape (..., 3), float64
-
-    Raises
-    ------
-    ValueError
-        If `temperature` leaves its range; names the first bad element.
 
     Notes
     -----

@@ -97,6 +97,8 @@ def conical_edf(
         L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
         L_e = c if cos >= c_in, else 0          otherwise
 
+    Errors as those of `uniform_edf`.
+
     Parameters
     ----------
     wo : array_like, shape (..., 3)
@@ -110,11 +112,6 @@ def conical_edf(
     -------
     ndarray, shape (..., C), float64
         In the unit of `radiance`. Below the horizon the cosine counts as 0, as the text has it.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -150,6 +147,8 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     between mu = max(a, 0) and b, where mu = a + h t; inside the cone it is (1 - b^2) / 2. The
     exitance is 2 pi c times both, and pi c where the inner cone holds the hemisphere.
 
+    Errors as those of `uniform_edf`.
+
     Parameters
     ----------
     radiance, inner_angle, outer_angle
@@ -159,11 +158,6 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     -------
     ndarray, shape (..., C), float64
         pi times the unit of `radiance`.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -204,6 +198,8 @@ def generalized_schlick_edf(
 
         L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
 
+    Errors as those of `uniform_edf`.
+
     Parameters
     ----------
     wo : array_like, shape (..., 3)
@@ -220,11 +216,6 @@ def generalized_schlick_edf(
     ndarray, shape (..., C), float64
         In the unit of `base`. The back is seen at |cos|: with a negative cosine the curve of the text
         would leave the range between both factors.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -248,6 +239,8 @@ def generalized_schlick_exitance(
 
         M = pi c (r_0 + (r_90 - r_0) 2 / ((q + 1) (q + 2)))
 
+    Errors as those of `uniform_edf`.
+
     Parameters
     ----------
     radiance, color0, color90 : array_like, shape (..., C)
@@ -258,11 +251,6 @@ def generalized_schlick_exitance(
     -------
     ndarray, shape (..., C), float64
         pi times the unit of `radiance`.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------

@@ -52,6 +52,8 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
 
         L_o = O (L_e + L_s)
 
+    Errors as those of `light_radiance`.
+
     Parameters
     ----------
     emission, scattered : array_like, shape (..., C)
@@ -63,11 +65,6 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     -------
     ndarray, shape (..., C), float64
         Without the light from behind, of which 1 - O passes.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -95,6 +92,8 @@ def volume_radiance(
 
         L = L_0 T + L_e t (1 - T) / (sigma_t t)
 
+    Errors as those of `light_radiance`.
+
     Parameters
     ----------
     behind : array_like, shape (..., C)
@@ -111,11 +110,6 @@ def volume_radiance(
     ndarray, shape (..., C), float64
         The solution of the equation of transfer whose integral over directions is left out: that
         needs a renderer.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------

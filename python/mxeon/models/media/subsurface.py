@@ -75,6 +75,8 @@ def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayL
 
         s^2 = (1 - w) / (1 - g w),  rho = (1 - s) (1 - 0.139 s) / (1 + 1.17 s)
 
+    Errors as those of `subsurface_albedo`.
+
     Parameters
     ----------
     single_scatter : array_like
@@ -86,11 +88,6 @@ def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayL
     -------
     ndarray, float64
         Dimensionless, in [0, 1]. The half space has no surface, and is lit by a uniform sky.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -120,6 +117,8 @@ def subsurface_coefficients(
 
         sigma_s = w / l,  sigma_a = (1 - w) / l
 
+    Errors as those of `subsurface_albedo`.
+
     Parameters
     ----------
     rho : array_like
@@ -133,11 +132,6 @@ def subsurface_coefficients(
     -------
     ndarray, ndarray, float64
         Per unit of length. Their sum is 1 / l.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------
@@ -159,6 +153,8 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
 
         R(r) = (exp(-r / l) + exp(-r / (3 l))) / (8 pi l r)
 
+    Errors as those of `subsurface_albedo`.
+
     Parameters
     ----------
     separation : array_like
@@ -170,11 +166,6 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
     -------
     ndarray, float64
         Per unit of area. Its integral over a plane is 1; the mean distance is 5 l / 2.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------
@@ -197,6 +188,8 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
 
         C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
 
+    Errors as those of `subsurface_albedo`.
+
     Parameters
     ----------
     separation, radius : array_like
@@ -206,11 +199,6 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
     -------
     ndarray, float64
         Dimensionless, in (0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Examples
     --------
@@ -225,6 +213,8 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
 def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     """Distance within which the share u of the light leaves: the inverse of `diffusion_cdf`.
 
+    Errors as those of `subsurface_albedo`.
+
     Parameters
     ----------
     u : array_like
@@ -236,11 +226,6 @@ def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     -------
     ndarray, float64
         A length.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -263,6 +248,8 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
         W(mu) = int C'(r) c(mu, r) dr / C(2),  c = mean of max(cos(theta), 0) at the distance r
 
+    Errors as those of `subsurface_albedo`.
+
     Parameters
     ----------
     mu : array_like
@@ -274,11 +261,6 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
     -------
     ndarray, float64
         Dimensionless, in [0, 1]. Its mean over the sphere is 1/4, that of max(mu, 0).
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----

@@ -52,6 +52,8 @@ def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
     """Share of the radiance that passes a homogeneous medium, T = exp(-sigma_t t).
 
+    Errors as those of `extinction`.
+
     Parameters
     ----------
     absorption, scattering : array_like
@@ -63,11 +65,6 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
     -------
     float64 or ndarray, float64
         Dimensionless, in [0, 1]. Light that is scattered into the ray is left out.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -87,20 +84,12 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
     """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t.
 
-    Parameters
-    ----------
-    absorption, scattering : array_like
-        Coefficients in 1/m, in [0, 1e50].
+    Parameters and errors as those of `extinction`.
 
     Returns
     -------
     float64 or ndarray, float64
         Dimensionless, in [0, 1]; 0 where no light leaves the ray.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -121,6 +110,8 @@ def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2))
 
+    Errors as those of `extinction`.
+
     Parameters
     ----------
     cos_theta : array_like
@@ -133,11 +124,6 @@ def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
     -------
     float64 or ndarray, float64
         Density in solid angle, 1/sr. Its integral over all directions is 1.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -166,6 +152,8 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
 
     which is 1 - x at g = 0 and does not cancel for any g.
 
+    Errors as those of `extinction`.
+
     Parameters
     ----------
     wo : array_like, shape (..., 3)
@@ -181,11 +169,6 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
         Unit vectors towards the light.
     pdf : float64 or ndarray, shape (...)
         Density at `wi`, `hg_pdf`, in 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -217,6 +200,8 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     """Density of `hg_sample` at `wi`, in solid angle: the phase function itself.
 
+    Errors as those of `extinction`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -228,11 +213,6 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         In 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------

@@ -98,6 +98,8 @@ def conductor_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
+    Errors as those of `dielectric_brdf`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -115,11 +117,6 @@ def conductor_brdf(
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -156,6 +153,8 @@ def generalized_schlick_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
+    Errors as those of `dielectric_brdf`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -176,11 +175,6 @@ def generalized_schlick_brdf(
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr, unbounded at grazing and as alpha vanishes; below 0 where the curve is.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----

@@ -77,6 +77,8 @@ def conductor_albedo_dir(
 ) -> Array:
     """Directional albedo of `conductor_brdf`, by quadrature.
 
+    Errors as those of `dielectric_albedo_dir`.
+
     Parameters
     ----------
     wo, roughness, ior, extinction, compensate
@@ -86,11 +88,6 @@ def conductor_albedo_dir(
     -------
     ndarray, shape (..., C), float64
         Dimensionless.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -124,6 +121,8 @@ def generalized_schlick_albedo_dir(
 ) -> Array:
     """Directional albedo of `generalized_schlick_brdf`, by quadrature.
 
+    Errors as those of `dielectric_albedo_dir`.
+
     Parameters
     ----------
     wo, color0, color82, color90, roughness, exponent, compensate
@@ -133,11 +132,6 @@ def generalized_schlick_albedo_dir(
     -------
     ndarray, shape (..., C), float64
         Dimensionless.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -162,6 +156,8 @@ def generalized_schlick_albedo_dir(
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
+    Errors as those of `dielectric_albedo_dir`.
+
     Parameters
     ----------
     wo : array_like, shape (..., 3)
@@ -173,11 +169,6 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     -------
     ndarray, shape (...), float64
         Dimensionless, above 0; exceeds 1 where alpha_x and alpha_y differ.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----

@@ -96,6 +96,8 @@ def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
 def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Fresnel reflectance of a conductor for unpolarized light.
 
+    Errors as those of `fresnel_dielectric`.
+
     Parameters
     ----------
     mu : array_like, shape (...)
@@ -107,11 +109,6 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -134,6 +131,8 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
 def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Average Fresnel reflectance F_ss of a conductor, by quadrature.
 
+    Errors as those of `fresnel_dielectric`.
+
     Parameters
     ----------
     ior, extinction : array_like, shape (..., C)
@@ -143,11 +142,6 @@ def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
     -------
     ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -177,6 +171,8 @@ def fresnel_schlick(
 
         F = r0 + (r90 - r0) (1 - mu)^q - a mu (1 - mu)^6
 
+    Errors as those of `fresnel_dielectric`.
+
     Parameters
     ----------
     mu : array_like, shape (...)
@@ -191,11 +187,6 @@ def fresnel_schlick(
     -------
     ndarray, shape (..., C), float64
         Dimensionless, at most 1; below 0 for some colors.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -224,6 +215,8 @@ def fresnel_schlick_avg(
 
         F_ss = r0 + 2 (r90 - r0) / ((q + 1) (q + 2)) - a / 126
 
+    Errors as those of `fresnel_dielectric`.
+
     Parameters
     ----------
     color0, color82, color90 : array_like, shape (..., C)
@@ -235,11 +228,6 @@ def fresnel_schlick_avg(
     -------
     ndarray, shape (..., C), float64
         Dimensionless; of the curve as it is, not clamped.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----

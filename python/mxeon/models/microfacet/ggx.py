@@ -62,6 +62,8 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
 
         G1 = 2 mu_o / (mu_o + |(alpha_x x, alpha_y y, z)|)
 
+    Errors as those of `ggx_ndf`.
+
     Parameters
     ----------
     wo : array_like, shape (..., 3)
@@ -73,11 +75,6 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
     -------
     ndarray, shape (...), float64
         Dimensionless, in [0, 1]; 0 at grazing, but 1 at alpha 0.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     References
     ----------
@@ -107,6 +104,8 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
         G2 = 2 mu_o mu_i / (lambda_o mu_i + lambda_i mu_o),
         lambda = sqrt(alpha^2 + (1 - alpha^2) mu^2)
 
+    Errors as those of `ggx_ndf`.
+
     Parameters
     ----------
     mu_o, mu_i : array_like, shapes that broadcast
@@ -118,11 +117,6 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
     -------
     ndarray, float64
         Dimensionless, in [0, 1]; 0 where a direction grazes.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----
@@ -154,6 +148,8 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
 
         G2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o),  l = |(alpha_x x, alpha_y y, z)|
 
+    Errors as those of `ggx_ndf`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -165,11 +161,6 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
     -------
     ndarray, shape (...), float64
         Dimensionless, in [0, 1]; 0 where a direction grazes.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----

@@ -90,6 +90,8 @@ def roughness_dual(roughness: ArrayLike) -> Array:
 def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array:
     """Pair of alphas of the roughness 1 - glossiness; see `roughness_anisotropy`.
 
+    Errors as those of `roughness_anisotropy`.
+
     Parameters
     ----------
     glossiness, anisotropy : array_like, shape (...)
@@ -99,11 +101,6 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
     -------
     ndarray, shape (..., 2), float64
         In [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------

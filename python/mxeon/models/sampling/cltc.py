@@ -75,6 +75,8 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `cltc_sample` at `wi`, in solid angle.
 
+    Errors as those of `cltc_sample`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -86,11 +88,6 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         1/sr; 0 for the directions that it never draws.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------
@@ -109,14 +106,7 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters and errors as those of `cltc_sample`.
 
     Returns
     -------
@@ -124,11 +114,6 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
         Unit vectors on or above the horizon.
     pdf : float64 or ndarray, shape (...)
         Of the mixture, in 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -160,22 +145,12 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
 def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `eon_cltc_sample` at `wi`, in solid angle.
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters as those of `cltc_pdf`. Errors as those of `cltc_sample`.
 
     Returns
     -------
     float64 or ndarray, shape (...)
         1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------

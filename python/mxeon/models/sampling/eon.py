@@ -121,24 +121,19 @@ def eon_sample(
 def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0) -> Array:
     """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
 
+    Errors as those of `eon_sample`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
         Unit vectors on or above the horizon.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-    rho : array_like, shape (...)
-        Gray reflectance for which the sampling is exact, dimensionless, in [0, 1].
+    roughness, rho
+        As those of `eon_sample`.
 
     Returns
     -------
     float64 or ndarray, shape (...)
         1/sr. At rho = 1 it is `eon_brdf` at reflectance 1, times the cosine of `wi`.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----

@@ -76,10 +76,7 @@ def uniform_pdf(wi: ArrayLike) -> Array:
 def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled proportionally to its cosine with the normal, and its density.
 
-    Parameters
-    ----------
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
+    Parameters and errors as those of `uniform_sample`.
 
     Returns
     -------
@@ -87,11 +84,6 @@ def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
         Unit vectors, z > 0.
     pdf : float64 or ndarray, shape (...)
         z / pi, in 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If `u` leaves its range or its last axis is not 2; names the first bad element.
 
     References
     ----------
@@ -111,20 +103,12 @@ def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
 def cosine_pdf(wi: ArrayLike) -> Array:
     """Density of `cosine_sample` at `wi`, in solid angle.
 
-    Parameters
-    ----------
-    wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
+    Parameters and errors as those of `uniform_pdf`.
 
     Returns
     -------
     float64 or ndarray, shape (...)
         z / pi, in 1/sr.
-
-    Raises
-    ------
-    ValueError
-        If a direction is not unit or points below the horizon; names the first such element.
 
     Examples
     --------

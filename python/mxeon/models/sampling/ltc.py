@@ -68,6 +68,8 @@ def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc0_sample` at `wi`, in solid angle.
 
+    Errors as those of `ltc0_sample`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -79,11 +81,6 @@ def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------
@@ -101,14 +98,7 @@ def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine, may be below the horizon; and its density.
 
-    Parameters
-    ----------
-    wo : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    u : array_like, shape (..., 2)
-        Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters and errors as those of `ltc0_sample`.
 
     Returns
     -------
@@ -116,11 +106,6 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
         Unit vectors; those with z < 0 are wasted, their weight is 0.
     pdf : float64 or ndarray, shape (...)
         1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -144,22 +129,12 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
 
-    Parameters
-    ----------
-    wo, wi : array_like, shape (..., 3)
-        Unit vectors on or above the horizon.
-    roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
+    Parameters as those of `ltc0_pdf`. Errors as those of `ltc0_sample`.
 
     Returns
     -------
     float64 or ndarray, shape (...)
         1/sr; its integral over the hemisphere is the probability that no sample is wasted.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------

@@ -68,6 +68,8 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
         pdf = G1(wo) D(wh) / (4 mu_o)
 
+    Errors as those of `ggx_sample`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -79,11 +81,6 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         1/sr; its integral over the hemisphere is the probability that no sample is wasted.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------

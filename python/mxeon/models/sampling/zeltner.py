@@ -70,6 +70,8 @@ def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[A
 def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `zeltner_sample` at `wi`, in solid angle.
 
+    Errors as those of `zeltner_sample`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -81,11 +83,6 @@ def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     -------
     float64 or ndarray, shape (...)
         1/sr.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     References
     ----------

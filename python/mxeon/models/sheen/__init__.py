@@ -82,12 +82,12 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
         f = color E(mu_o) a^2 / (pi |M^-1 wi|^4),  M^-1 = (a 0 b; 0 a 0; 0 0 1)
 
+    Errors as those of `conty_kulla_brdf`.
+
     Parameters
     ----------
-    wo, wi : array_like, shape (..., 3)
-        Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
-    color : array_like, shape (..., C)
-        Tint per channel, dimensionless, in [0, 1]; a number is one channel.
+    wo, wi, color
+        As those of `conty_kulla_brdf`.
     roughness : array_like, shape (...)
         Dimensionless, in [0, 1]; below 0.01 it counts as 0.01.
 
@@ -95,11 +95,6 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
     -------
     ndarray, shape (..., C), float64
         BRDF in 1/sr. It has the sign of E, see `zeltner_albedo_dir`.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----

@@ -92,6 +92,8 @@ def film_conductor(
 ) -> Array:
     """Reflectance of a conductor under a thin film for unpolarized light.
 
+    Errors as those of `film_dielectric`.
+
     Parameters
     ----------
     mu, thickness, film_ior, form
@@ -103,11 +105,6 @@ def film_conductor(
     -------
     ndarray, shape (..., 3), float64
         Linear RGB, in [0, 1].
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----
@@ -141,6 +138,8 @@ def film_schlick(
 ) -> Array:
     """Reflectance of a generalized Schlick curve under a thin film.
 
+    Errors as those of `film_dielectric`.
+
     Parameters
     ----------
     mu, thickness, film_ior, form
@@ -154,11 +153,6 @@ def film_schlick(
     -------
     ndarray, shape (..., 3), float64
         Linear RGB, in [0, 1] where the thickness is above 0.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Notes
     -----

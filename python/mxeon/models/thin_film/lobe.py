@@ -84,6 +84,8 @@ def film_albedo_dir(
 ) -> Array:
     """Directional albedo of `film_brdf`, by quadrature.
 
+    Errors as those of `film_brdf`.
+
     Parameters
     ----------
     category, wo, inputs, form
@@ -95,11 +97,6 @@ def film_albedo_dir(
     -------
     ndarray, shape (..., 3), float64
         Dimensionless.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----

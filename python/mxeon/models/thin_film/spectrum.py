@@ -84,6 +84,8 @@ def film_spectrum_xyz(
 ) -> Array:
     """Color of a thin film in CIE XYZ, by a sum over wavelengths in steps of 1 nm.
 
+    Errors as those of `film_spectrum`.
+
     Parameters
     ----------
     mu, thickness, film_ior, ior, extinction : array_like, shape (...)
@@ -95,11 +97,6 @@ def film_spectrum_xyz(
     -------
     ndarray, shape (..., 3), float64
         Relative to the white of the light.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range; names it and the first bad element.
 
     Examples
     --------

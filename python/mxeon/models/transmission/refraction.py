@@ -58,6 +58,8 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 
         wh = +-(wo + ior wi) / |wo + ior wi|, on the side of wo
 
+    Errors as those of `refraction_direction`.
+
     Parameters
     ----------
     wo, wi : array_like, shape (..., 3)
@@ -69,11 +71,6 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
     -------
     ndarray, shape (..., 3), float64
         Unit vectors; (0, 0, 0) where no microfacet refracts one into the other.
-
-    Raises
-    ------
-    ValueError
-        If an argument leaves its range or the shapes do not broadcast; names the first bad element.
 
     Notes
     -----

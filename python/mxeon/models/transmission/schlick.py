@@ -223,6 +223,8 @@ def generalized_schlick_transmittance_dir(
 ) -> Array:
     """Transmitted share of the light from `wo`, by quadrature.
 
+    Errors as those of `generalized_schlick_btdf`.
+
     Parameters
     ----------
     wo, color0, color82, color90, roughness, exponent, reading, inside
@@ -234,12 +236,6 @@ def generalized_schlick_transmittance_dir(
     -------
     ndarray, shape (..., C), float64
         Dimensionless.
-
-    Raises
-    ------
-    ValueError
-        If the reading is unknown, an argument leaves its range or the shapes do not broadcast; lists
-        the readings, or names the first bad element.
 
     Notes
     -----
