@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 import paper as figures
+from mxeon.cli import main
 from mxeon.models import table
 from mxeon.models.diffuse.brdf import lambert_brdf
+from mxeon.shaders import library
 from paper import FIGURES, SECTIONS, claims, curves, renders, tracer
 from paper.claims import FAILS, HOLDS, IN_PART, inversion, sampling, specification, verdict
 
@@ -138,3 +140,16 @@ def test_same_run_writes_the_same_tables(output, tmp_path):
         figures.weights.over_roughness(figures.Sheet(tmp_path, host=None, **SMALL))
     again = (tmp_path / "figure_13.csv").read_text()
     assert again == (output.folder / "figure_13.csv").read_text()
+
+
+def test_the_command_finds_the_folder_in_a_checkout(monkeypatch, tmp_path, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(figures, "figures", lambda folder, progress: f"{folder}/paper_checked.md")
+    assert main(["figures", "out"]) == 0
+    assert capsys.readouterr().out == "out/paper_checked.md\n"
+
+
+def test_the_command_in_an_installed_package_asks_for_a_checkout(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(library, "data_folder", lambda: tmp_path)
+    assert main(["figures", "out"]) == 3
+    assert "install a checkout of the repository" in capsys.readouterr().err
