@@ -76,10 +76,19 @@ def entries(function: griffe.Object, match: re.Match[str]) -> str:
     wanted = set(names(match[1]))
     theirs = sections(complete(sibling(function, match[2])))
     described = theirs.get("Parameters") or theirs.get("Attributes", "")
-    each = re.findall(r"^\S.*(?:\n+ .*)*", described, re.MULTILINE)
-    chosen = [text for text in each if wanted & set(names(text.splitlines()[0]))]
-    known = {name for text in chosen for name in names(text.splitlines()[0])}
-    return "\n".join(chosen) if wanted <= known else match[0]
+    texts = re.findall(r"^(\S.*)((?:\n+ .*)*)", described, re.MULTILINE)
+    chosen = [(heading, body) for heading, body in texts if wanted & set(names(heading))]
+    known = {name for heading, _ in chosen for name in names(heading)}
+    if not wanted <= known:
+        return match[0]
+    return "\n".join(f"{only(heading, wanted)}{body}" for heading, body in chosen)
+
+
+def only(heading: str, wanted: set[str]) -> str:
+    """The heading of an entry without the names that are not wanted."""
+    chosen = [name.strip() for name in heading.partition(" : ")[0].split(",")]
+    chosen = [name for name in chosen if name.strip("*") in wanted]
+    return ", ".join(chosen) + "".join(heading.partition(" : ")[1:])
 
 
 def names(heading: str) -> list[str]:
