@@ -97,7 +97,7 @@ WRONG = {
     ),
     "F0 in the compensation": (
         "dielectric", DIELECTRIC, COMPENSATION, COMPENSATION.replace("F)", "vec3(F0))"), "value",
-        "compensation with F along the normal (rms ",
+        "compensation with F along the normal and MaterialX's fit of E_ss (rms ",
     ),
     "no compensation": (
         "schlick", SCHLICK, COMPENSATION, "vec3(1.0)", "lossless",

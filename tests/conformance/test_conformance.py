@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance import known_issues
-from mxeon.conformance.checks.application import judge_subject
+from mxeon.conformance.checks.application import applies, judge_subject
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis.candidates import diagnose_value
 from mxeon.conformance.functions.shader_functions import (
@@ -16,10 +16,10 @@ from mxeon.conformance.functions.shader_functions import (
     FunctionProbe,
     judge_functions,
 )
-from mxeon.conformance.nodes.bsdf import BSDFS, KINDS
-from mxeon.conformance.nodes.diffuse import SUBJECTS, DiffuseSubject
+from mxeon.conformance.nodes.bsdf import BSDFS
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.pictures import document_pictures as image
-from mxeon.conformance.probes.families import PBR_SUBJECTS
+from mxeon.conformance.probes.families import COMMON_SUBJECTS, PBR_SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
@@ -135,7 +135,8 @@ def test_every_check_says_what_it_allows_and_what_it_must_catch(row):
 def test_eonlib_passes_every_check_on_gl(run):
     wrong = [result for result in run.results if result.verdict != PASSED]
     assert not wrong and not run.errors
-    asked = {row.key for row in CHECKS if {"pairs", "lobes", *KINDS} & set(row.tolerances)}
+    subjects = (*SUBJECTS, *SURFACES, *COMMON_SUBJECTS)
+    asked = {row.key for row in CHECKS for each in subjects if applies(row, each, each.kind, "gl")}
     assert {result.check for result in run.results if result.host == "gl"} >= asked | {
         row.key for row in FUNCTION_CHECKS
     }

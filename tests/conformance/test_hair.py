@@ -79,8 +79,8 @@ WRONG = {
         "back * mx_environment_irradiance(-N)", "vec3(0.0)", "environment", "no known model is near",
     ),
     "sides exchanged": (
-        "(front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N))",
-        "(back * mx_environment_irradiance(N) + front * mx_environment_irradiance(-N))", "surroundings",
+        "front * mx_environment_irradiance(N) + back * mx_environment_irradiance(-N)",
+        "back * mx_environment_irradiance(N) + front * mx_environment_irradiance(-N)", "surroundings",
         "the environment is looked up on the other side of the surface",
     ),
     "too dark": ("total * closureData", "0.9 * total * closureData", "integral", ""),

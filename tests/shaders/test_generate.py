@@ -149,6 +149,9 @@ def test_stock_osl_does_not_use_the_flag():
     assert [name for name in FIRST if f"lobe_{name}" not in used] == ["energy_compensation"]
 
 
+COMBINING = ("add_bsdf", "layer_bsdf")  # entry points that take what other nodes return
+
+
 @pytest.mark.parametrize(
     "path",
     sorted(
@@ -160,7 +163,9 @@ def test_every_parameter_of_an_entry_point_is_used_in_its_body(path):
     code = re.sub(r"//.*", "", path.read_text())
     [(parameters, body)] = re.findall(rf"(?ms)^void {path.stem}\((.*?)\)\s*{{(.*)^}}", code)
     names = [each.split()[-1] for each in parameters.split(",")]
-    assert len(names) >= 5
+    assert len(names) >= 4
+    if path.stem in COMBINING:  # whose lobes have seen the light already
+        names.remove("closureData")
     assert [name for name in names if not re.search(rf"\b{name}\b", body)] == []
 
 

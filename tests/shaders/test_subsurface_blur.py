@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The blur of subsurface scattering in GLSL: its error, its energy, and its inputs on a sphere."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -67,7 +68,7 @@ def test_a_plane_is_lambert(gl):
 
 def test_the_circle_of_materialx_returns_more_as_its_page_says():
     returned = 2.0 * (WEIGHTS * circle_blur(NODES, np.full((200, 1), 10.0), body=1.0)[:, 0]).sum()
-    page = (FOLDER / "genglsl_subsurface_circle.md").read_text()
+    page = re.sub("<!--.*?-->", "", (FOLDER / "genglsl_subsurface_circle.md").read_text())
     assert f"returns {returned:.2f} of the light that it gets" in page and returned > 1.1
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of surface shaders as a whole."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from mxeon.conformance.accuracy import surface_shaders as tolerances
@@ -18,7 +16,6 @@ from mxeon.conformance.samples.batch import Array, Batch
 MODELS = tuple(shader.model for shader in SHADERS)
 
 
-@dataclass(frozen=True)
 class IgnoreChanges(Altered):
     """A probe whose host sees the first pair only."""
 

@@ -150,7 +150,7 @@ ENVIRONMENT = (
 
 def scaled_by(factor: float) -> Fault:
     """The fault of values that carry a factor."""
-    text = f"every value is {factor:.7g} times the right one"
+    text = f"every value is {factor:.6g} times the right one"
     if np.isclose(factor, np.pi, rtol=1e-5):
         text = "the factor 1/pi is missing"
     if np.isclose(factor, 1.0 / np.pi, rtol=1e-5):

@@ -16,8 +16,12 @@ def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike)
 
     Parameters
     ----------
-    mu, rho, sigma
-        As those of `mxeon.models.diffuse.known_defect_albedos.qon_fitted_albedo_dir`.
+    mu : array_like, shape (...)
+        Cosine of the polar angle, dimensionless, in [0, 1].
+    rho : array_like, shape (..., C)
+        Reflectance per channel, dimensionless, in [0, 1].
+    sigma : array_like, shape (...)
+        Slope deviation of the facets, radian, in [0, pi/2].
 
     Returns
     -------
@@ -46,7 +50,7 @@ def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> A
     Parameters
     ----------
     mu, rho, sigma
-        As those of `mxeon.models.diffuse.known_defect_albedos.qon_fitted_albedo_dir`.
+        As those of `qon_tinted_twice_albedo_dir`.
 
     Returns
     -------

@@ -187,6 +187,12 @@ def averaged_fitted(pair: Pair) -> Array:
     return 1.0 + _averaged(pair) * _missing_by_fit(pair)
 
 
+def _normal_fitted(pair: Pair) -> Array:
+    """Compensation with F along the normal, and the fit for E_ss."""
+    F = pair.curve.at(np.ones_like(pair.cosine), **pair.material)
+    return 1.0 + F * _missing_by_fit(pair)
+
+
 def _missing_by_fit(pair: Pair) -> Array:
     """(1 - E_ss) / E_ss by the fit of MaterialX 1.39.5."""
     alpha = np.maximum(ggx.mean_alpha(pair.roughness), 1e-6)
@@ -218,6 +224,11 @@ MICROFACET_DEFECTS = (
         "compensation_f0",
         "compensation with F along the normal",
         Lobe(_compensated_by(lambda pair: np.ones_like(pair.cosine))),
+    ),
+    MicrofacetDefect(
+        "compensation_f0_fitted",
+        "compensation with F along the normal and MaterialX's fit of E_ss",
+        Lobe(_normal_fitted),
     ),
     MicrofacetDefect(
         "compensation_view",
