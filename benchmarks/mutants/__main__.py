@@ -20,6 +20,7 @@ from tqdm import tqdm
 
 from benchmarks.mutants import page
 from benchmarks.mutants.mutant import Mutant, read_table
+from benchmarks.mutants.quick import Quick
 from benchmarks.mutants.trial import KILLED, trial
 from mxeon.conformance.run.judge import Judge
 from mxeon.io.files import write_text
@@ -54,9 +55,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _try_all(mutants: Sequence[Mutant], trials: dict[str, Any], file: Path, every: bool) -> None:
     """Try mutants, and keep each result as soon as it is there."""
-    with closing(Judge(DEFAULT)) as judge:
+    with closing(Judge(DEFAULT)) as judge, closing(Quick()) as quick:
         for mutant in tqdm(mutants):
-            trials[mutant.name] = {"digest": mutant.digest} | summary(trial(mutant, judge, every))
+            found = trial(mutant, judge, quick, every)
+            trials[mutant.name] = {"digest": mutant.digest} | summary(found)
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
 
 

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
+from mxeon.shaders.functions import STEMS
+
 TABLE = Path(__file__).with_name("table")
 ROOT = Path(__file__).resolve().parents[2]
+TWINS = (*STEMS, "hair_parameters")  # files whose functions have one text in two languages
 FOLDERS = ("libraries", "genglsl", "genosl", "profiles")  # that hold eonlib
 
 
@@ -32,6 +35,8 @@ class Mutant:
         The cheapest host that can see it; "text" where no host is needed.
     equivalent : bool
         Whether it computes the same function on the whole valid domain.
+    tests : tuple of str
+        Files of tests that are asked first about a wrong reference.
     """
 
     name: str
@@ -42,6 +47,7 @@ class Mutant:
     reason: str
     host: str
     equivalent: bool
+    tests: tuple[str, ...] = ()
 
     def texts(self) -> dict[str, str]:
         """Text of each mutated file, by its path: of the functions in GLSL, that in OSL as well.
@@ -53,7 +59,7 @@ class Mutant:
         """
         texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
         twin = Path("genosl", Path(self.file).with_suffix(".osl").name).as_posix()
-        if self.file.startswith("genglsl/") and (ROOT / twin).is_file():
+        if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:
             old = re.sub(r"\bvec3\b", "(?:color|vector)", re.escape(self.old))
             texts[twin] = self._replaced(twin, old, re.sub(r"\bvec3\b", "color", self.new))
         return texts
@@ -76,7 +82,17 @@ def read_table() -> tuple[Mutant, ...]:
     """All mutants, in the order of the page."""
     files = [tomllib.loads(path.read_text(encoding="utf-8")) for path in TABLE.glob("*.toml")]
     return tuple(
-        Mutant(name, group["title"], part["file"], old, new, reason, group["host"], equivalent)
+        Mutant(
+            name,
+            group["title"],
+            part["file"],
+            old,
+            new,
+            reason,
+            group["host"],
+            equivalent,
+            tuple(part.get("tests", ())),
+        )
         for group in sorted(files, key=lambda group: group["order"])
         for part in group["files"]
         for key, equivalent in (("mutants", False), ("equivalents", True))

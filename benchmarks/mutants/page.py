@@ -11,7 +11,7 @@ from benchmarks.mutants.mutant import Mutant
 from mxeon.io.files import write_text
 
 LENGTH = 160  # characters of a change that are shown
-CHEAP = ("gl", "text")  # hosts that need no other renderer
+CHEAP = ("gl", "text", "tests")  # in the place of a host, what needs no other renderer
 
 
 def write(file: Path, mutants: Sequence[Mutant], trials: Mapping[str, Any]) -> None:
@@ -25,13 +25,23 @@ def write(file: Path, mutants: Sequence[Mutant], trials: Mapping[str, Any]) -> N
     environment.filters |= {"cell": cell, "code": code}
     rows = [(mutant, trials[mutant.name]) for mutant in mutants if mutant.name in trials]
     template = environment.get_template("mutants.md.jinja")
-    write_text(file, template.render(rows=rows, groups=groups(rows), change=change))
+    untried = [mutant for mutant in mutants if mutant.name not in trials]
+    parts = {name: counted_by(rows, name) for name in ("group", "file")}
+    write_text(
+        file,
+        template.render(
+            rows=rows, parts=parts, groups=parts["group"], change=change, untried=untried
+        ),
+    )
 
 
-def groups(rows: Sequence[tuple[Mutant, Any]]) -> list[dict[str, Any]]:
-    """Title and counts of each implementation."""
-    titles = dict.fromkeys(mutant.group for mutant, _ in rows)
-    return [{"title": title} | counts([r for r in rows if r[0].group == title]) for title in titles]
+def counted_by(rows: Sequence[tuple[Mutant, Any]], name: str) -> list[dict[str, Any]]:
+    """Counts of each value of an attribute of mutants: of each implementation, or of each file."""
+    titles = dict.fromkeys(getattr(mutant, name) for mutant, _ in rows)
+    return [
+        {"title": title} | counts([row for row in rows if getattr(row[0], name) == title])
+        for title in titles
+    ]
 
 
 def counts(rows: Sequence[tuple[Mutant, Any]]) -> dict[str, int]:

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The trial of a mutant: `mxeon check` of a copy of eonlib that holds it, cheapest tasks first."""
 
+import atexit
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
 from itertools import islice
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, mkdtemp
 from typing import Any
 
 from benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
+from benchmarks.mutants.nodes import changed_nodes, node_tasks
+from benchmarks.mutants.quick import Quick
+from benchmarks.mutants.reference import TESTS, trial_of_reference
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.results import PASSED, Result
 from mxeon.conformance.run.judge import Judge
@@ -23,6 +27,7 @@ KILLED, SURVIVED = "killed", "survived"
 CRASHED = "crashed"  # a traceback in place of a verdict
 TEXT = "text"
 
+PBRLIB = "profiles/pbrlib"
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
 NOT_ON_GL = ("genosl/", "profiles/", "libraries/eonlib_genosl", "libraries/eonlib_genmdl")
@@ -39,7 +44,7 @@ CHANGED = {
 }
 
 
-def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
+def trial(mutant: Mutant, judge: Judge, quick: Quick, every: bool = False) -> dict[str, Any]:
     """Verdict on a mutant, and the failures that it caused on the first host that saw any.
 
     Parameters
@@ -47,6 +52,8 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
     mutant : Mutant
         An equivalent one is judged by its text and the nodes alone.
     judge : Judge
+    quick : Quick
+        Judges the nodes of pbrlib.
     every : bool
         Whether to go on after the first failure, to the end of the stage.
 
@@ -56,8 +63,16 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
         verdict, KILLED, SURVIVED or CRASHED; host; failures: check, subject, excess and diagnosis
         of each, the largest excess first; or refusal: the message that ended the command.
     """
-    with wrong_library(mutant) as path:
+    if mutant.tests:
+        failure = trial_of_reference(mutant)
+        found = {"host": TESTS, "failures": [failure]} if failure else {}
+        return {"verdict": KILLED if failure else SURVIVED} | found
+    nodes = bool(changed_nodes(mutant))
+    sources = nodes and not any(file.endswith(".mtlx") for file in mutant.texts())
+    with (wrong_sources if sources else wrong_library)(mutant) as path:
         try:
+            if nodes:
+                return trial_of_nodes(mutant, path, quick)
             assert_changed(mutant, path)
             for host, stage in islice(stages(mutant, path), 1 if mutant.equivalent else None):
                 if failures := failures_of(stage, judge, every):
@@ -72,19 +87,59 @@ def trial(mutant: Mutant, judge: Judge, every: bool = False) -> dict[str, Any]:
         return {"verdict": SURVIVED}
 
 
+def trial_of_nodes(mutant: Mutant, path: str, quick: Quick) -> dict[str, Any]:
+    """Verdict of the nodes that a mutant changes, up to the first failure."""
+    quick.renew()
+    for host, tasks in node_tasks(mutant, path):
+        for task in tasks:
+            if failure := quick.failure(task):
+                seen = TEXT if host == SOURCE else host
+                return {"verdict": KILLED, "host": seen, "failures": [failure]}
+    return {"verdict": SURVIVED}
+
+
 @contextmanager
 def wrong_library(mutant: Mutant) -> Iterator[str]:
     """Path of a library that is eonlib with one change, in a folder that no cache knows."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
-        for name in FOLDERS:
-            shutil.copytree(ROOT / name, Path(base, name))
-        for file, text in mutant.texts().items():
-            Path(base, file).write_text(text, encoding="utf-8")
+        _copy(base, mutant.texts())
         try:
             yield str(Path(base, "libraries"))
         finally:
             library.load_library.cache_clear()
             generators._library_generator.cache_clear()
+
+
+@contextmanager
+def wrong_sources(mutant: Mutant) -> Iterator[str]:
+    """The same where no document changes: one copy for all mutants, which is loaded once."""
+    base = _shared()
+    for file, text in mutant.texts().items():
+        Path(base, file).write_text(text, encoding="utf-8")
+    try:
+        yield str(Path(base, "libraries"))
+    finally:
+        for file in mutant.texts():
+            shutil.copyfile(ROOT / file, Path(base, file))
+
+
+def _copy(base: str, texts: Mapping[str, str]) -> None:
+    """Copy eonlib, with other texts in the place of some files."""
+    for name in FOLDERS:
+        shutil.copytree(ROOT / name, Path(base, name))
+    for file, text in texts.items():
+        Path(base, file).write_text(text, encoding="utf-8")
+    # A folder is loaded with all below it, as eonlib is with its nodes of pbrlib.
+    shutil.copytree(Path(base, PBRLIB), Path(base, "libraries", "pbrlib"))
+
+
+@cache
+def _shared() -> str:
+    """A folder with a copy of eonlib, which is removed as the program ends."""
+    base = mkdtemp(prefix="mxeon-mutants-")
+    atexit.register(shutil.rmtree, base)
+    _copy(base, {})
+    return base
 
 
 def tasks_on_gl(path: str) -> list[Task]:

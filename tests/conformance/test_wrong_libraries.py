@@ -22,6 +22,7 @@ from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import Task, make_plan
 from mxeon.conformance.text.closures import check_closures
 from mxeon.conformance.text.definitions import check_definitions
+from mxeon.conformance.text.entries import check_entries
 from mxeon.conformance.text.languages import check_languages
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT
@@ -352,3 +353,65 @@ def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_ref
     assert any(
         "the library refuses a document of mxeon's own" in row.diagnosis for row in wrong[1:]
     )
+
+
+# --- entry points in OSL ------------------------------------------------------------------------
+
+PBRLIB = "profiles/pbrlib/eonlib_pbrlib_genosl_impl.mtlx"
+CONE, CYCLES_CONE = "conical_edf, {}, osl", "conical_edf, {}, osl, cycles"
+
+
+@pytest.mark.parametrize(
+    "file, old, new, title, words",
+    [
+        ("genosl/conical_edf.osl", "-I", "I", CONE.format("soft"), "weight is off"),
+        (
+            "genosl/conical_falloff.osl",
+            ">= inner",
+            "<= inner",
+            CONE.format("hard"),
+            "weight is off",
+        ),
+        (
+            "genosl/conical_edf_cycles.osl",
+            "uniform_edf(c)",
+            "uniform_edf(c) + uniform_edf(c)",
+            CYCLES_CONE.format("soft"),
+            "the closure is not uniform_edf",
+        ),
+        (
+            "genosl/subsurface_bsdf_cycles.osl",
+            "rho, radius, anisotropy)",
+            "radius, rho, anisotropy)",
+            "subsurface_bsdf, osl, cycles",
+            "color is off; radius is off",
+        ),
+        (
+            PBRLIB,
+            'function="conical_edf"',
+            'function="cone"',
+            CONE.format("hard"),
+            "function cone is not defined",
+        ),
+        (
+            PBRLIB,
+            "ND_conical_edf",
+            "ND_cone",
+            CONE.format("soft"),
+            "no source implements conical_edf",
+        ),
+    ],
+)
+def test_an_entry_point_in_osl_that_gives_another_closure_is_named(
+    copy, tmp_path, file, old, new, title, words
+):
+    library = copy(file, old, new)
+    shutil.copytree(tmp_path / "profiles" / "pbrlib", tmp_path / "libraries" / "pbrlib")
+    diagnoses = {each.subject: each.diagnosis for each in check_entries(library)}
+    assert diagnoses[title] == words
+
+
+@pytest.mark.parametrize(("library", "count"), [("eonlib", 5), ("diffuse", 0), ("stock", 0)])
+def test_entry_points_in_osl_are_those_of_eonlib(library, count):
+    results = check_entries(library)
+    assert [each.verdict for each in results] == [PASSED] * count

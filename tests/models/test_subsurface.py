@@ -10,6 +10,7 @@ from mxeon.models.media.subsurface import (
     LINEAR,
     LOSS,
     SQUARED,
+    diffusion_blur,
     diffusion_cdf,
     diffusion_profile,
     diffusion_sample,
@@ -126,3 +127,17 @@ def test_samples_have_the_cdf():
 def test_arguments_out_of_range_are_refused(call, rule):
     with pytest.raises(ValueError, match=f"^{rule}"):
         call()
+
+
+@pytest.mark.parametrize("reach", [0.05, 0.4, 3.0])
+def test_a_blur_is_the_profile_s_mean_over_the_unit_sphere(reach):
+    # A ring at a chord d of the sphere has the area 2 pi d dd, and the profile has the factor 1 / d.
+    x, w = np.polynomial.legendre.leggauss(400)
+    d, w = 1.0 + x, w * (1.0 + x) * diffusion_profile(1.0 + x, reach)
+    phi = 2.0 * np.pi * (np.arange(400) + 0.5) / 400
+    along, across = 1.0 - 0.5 * d * d, d * np.sqrt(1.0 - 0.25 * d * d)
+    for mu in (-0.6, 0.0, 0.3, 0.95):
+        cosine = mu * along[:, np.newaxis] + np.sqrt(1.0 - mu * mu) * np.outer(across, np.cos(phi))
+        rings = np.maximum(cosine, 0.0).mean(axis=1)
+        # The kinks of both sums cost 400^-2 times the slopes of what they sum.
+        assert diffusion_blur(mu, reach) == pytest.approx(w @ rings / w.sum(), abs=1e-4)

@@ -218,3 +218,15 @@ def filmed(row):
     values["thinfilm_thickness"] = 500.0 * values["thinfilm_thickness"]
     values["thinfilm_ior"] = 1.0 + values["thinfilm_ior"]
     return values
+
+
+@pytest.mark.parametrize("thickness", [150.0, 600.0])
+def test_the_average_of_a_curve_is_weighted_by_the_cosine(thickness):
+    numbers = {"thinfilm_thickness": thickness, "thinfilm_ior": 1.4, "ior": 1.8}
+    material = {name: np.array(value) for name, value in numbers.items()} | {"tint": np.ones(1)}
+    curve = film_curve("dielectric_bsdf")
+    mu = (np.arange(400) + 0.5) / 400
+    values = np.stack([curve.at(np.asarray(each), **material) for each in mu], axis=-1)
+    expected = (2.0 * mu * values).mean(axis=-1)
+    # 400 middles, and the twelve nodes of the average at grazing, where the curve is steep.
+    assert np.allclose(curve.average(**material), expected, atol=1e-3)

@@ -24,6 +24,7 @@ from mxeon.models.microfacet.roughness import (
     roughness_dual,
 )
 from mxeon.models.nodes.utilities import UTILITIES, node
+from mxeon.shaders.library import load_library
 
 RNG = np.random.default_rng(1)
 SHARES = RNG.random((2, 10_000))
@@ -36,6 +37,8 @@ def test_anisotropy_stretches_along_the_tangent_and_keeps_the_geometric_mean():
     inside = x < 1.0
     assert (x >= y).all()
     assert np.allclose((x * y)[inside], SHARES[0][inside] ** 4, rtol=1e-14, atol=0.0)
+    aspect = 1.0 - np.minimum(SHARES[1], 0.98)  # the longer over the shorter: its inverse
+    assert np.allclose(y[inside], (aspect * x)[inside], rtol=1e-14, atol=0.0)
     assert np.array_equal(roughness_anisotropy(SHARES[0], 0.0), SHARES[0][:, None] ** 2 * [1, 1])
     assert np.array_equal(roughness_anisotropy(0.5, 1.0), roughness_anisotropy(0.5, 0.98))
 
@@ -108,6 +111,13 @@ def test_hair_absorbs_by_its_pigments_and_white_hair_absorbs_nothing():
     for redness, pigment in ((0.0, EUMELANIN), (1.0, PHEOMELANIN)):
         assert deon_hair_absorption_from_melanin(one, redness, *COLORS) == pytest.approx(pigment)
     assert np.array_equal(chiang_hair_absorption_from_color(np.ones(3), 0.3), np.zeros(3))
+
+
+def test_the_pigments_are_those_of_materialx():
+    node = load_library("stock").getNodeDef("ND_deon_hair_absorption_from_melanin")
+    for name, pigment in (("eumelanin_color", EUMELANIN), ("pheomelanin_color", PHEOMELANIN)):
+        default = node.getActiveInput(name).getValue()
+        assert np.exp(-np.array(pigment)) == pytest.approx(list(default), abs=1e-6)
 
 
 @pytest.mark.parametrize("row", UTILITIES, ids=lambda row: row.category)

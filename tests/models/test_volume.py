@@ -177,3 +177,9 @@ def test_the_variants_of_a_medium_are_others(row):
     inputs |= {name: 2.0 * inputs[name] for name in (SECOND, "scattering") if name in inputs}
     value = row.value(inputs)
     assert all(np.abs(other(inputs) - value).max() > 1e-3 for _, other in row.variants)
+
+
+def test_the_extinction_is_the_logarithm_of_what_passes_a_meter():
+    sigma_a, sigma_s = np.random.default_rng(1).random((2, 100, 3))
+    passed = volume.transmittance(sigma_a, sigma_s, METER)
+    assert np.allclose(volume.extinction(sigma_a, sigma_s), -np.log(passed), rtol=ROUNDING, atol=0)

@@ -19,7 +19,7 @@ from mxeon.conformance.nodes.bsdf import (
     SHEEN,
 )
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED
-from mxeon.conformance.samples.measurement import absolute, scaled
+from mxeon.conformance.samples.measurement import absolute, mean_error, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 
 LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
@@ -146,6 +146,13 @@ RINGS = Tolerance(
     absolute,
     "eight circles for each of the two exponentials of the profile, against their integral: 1.8e-2 at "
     "most, away from the light, at a mean free path of a fifth of the sphere's radius; rounded up",
+)
+RINGS_MEAN = Tolerance(
+    0.005,
+    "pi f cos, mean",
+    mean_error,
+    "the errors of eight circles change their sign over a sphere: their mean is 2.2e-3 at most; twice "
+    "that, rounded up",
 )
 COMBINED_VALUE = Tolerance(
     rounded_up(2 * ZELTNER_VALUE.value + CLOSED_ALBEDO.value),

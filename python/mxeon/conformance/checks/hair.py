@@ -21,6 +21,7 @@ CLAIMS = {
     "tilted_lobes": "R and TT are right for every tilt of the cuticle.",
     "wide_lobes": "R and TT are right where they are wider than a roughness of 1.",
     "straight_views": "R and TT are right for a view along the normal.",
+    "low_index": "R and TT are right for an index below 1, total reflection included.",
 }
 
 

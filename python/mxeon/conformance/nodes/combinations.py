@@ -8,7 +8,14 @@ from mxeon.conformance.nodes.bsdf import COMBINED, NESTED, BsdfSubject
 from mxeon.conformance.nodes.ports import Port, color
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.models.nodes import combinations
-from mxeon.models.nodes.combinations import AMOUNT, AMOUNT_ABOVE, COMBINATIONS, FACTOR, ROUGHNESS
+from mxeon.models.nodes.combinations import (
+    AMOUNT,
+    AMOUNT_ABOVE,
+    COLORS,
+    COMBINATIONS,
+    FACTOR,
+    ROUGHNESS,
+)
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 
 
@@ -39,6 +46,7 @@ NODES = {  # XML of each row
     "mix_layer": SUM
     + _node("layer", "layered", top="sum", base="base")
     + _node("mix", value=HALF, fg="layered", bg="top"),
+    "layer_colored": SUM + _node("layer", top="sum", base="base"),
 }
 TITLES = {
     "multiply_float": "multiply, in2 float",
@@ -47,6 +55,7 @@ TITLES = {
     "mix_sum": "mix, of a sum",
     "layer_sum": "layer, under a mix of a sum",
     "mix_layer": "mix, of a layer under a sum",
+    "layer_colored": "layer, under a colored sum",
 }
 SINGLE = ("multiply_float", "multiply_color3")  # rows of `top` alone
 COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
@@ -67,7 +76,8 @@ class CombinedSubject(BsdfSubject):
         rough = (Port(name, low=LEAST_SHEEN, change=0.4) for name in ROUGHNESS)
         shares = (Port(name, change=0.3) for name in (AMOUNT, AMOUNT_ABOVE))
         factor = color(FACTOR, edges=()) if self._colored else Port(FACTOR, change=0.3)
-        ports = {port.name: port for port in (*rough, *shares, factor)}
+        colors = (color(name, edges=()) for name in COLORS)
+        ports = {port.name: port for port in (*rough, *shares, *colors, factor)}
         return tuple(ports[name] for name in self.row.inputs)
 
     @property

@@ -28,6 +28,8 @@ class Region:
         Which lobe is in which channel.
     tilt : float
         Largest distance of `cuticle_angle` from 1/2.
+    ior : (float, float) or None
+        Ends of the index; None for those of any pair.
     form : str
         Title of the form of the model that shaders have in its place there; "" if there is none.
     """
@@ -37,6 +39,7 @@ class Region:
     scales: tuple[float, float]
     tints: dict[str, Any]
     tilt: float = 0.05
+    ior: tuple[float, float] | None = None
     form: str = ""
 
 
@@ -47,4 +50,5 @@ REGIONS = {
     "tilted_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.5, form=BESSEL),
     "wide_lobes": Region(SLANTED, (1.0, 100.0), (1.0, 10.0), APART, form=CLAMPED),
     "straight_views": Region((0.0, STRAIGHT), (0.2, 1.0), (0.05, 0.2), APART),
+    "low_index": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), APART, ior=(0.6, 0.95)),
 }

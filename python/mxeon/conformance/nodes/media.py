@@ -2,7 +2,7 @@
 """Subjects and probes of the VDF nodes: a medium below a surface that lets light through."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar
 
@@ -16,7 +16,8 @@ from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 
-LARGEST = 4.0  # coefficient, 1/m
+LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
+LARGEST_FACTOR = 3.0  # of a multiple
 INTERFACE = """  <dielectric_bsdf name="top" type="BSDF">
     <input name="weight" type="float" value="1.0" />
     <input name="scatter_mode" type="string" value="T" />
@@ -75,9 +76,9 @@ class MediumSubject:
     def ports(self) -> tuple[Port, ...]:
         """The inputs that its transmittance depends on, by path."""
         factor = (
-            color(FACTOR, edges=())
+            replace(color(FACTOR, edges=()), high=LARGEST_FACTOR)
             if self.row.name.endswith("_color3")
-            else Port(FACTOR, change=0.3)
+            else Port(FACTOR, high=LARGEST_FACTOR, change=0.3)
         )
         others = {AMOUNT: Port(AMOUNT, change=0.3), FACTOR: factor}
         return tuple(others.get(name, _coefficient(name)) for name in self.row.inputs)
@@ -109,8 +110,17 @@ class MediumSubject:
         return document_text(INTERFACE + "".join(media) + layer + SURFACE)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random coefficients, shares and factors, float32 numbers."""
-        return draw(rng, count, self.ports)
+        """Random coefficients, of which an eighth is 0, shares and factors, float32 numbers.
+
+        The text gives the anisotropy of a medium no part in what passes.
+        """
+        inputs = draw(rng, count, self.ports)
+        for port in self.ports:
+            if port.kind == "vector3":
+                inputs[port.name][::8] = 0.0
+        if not self.combined and len(self.inputs) > 1:
+            inputs |= draw(rng, count, [Port("anisotropy", low=-0.9, high=0.9)])
+        return inputs
 
     def expected(self, batch: Batch) -> Array:
         """Transmittance, (N, 3)."""
@@ -124,8 +134,8 @@ class MediumSubject:
 
 
 def _coefficient(name: str) -> Port:
-    """A coefficient of a medium."""
-    return Port(name, "vector3", high=LARGEST, change=(0.9, 0.1, 0.6))
+    """A coefficient of a medium, from one that hardly shows to one that hides nearly all."""
+    return Port(name, "vector3", LEAST, LARGEST, change=(0.9, 0.1, 0.6), logarithmic=True)
 
 
 def _transmittance(value: Any, batch: Batch) -> Array:

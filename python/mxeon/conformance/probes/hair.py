@@ -86,6 +86,9 @@ class HairProbe(BsdfProbe):
         wo = rounded([sine, cosine * np.sin(azimuth), cosine * np.cos(azimuth)])
         inputs = self.subject.random_inputs(rng, FEW)
         inputs["cuticle_angle"] = 0.5 + 2.0 * row.tilt * (inputs["cuticle_angle"] - 0.5)
+        if row.ior:
+            least, most = row.ior
+            inputs["ior"] = rounded([np.linspace(least, most, FEW)])[:, 0]
         for name in ROUGHNESSES:
             inputs[name] = rounded(
                 low * (high / low) ** rng.random(FEW) for low, high in (row.variances, row.scales)

@@ -24,7 +24,7 @@ class MediumProbe(NodeProbe, ValueProbe):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """Random views and coefficients, of which an eighth is 0."""
+        """Random views, and random inputs of the node."""
         rng = np.random.default_rng(SEED)
         wo = directions(rng, VIEWS)
         inputs = self.subject.random_inputs(rng, VIEWS)

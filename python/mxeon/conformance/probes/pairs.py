@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 TURNED = 1 << 12  # pairs in frames of their own
+LEAN = 0.3  # slope of their tangents
 
 Draw: TypeAlias = Callable[[np.random.Generator, int], dict[str, Array]]
 
@@ -74,14 +75,20 @@ class PairProbe(LobeProbe):
 
     @cached_property
     def turned(self) -> Batch:
-        """TURNED pairs in frames of their own; half of the normals face away from the viewer."""
+        """TURNED pairs in frames of their own.
+
+        Half of the normals face away from the viewer. Tangents lean out of the surface by up to LEAN,
+        as those of a geometry do where a picture turns the normal.
+        """
         rng = np.random.default_rng(SEED)
         frames = turned_frames(rng, TURNED)
         count = len(frames)
         wo, wi = turned_directions(rng, count), turned_directions(rng, count)
         facing = np.where(np.arange(count) % 2, 1.0, -1.0)[:, np.newaxis]
         normal = facing * rounded(frames[:, :, 2].T)
-        axes = {"normal": normal, "tangent": rounded(frames[:, :, 0].T)}
+        lean = LEAN * np.linspace(-1.0, 1.0, count)[:, np.newaxis]
+        tangent = frames[:, :, 0] + lean * frames[:, :, 2]
+        axes = {"normal": normal, "tangent": rounded(tangent.T)}
         inputs = {**self.subject.random_inputs(rng, count), **axes}
         return Batch(wo, wi, inputs, frame=frames)
 

@@ -28,7 +28,7 @@ LEAST_TURNED = 0.1  # roughness of microfacets in turned frames
 POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
 TINY = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel
 SMOOTH = (0.0, 1e-6, 1e-3, 1.0)  # roughness, in units of the largest
-WEIGHTS = (-0.5, 0.0, 1e-3, 0.01, 0.5)
+WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
 OCCLUSIONS = (0.0, 1e-3, 0.5)
 
 

@@ -8,6 +8,7 @@ from mxeon.conformance.nodes.diffuse import DiffuseSubject
 from mxeon.conformance.results import Result
 from mxeon.conformance.text.closures import check_closures
 from mxeon.conformance.text.definitions import check_definitions
+from mxeon.conformance.text.entries import check_entries
 from mxeon.conformance.text.languages import check_languages
 from mxeon.conformance.text.sources import check_calls, check_sources
 
@@ -32,5 +33,6 @@ def check_texts(subjects: Iterable[DiffuseSubject], library: str) -> tuple[Resul
         *check_sources(subjects, library),
         *check_closures(subjects, library),
         *check_languages(library),
+        *check_entries(library),
         *check_calls(BSDFS, library),
     )

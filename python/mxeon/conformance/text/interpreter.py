@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -52,10 +53,13 @@ SIGNS: Mapping[str, Callable[[Array, Array], Any]] = {
 MATHEMATICS: Mapping[str, Callable[..., Any]] = {
     "abs": np.abs,
     "clamp": np.clip,
+    "cos": np.cos,
+    "dot": lambda a, b: np.sum(a * b, axis=1, keepdims=True),
     "max": np.maximum,
     "min": np.minimum,
     "mix": lambda a, b, t: a + (b - a) * t,
     "pow": np.power,
+    "radians": np.radians,
     "sqrt": np.sqrt,
 }
 CONSTANTS = {"math::PI": np.pi, "M_PI": np.pi, "true": 1.0, "false": 0.0}
@@ -90,15 +94,18 @@ class Interpreter:
         Text whose functions and `#define`s may be used.
     closures : mapping of str to callable (dict of str to value) -> tuple of Closure
         Functions of the renderer that give closures, by name.
+    variables : mapping of str to value
+        Globals of the renderer, and its functions without arguments.
     """
 
     def __init__(
         self,
         text: str,
         closures: Mapping[str, Callable[[Mapping[str, Value]], tuple[Closure, ...]]],
+        variables: Mapping[str, Value] = MappingProxyType({}),
     ) -> None:
         self._text, self._functions, self._macros = text, function_table(text), macros(text)
-        self._closures = closures
+        self._closures, self._globals = closures, variables
 
     def value(self, text: str, variables: Mapping[str, Value]) -> Value:
         """Value of the expression that a text is."""
@@ -106,6 +113,8 @@ class Interpreter:
 
     def call(self, name: str, arguments: list[Value]) -> Value:
         """Value of a function of the text: what it returns, or its one output."""
+        if name not in self._functions:
+            raise Unreadable(f"function {name} is not defined")
         function = self._functions[name]
         if len(arguments) > len(function.parameters):
             raise Unreadable(f"{name} takes {len(function.parameters)} arguments")
@@ -167,6 +176,8 @@ class Interpreter:
     def _named(self, name: str, variables: Mapping[str, Value]) -> Value:
         if name in variables:
             return variables[name]
+        if name in self._globals:
+            return self._globals[name]
         if name in CONSTANTS:
             return np.array([[CONSTANTS[name]]])
         if name in self._macros:
@@ -180,6 +191,8 @@ class Interpreter:
             return self._closures[call.name](_labelled(arguments))
         if call.name in self._functions:
             return self.call(call.name, positional)
+        if call.name in self._globals and not positional:
+            return self._globals[call.name]
         if call.name in TRIPLES:
             return _triple(positional)
         word = call.name.removeprefix("math::")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's nodes that combine two lobes: `layer`, `mix`, `add` and `multiply`.
 
-Both lobes are Zeltner sheens of unit color, `top` and `base`, whose values and albedos have closed
-forms; nested rows combine their sum, whose albedo may exceed 1. Inputs go by their paths.
+Both lobes are Zeltner sheens, `top` and `base`, whose values and albedos have closed forms; nested
+rows combine their sum, whose albedo may exceed 1. Inputs go by their paths. Colors are 1 where an
+evaluation sets none.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
 
 ROUGHNESS = ("top/roughness", "base/roughness")
+COLORS = ("top/color", "base/color")
 AMOUNT = "lobe/mix"  # share of `top`, or of the sum
 AMOUNT_ABOVE = "mixed/mix"  # share of the sum in a mix that is the top of a layer
 FACTOR = "lobe/in2"  # of `top`, or of the sum
@@ -27,11 +29,10 @@ Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
 Finish = Callable[[Bsdf], Bsdf]
 
 
-def _sheen(wo: Array, wi: Array, roughness: Array) -> Bsdf:
-    """A Zeltner sheen of unit color."""
-    left = 1.0 - zeltner_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness)
-    value = zeltner_brdf(wo, wi, np.ones(3), roughness)
-    return Bsdf(value, np.repeat(left[:, np.newaxis], 3, axis=1))
+def _sheen(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
+    """A Zeltner sheen."""
+    albedo = zeltner_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness)
+    return Bsdf(zeltner_brdf(wo, wi, color, roughness), 1.0 - albedo[:, np.newaxis] * color)
 
 
 def _column(inputs: Inputs, name: str) -> Array:
@@ -45,7 +46,10 @@ def _values(
     """Value and albedo of a combination of both lobes."""
 
     def both(wo: Array, wi: Array, inputs: Inputs) -> Bsdf:
-        top, base = (_sheen(wo, wi, inputs[path]) for path in ROUGHNESS)
+        top, base = (
+            _sheen(wo, wi, inputs[rough], inputs.get(color, np.ones(3)))
+            for rough, color in zip(ROUGHNESS, COLORS, strict=True)
+        )
         return combine(top, base, inputs)
 
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
@@ -172,5 +176,18 @@ COMBINATIONS = (
         (AMOUNT,),
         _clamped(_layer_mixed, layered=False),
     ),
+    _combined(
+        "layer_colored",
+        "a layer under a colored sum",
+        "layer",
+        lambda top, base, i: layering.layer(layering.add(top, base), base),
+        COLORS,
+    ),
 )
-NESTED = ("multiply_sum", "mix_sum", "layer_sum", "mix_layer")  # rows of combinations of a sum
+NESTED = (
+    "multiply_sum",
+    "mix_sum",
+    "layer_sum",
+    "mix_layer",
+    "layer_colored",
+)  # rows of combinations of a sum
