@@ -9,8 +9,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from mxeon.shaders.hosts import open_host
-from mxeon.shaders.hosts.base import Host
 
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.table import CHECKS
@@ -23,6 +21,8 @@ from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Metric
 from mxeon.conformance.text.entries import check_entries
 from mxeon.errors import MxeonError
+from mxeon.hosts import open_host
+from mxeon.hosts.base import Host
 
 ROWS = {check.key: check for check in CHECKS}
 SUBJECTS = {subject.title: subject for subject in PBR_SUBJECTS}
