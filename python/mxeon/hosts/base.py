@@ -6,7 +6,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,8 +16,13 @@ from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.scene import Paths, Scene
 
 if TYPE_CHECKING:
+    import MaterialX as mx
+
+    from mxeon.io.files import AnyPath
     from mxeon.shaders.generation import Shader
 
+Array: TypeAlias = NDArray[Any]  # float32 or float64, as a caller or an engine has it
+Inputs: TypeAlias = Mapping[str, ArrayLike]  # of a node by name, for all pairs or for each
 
 # Matrix by which shaders turn a direction before they look it up in an environment, as generated
 # GLSL has it: the middle of a latitude-longitude map faces the viewer.
@@ -109,7 +114,7 @@ class Host(Engine):
 
     def compile(
         self,
-        document: Any,
+        document: AnyPath | mx.Document,
         element: str | None = None,
         *,
         library: str = "eonlib",
@@ -128,7 +133,7 @@ class Host(Engine):
             policy=policy,
         )
 
-    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a shader on it.
 
         Returns
@@ -156,14 +161,14 @@ class Host(Engine):
     def evaluate(
         self,
         shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
         branch: str,
         *,
         output: str = "response",
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values of a shader's BSDF for pairs of directions.
 
         Parameters
@@ -201,7 +206,7 @@ class Host(Engine):
         """
         raise self._unsupported("values for pairs of directions", "gl")
 
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of a function that a text defines.
 
         Parameters
@@ -228,13 +233,13 @@ class Host(Engine):
         """
         raise self._unsupported("calls of a shader function", "gl")
 
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+    def call(self, function: str, *arguments: ArrayLike) -> Array:
         """Values of a shader function of eonlib; see `execute`."""
         from mxeon.shaders import functions
 
         return self.execute(functions.source(self.language), function, *arguments)
 
-    def plane(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def plane(self, shader: Shader, scene: Scene) -> Array:
         """Radiance of a plane with a shader on it.
 
         Returns

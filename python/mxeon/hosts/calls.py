@@ -10,11 +10,12 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import TypeAlias, cast
 
 from numpy.typing import ArrayLike
 
 from mxeon.errors import InputError, InterfaceError
+from mxeon.hosts.base import Inputs
 from mxeon.hosts.surface import Prelude, prelude
 from mxeon.shaders.generation import Input, Shader
 from mxeon.shaders.nodes import types_of
@@ -62,7 +63,7 @@ def bsdf_call(
     shader: Shader,
     wo: ArrayLike,
     wi: ArrayLike,
-    inputs: Mapping[str, Any],
+    inputs: Inputs,
     branch: str,
     output: str = OUTPUTS[0],
 ) -> Call:
@@ -138,17 +139,17 @@ def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, l
     return start, block[: block.index(end) + len(end)], results[-1], arguments
 
 
-def _surface_arguments(shader: Shader, before: Prelude, inputs: Mapping[str, Any]) -> Arguments:
+def _surface_arguments(shader: Shader, before: Prelude, inputs: Inputs) -> Arguments:
     """Types and values of the inputs of a surface shader's function."""
     ports = {port.path.rsplit("/", 1)[-1]: port for port in shader.inputs}
     arguments: Arguments = {}
     for name, kind in before.inputs.items():
-        default = ports[name].value if name in ports else _argument(name, {}, {})[1]
+        default = _default(ports[name]) if name in ports else _argument(name, {}, {})[1]
         arguments[name] = kind, inputs.get(name, default)
     return arguments
 
 
-def _graph_call(shader: Shader, wo: ArrayLike, inputs: Mapping[str, Any]) -> Call:
+def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> Call:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
     # Find the uniform EDF.
     text = shader.stages["pixel"]
@@ -169,6 +170,11 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Mapping[str, Any]) -> Cal
     return Call(statements, color[1], arguments)
 
 
+def _default(port: Input) -> ArrayLike:
+    """The document's value of an input that a closure reads: a number, a color or a vector."""
+    return cast(ArrayLike, port.value)
+
+
 def _ports(shader: Shader) -> dict[str, Input]:
     """Inputs of a shader by name, with the booleans that its text makes of integers."""
     ports = {port.name: port for port in shader.inputs}
@@ -184,9 +190,7 @@ def booleans(text: str) -> list[str]:
     return BOOLEAN.findall(text)
 
 
-def _argument(
-    name: str, ports: Mapping[str, Input], inputs: Mapping[str, Any]
-) -> tuple[str, ArrayLike]:
+def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[str, ArrayLike]:
     """Type and value of a BSDF's argument; one that is no input of the shader is of the surface."""
     port = ports.get(name)
     if port is None:
@@ -199,4 +203,4 @@ def _argument(
         raise InterfaceError(
             f"input {key} must have the type {required} to be evaluated; got {port.type}"
         )
-    return port.type, inputs.get(key, port.value)
+    return port.type, inputs.get(key, _default(port))

@@ -12,11 +12,12 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.hosts.base import Array, Inputs
 from mxeon.hosts.calls import OUTPUTS, booleans, bsdf_call
 from mxeon.shaders.generation import Shader
 
@@ -113,7 +114,7 @@ def bsdf_evaluation(
     shader: Shader,
     wo: ArrayLike,
     wi: ArrayLike,
-    inputs: Mapping[str, Any],
+    inputs: Inputs,
     branch: str,
     output: str = OUTPUTS[0],
 ) -> tuple[str, Columns]:
@@ -168,7 +169,7 @@ def function_evaluation(
     return dialect.version + dialect.prelude + dialect.output + source + main, texels
 
 
-def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
+def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
     """Number of elements, that of the longest argument, and size of the frame for them.
 
     Width and height are even: a change from pixel to pixel is that within a square of 2 x 2.
@@ -178,7 +179,7 @@ def frame(arguments: Mapping[str, NDArray[Any]]) -> tuple[int, tuple[int, int]]:
     return count, (2 * -(-count // (2 * height)), height)
 
 
-def texels(values: NDArray[Any], size: tuple[int, int]) -> NDArray[np.float32]:
+def texels(values: Array, size: tuple[int, int]) -> NDArray[np.float32]:
     """Values, a row or layers of them per element or one for all, laid out over a frame of `size`."""
     width, height = size
     layers = values[:, np.newaxis] if values.ndim == 2 else values  # one above the other

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import Any
 
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mxeon.hosts import base, fragment, raster
+from mxeon.hosts.base import Array, Inputs
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
@@ -28,19 +28,19 @@ class FragmentHost(base.Host):
     def evaluate(
         self,
         shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
         branch: str,
         *,
         output: str = "response",
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values of the shader's own BSDF function; see `base.Host`."""
         pixel, arguments = fragment.bsdf_evaluation(shader, wo, wi, inputs, branch, output)
         return self._evaluate(shader.stages["vertex"], pixel, arguments, irradiance)
 
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of a GLSL function; see `base.Host`."""
         parameters = functions.parameters(source, function)
         pixel, texels = fragment.function_evaluation(
@@ -53,7 +53,7 @@ class FragmentHost(base.Host):
         self,
         vertex: str,
         pixel: str,
-        arguments: Mapping[str, NDArray[Any]],
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        arguments: Mapping[str, Array],
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values of a pixel stage, one pixel per element, as many as the longest argument has."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache, partial, wraps
-from typing import Any, Concatenate, ParamSpec, TypeVar, cast
+from typing import Concatenate, ParamSpec, TypeVar, cast
 
 import moderngl
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment, points, raster
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.fragment_host import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
@@ -78,7 +78,7 @@ class Host(FragmentHost):
         return Identity(self.name, info["GL_VERSION"], info["GL_RENDERER"])
 
     @_current
-    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the sphere; see `mxeon.hosts.base.Host`."""
         self.refuse_paths(scene)
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
@@ -93,7 +93,7 @@ class Host(FragmentHost):
     def accumulate(
         self,
         pixel: str,
-        uniforms: Mapping[str, Any],
+        uniforms: Mapping[str, object],
         size: tuple[int, int],
         passes: Iterable[int],
     ) -> NDArray[np.float32]:
@@ -149,9 +149,9 @@ class Host(FragmentHost):
         self,
         vertex: str,
         pixel: str,
-        arguments: Mapping[str, NDArray[Any]],
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        arguments: Mapping[str, Array],
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
@@ -166,7 +166,7 @@ class Host(FragmentHost):
         program: moderngl.Program,
         textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
         size: tuple[int, int],
-    ) -> NDArray[Any]:
+    ) -> Array:
         """One frame as float32 (height, width, 3), row 0 at the bottom."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
@@ -180,7 +180,7 @@ class Host(FragmentHost):
         return image.reshape(size[1], size[0], 3)
 
     def _textures(
-        self, program: moderngl.Program, texels: Mapping[str, NDArray[Any]]
+        self, program: moderngl.Program, texels: Mapping[str, Array]
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
         """Textures of the samplers that a program has."""
         return {
@@ -189,7 +189,7 @@ class Host(FragmentHost):
             if program.get(name, None)
         }
 
-    def _texture(self, texels: NDArray[Any], mipmaps: bool) -> moderngl.Texture:
+    def _texture(self, texels: Array, mipmaps: bool) -> moderngl.Texture:
         height, width, components = texels.shape
         data = np.ascontiguousarray(texels, dtype=np.float32)
         texture = self._context.texture((width, height), components, data, dtype="f4")
@@ -222,7 +222,7 @@ def _points(
 
 
 def _buffers(
-    context: moderngl.Context, program: moderngl.Program, vertices: Mapping[str, NDArray[Any]]
+    context: moderngl.Context, program: moderngl.Program, vertices: Mapping[str, Array]
 ) -> list[tuple[moderngl.Buffer, str, str]]:
     """Buffers of the attributes that a program has."""
     return [
@@ -232,7 +232,7 @@ def _buffers(
     ]
 
 
-def _set(program: moderngl.Program, values: Mapping[str, Any]) -> None:
+def _set(program: moderngl.Program, values: Mapping[str, object]) -> None:
     """Set the uniforms that the program has."""
     for name, value in values.items():
         if member := program.get(name, None):

@@ -14,9 +14,11 @@ from pathlib import Path
 from signal import Signals
 from subprocess import PIPE, Popen
 from threading import Timer
-from typing import Any
+from typing import TypeAlias
 
 from mxeon.errors import NotRun
+
+Reply: TypeAlias = dict[str, str]  # of a renderer's process
 
 
 class Worker:
@@ -72,7 +74,7 @@ class Worker:
             )
         self.version = self._reply()["version"]
 
-    def ask(self, **request: Any) -> dict[str, Any]:
+    def ask(self, **request: object) -> Reply:
         """The reply to a request.
 
         Raises
@@ -87,7 +89,7 @@ class Worker:
             print(json.dumps(request), file=self._process.stdin, flush=True)
         return self._reply()
 
-    def _reply(self) -> dict[str, Any]:
+    def _reply(self) -> Reply:
         assert self._process and self._process.stdout
         # Read one line within the limit.
         begin = time.monotonic()
@@ -97,7 +99,7 @@ class Worker:
         killer.cancel()
         # Return a whole answer.
         if line.endswith("}\n"):
-            reply: dict[str, Any] = json.loads(line)
+            reply: Reply = json.loads(line)
             return reply
         # Say how the process ended.
         if line:  # an answer cut short: the process is on its way out

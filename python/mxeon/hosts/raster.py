@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mxeon.hosts.base import Array
 from mxeon.hosts.textures import irradiance, read_latlong, read_texture
-from mxeon.shaders.document.values import members
+from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.scene import Scene, sphere
+
+Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
@@ -42,7 +44,7 @@ def approximations(shader: Shader) -> tuple[str, ...]:
     return tuple(IN_PLACE[kind] for kind in inner_lobes(shader))
 
 
-def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
+def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
     """Texels by sampler: images of a shader's document and the environment, row 0 first in v."""
     radiance = read_latlong(scene.environment)
     images = {
@@ -53,36 +55,36 @@ def textures(shader: Shader, scene: Scene) -> dict[str, NDArray[Any]]:
     return images | {"u_envRadiance": radiance, "u_envIrradiance": irradiance(radiance)}
 
 
-def environment(irradiance: NDArray[Any] | None) -> dict[str, NDArray[Any]]:
+def environment(irradiance: Array | None) -> dict[str, Array]:
     """Texels of the environment of an evaluation; see `mxeon.hosts.base.Host.evaluate`."""
     return dict.fromkeys(
         ("u_envRadiance", "u_envIrradiance"), WHITE if irradiance is None else irradiance
     )
 
 
-def inputs(shader: Shader) -> dict[str, Any]:
+def inputs(shader: Shader) -> Uniforms:
     """Values of the uniforms that carry a shader's inputs, but for its images.
 
     A matrix is a flat tuple, whose rows are the columns of the uniform; each member of a structure
     is a uniform of its own.
     """
-    ports: list[tuple[str, str, Any]] = [
+    ports: list[tuple[str, str, Plain]] = [
         (port.name, port.type, port.value) for port in shader.inputs
     ]
-    uniforms: dict[str, Any] = {}
+    uniforms: Uniforms = {}
     while ports:
         name, kind, value = ports.pop()
         if parts := members(kind, shader.document):
-            values = zip(parts, value or (), strict=False)
+            values = zip(parts, value if isinstance(value, tuple) else (), strict=False)
             ports += [(f"{name}.{part}", inner, member) for (part, inner), member in values]
         elif value is not None and not isinstance(value, str):
             uniforms[name] = value
     return uniforms
 
 
-def light(scene: Scene) -> dict[str, Any]:
+def light(scene: Scene) -> Uniforms:
     """Values of the uniforms of the viewer and the distant light."""
-    values: dict[str, Any] = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE)}
+    values: Uniforms = {"u_viewPosition": (0.0, 0.0, VIEW_DISTANCE)}
     values |= DARK if scene.environment is None else PICTURE
     values["u_numActiveLightSources"] = 0  # or the program keeps the last scene's
     if scene.light is not None:
@@ -96,6 +98,6 @@ def light(scene: Scene) -> dict[str, Any]:
     return values
 
 
-def picture(image: NDArray[Any], size: int) -> NDArray[Any]:
+def picture(image: Array, size: int) -> Array:
     """Picture of a frame whose row 0 is at the bottom: 0 off the sphere, row 0 at the top."""
     return np.where(sphere(size).mask[..., None], image[::-1], np.float32(0.0))

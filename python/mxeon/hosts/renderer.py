@@ -4,11 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-from numpy.typing import NDArray
-
-from mxeon.hosts.base import Engine
+from mxeon.hosts.base import Array, Engine
 from mxeon.shaders.scene import Scene
 
 
@@ -20,9 +17,7 @@ class RendererHost(Engine):
     raises `Unsupported`. It reads no document.
     """
 
-    def node(
-        self, title: str, color: Sequence[float], roughness: float, scene: Scene
-    ) -> NDArray[Any]:
+    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
         """Picture of the unit sphere, or of the polyhedron, with a node of the renderer's own on it.
 
         Parameters
@@ -53,11 +48,11 @@ class RendererHost(Engine):
     def pairs(
         self,
         title: str,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        color: NDArray[Any],
-        roughness: NDArray[Any],
-    ) -> NDArray[Any]:
+        wo: Array,
+        wi: Array,
+        color: Array,
+        roughness: Array,
+    ) -> Array:
         """Values of a node of the renderer's own for pairs of directions.
 
         Parameters
@@ -79,7 +74,7 @@ class RendererHost(Engine):
         """
         raise self._unsupported("values of its own nodes", "mitsuba")
 
-    def sample(self, wo: NDArray[Any], u: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+    def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
         """Directions to the light that the renderer draws for EON.
 
         Parameters
@@ -101,6 +96,6 @@ class RendererHost(Engine):
         """
         raise self._unsupported("sampling of its own", "three-gpu-pathtracer")
 
-    def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+    def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
         """Density in solid angle of the directions that `sample` draws, (N,); see there."""
         raise self._unsupported("density of its own", "three-gpu-pathtracer")

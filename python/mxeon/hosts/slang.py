@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import base, calls, fragment, raster
-from mxeon.hosts.base import TURN, Identity
+from mxeon.hosts.base import TURN, Array, Identity, Inputs
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
@@ -24,6 +24,8 @@ try:
     import slangpy
 except ImportError:
     slangpy = None
+
+Resource: TypeAlias = Any  # an object of slangpy, whose types are known where it is installed
 
 ENTRY = "mxeon_main"
 THREADS = 64  # in a group
@@ -98,7 +100,7 @@ class Host(base.Host):
         slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
         # Take the first device that fills a texture.
         for device in DEVICES:
-            self._kernels: dict[str, Any] = {}
+            self._kernels: dict[str, Resource] = {}
             self._names = itertools.count()
             try:
                 self._device = slangpy.Device(type=slangpy.DeviceType[device])
@@ -116,14 +118,14 @@ class Host(base.Host):
     def evaluate(
         self,
         shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
         branch: str,
         *,
         output: str = "response",
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values of the shader's own BSDF function; see `mxeon.hosts.base.Host`."""
         if "subsurface_bsdf(closureData" in shader.stages["pixel"]:
             raise NotRun(
@@ -136,7 +138,7 @@ class Host(base.Host):
         environment = self._environment(irradiance)
         return self._evaluate(shader.stages["pixel"], call.arguments, body, environment)
 
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of a GLSL function compiled as Slang; see `mxeon.hosts.base.Host`."""
         parameters = functions.parameters(source, function)
         values = {
@@ -152,10 +154,10 @@ class Host(base.Host):
     def _evaluate(
         self,
         text: str,
-        arguments: Mapping[str, tuple[str, Any]],
+        arguments: calls.Arguments,
         body: Sequence[str],
-        uniforms: Mapping[str, Any],
-    ) -> NDArray[Any]:
+        uniforms: Mapping[str, Resource],
+    ) -> Array:
         """Values, one thread per element, as many as the longest argument has."""
         rows = fragment.columns(arguments)
         count = max(map(len, rows.values()))
@@ -173,7 +175,7 @@ class Host(base.Host):
         result: NDArray[np.float32] = output.to_numpy().view(np.float32).reshape(count, 3)
         return result
 
-    def _kernel(self, text: str) -> Any:
+    def _kernel(self, text: str) -> Resource:
         """Kernel of a text, compiled once."""
         if text not in self._kernels:
             try:
@@ -185,12 +187,12 @@ class Host(base.Host):
                 raise ShaderError(f"slang: {str(error).strip()}") from None
         return self._kernels[text]
 
-    def _buffer(self, rows: NDArray[Any], count: int) -> Any:
+    def _buffer(self, rows: Array, count: int) -> Resource:
         data = np.array(np.broadcast_to(rows, (count, rows.shape[1])), order="C")
         usage = slangpy.BufferUsage.shader_resource
         return self._device.create_buffer(data=data, struct_size=4, usage=usage)
 
-    def _texture(self, texels: NDArray[Any]) -> Any:
+    def _texture(self, texels: Array) -> Resource:
         """A texture of float32 texels (height, width, 3)."""
         height, width, _ = texels.shape
         texture = self._device.create_texture(
@@ -205,7 +207,7 @@ class Host(base.Host):
         self._kernel(FILL).dispatch(thread_count=[width, height, 1], vars=values)
         return texture
 
-    def _environment(self, irradiance: NDArray[Any] | None) -> dict[str, Any]:
+    def _environment(self, irradiance: Array | None) -> dict[str, Resource]:
         """Uniforms of an environment; a white one where there is no irradiance."""
         sampler = self._device.create_sampler()
         white = {"tex": self._white, "sampler": sampler}

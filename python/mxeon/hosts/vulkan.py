@@ -18,11 +18,10 @@ from tempfile import TemporaryDirectory
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment, raster
-from mxeon.hosts.base import TURN, Identity
+from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.fragment_host import FragmentHost
 
 try:
@@ -61,7 +60,9 @@ WHITE = np.full((1, 1, 4), 255, dtype=np.uint8)
 
 PROGRAMS = 8  # kept: the checks of a node evaluate one shader many times
 
-Bindings: TypeAlias = dict[int, tuple[dict[str, Any], Any]]  # kind and resource by number
+Resource: TypeAlias = Any  # an object of wgpu, whose types are known where it is installed
+Kind: TypeAlias = Mapping[str, object]  # of a resource, as wgpu wants it
+Bindings: TypeAlias = dict[int, tuple[Kind, Resource]]  # by number
 
 
 class Host(FragmentHost):
@@ -88,7 +89,7 @@ class Host(FragmentHost):
                 )
         self._adapter = self._find_adapter()
         self._device = self._adapter.request_device_sync()
-        self._programs: dict[str, tuple[tuple[Any, ...], Any]] = {}
+        self._programs: dict[str, tuple[tuple[Resource, ...], Resource]] = {}
 
     def identity(self) -> Identity:
         """Version and device as the driver names them."""
@@ -96,7 +97,7 @@ class Host(FragmentHost):
         version = f"{self.path}, {info['description']}; wgpu {wgpu.__version__}"
         return Identity(self.name, version, info["device"])
 
-    def _find_adapter(self) -> Any:
+    def _find_adapter(self) -> Resource:
         for adapter in wgpu.gpu.enumerate_adapters_sync():
             if adapter.info["backend_type"] == "Vulkan":
                 return adapter
@@ -112,9 +113,9 @@ class Host(FragmentHost):
         self,
         vertex: str,
         pixel: str,
-        arguments: Mapping[str, NDArray[Any]],
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        arguments: Mapping[str, Array],
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values, one pixel per element, as many as the longest argument has.
 
         The vertex stage is that of the dialect: the pipeline has one block for both stages.
@@ -122,7 +123,7 @@ class Host(FragmentHost):
         environment = {} if irradiance is None else raster.environment(irradiance)
         count, size = fragment.frame(arguments)
         texels = [fragment.texels(rows, size) for rows in arguments.values()]
-        sets = (
+        sets: tuple[Bindings, ...] = (
             self._generated(pixel, environment),
             {0: (SAMPLER, self._device.create_sampler())},
             {number: (UNFILTERED, self._texture(rows)) for number, rows in enumerate(texels)},
@@ -133,7 +134,9 @@ class Host(FragmentHost):
         ]
         return self._draw(pipeline, groups, size)[:count]
 
-    def _program(self, pixel: str, sets: Iterable[Bindings]) -> tuple[tuple[Any, ...], Any]:
+    def _program(
+        self, pixel: str, sets: Iterable[Bindings]
+    ) -> tuple[tuple[Resource, ...], Resource]:
         """Layouts of a text's bindings, and its pipeline: the same whatever the resources."""
         if pixel not in self._programs:
             if len(self._programs) == PROGRAMS:
@@ -142,7 +145,7 @@ class Host(FragmentHost):
             self._programs[pixel] = layouts, self._pipeline(pixel, layouts)
         return self._programs[pixel]
 
-    def _draw(self, pipeline: Any, groups: Iterable[Any], size: tuple[int, int]) -> NDArray[Any]:
+    def _draw(self, pipeline: Resource, groups: Iterable[Resource], size: tuple[int, int]) -> Array:
         """One frame as float32 rows, pixel after pixel."""
         # Prepare the frame.
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.COPY_SRC
@@ -165,7 +168,7 @@ class Host(FragmentHost):
         frame = queue.read_texture({"texture": target}, layout, (*size, 1))
         return np.frombuffer(frame, dtype=np.float32).reshape(-1, 4)[:, :3]
 
-    def _pipeline(self, pixel: str, layouts: Sequence[Any]) -> Any:
+    def _pipeline(self, pixel: str, layouts: Sequence[Resource]) -> Resource:
         position = {"format": "float32x3", "offset": 0, "shader_location": 0}
         return self._device.create_render_pipeline(
             layout=self._device.create_pipeline_layout(bind_group_layouts=layouts),
@@ -177,7 +180,7 @@ class Host(FragmentHost):
             primitive={"topology": "triangle-list"},
         )
 
-    def _stage(self, stage: str, text: str) -> dict[str, Any]:
+    def _stage(self, stage: str, text: str) -> dict[str, Resource]:
         """A stage, "vert" or "frag", of a pipeline."""
         code = self._code(stage, text)
         try:
@@ -194,7 +197,7 @@ class Host(FragmentHost):
         """What wgpu is given for a stage."""
         return _spirv(stage, text)
 
-    def _generated(self, text: str, textures: Mapping[str, NDArray[Any]]) -> Bindings:
+    def _generated(self, text: str, textures: Mapping[str, Array]) -> Bindings:
         """Bindings that generated text declares: textures, white ones unless given, and blocks."""
         halves = {name: texels.astype(np.float16) for name, texels in textures.items()}
         return {
@@ -203,8 +206,8 @@ class Host(FragmentHost):
         }
 
     def _binding(
-        self, declaration: re.Match[str], textures: Mapping[str, NDArray[Any]]
-    ) -> tuple[dict[str, Any], Any]:
+        self, declaration: re.Match[str], textures: Mapping[str, Array]
+    ) -> tuple[Kind, Resource]:
         """Kind and resource of a declaration; a separate texture's name ends in _texture."""
         if declaration["block"] is not None:
             return BLOCK, self._block(declaration["block"])
@@ -213,7 +216,7 @@ class Host(FragmentHost):
         texels = textures.get(declaration["name"].removesuffix("_texture"), WHITE)
         return FILTERED, self._texture(texels)
 
-    def _layout(self, bindings: Bindings) -> Any:
+    def _layout(self, bindings: Bindings) -> Resource:
         """Layout of one set of bindings."""
         kinds = [
             {"binding": number, "visibility": "FRAGMENT", **kind}
@@ -221,14 +224,14 @@ class Host(FragmentHost):
         ]
         return self._device.create_bind_group_layout(entries=kinds)
 
-    def _group(self, layout: Any, bindings: Bindings) -> Any:
+    def _group(self, layout: Resource, bindings: Bindings) -> Resource:
         """Group of one set of bindings."""
         entries = [
             {"binding": number, "resource": resource} for number, (_, resource) in bindings.items()
         ]
         return self._device.create_bind_group(layout=layout, entries=entries)
 
-    def _texture(self, texels: NDArray[Any]) -> Any:
+    def _texture(self, texels: Array) -> Resource:
         """A texture of 8-bit, float16 or float32 texels, of one to four components."""
         height, width, components = texels.shape
         if components == 3:  # there are no textures of three
@@ -241,7 +244,7 @@ class Host(FragmentHost):
         self._device.queue.write_texture({"texture": texture}, texels, layout, size)
         return texture.create_view()
 
-    def _block(self, members: str) -> Any:
+    def _block(self, members: str) -> Resource:
         """A uniform block with the values of UNIFORMS in it, and 0 elsewhere."""
         data = _std140(members)
         return self._device.create_buffer_with_data(data=data, usage="UNIFORM")

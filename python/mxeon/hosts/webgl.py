@@ -18,14 +18,14 @@ from contextlib import ExitStack
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment, points, raster
-from mxeon.hosts.base import TURN, Identity
+from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.fragment_host import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
@@ -34,6 +34,10 @@ try:
     from playwright import sync_api
 except ImportError:
     sync_api = None
+
+Page: TypeAlias = Any  # and what it asks for, of Playwright, whose types mypy skips
+Answer: TypeAlias = dict[str, str]  # of a page
+Layout: TypeAlias = dict[str, object]  # shape and offset in a file, by name
 
 PROGRAM = "MXEON_CHROMIUM"  # environment variable that names the browser
 FLAGS = (
@@ -85,7 +89,7 @@ class Host(FragmentHost):
         self._program = program()
         # Prepare the page, which the first request opens.
         self._limit = 1000.0 * limit
-        self._page: Any = None
+        self._page: Page = None
         self._points = lru_cache(maxsize=POINTS)(self._capture)
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
@@ -101,7 +105,7 @@ class Host(FragmentHost):
         answer = self._ask("identify")
         return Identity(self.name, f"Chromium {answer['version']}, WebGL2", answer["device"])
 
-    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the sphere; see `mxeon.hosts.base.Host`."""
         self.refuse_paths(scene)
         captured, size = points.outputs(shader), scene.size
@@ -120,9 +124,9 @@ class Host(FragmentHost):
         self,
         vertex: str,
         pixel: str,
-        arguments: Mapping[str, NDArray[Any]],
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        arguments: Mapping[str, Array],
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
         textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
@@ -134,10 +138,10 @@ class Host(FragmentHost):
     def _draw(
         self,
         stages: Mapping[str, str],
-        uniforms: Mapping[str, Any],
-        textures: Mapping[str, NDArray[Any]],
+        uniforms: Mapping[str, object],
+        textures: Mapping[str, Array],
         size: tuple[int, int],
-    ) -> NDArray[Any]:
+    ) -> Array:
         """One frame as float32 (height, width, 3), row 0 at the bottom."""
         job = {**stages, "size": size, "uniforms": uniforms}
         arrays = {"textures": textures, "attributes": raster.TRIANGLE}
@@ -163,8 +167,8 @@ class Host(FragmentHost):
     def _bytes(
         self,
         function: str,
-        job: Mapping[str, Any],
-        arrays: Mapping[str, Mapping[str, NDArray[Any]]],
+        job: Mapping[str, object],
+        arrays: Mapping[str, Mapping[str, Array]],
     ) -> bytes:
         """Bytes that a function of the page makes of a job and arrays."""
         with TemporaryDirectory(prefix="mxeon-webgl-") as folder:
@@ -175,26 +179,22 @@ class Host(FragmentHost):
         return base64.b64decode(answer["bytes"])
 
     def _ask(
-        self, function: str, job: dict[str, Any] | None = None, file: Path | None = None
-    ) -> dict[str, Any]:
+        self, function: str, job: dict[str, object] | None = None, file: Path | None = None
+    ) -> Answer:
         """Answer of a function of the page; a browser that dies or hangs is ended."""
         answer = self._thread.submit(self._answer, function, job, file).result()
         if "failed" in answer:
             raise NotRun(f"webgl: {answer['failed']}")
         return answer
 
-    def _answer(
-        self, function: str, job: dict[str, Any] | None, file: Path | None
-    ) -> dict[str, Any]:
+    def _answer(self, function: str, job: dict[str, object] | None, file: Path | None) -> Answer:
         try:
             if self._page is None:
                 self._start()
             if file is not None:
                 self._page.set_input_files("input", file)
             handle = self._page.wait_for_function(function, arg=job, timeout=self._limit)
-            answer: dict[str, Any] = handle.json_value() | {
-                "version": self._page.context.browser.version
-            }
+            answer: Answer = handle.json_value() | {"version": self._page.context.browser.version}
             return answer
         except sync_api.Error as error:
             self._stop()
@@ -227,15 +227,15 @@ def program(host: str = "webgl") -> str:
     return path
 
 
-def _inputs(shader: Shader) -> dict[str, Any]:
+def _inputs(shader: Shader) -> raster.Uniforms:
     """Values of the uniforms that carry a shader's inputs."""
     names = re.findall(r"^uniform vec2 (\w+_(uv_scale|uv_offset));", shader.stages["pixel"], re.M)
     return {name: IMAGE[kind] for name, kind in names} | raster.inputs(shader)
 
 
-def _write(path: Path, groups: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict[str, Any]:
+def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:
     """Write arrays one after the other; return shapes and offsets in the file by group and name."""
-    layout: dict[str, Any] = {}
+    layout: dict[str, Layout] = {}
     offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():

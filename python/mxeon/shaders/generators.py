@@ -5,7 +5,6 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache, lru_cache
 from importlib import import_module
-from typing import Any
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
@@ -13,7 +12,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from mxeon.shaders.library import load_library
 from mxeon.shaders.targets import CLASSES
 
-GENERATORS: dict[str, Any] = {}
+GENERATORS: dict[str, type[mx_gen.ShaderGenerator]] = {}
 for _target, (_module, _name) in CLASSES.items():
     with suppress(ModuleNotFoundError, AttributeError):
         GENERATORS[_target] = getattr(import_module(f"MaterialX.PyMaterialX{_module}"), _name)

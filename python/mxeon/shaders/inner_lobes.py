@@ -8,7 +8,7 @@ has no effect is left out, and so is a lobe of weight 0; a weight that is comput
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import MaterialX as mx
 
@@ -60,10 +60,10 @@ class _Walk:
     """The nodes of a graph by their paths, and the kinds of lobes among those that were seen."""
 
     def __init__(self) -> None:
-        self._nodes: dict[Path, Any] = {}
+        self._nodes: dict[Path, mx.InterfaceElement] = {}
         self.kinds: set[str] = set()
 
-    def path(self, around: Path, node: Any) -> Path:
+    def path(self, around: Path, node: mx.InterfaceElement) -> Path:
         """Path of a node within another one."""
         path = (*around, node.getNamePath())
         self._nodes[path] = node
@@ -87,7 +87,7 @@ class _Walk:
         sources = (self._source(path, name) for name in self._effective(path, node))
         return tuple(source for source in sources if source)
 
-    def _effective(self, path: Path, node: Any) -> tuple[str, ...]:
+    def _effective(self, path: Path, node: mx.InterfaceElement) -> tuple[str, ...]:
         """Names of the inputs that hand on light."""
         category = node.getCategory()
         if category == "mix":
@@ -97,7 +97,7 @@ class _Walk:
             return ()
         return tuple(port.getName() for port in node.getInputs() if port.getType() in CLOSURES)
 
-    def _resolved(self, path: Path, name: str) -> tuple[Path, Any]:
+    def _resolved(self, path: Path, name: str) -> tuple[Path, mx.Input | None]:
         """The input that a node's input stands for, and the path of its node."""
         while port := _port(self._nodes[path], name):
             if not port.hasInterfaceName() or len(path) < 2:
@@ -127,13 +127,13 @@ class _Walk:
         return float(value) if isinstance(value, (bool, int, float)) else None
 
 
-def _port(node: Any, name: str) -> Any:
+def _port(node: mx.InterfaceElement, name: str) -> mx.Input | None:
     """Input of a node, or else of its nodedef, or None."""
     definition = node.getNodeDef()
     return node.getInput(name) or (definition and definition.getActiveInput(name)) or None
 
 
-def _text(node: Any, name: str) -> str:
+def _text(node: mx.InterfaceElement, name: str) -> str:
     """Text of an input, or of its default."""
     port = _port(node, name)
     return str(port.getValueString()) if port else ""

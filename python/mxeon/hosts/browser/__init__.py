@@ -15,13 +15,13 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
 from mxeon.hosts import webgl
+from mxeon.hosts.webgl import Answer, Page
 from mxeon.shaders.library import data_folder
 
 try:
@@ -123,12 +123,12 @@ class Browser:
         self._program = webgl.program(host)
         self._limit = 1000.0 * limit
         # Prepare the browser, which the first request starts.
-        self._page: Any = None
+        self._page: Page = None
         self._stack = ExitStack()
         self._thread = ThreadPoolExecutor(max_workers=1)
         self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
 
-    def picture(self, job: Mapping[str, Any], size: int) -> NDArray[np.float32]:
+    def picture(self, job: Mapping[str, object], size: int) -> NDArray[np.float32]:
         """Picture of the page's answer to a job, (size, size, 3), row 0 at the top; read-only.
 
         Raises
@@ -138,7 +138,7 @@ class Browser:
         """
         return self._picture(json.dumps(job), size)
 
-    def ask(self, job: Mapping[str, Any]) -> dict[str, Any]:
+    def ask(self, job: Mapping[str, object]) -> Answer:
         """The page's answer to a job, with the version of the browser.
 
         Raises
@@ -159,14 +159,14 @@ class Browser:
         """Picture of the answer to a job in JSON."""
         return pixels(self.ask(json.loads(job)), size)
 
-    def _answer(self, job: dict[str, Any]) -> dict[str, Any]:
+    def _answer(self, job: dict[str, object]) -> Answer:
         try:
             if self._page is None:
                 self._start()
             handle = self._page.wait_for_function(
                 "job => answer(job)", arg=job, timeout=self._limit
             )
-            answer: dict[str, Any] = handle.json_value()
+            answer: Answer = handle.json_value()
             return answer | {"browser": self._page.context.browser.version}
         except sync_api.Error as error:
             self._stop()
@@ -185,7 +185,7 @@ class Browser:
         self._page.goto(ORIGIN)
         self._page.wait_for_function("window.answer")
 
-    def _serve(self, route: Any) -> None:
+    def _serve(self, route: Page) -> None:
         """Answer a request of the page from this machine."""
         # Answer with an asset.
         if route.request.url in self._assets:
@@ -211,7 +211,7 @@ class Browser:
         self._stack.close()
 
 
-def pixels(answer: Mapping[str, Any], size: int) -> NDArray[np.float32]:
+def pixels(answer: Answer, size: int) -> NDArray[np.float32]:
     """Picture of an answer, (size, size, 3), row 0 at the top."""
     values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
     return values.reshape(size, size, 4)[..., :3]

@@ -7,12 +7,9 @@ import base64
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-from numpy.typing import NDArray
 
 from mxeon.hosts import browser
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import Scene
 
@@ -68,9 +65,7 @@ class Host(RendererHost):
         version = f"Babylon.js {self._version}, Chromium {answers[0]['browser']}"
         return Identity(self.name, version, "; ".join(answer["device"] for answer in answers))
 
-    def node(
-        self, title: str, color: Sequence[float], roughness: float, scene: Scene
-    ) -> NDArray[Any]:
+    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
         """Picture of the unit sphere with one of NODES on it; see `RendererHost`."""
         self.refuse_paths(scene)
         backend, model = NODES[title]

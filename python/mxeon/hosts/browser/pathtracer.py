@@ -7,14 +7,13 @@ import base64
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from mxeon.errors import NotRun
 from mxeon.hosts import browser, webgl
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.browser import three
 from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import Scene
@@ -78,11 +77,11 @@ class Host(RendererHost):
     def pairs(
         self,
         title: str,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        color: NDArray[Any],
-        roughness: NDArray[Any],
-    ) -> NDArray[Any]:
+        wo: Array,
+        wi: Array,
+        color: Array,
+        roughness: Array,
+    ) -> Array:
         """f cos(theta_i) by the package's own function; see `RendererHost`."""
         if NODES[title]:
             return self._execute(NODES[title], wo, wi, color, roughness)
@@ -90,20 +89,18 @@ class Host(RendererHost):
         arguments = (wo, wi, color, roughness, scale)
         return self._glsl().execute(self._source(), "diffuse_value", *arguments)
 
-    def node(
-        self, title: str, color: Sequence[float], roughness: float, scene: Scene
-    ) -> NDArray[Any]:
+    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
         """Raise NotRun: no path tracer of the package draws here."""
         raise NotRun(
             f"{self.name}: its path tracers do not draw here: with three 0.187.0 the wavefront "
             "kernels do not compile, and the megakernel ends the software device"
         )
 
-    def density(self, wo: NDArray[Any], wi: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+    def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
         """Density of the directions that `sample` draws; see `RendererHost`."""
         return self._execute("density", wo, wi, np.zeros_like(wo), roughness)[:, 0]
 
-    def sample(self, wo: NDArray[Any], u: NDArray[Any], roughness: NDArray[Any]) -> NDArray[Any]:
+    def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
         """Directions drawn by the package; see `RendererHost`."""
         numbers = np.concatenate([u, np.zeros((len(u), 1))], axis=1)
         return self._execute("sample", wo, numbers, np.zeros_like(wo), roughness)
@@ -114,7 +111,7 @@ class Host(RendererHost):
         if self._webgl:
             self._webgl.close()
 
-    def _execute(self, call: str, *columns: ArrayLike) -> NDArray[Any]:
+    def _execute(self, call: str, *columns: ArrayLike) -> Array:
         """Values of a WGSL function for rows of arguments, (N, 3)."""
         table = np.column_stack([np.asarray(each, np.float32) for each in columns])
         count = len(table)

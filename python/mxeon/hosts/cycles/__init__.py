@@ -8,12 +8,12 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.hosts import base
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.cycles import closures, graphs, tracing
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.process import Worker
@@ -31,6 +31,8 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import inner_lobes
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import FRONT, Scene, sphere
+
+Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 
 # Pictures that are kept: the checks of a node ask for some of them again.
 PICTURES = 64
@@ -100,7 +102,7 @@ class Host(base.Host):
         self.worker.start()
         return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
 
-    def picture(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the unit sphere with a generated OSL shader on it.
 
         Parameters
@@ -141,21 +143,21 @@ class Host(base.Host):
     def evaluate(
         self,
         shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
         branch: str,
         *,
         output: str = "response",
-        irradiance: NDArray[Any] | None = None,
-    ) -> NDArray[Any]:
+        irradiance: Array | None = None,
+    ) -> Array:
         """Values of the shader's graph, the one branch that is none of closures; see `base.Host`."""
         if branch != graphs.BRANCH:
             raise self._unsupported("values for pairs of directions", "gl")
         source, arguments = graphs.graph_function(shader, inputs)
         return self.execute(_with_header(source), graphs.FUNCTION, *arguments)
 
-    def blender_node(self, kind: str, inputs: dict[str, Any], scene: Scene) -> NDArray[Any]:
+    def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
         """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.
 
         Parameters
@@ -179,7 +181,7 @@ class Host(base.Host):
         """
         return self._picture(scene, (), kind=kind, inputs=tuple(inputs.items()))
 
-    def call(self, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+    def call(self, function: str, *arguments: ArrayLike) -> Array:
         """Values of a function of the OSL sources; see `execute`.
 
         Raises
@@ -191,7 +193,7 @@ class Host(base.Host):
         """
         return self.execute(functions.expanded(self._file(function)), function, *arguments)
 
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""
         # Bring the arguments into columns of one length.
         types = [kind for kind, _ in functions.parameters(source, function)]
@@ -251,8 +253,8 @@ class Host(base.Host):
         lobes: tuple[str, ...],
         text: str = "",
         kind: str = "",
-        inputs: tuple[tuple[str, Any], ...] = (),
-    ) -> NDArray[Any]:
+        inputs: tuple[tuple[str, Socket], ...] = (),
+    ) -> Array:
         """Picture of the sphere with an OSL shader or a node of Blender's on it; read-only."""
         frame = tracing.request(scene, lobes)
         with self._folder() as folder:
@@ -276,13 +278,13 @@ class Host(base.Host):
                 return path
         raise InputError(f"function must be defined in {self._sources}; got {function!r}")
 
-    def _render(self, folder: Path, text: str, **frame: Any) -> NDArray[Any]:
+    def _render(self, folder: Path, text: str, **frame: object) -> Array:
         """Picture that the worker renders of the OSL shader `text`."""
         shader = folder / "shader.osl"
         shader.write_text(text)
         return self._request(folder, shader=str(shader), **frame)
 
-    def _request(self, folder: Path, **request: Any) -> NDArray[Any]:
+    def _request(self, folder: Path, **request: object) -> Array:
         """Picture that the worker renders."""
         # Ask the worker for a picture.
         output = folder / "output.exr"

@@ -6,19 +6,19 @@ shader's uniform EDF, and returns its color.
 """
 
 import re
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.errors import InputError
+from mxeon.hosts.base import Inputs
 from mxeon.shaders.generation import Shader
 
 FUNCTION = "mxeon_graph"
 BRANCH = "graph"  # see `mxeon.hosts.base.Host.evaluate`
 
 
-def graph_function(shader: Shader, inputs: Mapping[str, Any]) -> tuple[str, list[Any]]:
+def graph_function(shader: Shader, inputs: Inputs) -> tuple[str, list[ArrayLike]]:
     """Text that defines FUNCTION, and the values of its arguments.
 
     Parameters
@@ -51,7 +51,7 @@ def graph_function(shader: Shader, inputs: Mapping[str, Any]) -> tuple[str, list
     words = set(re.findall(r"\w+", statements + call[1]))
     count = max([np.shape(value)[0] for value in inputs.values() if np.ndim(value)], default=1)
     parameters, locals_ = ["float mxeon_row"], []  # of a graph that reads nothing
-    arguments: list[Any] = [np.zeros(count)]
+    arguments: list[ArrayLike] = [np.zeros(count)]
     for port in shader.inputs:
         if port.name not in words:
             continue

@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
-
-from numpy.typing import NDArray
 
 from mxeon.hosts import cycles
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import Scene
 
@@ -44,12 +41,14 @@ class Host(RendererHost):
         """Name and version; the device is always the CPU."""
         return Identity(self.name, self._cycles.identity().version, "CPU, SVM")
 
-    def node(
-        self, title: str, color: Sequence[float], roughness: float, scene: Scene
-    ) -> NDArray[Any]:
+    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
         """Picture of the unit sphere with one of NODES on it; see `mxeon.hosts.cycles`."""
         kind, color_socket, roughness_socket, fixed = NODES[title]
-        inputs = {color_socket: (*color, 1.0), roughness_socket: roughness, **fixed}
+        inputs: dict[str, cycles.Socket] = {
+            color_socket: (*color, 1.0),
+            roughness_socket: roughness,
+            **fixed,
+        }
         return self._cycles.blender_node(kind, inputs, scene)
 
     def close(self) -> None:

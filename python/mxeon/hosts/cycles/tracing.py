@@ -8,7 +8,8 @@ So a material with lobes below its surface is shown on a mesh.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from pathlib import Path
+from typing import TypedDict
 
 from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.scene import Scene
@@ -21,10 +22,23 @@ INNER_SAMPLES = 64
 # bright with 6 bounces as with 16 in every digit of float32; with 2 it is darker by 1e-3.
 SURFACE_BOUNCES, REFRACTED_BOUNCES = 1, 8
 
+
+class Frame(TypedDict):
+    """Parts of a scene that the worker needs; see `request`."""
+
+    size: int
+    samples: int
+    bounces: int
+    radius: float
+    light: tuple[float, float, float] | None
+    environment: float | Path | None
+    mesh: bool
+
+
 FEWEST_SAMPLES = 16  # below the surface, less is noise rather than a picture
 
 
-def request(scene: Scene, lobes: Sequence[str]) -> dict[str, Any]:
+def request(scene: Scene, lobes: Sequence[str]) -> Frame:
     """Parts of a scene that the worker needs.
 
     Parameters

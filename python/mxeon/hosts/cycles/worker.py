@@ -13,7 +13,7 @@ import math
 import os
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 # Blender prints on standard output as soon as it is imported: that goes to standard error.
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
@@ -25,6 +25,9 @@ import _cycles  # noqa: E402
 import bmesh  # noqa: E402
 from mathutils import Vector  # noqa: E402
 
+Blender: TypeAlias = Any  # an object of bpy, which has no types
+Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
+
 # Script nodes read their sockets with `oslquery`, which lies in Blender's own Python folder.
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
 sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
@@ -34,7 +37,7 @@ SUBDIVISIONS = 7  # 81,920 triangles, whose edges lie within 1e-4 of the sphere
 KINDS = ("objects", "cameras", "meshes", "pointclouds", "materials", "lights", "worlds", "images")
 
 
-def unit_scene(distance: float) -> Any:
+def unit_scene(distance: float) -> Blender:
     """An empty scene, the square [-1, 1]^2 seen orthographically from z = `distance`.
 
     What an earlier request left is removed: loading Blender's settings anew takes as long as a
@@ -51,7 +54,7 @@ def unit_scene(distance: float) -> Any:
     return scene
 
 
-def set_output(scene: Any, path: str, size: int) -> None:
+def set_output(scene: Blender, path: str, size: int) -> None:
     """Make `scene` render to a linear float32 RGB file, black where nothing is hit."""
     render = scene.render
     render.filepath = path
@@ -63,7 +66,7 @@ def set_output(scene: Any, path: str, size: int) -> None:
     render.image_settings.exr_codec = "NONE"
 
 
-def set_sampling(scene: Any, samples: int, bounces: int, osl: bool) -> None:
+def set_sampling(scene: Blender, samples: int, bounces: int, osl: bool) -> None:
     """Make `scene` render with Cycles, with or without OSL, every sample at its pixel's center."""
     # Choose the engine and its shading system.
     scene.render.engine = "CYCLES"
@@ -84,7 +87,7 @@ def set_sampling(scene: Any, samples: int, bounces: int, osl: bool) -> None:
     cycles.filter_width = 0.01
 
 
-def add_sphere(scene: Any, radius: float, material: Any) -> None:
+def add_sphere(scene: Blender, radius: float, material: Blender) -> None:
     """Add an exact sphere around the origin, a point cloud of one point, with `material` on it."""
     mesh = bpy.data.meshes.new("sphere")
     mesh.from_pydata([(0.0, 0.0, 0.0)], [], [])
@@ -98,7 +101,7 @@ def add_sphere(scene: Any, radius: float, material: Any) -> None:
     points.materials.append(material)
 
 
-def add_mesh(scene: Any, radius: float, material: Any) -> None:
+def add_mesh(scene: Blender, radius: float, material: Blender) -> None:
     """Add a sphere of smooth triangles around the origin, with `material` on it."""
     mesh, builder = bpy.data.meshes.new("sphere"), bmesh.new()
     bmesh.ops.create_icosphere(builder, subdivisions=SUBDIVISIONS, radius=radius)
@@ -109,7 +112,7 @@ def add_mesh(scene: Any, radius: float, material: Any) -> None:
     scene.collection.objects.link(bpy.data.objects.new("sphere", mesh))
 
 
-def script_material(shader: str) -> Any:
+def script_material(shader: str) -> Blender:
     """A material whose surface is the output of the compiled OSL file `shader`."""
     material, script = surface_material("ShaderNodeScript")
     script.mode = "EXTERNAL"
@@ -118,7 +121,7 @@ def script_material(shader: str) -> Any:
     return material
 
 
-def native_material(kind: str, inputs: dict[str, Any]) -> Any:
+def native_material(kind: str, inputs: Values) -> Blender:
     """A material whose surface is a node of Blender's, with some of its inputs set."""
     material, node = surface_material(kind)
     for name, value in inputs.items():
@@ -127,7 +130,7 @@ def native_material(kind: str, inputs: dict[str, Any]) -> Any:
     return material
 
 
-def surface_material(kind: str) -> tuple[Any, Any]:
+def surface_material(kind: str) -> tuple[Blender, Blender]:
     """A new material that holds one node of a kind, and that node."""
     material = bpy.data.materials.new("material")
     nodes = material.node_tree.nodes
@@ -135,13 +138,13 @@ def surface_material(kind: str) -> tuple[Any, Any]:
     return material, nodes.new(kind)
 
 
-def connect(material: Any, node: Any) -> None:
+def connect(material: Blender, node: Blender) -> None:
     """Make the first output of a node the surface of its material."""
     surface = material.node_tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
     material.node_tree.links.new(node.outputs[0], surface)
 
 
-def add_light(scene: Any, direction: tuple[float, float, float]) -> None:
+def add_light(scene: Blender, direction: tuple[float, float, float]) -> None:
     """Add a distant light of irradiance pi that shines from `direction`."""
     sun = bpy.data.lights.new("light", "SUN")
     sun.angle = 0.0
@@ -152,7 +155,7 @@ def add_light(scene: Any, direction: tuple[float, float, float]) -> None:
     scene.collection.objects.link(light)
 
 
-def add_environment(scene: Any, radiance: float) -> None:
+def add_environment(scene: Blender, radiance: float) -> None:
     """Surround the scene by a uniform `radiance`."""
     world = bpy.data.worlds.new("environment")
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
@@ -170,7 +173,7 @@ def render(
     environment: float | None,
     mesh: bool,
     shader: str | None = None,
-    native: dict[str, Any] | None = None,
+    native: Values | None = None,
 ) -> dict[str, str]:
     """Render the OSL file `shader`, or a node of Blender's, on a sphere; return the reply."""
     # Compile the shader.

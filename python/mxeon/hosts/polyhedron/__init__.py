@@ -9,21 +9,22 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, ClassVar
+from typing import ClassVar, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mxeon.errors import NotRun
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.process import Worker
 from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.facets import polyhedron
 from mxeon.shaders.scene import Scene
+
+Material: TypeAlias = Mapping[str, str | float]  # properties of a renderer's material
 
 PICTURES = 64  # that are kept: the checks of a node ask for some of them again
 MESH = "polyhedron.npz"
@@ -46,7 +47,7 @@ class PolyhedronHost(RendererHost):
         Samples per pixel under an environment, 1 being enough under a distant light.
     """
 
-    nodes: ClassVar[dict[str, dict[str, Any]]]
+    nodes: ClassVar[Mapping[str, Material]]
     samples: ClassVar[int]
     device: ClassVar[str]
 
@@ -76,9 +77,7 @@ class PolyhedronHost(RendererHost):
             raise
         return Identity(self.name, f"{self.name} {self.worker.version}", self.device)
 
-    def node(
-        self, title: str, color: Sequence[float], roughness: float, scene: Scene
-    ) -> NDArray[Any]:
+    def node(self, title: str, color: Sequence[float], roughness: float, scene: Scene) -> Array:
         """Picture of the polyhedron with one of the renderer's nodes on it."""
         self.refuse_paths(scene)
         return self._picture(title, tuple(map(float, color)), float(roughness), scene)
@@ -88,7 +87,9 @@ class PolyhedronHost(RendererHost):
         self.worker.close()
         self._temporary.cleanup()
 
-    def _material(self, title: str, color: Any, roughness: Any) -> dict[str, Any]:
+    def _material(
+        self, title: str, color: Sequence[float] | str, roughness: float | str
+    ) -> dict[str, object]:
         """Properties of a material with these inputs."""
         inputs = {"{color}": color, "{roughness}": roughness}
         return {
@@ -98,7 +99,7 @@ class PolyhedronHost(RendererHost):
 
     def _rendered(
         self, title: str, color: tuple[float, ...], roughness: float, scene: Scene
-    ) -> NDArray[Any]:
+    ) -> Array:
         """Picture of a node; read-only."""
         picture = self._ask(
             material=self._material(title, color, roughness),
@@ -111,13 +112,13 @@ class PolyhedronHost(RendererHost):
         picture.flags.writeable = False  # shared by all callers
         return picture
 
-    def _ask(self, **request: Any) -> NDArray[Any]:
+    def _ask(self, **request: object) -> Array:
         """The array that the worker makes of a request."""
         self.identity()
         output = self._folder / "output.npy"
         output.unlink(missing_ok=True)
         self.worker.ask(output=str(output), **request)
-        values: NDArray[Any] = np.load(output, allow_pickle=False)
+        values: Array = np.load(output, allow_pickle=False)
         return values
 
     def _interpreter(self) -> Path:

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from mxeon.hosts.cycles.process import interpreter
-from mxeon.hosts.polyhedron import PolyhedronHost
+from mxeon.hosts.polyhedron import Material, PolyhedronHost
 
 
 class Host(PolyhedronHost):
@@ -22,7 +23,7 @@ class Host(PolyhedronHost):
     name = "eevee"
     samples = 1  # it has no noise
     device = "OpenGL"
-    nodes: ClassVar[dict[str, dict[str, Any]]] = {
+    nodes: ClassVar[Mapping[str, Material]] = {
         "Diffuse BSDF": {
             "kind": "ShaderNodeBsdfDiffuse",
             "Color": "{color}",

@@ -11,7 +11,7 @@ import json
 import math
 import os
 import sys
-from typing import Any
+from typing import Any, TypeAlias
 
 # Blender prints on standard output as soon as it is imported: that goes to standard error.
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
@@ -21,10 +21,13 @@ import bpy  # noqa: E402
 import numpy as np  # noqa: E402
 from mathutils import Vector  # noqa: E402
 
+Blender: TypeAlias = Any  # an object of bpy, which has no types
+Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
+
 KINDS = ("objects", "cameras", "meshes", "materials", "lights", "worlds", "images")
 
 
-def empty_scene(size: int, path: str) -> Any:
+def empty_scene(size: int, path: str) -> Blender:
     """A scene that EEVEE draws to a linear float32 file, the square [-1, 1]^2 seen along -z."""
     # Empty the file.
     bpy.data.batch_remove([each for kind in KINDS for each in getattr(bpy.data, kind)])
@@ -52,7 +55,7 @@ def empty_scene(size: int, path: str) -> Any:
     return scene
 
 
-def material_of(kind: str, **inputs: Any) -> Any:
+def material_of(kind: str, **inputs: object) -> Blender:
     """A material whose surface is a node of a kind, with some of its inputs set."""
     material = bpy.data.materials.new("material")
     tree = material.node_tree
@@ -64,7 +67,7 @@ def material_of(kind: str, **inputs: Any) -> Any:
     return material
 
 
-def add_light(scene: Any, direction: list[float]) -> None:
+def add_light(scene: Blender, direction: list[float]) -> None:
     """Add a distant light of irradiance pi that shines from a direction."""
     sun = bpy.data.lights.new("light", "SUN")
     sun.angle, sun.energy, sun.use_shadow = 0.0, math.pi, False
@@ -74,7 +77,7 @@ def add_light(scene: Any, direction: list[float]) -> None:
     scene.collection.objects.link(light)
 
 
-def add_environment(scene: Any, radiance: float) -> None:
+def add_environment(scene: Blender, radiance: float) -> None:
     """Surround the scene by a uniform radiance, or by darkness."""
     world = bpy.data.worlds.new("environment")
     inputs = world.node_tree.nodes["Background"].inputs
@@ -85,7 +88,7 @@ def add_environment(scene: Any, radiance: float) -> None:
 
 def render(
     output: str,
-    material: dict[str, Any],
+    material: Values,
     mesh: str,
     size: int,
     light: list[float] | None,

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
 
-from mxeon.hosts.polyhedron import PolyhedronHost
+from mxeon.hosts.polyhedron import Material, PolyhedronHost
 
 # What switches off all but the diffuse lobe of the Disney material; what is left of its specular
 # lobe does not depend on the color.
@@ -38,7 +39,7 @@ class Host(PolyhedronHost):
     name = "luxcore"
     samples = 64
     device = "CPU, PATHCPU"
-    nodes: ClassVar[dict[str, dict[str, Any]]] = {
+    nodes: ClassVar[Mapping[str, Material]] = {
         "matte": {"type": "matte", "kd": "{color}"},
         "roughmatte": {"type": "roughmatte", "kd": "{color}", "sigma": "{roughness}"},
         "roughmatte, sigma in degrees": {
@@ -49,7 +50,10 @@ class Host(PolyhedronHost):
         "disney": {"type": "disney", "basecolor": "{color}", "roughness": "{roughness}", **DISNEY},
     }
 
-    def _material(self, title: str, color: Any, roughness: Any) -> dict[str, Any]:
+    def _material(
+        self, title: str, color: Sequence[float] | str, roughness: float | str
+    ) -> dict[str, object]:
         """Properties of a material; its sigma is in the unit of the node's title."""
-        degrees = title.endswith("degrees")
-        return super()._material(title, color, math.degrees(roughness) if degrees else roughness)
+        if title.endswith("degrees"):
+            roughness = math.degrees(float(roughness))
+        return super()._material(title, color, roughness)

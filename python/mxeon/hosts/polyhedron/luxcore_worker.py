@@ -12,13 +12,16 @@ import math
 import os
 import sys
 import time
-from typing import Any
+from typing import Any, TypeAlias
 
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
 
 import numpy as np  # noqa: E402
 import pyluxcore  # noqa: E402
+
+LuxCore: TypeAlias = Any  # an object of pyluxcore, which has no types
+Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
 
 # A thread of its own and a fixed seed: pictures are always the same.
 RENDERER = {
@@ -38,7 +41,7 @@ RENDERER = {
 }
 
 
-def properties(values: dict[str, Any]) -> Any:
+def properties(values: Values) -> LuxCore:
     """Properties as LuxCore takes them."""
     result = pyluxcore.Properties()
     for name, value in values.items():
@@ -46,7 +49,7 @@ def properties(values: dict[str, Any]) -> Any:
     return result
 
 
-def camera(size: int) -> dict[str, Any]:
+def camera(size: int) -> Values:
     """The square [-1, 1]^2 seen orthographically along -z.
 
     LuxCore counts rows from below and begins one row too high: its window is a pixel lower.
@@ -62,18 +65,18 @@ def camera(size: int) -> dict[str, Any]:
     }
 
 
-def define(kind: str, values: dict[str, Any]) -> Any:
+def define(kind: str, values: Values) -> LuxCore:
     """Properties of one part of a scene."""
     return properties({f"scene.{kind}.{name}": value for name, value in values.items()})
 
 
 def build(
-    material: dict[str, Any],
+    material: Values,
     mesh: str,
     size: int,
     light: list[float] | None,
     environment: float | None,
-) -> Any:
+) -> LuxCore:
     """The scene: the mesh with a material on it, and a light."""
     # Define the mesh, the camera and the material.
     data, scene = np.load(mesh), pyluxcore.Scene()
@@ -93,7 +96,7 @@ def build(
     return scene
 
 
-def render(samples: int, size: int, **parts: Any) -> Any:
+def render(samples: int, size: int, **parts: Any) -> LuxCore:
     """Picture, linear float32, row 0 at the top."""
     film = {"film.width": size, "film.height": size, "batch.haltspp": samples}
     session = pyluxcore.RenderSession(

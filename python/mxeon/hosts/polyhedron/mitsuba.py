@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from mxeon.hosts.polyhedron import PolyhedronHost
+from mxeon.hosts.base import Array
+from mxeon.hosts.polyhedron import Material, PolyhedronHost
 
 
 class Host(PolyhedronHost):
@@ -24,7 +25,7 @@ class Host(PolyhedronHost):
     samples = 64
     device = "CPU, scalar_rgb"
     # Without specular reflection nothing but the diffuse lobe is left of the principled BSDF.
-    nodes: ClassVar[dict[str, dict[str, Any]]] = {
+    nodes: ClassVar[Mapping[str, Material]] = {
         "diffuse": {"type": "diffuse", "reflectance": "{color}"},
         "principled": {
             "type": "principled",
@@ -37,11 +38,11 @@ class Host(PolyhedronHost):
     def pairs(
         self,
         title: str,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        color: NDArray[Any],
-        roughness: NDArray[Any],
-    ) -> NDArray[Any]:
+        wo: Array,
+        wi: Array,
+        color: Array,
+        roughness: Array,
+    ) -> Array:
         """f cos(theta_i) of a BSDF by its own function; see `RendererHost`."""
         path = self._folder / "pairs.npz"
         np.savez(path, wo=wo, wi=wi, color=color, roughness=roughness)

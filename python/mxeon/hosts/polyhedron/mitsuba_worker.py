@@ -12,19 +12,22 @@ import math
 import os
 import sys
 from importlib import import_module
-from typing import Any
+from typing import Any, TypeAlias
 
 REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
 os.dup2(2, 1)
 
 import numpy as np  # noqa: E402
 
-mi: Any = import_module("mitsuba")  # its types are those of another variant
+Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types are those of another variant
+Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
+
+mi: Mitsuba = import_module("mitsuba")
 mi.set_variant("scalar_rgb")
 mi.set_log_level(mi.LogLevel.Warn)
 
 
-def bsdf(material: dict[str, Any], **inputs: Any) -> dict[str, Any]:
+def bsdf(material: Values, **inputs: object) -> Values:
     """A material's properties in Mitsuba's form; text in braces stands for one of the inputs."""
     values = {name: inputs.get(str(value).strip("{}"), value) for name, value in material.items()}
     return {
@@ -33,7 +36,7 @@ def bsdf(material: dict[str, Any], **inputs: Any) -> dict[str, Any]:
     }
 
 
-def evaluate(material: dict[str, Any], pairs: str) -> Any:
+def evaluate(material: Values, pairs: str) -> Mitsuba:
     """f cos(theta_i) of a BSDF for the pairs in a file, (N, 3)."""
     columns = np.load(pairs)
     context, point = mi.BSDFContext(), mi.SurfaceInteraction3f()
@@ -48,13 +51,13 @@ def evaluate(material: dict[str, Any], pairs: str) -> Any:
 
 
 def render(
-    material: dict[str, Any],
+    material: Values,
     mesh: str,
     size: int,
     light: list[float] | None,
     environment: float | None,
     samples: int,
-) -> Any:
+) -> Mitsuba:
     """Picture of the mesh with a BSDF on it, float32, row 0 at the top."""
     scene = {
         "type": "scene",
@@ -76,7 +79,7 @@ def render(
     return np.array(mi.render(mi.load_dict(scene), seed=1))[:, :, :3]
 
 
-def integrator(distant: bool) -> dict[str, Any]:
+def integrator(distant: bool) -> Values:
     """One bounce: the light is sampled where it is distant, else the BSDF."""
     samples = {"emitter_samples": 1, "bsdf_samples": 0}
     if not distant:
@@ -84,7 +87,7 @@ def integrator(distant: bool) -> dict[str, Any]:
     return {"type": "direct", "hide_emitters": True, **samples}
 
 
-def sensor(size: int, samples: int) -> dict[str, Any]:
+def sensor(size: int, samples: int) -> Values:
     """The square [-1, 1]^2 seen orthographically along -z; the film is linear float32."""
     look = mi.ScalarTransform4f().look_at(
         origin=[0.0, 0.0, 2.0], target=[0.0, 0.0, 0.0], up=[0.0, 1.0, 0.0]
@@ -104,7 +107,7 @@ def sensor(size: int, samples: int) -> dict[str, Any]:
     }
 
 
-def polyhedron(path: str, material: dict[str, Any]) -> Any:
+def polyhedron(path: str, material: Values) -> Mitsuba:
     """The mesh in a file with a BSDF on it, without vertex normals."""
     data = np.load(path)
     properties = mi.Properties()

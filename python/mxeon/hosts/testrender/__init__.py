@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import MaterialX as mx
 import numpy as np
@@ -17,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import base, fragment
-from mxeon.hosts.base import Identity
+from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.testrender import calls, planes
 from mxeon.hosts.testrender.programs import find_program, output, version
 from mxeon.io.images import read_image, write_image
@@ -58,7 +57,7 @@ class Host(base.Host):
         """Version of oslc; the device is the CPU."""
         return Identity(self.name, self._version, "CPU")
 
-    def plane(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def plane(self, shader: Shader, scene: Scene) -> Array:
         """Radiance of a plane with the shader on it, at `mxeon.shaders.plane.plane_pairs`.
 
         Parameters
@@ -89,7 +88,7 @@ class Host(base.Host):
             return radiance
         return radiance / planes.irradiance(scene.light, scene.size)[:, np.newaxis]
 
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> NDArray[Any]:
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""
         # Compile a shader that calls the function.
         parameters = functions.parameters(source, function)

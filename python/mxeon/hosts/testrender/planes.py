@@ -5,11 +5,10 @@ Plane and light are one triangle each: a shadow ray that ends on the common edge
 may hit the other one, and is lost then.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.hosts.base import Array
 from mxeon.shaders.plane import DISTANCE, FOV, LIGHT_RADIUS, TILT, plane_points
 from mxeon.shaders.scene import Scene
 
@@ -95,7 +94,7 @@ def _area(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return 0.5 * np.cross(corners[1] - corners[0], corners[2] - corners[0])
 
 
-def _model(corners: NDArray[Any]) -> str:
+def _model(corners: Array) -> str:
     """A triangle as an OBJ file."""
     rows = "".join("v {:.9g} {:.9g} {:.9g}\n".format(*corner) for corner in corners)
     return f"{rows}f 1 2 3\n"

@@ -5,7 +5,7 @@ import ctypes
 import math
 import warnings
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import cast
 
 import MaterialX as mx
 
@@ -35,10 +35,11 @@ class MissingFileWarning(DocumentError, UserWarning):
     """A file that a shader names and that does not exist: an error wherever it has to be read."""
 
 
-def numbers(element: mx.ValueElement) -> tuple[Any, ...]:
+def numbers(element: mx.ValueElement) -> tuple[float, ...]:
     """Numbers of a value of a type in NUMERIC; empty if MaterialX reads none."""
     value = plain(element.getValue(), element.getDocument())
-    return value if isinstance(value, tuple) else () if value is None else (value,)
+    values = value if isinstance(value, tuple) else () if value is None else (value,)
+    return cast(tuple[float, ...], values)
 
 
 def warn_of_elements(document: mx.Document) -> None:

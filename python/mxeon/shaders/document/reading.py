@@ -10,7 +10,7 @@ import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeGuard
+from typing import TypeGuard
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
@@ -188,7 +188,7 @@ class _Reader:
         self._checker.check(text, title)
 
         # Let MaterialX ask for each file that it includes.
-        def include(part: mx.Document, name: mx.FilePath, *_: Any) -> None:
+        def include(part: mx.Document, name: mx.FilePath, *_: object) -> None:
             self._include(part, name.asString(), title)
 
         options = mx.XmlReadOptions()

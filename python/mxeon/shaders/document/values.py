@@ -2,7 +2,8 @@
 """Values of MaterialX as plain Python values, and whether their text is what MaterialX reads."""
 
 import re
-from typing import Any, TypeAlias
+from collections.abc import Iterable
+from typing import TypeAlias, cast
 
 import MaterialX as mx
 
@@ -18,7 +19,7 @@ NUMERIC = (*SCALARS, *VECTORS, *ARRAYS)
 Plain: TypeAlias = "bool | int | float | str | tuple[Plain, ...] | None"
 
 
-def plain(value: Any, document: mx.Document) -> Plain:
+def plain(value: object, document: mx.Document) -> Plain:
     """A value of any type of MaterialX as a plain Python value.
 
     Parameters
@@ -40,7 +41,9 @@ def plain(value: Any, document: mx.Document) -> Plain:
     if isinstance(value, (mx.Matrix33, mx.Matrix44)):
         rows, columns = range(value.numRows()), range(value.numColumns())
         return tuple(value[row, column] for row in rows for column in columns)
-    return value if isinstance(value, (type(None), bool, int, float, str)) else tuple(value)
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    return tuple(cast(Iterable[float], value))  # a color, a vector or an array
 
 
 def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
