@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 
 from mxeon import report
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
-from mxeon.conformance.nodes.renderer_nodes import NATIVE
 from mxeon.conformance.results import NOT_RUN
 from mxeon.conformance.run import check
 from mxeon.hosts import HOSTS
@@ -33,7 +32,7 @@ def main(folder: str = "") -> None:
     with TemporaryDirectory(prefix="mxeon-field-") as new:
         for row in HOSTS:
             if row.module:
-                nodes = () if row.name in NATIVE else DIFFUSE
+                nodes = () if row.nodes else DIFFUSE
                 run = check(
                     [EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT, nodes=nodes
                 )

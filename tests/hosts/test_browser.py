@@ -14,7 +14,7 @@ from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.known_issues.issue import RENDERER_NODES
-from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun
@@ -45,7 +45,7 @@ of_each_issue = pytest.mark.parametrize(
 
 def judged(host, check, title):
     """Result of a check of a node of a host's own."""
-    [subject] = [each for each in NATIVE[host.name] if each.title == title]
+    [subject] = [each for each in renderer_nodes(host.name) if each.title == title]
     [row] = [each for each in CHECKS if each.key == check]
     return judge_check(row, ExactProbe(host, subject, RENDERER_NODES).nearest_form())
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mxeon.conformance.nodes import renderer_nodes
+from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run import check
 from mxeon.hosts import open_engine
@@ -14,7 +14,7 @@ from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
 from tests.support.sharing import shared
 
-NATIVE = renderer_nodes.NATIVE["cycles-native"]
+NATIVE = renderer_nodes("cycles-native")
 EXAMPLE = examples_folder() / "plaster.mtlx"
 
 

@@ -9,7 +9,7 @@ from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.known_issues.issue import RENDERER_NODES
-from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.polyhedron import FacetPairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.errors import NotRun
@@ -26,7 +26,7 @@ ISSUES_HERE = [each for each in ISSUES if each.host == NAME]
 
 def judged(host, check, title):
     """Result of a check of one of the package's functions."""
-    [subject] = [each for each in NATIVE[NAME] if each.title == title]
+    [subject] = [each for each in renderer_nodes(NAME) if each.title == title]
     [row] = [each for each in CHECKS if each.key == check]
     return judge_check(row, FacetPairProbe(host, subject, RENDERER_NODES).nearest_form())
 

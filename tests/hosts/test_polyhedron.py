@@ -11,7 +11,7 @@ from mxeon.conformance.accuracy.diffuse import COARSE_FACETS, FACET_PAIRS, FACET
 from mxeon.conformance.checks.application import judge_subject
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.known_issues.issue import RENDERER_NODES
-from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.polyhedron import PROBES, facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
@@ -37,7 +37,7 @@ def judged(name):
         probe = PROBES[host_row(name).probe]
         results = [
             with_page(result)
-            for subject in NATIVE[name]
+            for subject in renderer_nodes(name)
             for result in judge_subject(probe(host, subject, RENDERER_NODES))
         ]
     return {(each.check, each.subject): each for each in results}
@@ -61,7 +61,9 @@ def of_luxcore():
 
 
 def test_mitsuba_has_the_models_that_it_documents(of_mitsuba):
-    assert {subject for _, subject in of_mitsuba} == {each.node for each in NATIVE["mitsuba"]}
+    assert {subject for _, subject in of_mitsuba} == {
+        each.node for each in renderer_nodes("mitsuba")
+    }
     assert {each.verdict for each in of_mitsuba.values()} == {PASSED}
     assert all(each.control.caught for each in of_mitsuba.values())
 
@@ -99,7 +101,7 @@ def test_eevee_is_lambert_whatever_the_roughness():
 def test_pictures_are_linear_and_have_float_precision(host, scene):
     """A dark color beside a bright one: 8 bits or a tone curve would be off by far more."""
     scene = replace(scene, size=64)
-    title = NATIVE[host.name][0].node
+    title = renderer_nodes(host.name)[0].node
     picture = host.node(title, (1.0, 0.02, 1e-4), 0.0, scene)[facet_points(64).mask]
     _, wi, mask = facet_pairs(scene)
     expected = wi[mask][:, 2:] * np.array([1.0, 0.02, 1e-4])
@@ -109,7 +111,7 @@ def test_pictures_are_linear_and_have_float_precision(host, scene):
 
 def test_a_surface_in_no_light_is_black(host):
     dark = replace(SMALL, light=(0.0, 0.0, -1.0))
-    assert host.node(NATIVE[host.name][0].node, COLOR, 0.0, dark).max() == 0.0
+    assert host.node(renderer_nodes(host.name)[0].node, COLOR, 0.0, dark).max() == 0.0
 
 
 def test_a_picture_agrees_with_the_values_of_mitsubas_own_function():
@@ -180,6 +182,6 @@ def test_checks_of_a_missing_renderer_are_not_run(monkeypatch):
 
 
 def test_the_models_that_are_claimed_are_known():
-    subjects = NATIVE["mitsuba"] + NATIVE["luxcore"]
+    subjects = renderer_nodes("mitsuba") + renderer_nodes("luxcore")
     claims = {table.model(each.model).name for each in subjects}
     assert claims == {"lambert", "qon", "burley"}

@@ -14,6 +14,34 @@ from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
 
 
 @dataclass(frozen=True)
+class OwnNode:
+    """A node of a renderer's own, with the model that its documentation claims.
+
+    Attributes
+    ----------
+    title : str
+        Name in reports, by which the renderer is asked for it.
+    model : str
+        Name of a row of `mxeon.models.table`.
+    inputs : tuple of str
+    forms : tuple of str
+        Forms of the model that its paper publishes, if there are several. The one that is nearest to
+        what is measured is judged.
+    others : bool
+        Whether other lobes lie beside the diffuse one, which do not depend on the color.
+    sampled : bool
+        Whether its renderer draws directions for it by a function that can be called.
+    """
+
+    title: str
+    model: str
+    inputs: tuple[str, ...] = ("color", "roughness")
+    forms: tuple[str, ...] = ()
+    others: bool = False
+    sampled: bool = False
+
+
+@dataclass(frozen=True)
 class Row:
     """One host of the table.
 
@@ -38,6 +66,8 @@ class Row:
         Whether surface shaders are judged on it.
     front_lit : tuple of str
         Models that it has for s >= 0 alone.
+    nodes : tuple of OwnNode
+        Materials of a renderer's own that are judged.
     """
 
     name: str
@@ -48,7 +78,12 @@ class Row:
     scenes: tuple[Scene, ...] = ()
     surfaces: bool = False
     front_lit: tuple[str, ...] = ()
+    nodes: tuple[OwnNode, ...] = ()
 
+
+COLOR = ("color",)  # input of a Lambert node
+PUBLISHED = ("eon", "eon_fitted")  # the paper prints EON with the exact albedo, and with a quartic
+BROWSER = ("WebGL2", "WebGPU")
 
 HOSTS = (
     # Its pictures are exact and take no time.
@@ -73,13 +108,84 @@ HOSTS = (
         scenes=(SIDE, BACK),
         front_lit=("qon",),
     ),
-    Row("cycles-native", "", "mxeon.hosts.cycles.native", "native"),
-    Row("three", "", "mxeon.hosts.browser.three", "exact"),
-    Row("babylon", "", "mxeon.hosts.browser.babylon", "exact"),
-    Row("three-gpu-pathtracer", "", "mxeon.hosts.browser.pathtracer", "facet pairs"),
-    Row("mitsuba", "", "mxeon.hosts.polyhedron.mitsuba", "facet pairs"),
-    Row("eevee", "", "mxeon.hosts.polyhedron.eevee", "coarse facets"),
-    Row("luxcore", "", "mxeon.hosts.polyhedron.luxcore", "facets"),
+    Row(
+        "cycles-native",
+        "",
+        "mxeon.hosts.cycles.native",
+        "native",
+        nodes=(OwnNode("Diffuse BSDF", "eon"), OwnNode("Principled BSDF", "eon")),
+    ),
+    # OpenPBR asks for EON, Standard Surface for Oren-Nayar.
+    Row(
+        "three",
+        "",
+        "mxeon.hosts.browser.three",
+        "exact",
+        nodes=(
+            OwnNode("MeshPhysicalMaterial, WebGLRenderer", "eon", forms=PUBLISHED),
+            OwnNode("MeshPhysicalMaterial, WebGPURenderer", "eon", forms=PUBLISHED),
+            OwnNode("open_pbr_surface, MaterialXLoader", "eon", forms=PUBLISHED),
+            OwnNode("standard_surface, MaterialXLoader", "qon"),
+        ),
+    ),
+    Row(
+        "babylon",
+        "",
+        "mxeon.hosts.browser.babylon",
+        "exact",
+        nodes=(
+            *(
+                OwnNode(f"PBRMaterial E_OREN_NAYAR, {each}", "eon", forms=PUBLISHED)
+                for each in BROWSER
+            ),
+            *(OwnNode(f"OpenPBRMaterial, {each}", "eon", forms=PUBLISHED) for each in BROWSER),
+            *(OwnNode(f"PBRMaterial BURLEY, {each}", "burley") for each in BROWSER),
+            *(OwnNode(f"PBRMaterial LEGACY, {each}", "burley_lambert") for each in BROWSER),
+            *(OwnNode(f"PBRMaterial LAMBERT, {each}", "lambert", COLOR) for each in BROWSER),
+        ),
+    ),
+    Row(
+        "three-gpu-pathtracer",
+        "",
+        "mxeon.hosts.browser.pathtracer",
+        "facet pairs",
+        nodes=(
+            OwnNode("WebGPUPathTracer, eonBrdf", "eon", forms=PUBLISHED, sampled=True),
+            OwnNode("WebGPUPathTracer, fonBrdf", "fon"),
+            OwnNode("WebGLPathTracer, diffuseEval", "burley"),
+            OwnNode("WebGLPathTracer, diffuseEval, shorter wh", "burley"),
+        ),
+    ),
+    Row(
+        "mitsuba",
+        "",
+        "mxeon.hosts.polyhedron.mitsuba",
+        "facet pairs",
+        nodes=(OwnNode("diffuse", "lambert", COLOR), OwnNode("principled", "burley")),
+    ),
+    # Its manual has the roughness of both nodes for Cycles only.
+    Row(
+        "eevee",
+        "",
+        "mxeon.hosts.polyhedron.eevee",
+        "coarse facets",
+        nodes=(
+            OwnNode("Diffuse BSDF", "lambert", COLOR),
+            OwnNode("Principled BSDF", "lambert", COLOR),
+        ),
+    ),
+    Row(
+        "luxcore",
+        "",
+        "mxeon.hosts.polyhedron.luxcore",
+        "facets",
+        nodes=(
+            OwnNode("matte", "lambert", COLOR),
+            OwnNode("roughmatte", "qon"),
+            OwnNode("roughmatte, sigma in degrees", "qon"),
+            OwnNode("disney", "burley", others=True),
+        ),
+    ),
     Row("testrender", "osl", "mxeon.hosts.testrender", "planes", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),

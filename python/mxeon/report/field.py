@@ -4,13 +4,12 @@
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseLobe, DiffuseSubject
-from mxeon.conformance.nodes.renderer_nodes import NATIVE, RendererNode
+from mxeon.conformance.nodes.renderer_nodes import RendererNode, all_renderer_nodes
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.errors import InputError
 from mxeon.models import table as reference
@@ -155,7 +154,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
     nodes: tuple[DiffuseSubject | DiffuseLobe, ...] = (
         *SUBJECTS,
         *SURFACES,
-        *chain(*NATIVE.values()),
+        *all_renderer_nodes(),
     )
     claims = {each.title: claim(each) for each in nodes}
     places: dict[Place, dict[str, Result]] = {}

@@ -148,25 +148,32 @@ def node_text(category: str, kind: str, name: str, inputs: str = "") -> str:
     return f'  <{category} name="{name}" type="{kind}">\n{inputs}  </{category}>\n'
 
 
-def lobe_text(category: str, inputs: Mapping[str, ArrayLike], name: str = "lobe") -> str:
+def lobe_text(
+    category: str,
+    inputs: Mapping[str, ArrayLike],
+    name: str = "lobe",
+    types: Mapping[str, str] | None = None,
+) -> str:
     """XML of a BSDF node.
 
     Parameters
     ----------
     category : str
-        A category of BSDF_INPUTS, or one of DIFFUSE_NODES.
+        A category of BSDF_INPUTS, or one of DIFFUSE_NODES, unless `types` are given.
     inputs : mapping of str to bool, float, str or a sequence of floats
         Values by name. MaterialX ignores a normal that is not connected, so its value comes from a
         node of its own; and a tangent likewise.
     name : str
         Name of the node.
+    types : mapping of str to str, or None
+        Type of each input by name; None for those of the category.
 
     Raises
     ------
     KeyError
         If there is no input of that name.
     """
-    kinds = input_types(category)
+    kinds = input_types(category) if types is None else types
     text = constants = ""
     for each, value in inputs.items():
         if each in FRAME:
@@ -194,7 +201,10 @@ def document_text(nodes: str, name: str = "look") -> str:
 
 
 def material_text(
-    category: str, inputs: Mapping[str, ArrayLike] | None = None, name: str = "look"
+    category: str,
+    inputs: Mapping[str, ArrayLike] | None = None,
+    name: str = "look",
+    types: Mapping[str, str] | None = None,
 ) -> str:
     """XML of a document whose material is one BSDF node; see `lobe_text`."""
-    return document_text(lobe_text(category, inputs or {}) + SURFACE, name)
+    return document_text(lobe_text(category, inputs or {}, types=types) + SURFACE, name)

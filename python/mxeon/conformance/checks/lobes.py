@@ -33,6 +33,7 @@ from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.hosts import front_lit_only
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.lobes import LOBE_NODES
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 from mxeon.shaders.nodes import FLAG
 
@@ -41,8 +42,7 @@ ANY = (*EON, "qon")
 OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name, SUBSURFACE_NODE.name)
 BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS, *SUBSURFACES) if subject.black)
 # Nodes that look an environment up at a normal, beside the rough diffuse ones.
-SHEENS = tuple(row.name for row in NODES if row.category == "sheen_bsdf")
-LOOKED_UP = ("burley", "translucent", *SHEENS, HAIR_NODE.name, SUBSURFACE_NODE.name)
+LOOKED_UP = (*(row.name for row in LOBE_NODES), HAIR_NODE.name, SUBSURFACE_NODE.name)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")

@@ -15,7 +15,7 @@ from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models import nodes as pbrlib
 from mxeon.models.nodes.node import Inputs, PbrNode
-from mxeon.shaders.nodes import material_text
+from mxeon.shaders.nodes import input_types, material_text
 
 # Kinds of probes; see `mxeon.conformance.probes.bsdf`.
 CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
@@ -191,7 +191,8 @@ class BsdfSubject:
 
     def document(self, inputs: Mapping[str, Any] | None = None) -> str:
         """MaterialX text of a material that is this node alone, with these inputs."""
-        return material_text(self.node, {**(inputs or {}), **self.row.fixed}, self.node)
+        types = {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
+        return material_text(self.node, {**(inputs or {}), **self.row.fixed}, self.node, types)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values of the inputs of the row, float32 numbers."""

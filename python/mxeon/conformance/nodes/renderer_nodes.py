@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes that a renderer has of its own, with the models that their documentation claims."""
+"""Nodes that a renderer has of its own, as subjects: the rows of `mxeon.hosts` tell them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from mxeon import hosts
 from mxeon.conformance.nodes.diffuse import DiffuseSubject
 from mxeon.models.table import OTHERS, Model
 
@@ -13,13 +14,8 @@ class RendererNode(DiffuseSubject):
 
     Attributes
     ----------
-    forms : tuple of str
-        Forms of the model that its paper publishes, if there are several. The one that is nearest to
-        what is measured is judged.
-    others : bool
-        Whether other lobes lie beside the diffuse one, which do not depend on the color.
-    sampled : bool
-        Whether its renderer draws directions for it by a function that can be called.
+    forms, others, sampled
+        As those of `mxeon.hosts.OwnNode`.
     """
 
     forms: tuple[str, ...] = ()
@@ -34,71 +30,17 @@ class RendererNode(DiffuseSubject):
         return tuple(row for row in OTHERS if row.name not in left_out)
 
 
-def _renderer_nodes(
-    model: str, *nodes: str, forms: tuple[str, ...] = ()
-) -> tuple[RendererNode, ...]:
-    """Nodes of a renderer's own with a color and a roughness, which claim a model."""
-    return tuple(RendererNode(node, None, model, ("color", "roughness"), forms) for node in nodes)
+def renderer_nodes(host: str) -> tuple[RendererNode, ...]:
+    """The nodes of a host's own that are judged; none for a host of generated shaders."""
+    own = (each for row in hosts.HOSTS if row.name == host for each in row.nodes)
+    return tuple(
+        RendererNode(
+            each.title, None, each.model, each.inputs, each.forms, each.others, each.sampled
+        )
+        for each in own
+    )
 
 
-# The paper prints EON with the exact albedo and with a quartic for it.
-PUBLISHED = ("eon", "eon_fitted")
-
-
-# Nodes that a renderer has of its own, by the name of the host, with the models that their
-# documentation claims. OpenPBR asks for EON, Standard Surface for Oren-Nayar.
-NATIVE = {
-    "cycles-native": _renderer_nodes("eon", "Diffuse BSDF", "Principled BSDF"),
-    "three": (
-        *_renderer_nodes(
-            "eon",
-            "MeshPhysicalMaterial, WebGLRenderer",
-            "MeshPhysicalMaterial, WebGPURenderer",
-            "open_pbr_surface, MaterialXLoader",
-            forms=PUBLISHED,
-        ),
-        *_renderer_nodes("qon", "standard_surface, MaterialXLoader"),
-    ),
-    "babylon": (
-        *_renderer_nodes(
-            "eon",
-            "PBRMaterial E_OREN_NAYAR, WebGL2",
-            "PBRMaterial E_OREN_NAYAR, WebGPU",
-            "OpenPBRMaterial, WebGL2",
-            "OpenPBRMaterial, WebGPU",
-            forms=PUBLISHED,
-        ),
-        *_renderer_nodes("burley", "PBRMaterial BURLEY, WebGL2", "PBRMaterial BURLEY, WebGPU"),
-        *_renderer_nodes(
-            "burley_lambert", "PBRMaterial LEGACY, WebGL2", "PBRMaterial LEGACY, WebGPU"
-        ),
-        *(
-            RendererNode(f"PBRMaterial LAMBERT, {engine}", None, "lambert", ("color",))
-            for engine in ("WebGL2", "WebGPU")
-        ),
-    ),
-    "three-gpu-pathtracer": (
-        *(
-            replace(each, sampled=True)
-            for each in _renderer_nodes("eon", "WebGPUPathTracer, eonBrdf", forms=PUBLISHED)
-        ),
-        *_renderer_nodes("fon", "WebGPUPathTracer, fonBrdf"),
-        *_renderer_nodes(
-            "burley", "WebGLPathTracer, diffuseEval", "WebGLPathTracer, diffuseEval, shorter wh"
-        ),
-    ),
-    "mitsuba": (
-        RendererNode("diffuse", None, "lambert", ("color",)),
-        *_renderer_nodes("burley", "principled"),
-    ),
-    # Its manual has the roughness of both nodes for Cycles only.
-    "eevee": tuple(
-        RendererNode(node, None, "lambert", ("color",))
-        for node in ("Diffuse BSDF", "Principled BSDF")
-    ),
-    "luxcore": (
-        RendererNode("matte", None, "lambert", ("color",)),
-        *_renderer_nodes("qon", "roughmatte", "roughmatte, sigma in degrees"),
-        RendererNode("disney", None, "burley", ("color", "roughness"), others=True),
-    ),
-}
+def all_renderer_nodes() -> tuple[RendererNode, ...]:
+    """The nodes of every renderer's own."""
+    return tuple(node for row in hosts.HOSTS for node in renderer_nodes(row.name))

@@ -12,7 +12,7 @@ from mxeon.conformance.functions.inversion import InversionProbe, judge_inversio
 from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
-from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.pictures.documents import generate_document
@@ -216,6 +216,6 @@ def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
     if title in surfaces:
         assert isinstance(host, Host)  # a renderer of its own materials has none
         return SURFACE_PROBES[probe](host, surfaces[title], library)
-    rows = NATIVE.get(host.name, SUBJECTS)
+    rows = renderer_nodes(host.name) or SUBJECTS
     made = probe(host, next(row for row in rows if row.title == title), library)
     return made.nearest_form() if isinstance(made, ExactProbe) else made

@@ -23,7 +23,7 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.functions import shader_functions as functions
 from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
-from mxeon.conformance.nodes.renderer_nodes import NATIVE
+from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
 from mxeon.conformance.probes.families import COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of
@@ -273,7 +273,7 @@ def _native(host: str) -> Iterator[Task]:
     """Tasks of a renderer's own nodes, which use no library of ours."""
     probe = probe_type(host)
     if probe is not None and issubclass(probe, NativeProbe):
-        for subject in NATIVE[host]:
+        for subject in renderer_nodes(host):
             yield from _checks_of(subject, probe.kind, host, RENDERER_NODES)
 
 

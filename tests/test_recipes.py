@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The recipes of CONTRIBUTING for a node, a renderer and a check, followed in a copy of the package.
+
+Those for a model, a host and a page are followed in `tests/conformance/test_new_model.py`,
+`tests/hosts/test_table.py` and `tests/test_upstream.py`.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+DATA = ("libraries", "genglsl", "genosl", "profiles", "examples", "renderers")
+
+# By the file that a recipe changes: texts, each before the one at which it is put in.
+
+# A node that dims its color by a number. Its third place is its page.
+ROWS = "python/mxeon/models/nodes/lobes.py"
+PORTS = "python/mxeon/conformance/nodes/bsdf.py"
+NODE = {
+    ROWS: {
+        "LOBE_NODES = (\n": """def _left(wo: Array, inputs: Inputs) -> Array:
+    return np.asarray(inputs["color"] * (1.0 - 0.5 * inputs["shade"][:, np.newaxis]))
+
+
+SHADED = PbrNode(
+    "shaded",
+    "shaded Lambert",
+    "shaded_bsdf",
+    ("color", "shade"),
+    lambda wo, wi, inputs: _left(wo, inputs) / np.pi,
+    _left,
+    variants=(Variant("Lambert", lambda wo, wi, inputs: inputs["color"] / np.pi),),
+)
+""",
+        '    PbrNode(\n        "burley",': "    SHADED,\n",
+    },
+    PORTS: {
+        '    "burley_diffuse_bsdf": (': '    "shaded_bsdf": '
+        '(WEIGHT, COLOR, Port("shade", edges=(0.0, 1.0), change=0.5), NORMAL),\n'
+    },
+}
+GLSL = """#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+
+void shaded_bsdf(ClosureData closureData, float weight, vec3 color, float shade, vec3 N, inout BSDF bsdf)
+{
+    bsdf.throughput = vec3(0.0);
+    if (weight <= 0.0)
+    {
+        return;
+    }
+    N = mx_forward_facing_normal(N, closureData.V);
+    vec3 albedo = weight * color * (1.0 - 0.5 * shade);
+    if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
+    {
+        float mu_i = clamp(dot(N, closureData.L), 0.0, 1.0);
+        bsdf.response = albedo * closureData.occlusion * mu_i * M_PI_INV;
+    }
+    else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
+    {
+        bsdf.response = mx_environment_irradiance(N) * albedo;
+    }
+}
+"""
+DOCUMENT = """<?xml version="1.0"?>
+<materialx version="1.39">
+  <nodedef name="ND_shaded_bsdf" node="shaded_bsdf" bsdftype="R" nodegroup="pbr">
+    <input name="weight" type="float" value="1.0" />
+    <input name="color" type="color3" value="0.18, 0.18, 0.18" />
+    <input name="shade" type="float" value="0.0" />
+    <input name="normal" type="vector3" defaultgeomprop="Nworld" />
+    <output name="out" type="BSDF" />
+  </nodedef>
+  <implementation name="IM_shaded_bsdf_genglsl" nodedef="ND_shaded_bsdf" file="shaded_bsdf.glsl"
+                  function="shaded_bsdf" target="genglsl" />
+</materialx>
+"""
+
+# A renderer whose one material is Lambert.
+HOSTS = "python/mxeon/hosts/__init__.py"
+PAINTER = "python/mxeon/hosts/painter.py"
+RENDERER = {
+    HOSTS: {
+        '    Row("msl",': '    Row("painter", "", "mxeon.hosts.painter", "exact", '
+        'nodes=(OwnNode("paint", "lambert", COLOR),)),\n'
+    },
+    PAINTER: {
+        "": """import numpy as np
+
+from mxeon.hosts.base import Identity
+from mxeon.hosts.renderer import RendererHost
+from mxeon.shaders.scene import sphere
+
+
+class Host(RendererHost):
+    name = "painter"
+
+    def identity(self):
+        return Identity(self.name, "1", "paper")
+
+    def node(self, title, color, roughness, scene):
+        points = sphere(scene.size)
+        light = np.full(points.mask.shape, scene.environment or 0.0)
+        if scene.light is not None:
+            light += np.clip(points.normal @ scene.light, 0.0, 1.0)
+        return np.where(points.mask, light, 0.0)[..., np.newaxis] * np.asarray(color)
+"""
+    },
+}
+
+# A check that half of the color gives half of the light: its measure, and its row beside it.
+ENERGY = "python/mxeon/conformance/checks/energy.py"
+CHECK = {
+    ENERGY: {
+        "CHECKS = (\n": """def halved(probe: Probe, metric: Metric) -> Measurement:
+    batches = [batch for batch in probe.few if "color" in batch.inputs]
+    half = [batch.altered(color=0.5 * batch.inputs["color"]) for batch in batches]
+    values = zip(batches, map(probe.direct, half), map(probe.direct, batches), strict=True)
+    return worst_of(metric, (Case(batch, 2.0 * low, full) for batch, low, full in values))
+
+
+""",
+        '    Check(\n        "energy",': """    Check(
+        "halved",
+        "Half of the color gives half of the light.",
+        ("burley", "shaded"),
+        halved,
+        "a thousandth is added to every value",
+        offset,
+        tolerances.VALUES,
+    ),
+""",
+        "from mxeon.conformance.checks.names": "from mxeon.conformance.checks.controls import offset\n"
+        "from mxeon.conformance.probes.probe import Probe\n"
+        "from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of\n",
+    }
+}
+
+RUN = """
+import json
+from mxeon.conformance.run.judge import Judge
+from mxeon.conformance.run.plan import make_plan
+from mxeon.shaders.document.policy import DEFAULT
+judge = Judge(DEFAULT)
+rows = []
+for library in ("right", "wrong"):
+    for task in make_plan((), ["gl", "painter"], [library], nodes=["all"]).tasks:
+        if task.subject in ("shaded_bsdf", "paint") or task.check == "halved":
+            [each] = judge.work(task).results
+            assert each.control.caught, each
+            rows.append([library, each.subject, each.check, each.verdict, each.diagnosis])
+judge.close()
+print(json.dumps(rows))
+"""
+
+
+def add(folder, recipe):
+    """Put the texts of a recipe before those where they belong."""
+    for name, texts in recipe.items():
+        path = folder / name
+        source = path.read_text(encoding="utf-8") if path.exists() else ""
+        for place, text in texts.items():
+            assert source.count(place) == 1
+            source = source.replace(place, text + place)
+        path.write_text(source, encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Results of what a copy of the package judges that has one more node, renderer and check."""
+    folder = tmp_path_factory.mktemp("recipes")
+    ignore = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "python" / "mxeon", folder / "python" / "mxeon", ignore=ignore)
+    for name in DATA:
+        (folder / name).symlink_to(ROOT / name)
+    for recipe in (NODE, RENDERER, CHECK):
+        add(folder, recipe)
+    for name, factor in (("right", "0.5 * shade"), ("wrong", "0.0 * shade")):
+        (folder / name).mkdir()
+        text = GLSL.replace("0.5 * shade", factor)
+        (folder / name / "shaded_bsdf.glsl").write_text(text, encoding="utf-8")
+        (folder / name / "shaded.mtlx").write_text(DOCUMENT, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", RUN],
+        env=os.environ | {"PYTHONPATH": str(folder / "python")},
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    rows = json.loads(done.stdout)
+    return {(library, subject, check): tuple(rest) for library, subject, check, *rest in rows}
+
+
+def verdicts(results, subject):
+    """Verdict by check of a subject, with the right library."""
+    return {key[2]: row[0] for key, row in results.items() if key[:2] == ("right", subject)}
+
+
+def test_a_node_takes_its_row_and_its_ports(results):
+    assert set(NODE) == {ROWS, PORTS}
+    judged = verdicts(results, "shaded_bsdf")
+    assert set(judged.values()) == {"passed"}
+    assert {"value", "environment", "inputs", "surroundings", "frame", "integral"} < set(judged)
+    verdict, diagnosis = results["wrong", "shaded_bsdf", "value"]
+    assert verdict == "failed" and diagnosis.startswith("nearest known model: Lambert (rms ")
+    assert results["wrong", "shaded_bsdf", "inputs"] == ("failed", "without effect: shade")
+
+
+def test_a_renderer_takes_its_module_and_its_row(results):
+    assert set(RENDERER) == {HOSTS, PAINTER}
+    judged = verdicts(results, "paint")
+    assert set(judged.values()) == {"passed"} and {"lobe", "environment", "black"} < set(judged)
+
+
+def test_a_check_takes_one_file(results):
+    assert set(CHECK) == {ENERGY}
+    for subject in ("burley_diffuse_bsdf", "shaded_bsdf"):
+        assert verdicts(results, subject)["halved"] == "passed"
