@@ -287,3 +287,12 @@ def test_every_parameter_of_a_public_function_is_described(described):
         known = {name for line in text.splitlines() if line[:1].strip() for name in names(line)}
         missing[path] = {parameter.name for parameter in each.parameters} - known
     assert {path: words for path, words in missing.items() if words} == {}
+
+
+def test_files_that_commands_write_are_marked_as_generated():
+    marked = (ROOT / ".gitattributes").read_text(encoding="utf-8")
+    patterns = re.findall(r"^(\S+) linguist-generated$", marked, re.M)
+    assert patterns and all(any(ROOT.glob(pattern)) for pattern in patterns)
+    table = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    written = re.findall(r"^\| `(docs/\w+\.(?:md|html))`.*\| `", table, re.M)
+    assert written and set(written) <= set(patterns)
