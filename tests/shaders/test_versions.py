@@ -127,6 +127,18 @@ def parameters(row):
     return closure_calls._parameters(row[0], row[2])
 
 
+def test_comments_between_parameters_are_none(tmp_path):
+    file = tmp_path / "node.glsl"
+    file.write_text(
+        "void node(float x, // of 1, 2 or 3\n vec3 y /* a color, (3,) */, out vec3 z)\n{}\n"
+    )
+    assert [each.strip() for each in closure_calls._parameters(file, "node")] == [
+        "float x",
+        "vec3 y",
+        "out vec3 z",
+    ]
+
+
 def test_each_function_of_eonlib_is_refused_where_it_takes_one_argument_more(monkeypatch):
     def parameters(file, function, old=closure_calls._parameters):
         return [*old(file, function), "float gain"]

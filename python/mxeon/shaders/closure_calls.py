@@ -20,6 +20,7 @@ from mxeon.errors import InterfaceError
 from mxeon.shaders.generators import context_of, generator_of
 from mxeon.shaders.library import load_library, standard_folders
 
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 NODE = "asked"  # name of the node whose call is asked for
 CLOSURES = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, which calls what it is given
 
@@ -66,7 +67,7 @@ def _functions(library: str, profile: str | None) -> Mapping[str, list[tuple[str
 @cache
 def _parameters(file: str, function: str) -> list[str]:
     """Parameters of a function as a source defines it; none if it does not."""
-    text = Path(file).read_text(encoding="utf-8")
+    text = COMMENT.sub("", Path(file).read_text(encoding="utf-8"))
     definition = re.search(rf"\bvoid\s+{function}\s*\(", text)
     return _arguments(text, definition.end()) if definition else []
 
