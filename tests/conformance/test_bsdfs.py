@@ -12,7 +12,7 @@ from mxeon.conformance.probes import bsdf as bsdf_probes
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
-from mxeon.shaders.library import standard_folders
+from tests.support.wrong_libraries import wrong_copy, wrong_stock_node
 
 SUBJECTS = {subject.model: subject for subject in BSDFS}
 ROWS = {check.key: check for check in CHECKS}
@@ -227,9 +227,31 @@ def test_stock_materialx_has_its_known_departures_and_no_others(gl, model):
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_line_of_a_bsdf_fails_a_check_and_is_named(gl, tmp_path, name):
     model, file, text, other, key, words = WRONG[name]
-    (result,) = judged(gl, model, wrong_library(tmp_path, file, text, other), key)
+    (result,) = judged(gl, model, wrong_stock_node(tmp_path, file, text, other), key)
     assert result.verdict == FAILED and result.control.caught
     assert words in result.diagnosis
+
+
+# Wrong lines of `microfacet_lobe` in GLSL: text, the text in its place, and key of the check.
+LOBE = "genglsl/microfacet_lobe.glsl"
+WRONG_LOBE = {
+    "no retroreflection": ("mirrored ? reflect(-closureData.V, N) :", "", "retroreflection"),
+    "normal not turned": ("mx_forward_facing_normal(N, lobe.wo)", "N", "frame"),
+    "cosine of the light": ("clamp(dot(lobe.N, lobe.wo),", "clamp(dot(lobe.N, lobe.wi),", "value"),
+    "exchanged roughnesses": (
+        "clamp(roughness, M_FLOAT_EPS, 1.0)",
+        "clamp(roughness.yx, M_FLOAT_EPS, 1.0)",
+        "value",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_LOBE)
+def test_a_wrong_line_of_eonlibs_microfacet_lobe_is_seen(gl, tmp_path, name):
+    text, other, key = WRONG_LOBE[name]
+    library = wrong_copy(tmp_path, text, other, LOBE, library="profiles/pbrlib")
+    (result,) = judged(gl, "dielectric", library, key)
+    assert result.verdict == FAILED and result.control.caught
 
 
 def test_every_check_of_the_nodes_has_a_shader_that_it_fails():
@@ -246,22 +268,6 @@ def judged(host, model, library, *keys):
     probe = BSDF_PROBES[subject.kind](host, subject, library)
     rows = [ROWS[key] for key in keys] or CHECKS
     return [judge_check(row, probe) for row in rows if applies(row, subject, probe.kind, host.name)]
-
-
-def wrong_library(folder, file, text, other):
-    """A library of one node of stock MaterialX, with one text in place of another."""
-    (pbrlib,) = [
-        path for each in standard_folders() if (path := each / "pbrlib" / "genglsl").is_dir()
-    ]
-    source = (pbrlib / file).read_text(encoding="utf-8")
-    assert text in source
-    source = source.replace('#include "lib/', '#include "libraries/pbrlib/genglsl/lib/')
-    (folder / file).write_text(source.replace(text, other), encoding="utf-8")
-    rows = (pbrlib / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8").splitlines()
-    (row,) = [row for row in rows if f'file="{file}"' in row]
-    document = f'<?xml version="1.0"?>\n<materialx version="1.39">\n{row}\n</materialx>\n'
-    (folder / "implementations.mtlx").write_text(document, encoding="utf-8")
-    return str(folder)
 
 
 # --- probes -------------------------------------------------------------------------------------

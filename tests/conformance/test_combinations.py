@@ -2,7 +2,6 @@
 """The nodes that combine lobes in GLSL: eonlib's carry what the text carries, stock ones do not."""
 
 import re
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from mxeon.conformance.nodes.combinations import COMBINED_NODES
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.core.layering import Bsdf, add, layer, multiply, throughput
-from mxeon.shaders.library import data_folder
+from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "upstream"
 
@@ -34,21 +33,28 @@ PASSES = "combined_throughput"
 SUM = "in1.throughput + in2.throughput - 1.0"
 LIT = "max(top.throughput, 0.0)"
 WRONG = (
-    ("add", f"= {SUM}", f"= max({SUM}, 0.0)", "mix_sum", PASSES),
-    ("add", "in2.throughput - 1.0", "in2.throughput - 1.1", "add", PASSES),
-    ("add", "in1.response + in2.response", "in1.response", "add", "combination"),
-    ("layer", LIT, "top.throughput", "layer_sum", "combination"),
-    ("layer", "base.response * passed", "base.response", "layer", "combination"),
-    ("layer", "passed * base.throughput", "passed", "layer", PASSES),
-    ("layer", "min(top.throughput, 0.0) + ", "", "mix_layer", PASSES),
+    ("add_bsdf", f"= {SUM}", f"= max({SUM}, 0.0)", "mix_sum", PASSES),
+    ("add_bsdf", "in2.throughput - 1.0", "in2.throughput - 1.1", "add", PASSES),
+    ("add_bsdf", "in1.response + in2.response", "in1.response", "add", "combination"),
+    ("layer_bsdf", LIT, "top.throughput", "layer_sum", "combination"),
+    ("layer_bsdf", "base.response * passed", "base.response", "layer", "combination"),
+    ("layer_bsdf", "passed * base.throughput", "passed", "layer", PASSES),
+    ("layer_bsdf", "min(top.throughput, 0.0) + ", "", "mix_layer", PASSES),
     (
-        "multiply",
+        "multiply_bsdf_color3",
         "= 1.0 - weight * (1.0 - in1.throughput)",
         "= in1.throughput",
         "multiply_sum",
         PASSES,
     ),
-    ("multiply", "- in1.throughput)", "- max(in1.throughput, 0.0))", "multiply_sum", PASSES),
+    (
+        "multiply_bsdf_color3",
+        "- in1.throughput)",
+        "- max(in1.throughput, 0.0))",
+        "multiply_sum",
+        PASSES,
+    ),
+    ("multiply_bsdf_float", "response * weight", "response", "multiply_float", "combination"),
 )
 
 
@@ -80,14 +86,10 @@ def test_a_combination_of_stock_is_off_where_its_page_says(gl, subject):
 def test_a_wrong_line_of_a_combination_is_seen(gl, tmp_path, wrong):
     name, old, new, model, check = wrong
     [subject] = [each for each in COMBINED_NODES if each.model == model]
-    for folder in ("libraries", "genglsl", "profiles"):
-        shutil.copytree(data_folder() / folder, tmp_path / folder)
+    copy_of_eonlib(tmp_path)
     library = str(tmp_path / "profiles" / "pbrlib")
     assert combined_results(gl, subject, library)[check].verdict == PASSED
-    for file in (tmp_path / "genglsl").glob(f"{name}_bsdf*.glsl"):
-        text = file.read_text("utf-8")
-        assert old in text
-        file.write_text(text.replace(old, new), "utf-8")
+    replace_text(tmp_path, old, new, f"genglsl/{name}.glsl")
     assert combined_results(gl, subject, library)[check].verdict in (DIFFERS, FAILED)
 
 

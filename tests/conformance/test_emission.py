@@ -19,8 +19,7 @@ from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.samples.batch import RIM, Batch
-from mxeon.shaders.library import data_folder
-from tests.conformance.test_bsdfs import wrong_library
+from tests.support.wrong_libraries import wrong_eonlib_node, wrong_stock_node
 
 SUBJECTS = {subject.title: subject for subject in EMISSION_SUBJECTS}
 ROWS = {check.key: check for check in CHECKS}
@@ -106,7 +105,7 @@ def test_eonlib_has_every_emission_and_medium_that_it_is_asked_for(gl, title):
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_line_fails_a_check_and_is_named(gl, tmp_path, name):
     title, file, text, other, key, words = WRONG[name]
-    [result] = judged(gl, title, wrong_library(tmp_path, file, text, other), key).values()
+    [result] = judged(gl, title, wrong_stock_node(tmp_path, file, text, other), key).values()
     assert result.verdict == FAILED and result.control.caught
     assert words in result.diagnosis
 
@@ -124,21 +123,32 @@ def test_a_cone_that_ignores_its_normal_fails_the_inputs(gl, tmp_path):
 
 def cone(gl, folder, text, other, key):
     """Result of a check of eonlib's cone with one text in place of another."""
-    source = (data_folder() / "genglsl" / "conical_edf.glsl").read_text(encoding="utf-8")
-    assert text in source
-    (folder / "conical_edf.glsl").write_text(source.replace(text, other), encoding="utf-8")
-    (folder / "implementations.mtlx").write_text(
-        '<?xml version="1.0"?>\n<materialx version="1.39">\n'
-        '  <implementation name="IM_conical_edf_genglsl" nodedef="ND_conical_edf" '
-        'file="conical_edf.glsl" function="conical_edf" target="genglsl" />\n</materialx>\n',
-        encoding="utf-8",
-    )
-    return judged(gl, "conical_edf", str(folder), key)[key]
+    library = wrong_eonlib_node(folder, "conical_edf", text, other)
+    return judged(gl, "conical_edf", library, key)[key]
+
+
+# By the file that implements a combination of media: its subject, a text, and the text in its place.
+COMBINED = {
+    "mix_vdf": ("mix, VDF", "vec3(1.0 - share)", "vec3(share)"),
+    "add_vdf": ("add, VDF", "in1.throughput * in2", "0.5 * in1.throughput + 0.5 * in2"),
+    "multiply_vdf_float": ("multiply, VDF, in2 float", "max(in2, 0.0)", "min(in2, 0.5)"),
+    "multiply_vdf_color3": ("multiply, VDF, in2 color3", "max(in2, vec3(0.0))", "in2.zyx"),
+}
+
+
+@pytest.mark.parametrize("file", COMBINED)
+def test_a_wrong_combination_of_media_is_seen(gl, tmp_path, file):
+    title, text, other = COMBINED[file]
+    for new, verdict in ((text, PASSED), (other, FAILED)):
+        library = tmp_path / verdict
+        library.mkdir()
+        path = wrong_eonlib_node(library, file, text, new)
+        assert judged(gl, title, path, "transmittance")["transmittance"].verdict == verdict
 
 
 def test_an_emission_from_one_side_alone_is_permitted(gl, tmp_path):
     side = "result = (dot(closureData.N, closureData.V) < 0.0) ? vec3(0.0) : color;"
-    library = wrong_library(tmp_path, UNIFORM, COLOR, side)
+    library = wrong_stock_node(tmp_path, UNIFORM, COLOR, side)
     results = judged(gl, "uniform_edf", library, "radiance", "back")
     assert results["radiance"].verdict == PASSED and results["back"].verdict == DIFFERS
     assert "emission from the front alone (rms 0)" in results["back"].diagnosis

@@ -14,7 +14,7 @@ from mxeon.conformance.probes import hair as hair_probes
 from mxeon.conformance.probes.hair import HairProbe, aimed
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.models.hair import ROUGHNESSES, TINTS
-from mxeon.shaders.library import data_folder
+from tests.support.wrong_libraries import wrong_eonlib_node
 
 (SUBJECT,) = HAIRS
 ROWS = {row.key: row for row in CHECKS if applies(row, SUBJECT, HAIR, "gl")}
@@ -118,27 +118,15 @@ def test_eonlib_passes(gl):
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_line_fails_a_check_and_is_named(gl, tmp_path, name):
     text, other, key, words = WRONG[name]
-    (result,) = judged(gl, wrong_library(tmp_path, text, other), [key]).values()
+    (result,) = judged(
+        gl, wrong_eonlib_node(tmp_path, "chiang_hair_bsdf", text, other), [key]
+    ).values()
     assert result.verdict == FAILED and result.control.caught
     assert words in result.diagnosis
 
 
 def test_every_check_has_a_shader_that_it_fails():
     assert {key for _, _, key, _ in WRONG.values()} == set(ROWS)
-
-
-def wrong_library(folder, text, other):
-    """A library of eonlib's hair alone, with one text in place of another."""
-    source = (data_folder() / "genglsl" / "chiang_hair_bsdf.glsl").read_text(encoding="utf-8")
-    assert text in source
-    (folder / "wrong.glsl").write_text(source.replace(text, other), encoding="utf-8")
-    (folder / "wrong.mtlx").write_text(
-        '<?xml version="1.0"?>\n<materialx version="1.39">\n'
-        '<implementation name="IM_chiang_hair_bsdf_genglsl" nodedef="ND_chiang_hair_bsdf"\n'
-        'file="wrong.glsl" function="chiang_hair_bsdf" target="genglsl" />\n</materialx>\n',
-        encoding="utf-8",
-    )
-    return str(folder)
 
 
 def test_pairs_are_aimed_into_the_lobes_of_both_sides():

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Thin films: verdicts on stock MaterialX and eonlib, and on shaders with one wrong line."""
 
-import shutil
 from dataclasses import replace
 
 import pytest
@@ -15,7 +14,7 @@ from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.probes import thin_films
 from mxeon.conformance.probes.thin_films import FilmProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
-from mxeon.shaders.library import data_folder
+from tests.support.wrong_libraries import wrong_copy
 
 SUBJECTS = {subject.node: subject for subject in FILMS}
 ROWS = {check.key: check for check in CHECKS}
@@ -42,7 +41,7 @@ STOCK = {
         "film_throughput": (FAILED, f"{HALF}: {FITTED}"),
     },
 }
-FILMS_IN = ("thin_film.glsl", "microfacet_lobe.glsl")
+FILMS_IN = ("genglsl/thin_film.glsl", "genglsl/microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
 WRONG = {
     "phase": ("conductor_bsdf", "dot(is_s ? im_s : im_p, channel)", "-dot(is_s ? im_s : im_p, channel)", "film"),
@@ -100,7 +99,9 @@ def test_the_films_of_eonlib_pass(gl, node):
 def test_a_wrong_line_of_a_film_fails_a_check(gl, tmp_path, name):
     node, text, other, key = WRONG[name]
     row = replace(ROWS[key], diagnose=lambda probe: Diagnosis("wrong"))  # which takes long
-    probe = FilmProbe(gl, SUBJECTS[node], wrong_library(tmp_path, text, other))
+    probe = FilmProbe(
+        gl, SUBJECTS[node], wrong_copy(tmp_path, text, other, *FILMS_IN, library="profiles/pbrlib")
+    )
     result = judge_check(row, probe)
     assert result.verdict == FAILED and result.control.caught
 
@@ -120,18 +121,6 @@ def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
     )
     for measured, most in zip(errors, stated, strict=True):
         assert 0.2 * most < max(measured) <= most
-
-
-def wrong_library(folder, text, other):
-    """A copy of the library with one text of the film in place of another."""
-    for name in ("libraries", "genglsl", "profiles"):
-        shutil.copytree(data_folder() / name, folder / name)
-    files = [folder / "genglsl" / name for name in FILMS_IN]
-    sources = [file.read_text(encoding="utf-8") for file in files]
-    assert any(text in source for source in sources)
-    for file, source in zip(files, sources, strict=True):
-        file.write_text(source.replace(text, other), encoding="utf-8")
-    return str(folder / "profiles" / "pbrlib")
 
 
 def judged(host, node, library):

@@ -15,8 +15,8 @@ from mxeon.conformance.probes.transmission import transmission_probe_type
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.hosts import raster
 from mxeon.models.transmission import refraction
-from tests.conformance.test_bsdfs import wrong_library
 from tests.support.hemispheres import view
+from tests.support.wrong_libraries import wrong_stock_node
 
 SUBJECTS = {subject.model: subject for subject in TRANSMITTING}
 ROWS = [check for check in CHECKS if check.models and set(check.models) <= set(SUBJECTS)]
@@ -87,7 +87,7 @@ def test_eonlib_passes_all_that_it_does_not_reflect(gl, model):
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_line_of_transmission_fails_a_check(gl, tmp_path, name):
     model, text, other, key = WRONG[name]
-    [result] = judged(gl, model, wrong_library(tmp_path, DIELECTRIC, text, other), key)
+    [result] = judged(gl, model, wrong_stock_node(tmp_path, DIELECTRIC, text, other), key)
     assert result.verdict == FAILED and result.control.caught
 
 

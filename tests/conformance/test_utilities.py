@@ -19,6 +19,7 @@ from mxeon.models.nodes.utilities import UTILITIES
 from mxeon.shaders.library import standard_folders
 from mxeon.shaders.nodes import document_text
 from tests.support.availability import available
+from tests.support.wrong_libraries import wrong_stock_node
 
 SUBJECTS = {subject.title: subject for subject in UTILITY_SUBJECTS}
 ROWS = {check.key: check for check in CHECKS}
@@ -200,7 +201,7 @@ def test_eonlib_has_the_nodes_of_hair_in_osl(cycles):
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_line_of_a_utility_node_fails_a_check_and_is_named(gl, tmp_path, name):
     title, text, other, key, verdict, words = WRONG[name]
-    library = wrong_library(tmp_path, SUBJECTS[title].node, text, other)
+    library = wrong_stock_node(tmp_path, SUBJECTS[title].node, text, other)
     [result] = judged(UtilityProbe, gl, library, (key,), (title,))
     assert result.verdict == verdict and result.control.caught
     assert words in result.diagnosis
@@ -209,23 +210,6 @@ def test_a_wrong_line_of_a_utility_node_fails_a_check_and_is_named(gl, tmp_path,
 def test_every_check_of_the_utility_nodes_has_a_shader_that_it_fails():
     failing = {key for _, _, _, key, *_ in WRONG.values()}
     assert failing == set(KEYS) == {row.key for row in CHECKS if "artistic_ior" in row.models}
-
-
-def wrong_library(folder, node, text, other):
-    """A library of one utility node of stock MaterialX, with one text in place of another."""
-    (pbrlib,) = [
-        path for each in standard_folders() if (path := each / "pbrlib" / "genglsl").is_dir()
-    ]
-    rows = (pbrlib / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8").splitlines()
-    (row,) = [row for row in rows if f'nodedef="ND_{node}"' in row]
-    file = row.split('file="')[1].split('"')[0]
-    source = (pbrlib / file).read_text(encoding="utf-8")
-    assert text in source
-    source = source.replace('#include "lib/', '#include "libraries/pbrlib/genglsl/lib/')
-    (folder / file).write_text(source.replace(text, other), encoding="utf-8")
-    document = f'<?xml version="1.0"?>\n<materialx version="1.39">\n{row}\n</materialx>\n'
-    (folder / "implementations.mtlx").write_text(document, encoding="utf-8")
-    return str(folder)
 
 
 # --- subjects and hosts -------------------------------------------------------------------------

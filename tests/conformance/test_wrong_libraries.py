@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of the library with one fault each: the check that finds it, and the words that name it."""
 
-import shutil
 from contextlib import closing
 from pathlib import Path
 
@@ -27,9 +26,10 @@ from mxeon.conformance.text.languages import check_languages
 from mxeon.errors import InputError
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.functions import names
-from mxeon.shaders.library import data_folder, eonlib_folder, examples_folder
+from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import EON, INVERSIONS
 from tests.support.plans import keep_checks
+from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
 ON, OFF, NODE = SUBJECTS
 MDL, OSL = "libraries/eonlib_genmdl_impl.mtlx", "libraries/eonlib_genosl_impl.mtlx"
@@ -43,17 +43,12 @@ MDL_NORMAL = "normal: {{normal}}, "
 @pytest.fixture
 def copy(tmp_path):
     """A function that copies the library with a text replaced wherever it stands in a file."""
-    shutil.copytree(eonlib_folder(), tmp_path / "libraries")
-    for name in ("genglsl", "genosl", "profiles"):
-        shutil.copytree(data_folder() / name, tmp_path / name)
+    library = copy_of_eonlib(tmp_path)
 
     def edited(file="", old="", new=""):
         if file:
-            path = tmp_path / file
-            text = path.read_text(encoding="utf-8")
-            assert old in text
-            path.write_text(text.replace(old, new), encoding="utf-8")
-        return str(tmp_path / "libraries")
+            replace_text(tmp_path, old, new, file)
+        return str(library)
 
     return edited
 

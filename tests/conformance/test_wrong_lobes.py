@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of the library with one wrong line each: the check meant for it fails and says why."""
 
-import shutil
-
 import pytest
 
 from mxeon.conformance.checks.application import judge_subject
@@ -11,9 +9,10 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.shaders.library import data_folder
+from tests.support.wrong_libraries import wrong_copy
 
 EON, QON, NODE = SUBJECTS
+LOBE = "genglsl/oren_nayar_lobe.glsl"
 DIRECT = "brdf * mu_i * weight * closureData.occlusion"
 ENVIRONMENT = "mx_environment_irradiance(N) * weight"
 FACING = "N = mx_forward_facing_normal(N, wo);"
@@ -182,12 +181,12 @@ WRONG = {
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_line_fails_the_check_meant_for_it_and_is_named(gl, tmp_path, name):
     subject, text, other, key, words = WRONG[name]
-    result = judged(gl, wrong_library(tmp_path, text, other), subject, key)
+    result = judged(gl, wrong_copy(tmp_path, text, other, LOBE), subject, key)
     assert result.verdict == FAILED and words in result.diagnosis
 
 
 def test_a_copy_without_a_wrong_line_passes_every_check(gl, tmp_path):
-    library = wrong_library(tmp_path, FACING, FACING)
+    library = wrong_copy(tmp_path, FACING, FACING, LOBE)
     for subject in SUBJECTS:
         results = judge_subject(PairProbe(gl, subject, library))
         assert {result.verdict for result in results} == {PASSED}
@@ -199,7 +198,7 @@ def test_a_copy_without_a_wrong_line_passes_every_check(gl, tmp_path):
 )
 def test_the_other_hosts_see_what_is_around_the_model(hosts, tmp_path, host, name):
     subject, text, other, key, words = WRONG[name]
-    result = judged(hosts(host), wrong_library(tmp_path, text, other), subject, key)
+    result = judged(hosts(host), wrong_copy(tmp_path, text, other, LOBE), subject, key)
     assert result.verdict == FAILED and words in result.diagnosis
 
 
@@ -240,24 +239,13 @@ def test_a_wrong_line_of_another_node_fails_the_check_meant_for_it(gl, tmp_path,
     probe = probe_type_of(subject, PairProbe)
     for library, verdict in (
         ("eonlib", PASSED),
-        (wrong_library(tmp_path, text, other, file), FAILED),
+        (wrong_copy(tmp_path, text, other, f"genglsl/{file}"), FAILED),
     ):
         [result] = judge_subject(
             probe(gl, subject, library), [row for row in CHECKS if row.key == key]
         )
         assert result.verdict == verdict and result.control.caught
     assert words in result.diagnosis
-
-
-def wrong_library(folder, text, other, name="oren_nayar_lobe.glsl"):
-    """A copy of the library whose lobe has one text in place of another."""
-    for part in ("libraries", "genglsl"):
-        shutil.copytree(data_folder() / part, folder / part)
-    file = folder / "genglsl" / name
-    source = file.read_text(encoding="utf-8")
-    assert text in source
-    file.write_text(source.replace(text, other), encoding="utf-8")
-    return str(folder / "libraries")
 
 
 def judged(host, library, subject, key):
