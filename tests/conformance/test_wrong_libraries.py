@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of the library with one fault each: the check that finds it, and the words that name it."""
 
+import shutil
 from contextlib import closing
 from pathlib import Path
 

@@ -45,8 +45,8 @@ COMMANDS = {
     "report make": ["report", "make", "report"],
     "report diff": ["report", "diff", "report", "report"],
     "library": ["library", "--verify"],
-    "kit export": ["kit", "export", "out", "--size", "64"],
-    "kit check": ["kit", "check", "out"],
+    "kit export": ["kit", "export", "out/kit", "--size", "64"],
+    "kit check": ["kit", "check", "out/kit"],
     "invert": ["invert", "0.5", "0.5", "0.5", "--roughness", "1"],
 }
 STATUS = {"check": 3, "report make": 3, "kit check": 3}  # msl and an empty kit do not run
