@@ -17,10 +17,18 @@ import mxeon
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS, Check
 from mxeon.conformance.nodes.diffuse import CHANGES, ModelSubject
-from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.results import PASSED, Run
-from mxeon.conformance.samples.batch import PAIRS, SEED, Array, Batch, directions, random_inputs
+from mxeon.conformance.samples.batch import (
+    PAIRS,
+    SEED,
+    Array,
+    Batch,
+    Changes,
+    Values,
+    directions,
+    random_inputs,
+)
 from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
 from mxeon.errors import InputError
 from mxeon.hosts.base import Host, Identity

@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar, get_origin
+from typing import Any, TypeAlias, TypeVar, get_origin
 
 import cattrs
 import numpy as np
 from cattrs.gen import make_dict_structure_fn, make_dict_unstructure_fn, override
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from mxeon.conformance.results import Control, Picture, Result
 from mxeon.errors import InputError
@@ -30,6 +30,7 @@ ERRORS = (
 # JSON calls the error of a result or a control its figure.
 FIGURE = {"error": override(rename="figure")}
 T = TypeVar("T")
+Overrides: TypeAlias = dict[str, Any]  # by field; cattrs types the options beside them alone
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,9 @@ class StoredImage:
 
     path: Path
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+    def __array__(
+        self, dtype: DTypeLike | None = None, copy: bool | None = None
+    ) -> NDArray[np.generic]:
         return np.asarray(np.load(self.path), dtype=dtype)
 
     @property
@@ -121,14 +124,16 @@ def _is_array(kind: object) -> bool:
     return (get_origin(kind) or kind) is np.ndarray
 
 
-def _register(converter: cattrs.Converter, kind: type, fields: dict[str, Any]) -> None:
+def _register(converter: cattrs.Converter, kind: type, fields: Overrides) -> None:
     """Convert some fields of a dataclass in another way than their types say."""
-    to_json: Callable[[Any], dict[str, Any]] = make_dict_unstructure_fn(kind, converter, **fields)
+    to_json: Callable[[object], dict[str, object]] = make_dict_unstructure_fn(
+        kind, converter, **fields
+    )
     converter.register_unstructure_hook(kind, to_json)
     converter.register_structure_hook(kind, make_dict_structure_fn(kind, converter, **fields))
 
 
-def _image_fields(folder: Path) -> dict[str, Any]:
+def _image_fields(folder: Path) -> Overrides:
     """Conversion of images to the names of their files in a folder, and back."""
 
     def name(image: StoredImage | None) -> str | None:
@@ -155,9 +160,10 @@ def _exactly(kind: type[T], words: str) -> Callable[[object, type], T]:
     return structure
 
 
-def _number(value: Any, _: type) -> float:
+def _number(value: object, _: type) -> float:
     if type(value) not in (int, float) and value not in NOT_FINITE:
         raise InputError(f"must be a number; got {value!r}")
+    assert isinstance(value, (int, float, str))
     try:
         return float(value)
     except OverflowError:

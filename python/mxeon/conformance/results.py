@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,23 @@ class Control:
     variant: str
     error: float
     caught: bool
+
+
+class Claims(TypedDict, total=False):
+    """What a result says of a renderer's own node beside its verdict; see Result."""
+
+    claimed: str
+    model: str
+
+
+class Place(Claims):
+    """What a result is of; see Result."""
+
+    check: str
+    claim: str
+    subject: str
+    host: str
+    library: str
 
 
 @dataclass(frozen=True)
@@ -227,8 +244,8 @@ class Picture:
     host: str
     library: str
     scene: str
-    image: NDArray[Any]
-    reference: NDArray[Any] | None
+    image: NDArray[np.floating]
+    reference: NDArray[np.floating] | None
     metadata: dict[str, str]
 
 

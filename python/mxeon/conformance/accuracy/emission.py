@@ -3,7 +3,6 @@
 
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from mxeon.conformance.nodes.emission import (
 )
 from mxeon.conformance.nodes.media import MediumSubject
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.samples.batch import RIM, SEED
+from mxeon.conformance.samples.batch import RIM, SEED, Array
 from mxeon.conformance.samples.measurement import scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
 from mxeon.hosts.base import Host
@@ -137,6 +136,6 @@ def exponential_error(host: Host) -> float:
     return _beside(np.exp(-depth), host.execute(FUNCTIONS, "mxeon_exponential", depth, depth)[:, 0])
 
 
-def _beside(exact: Any, values: Any) -> float:
+def _beside(exact: Array, values: Array) -> float:
     """Largest error beside one rounding of 1."""
     return max(float(np.abs(values - exact).max()) - ROUNDING, 0.0)

@@ -12,7 +12,7 @@ from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured, renderer_warnings
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.results import AlbedoCurve, Result
+from mxeon.conformance.results import AlbedoCurve, Place, Result
 from mxeon.errors import NotRun, ShaderError
 
 CURVE_COLOR, CURVE_ROUGHNESS = (0.8, 0.4, 0.1), 1.0
@@ -74,7 +74,7 @@ def judge_curve(probe: Probe) -> tuple[AlbedoCurve, ...]:
 
 def judge_check(check: Check, probe: Probe) -> Result:
     """The result of a row of the table for a probe, with its control and a diagnosis."""
-    fields = {
+    place: Place = {
         "check": check.key,
         "claim": check.claim,
         "subject": probe.subject.title,
@@ -91,8 +91,8 @@ def judge_check(check: Check, probe: Probe) -> Result:
             if right.error > tolerance.value:
                 diagnosis = check.diagnose(probe)
     except (NotRun, ShaderError) as error:
-        return not_measured(fields, error)
+        return not_measured(place, error)
     diagnosis = replace(diagnosis, permitted=check.open and diagnosis.permitted)
     if diagnosis.text:
         diagnosis = replace(diagnosis, text="; ".join([diagnosis.text, *notes]))
-    return judge_measurements(fields, tolerance, right, check.variant, wrong, diagnosis)
+    return judge_measurements(place, tolerance, right, check.variant, wrong, diagnosis)

@@ -2,9 +2,9 @@
 """Measurements of the other BSDF nodes of pbrlib: energy, layering, and their frames."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.nodes.bsdf import BsdfSubject
@@ -43,7 +43,8 @@ def layer(probe: Probe, metric: Metric) -> Measurement:
     views, albedo = _integral(probe)
     total = albedo + probe.throughput(views, "direct")
     # Where the equations gain energy by themselves, no throughput makes up for it.
-    sound = (probe.integrals <= subject_of(probe, BsdfSubject).albedo(views) + ROUNDED).all(axis=1)
+    own = subject_of(probe, BsdfSubject).albedo(views)
+    sound = np.asarray((probe.integrals <= own + ROUNDED).all(axis=1))
     return worst_of(metric, [Case(views.where(sound), total[sound], np.ones((1, 3)))])
 
 
@@ -80,7 +81,7 @@ def _clear(batch: Batch) -> Batch:
 
     These are dielectrics whose index is near 1, and deep dips at 82 degrees, which turn F negative.
     """
-    changes: dict[str, Any] = {}
+    changes: dict[str, ArrayLike] = {}
     if np.ndim(batch.inputs.get("ior", 0.0)) == 1:
         changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
     if "color82" in batch.inputs:

@@ -3,10 +3,9 @@
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Batch
@@ -80,7 +79,7 @@ class Altered(Probe):
         return self.probe.density(self.batch(batch))
 
 
-def with_inputs(**inputs: Any) -> Control:
+def with_inputs(**inputs: ArrayLike) -> Control:
     """A control that passes these inputs to the host in place of the batch's."""
     return lambda probe: Altered(probe, batch=lambda batch: batch.altered(**inputs))
 

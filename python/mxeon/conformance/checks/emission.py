@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that emit light."""
 
-from typing import Any
-
 from mxeon.conformance.accuracy import emission as tolerances
 from mxeon.conformance.accuracy.diffuse import count_of
 from mxeon.conformance.checks import emission_measures as measures
@@ -23,7 +21,7 @@ from mxeon.conformance.nodes.emission import (
 from mxeon.conformance.probes.probe import Probe
 
 
-def unimplemented(probe: Probe) -> Any:
+def unimplemented(probe: Probe) -> Probe:
     """A control that asks for a node that its document defines, and that nothing implements."""
     return probe.of(UNIMPLEMENTED)
 

@@ -3,9 +3,9 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.conformance.checks.controls import Altered
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, diagnose_albedo
@@ -161,7 +161,7 @@ def film_energy(probe: Probe, metric: Metric) -> Measurement:
 def _compared(probe: Probe) -> Batch:
     """Random pairs with a film, whose substrate float32 can tell from vacuum."""
     batch: Batch = probe.few[0]
-    changes: dict[str, Any] = {"thinfilm_thickness": 300.0}
+    changes: dict[str, ArrayLike] = {"thinfilm_thickness": 300.0}
     if "tint" in batch.inputs:
         changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
     return batch.altered(**changes)

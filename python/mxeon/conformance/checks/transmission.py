@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of light that microfacets transmit, in the branch that looks up an environment."""
 
-from typing import Any
-
 import numpy as np
 
 from mxeon.conformance.accuracy import bsdf as tolerances
@@ -18,7 +16,7 @@ from mxeon.conformance.nodes.transmission import (
     TransmissionSubject,
 )
 from mxeon.conformance.probes.probe import Probe, subject_of
-from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case
 from mxeon.conformance.samples.tolerance import Tolerance
 
@@ -35,7 +33,7 @@ def of_all(tolerance: Tolerance) -> dict[str, Tolerance]:
 def infinite(probe: Probe) -> Altered:
     """A control whose values are divided by 0."""
 
-    def divided(batch: Any, values: Any) -> Any:
+    def divided(batch: Batch, values: Array) -> Array:
         return np.full_like(values, np.inf)
 
     return Altered(probe, values=divided)

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import permutations
-from typing import Any
 
 import numpy as np
 
@@ -32,7 +31,7 @@ class Fault:
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
 
 
-def _input(name: str, change: Callable[[Array], Any]) -> Callable[[Batch], Batch]:
+def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Batch]:
     """A change of an input, where the batch has it."""
 
     def batch(batch: Batch) -> Batch:
@@ -94,9 +93,9 @@ def _of_roughness() -> Iterator[Fault]:
 
 def _of_weight() -> Iterator[Fault]:
     occlusion = _input("occlusion", np.ones_like)
-    ways: tuple[tuple[str, Callable[[Array], Any]], ...] = (
+    ways: tuple[tuple[str, Callable[[Array], Array]], ...] = (
         ("", np.ones_like),
-        (" but for 0 and below", lambda weight: (weight > 0.0) * 1.0),
+        (" but for 0 and below", lambda weight: np.where(weight > 0.0, 1.0, 0.0)),
     )
     for but, change in ways:
         weight = _input("weight", change)

@@ -2,10 +2,9 @@
 """Named sets of pairs and inputs, to say of a shader that is wrong for some of them for which."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.samples.batch import Array, Batch
 
@@ -111,7 +110,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "where the normal faces away from the viewer", _faces_away(batch)
 
 
-def _rows(values: Any, count: int) -> Array:
+def _rows(values: ArrayLike, count: int) -> Array:
     """Values of an input with a row for each pair: of numbers or colors, or one for all pairs."""
     array = np.asarray(values, np.float64)
     if array.shape[:1] == (count,):

@@ -4,10 +4,9 @@
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control, Result
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Control, Place, Result
 from mxeon.conformance.samples.measurement import Measurement
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, ShaderError
@@ -15,7 +14,7 @@ from mxeon.hosts.base import RendererWarning
 
 
 def judge_measurements(
-    fields: dict[str, Any],
+    place: Place,
     tolerance: Tolerance,
     right: Measurement,
     variant: str,
@@ -26,7 +25,7 @@ def judge_measurements(
 
     Parameters
     ----------
-    fields : dict of str
+    place : Place
         Check, claim, subject, host and library of the result.
     tolerance : Tolerance
     right, wrong : Measurement
@@ -42,7 +41,7 @@ def judge_measurements(
     caught = wrong.error > tolerance.value
     verdict = DIFFERS if diagnosis.permitted else FAILED
     return Result(
-        **fields,
+        **place,
         verdict=PASSED if right.error <= tolerance.value and caught else verdict,
         error=right.error,
         unit=tolerance.unit,
@@ -55,11 +54,11 @@ def judge_measurements(
     )
 
 
-def not_measured(fields: dict[str, Any], error: NotRun | ShaderError) -> Result:
+def not_measured(place: Place, error: NotRun | ShaderError) -> Result:
     """The result of a check without a measurement: not run, or failed by a shader error."""
     if isinstance(error, NotRun):
-        return Result(**fields, verdict=NOT_RUN, reason=str(error))
-    return Result(**fields, verdict=FAILED, diagnosis=str(error))
+        return Result(**place, verdict=NOT_RUN, reason=str(error))
+    return Result(**place, verdict=FAILED, diagnosis=str(error))
 
 
 @contextmanager

@@ -6,19 +6,20 @@ calls. It is taken from a generated shader unchanged, and called with random col
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import INVERSION, ROUND_TRIP
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
-from mxeon.conformance.results import Result
+from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples.batch import SEED, Array
 from mxeon.conformance.samples.measurement import Measurement, absolute
+from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.conformance.text.syntax import braces
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
@@ -95,9 +96,13 @@ class InversionProbe:
         return values.astype(np.float64)
 
 
+# Errors of values that a node gives.
+Errors: TypeAlias = Callable[[InversionProbe, Array], Array]
+
+
 def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
     """Results of the checks of an inversion node on a host."""
-    rows: tuple[tuple[str, str, Any, Any], ...] = (
+    rows: tuple[tuple[str, str, Tolerance, Errors], ...] = (
         (
             CHECK,
             "The node gives the reflectance of the NumPy function of its name.",
@@ -118,10 +123,10 @@ def _judge(
     probe: InversionProbe,
     key: str,
     claim: str,
-    tolerance: Any,
-    measure: Callable[[InversionProbe, Array], Array],
+    tolerance: Tolerance,
+    measure: Errors,
 ) -> Result:
-    fields = {
+    place: Place = {
         "check": key,
         "claim": claim,
         "subject": probe.node,
@@ -131,11 +136,11 @@ def _judge(
     try:
         values, wrong = probe.values(), probe.values(0.95)
     except (NotRun, ShaderError) as error:
-        return not_measured(fields, error)
+        return not_measured(place, error)
     right = _worst(probe, values, measure(probe, values))
     control = _worst(probe, wrong, measure(probe, wrong))
     diagnosis = Diagnosis() if right.error <= tolerance.value else _nearest(probe, values)
-    return judge_measurements(fields, tolerance, right, VARIANT, control, diagnosis)
+    return judge_measurements(place, tolerance, right, VARIANT, control, diagnosis)
 
 
 def _value(probe: InversionProbe, values: Array) -> Array:
@@ -158,7 +163,7 @@ def _round_trip(probe: InversionProbe, values: Array) -> Array:
 def _worst(probe: InversionProbe, values: Array, errors: Array) -> Measurement:
     color, roughness = probe.inputs
     row = int(errors.argmax())
-    worst: Mapping[str, Any] = {"color": color, "roughness": roughness, "measured": values}
+    worst = {"color": color, "roughness": roughness, "measured": values}
     point = {name: np.ravel(each[row]).tolist() for name, each in worst.items()}
     return Measurement(float(errors[row]), point)
 

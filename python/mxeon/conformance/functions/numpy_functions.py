@@ -9,7 +9,6 @@ import inspect
 from collections.abc import Callable, Mapping
 from functools import cache
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -108,7 +107,7 @@ def _takes_gray(function: str) -> bool:
 
 
 @cache
-def _version(function: str) -> tuple[Callable[..., Any], bool]:
+def _version(function: str) -> tuple[Callable[..., Array], bool]:
     """NumPy's version of a shader function, and whether colors have their channels first."""
     if function in OTHERS:
         return OTHERS[function], False

@@ -8,7 +8,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from mxeon.conformance.accuracy.diffuse import DENSITY, LOSS, PART, VALUE, direc
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.functions import numpy_functions as twins
-from mxeon.conformance.results import Result
+from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.samples.measurement import Measurement, absolute, relative
 from mxeon.conformance.samples.tolerance import Tolerance
@@ -198,7 +197,7 @@ def judge_functions(
 
 
 def _judge_check(check: FunctionCheck, probe: FunctionProbe) -> Result:
-    fields = {
+    place: Place = {
         "check": check.key,
         "claim": check.claim,
         "subject": SUBJECT,
@@ -212,9 +211,9 @@ def _judge_check(check: FunctionCheck, probe: FunctionProbe) -> Result:
         )
         wrong_functions = _diagnosis(check, probe) if right.error > tolerance.value else ""
     except (NotRun, ShaderError) as error:
-        return not_measured(fields, error)
+        return not_measured(place, error)
     diagnosis = Diagnosis(wrong_functions)
-    return judge_measurements(fields, tolerance, right, VARIANT, wrong, diagnosis)
+    return judge_measurements(place, tolerance, right, VARIANT, wrong, diagnosis)
 
 
 def _measure(
@@ -259,7 +258,7 @@ def _expected(function: str) -> Array:
 def _condition(function: str) -> Array:
     """1, or the value if larger, and by how much it changes with each of its numbers, (N,)."""
     columns, exact = twins.random_columns(), _expected(function)
-    total: Any = np.maximum(1.0, np.abs(exact).max(axis=1))
+    total: Array = np.maximum(1.0, np.abs(exact).max(axis=1))
     for name in twins.numbers(function):
         moved = twins.expected(function, twins.moved(columns, name, STEP))
         total = total + np.abs(moved - exact).max(axis=1) / STEP

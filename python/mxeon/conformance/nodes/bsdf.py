@@ -4,13 +4,12 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from mxeon.conformance.nodes.ports import Port, changes, color, draw, draw_edges, materials
-from mxeon.conformance.nodes.subject import Changes, Values
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models import nodes as pbrlib
@@ -176,7 +175,7 @@ class BsdfSubject:
         return changes(self.ports)
 
     @property
-    def black(self) -> dict[str, Any]:
+    def black(self) -> Values:
         """Inputs with which it scatters no light; none where it always scatters some."""
         return {name: (0.0, 0.0, 0.0) for name in BLACK if name in self.row.inputs}
 
@@ -185,11 +184,11 @@ class BsdfSubject:
         """Whether the roughness has a direction."""
         return any(port.name == "roughness" and port.kind == "vector2" for port in self.ports)
 
-    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+    def with_flag(self, inputs: Values) -> Values:
         """The inputs."""
         return inputs
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this node alone, with these inputs."""
         types = {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
         return material_text(self.node, {**(inputs or {}), **self.row.fixed}, self.node, types)

@@ -2,10 +2,10 @@
 """Subjects of the checks: the nodes of pbrlib that combine two lobes, or a sum of them."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from mxeon.conformance.nodes.bsdf import COMBINED, NESTED, BsdfSubject
 from mxeon.conformance.nodes.ports import Port, color
+from mxeon.conformance.samples.batch import Values
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.models.nodes import combinations
 from mxeon.models.nodes.combinations import (
@@ -96,7 +96,7 @@ class CombinedSubject(BsdfSubject):
         """Whether the roughness has a direction: never."""
         return False
 
-    def document(self, inputs: Any = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this node over sheens."""
         return document_text(NODES[self.model] + SURFACE)
 

@@ -4,12 +4,11 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.subject import Changes, Values
-from mxeon.conformance.samples.batch import Array, Batch, Candidate, random_inputs
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values, random_inputs
 from mxeon.conformance.samples.edge_cases import special_inputs
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models import table as reference
@@ -48,7 +47,7 @@ class ModelSubject:
         return self._candidates(rows, Batch.albedo)
 
     @property
-    def black(self) -> dict[str, Any]:
+    def black(self) -> Values:
         """Inputs with which it reflects nothing."""
         return {"color": (0.0, 0.0, 0.0)}
 
@@ -130,11 +129,11 @@ class DiffuseSubject(ModelSubject):
         """Names of the node's inputs."""
         return tuple(name for name in self.names if self.flag is not None or name != FLAG)
 
-    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+    def with_flag(self, inputs: Values) -> Values:
         """Inputs with the subject's flag, unless they set it."""
         return inputs if self.flag is None else {FLAG: self.flag, **inputs}
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this node alone, with these inputs."""
         return material_text(self.node, self.with_flag(inputs or {}), self.node)
 

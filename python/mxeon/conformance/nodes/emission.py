@@ -4,15 +4,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.nodes.bsdf import broadcast_inputs
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw, materials
-from mxeon.conformance.nodes.subject import Changes, Values
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.models.nodes.emissions import (
     AMOUNT,
     BASE,
@@ -142,11 +141,11 @@ class EmissionSubject:
         """For each input: inputs without and with a change of it alone, which must be seen."""
         return changes(self.ports)
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that emits by this node alone, with these inputs."""
         return document_text(self.emission_text(inputs) + EMITTER, "look")
 
-    def emission_text(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def emission_text(self, inputs: Values | None = None) -> str:
         """XML of the node and of those that it takes, with a value of each input."""
         kinds = {port.name: port.kind for port in self.ports}
         values = {port.name: _default(port) for port in self.drawn} | dict(inputs or {})
@@ -220,7 +219,7 @@ class AbsentSubject:
     closure: ClassVar[bool] = True
     libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text that uses the node."""
         return document_text(self.text)
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects and probes of the node `surface` with an emission, and nodes that no target has."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from mxeon.conformance.nodes.emission import EMITTER, SURFACES, AbsentSubject
+from mxeon.conformance.samples.batch import Values
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
 COLOR = (0.2, 0.5, 2.0)  # radiance
@@ -34,7 +34,7 @@ class SurfaceSubject:
     closure: ClassVar[bool] = True
     libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of the surface, with this opacity."""
         emission = node_text("uniform_edf", "EDF", "emission", input_text("color", "color3", COLOR))
         lobe = '    <input name="bsdf" type="BSDF" nodename="lobe" />\n' if self.lit else ""

@@ -4,13 +4,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import HAIR, NOTHING, BsdfSubject, broadcast_inputs
 from mxeon.conformance.nodes.ports import Port, color
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.nodes.hair import HAIR_NODE
@@ -63,7 +62,7 @@ class HairSubject(BsdfSubject):
         return PORTS
 
     @property
-    def black(self) -> dict[str, Any]:
+    def black(self) -> Values:
         """Inputs with which it scatters no light."""
         return dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
 

@@ -2,15 +2,15 @@
 """Views and roughnesses of hair of which a check asks apart, where shaders differ from the model."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from mxeon.conformance.samples.batch import Values
 from mxeon.models.hair import TINTS
 from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
 
 LOBES = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
-APART: dict[str, Any] = {**LOBES, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
+APART: Values = {**LOBES, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
 STRAIGHT = 0.05  # azimuth, in radian, up to which a view counts as along the normal
 SLANTED = (0.3, 1.2)  # azimuths of other views
 
@@ -37,7 +37,7 @@ class Region:
     azimuths: tuple[float, float]
     variances: tuple[float, float]
     scales: tuple[float, float]
-    tints: dict[str, Any]
+    tints: Values
     tilt: float = 0.05
     ior: tuple[float, float] | None = None
     form: str = ""

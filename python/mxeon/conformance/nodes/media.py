@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects and probes of the VDF nodes: a medium below a surface that lets light through."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import broadcast_inputs
 from mxeon.conformance.nodes.emission import MEDIUM
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw
-from mxeon.conformance.nodes.subject import Changes
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
+from mxeon.models.nodes.node import Inputs
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 
 LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
@@ -93,7 +93,7 @@ class MediumSubject:
         """For each input: inputs without and with a change of it alone."""
         return changes(self.ports)
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that lets light into the medium."""
         sources = SOURCES.get(self.node, {})
         ports = {name: "" for name in ("medium", *sources.values())}
@@ -138,7 +138,7 @@ def _coefficient(name: str) -> Port:
     return Port(name, "vector3", LEAST, LARGEST, change=(0.9, 0.1, 0.6), logarithmic=True)
 
 
-def _transmittance(value: Any, batch: Batch) -> Array:
+def _transmittance(value: Callable[[Inputs], Array], batch: Batch) -> Array:
     """Transmittance of a function of coefficients, (N, 3)."""
     return np.asarray(value(broadcast_inputs(batch)))
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.nodes.subject import Changes, Values
-from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.samples.batch import Array, Changes, Values
 from mxeon.conformance.samples.edge_cases import with_edges
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type

@@ -2,15 +2,11 @@
 """What is judged, as plans, probes and pages see it: a node in one mode, with its model."""
 
 from collections.abc import Mapping
-from typing import Protocol, TypeAlias, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
-
-Values: TypeAlias = Mapping[str, ArrayLike]  # of a node's inputs, by name
-Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change of one of them
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 
 
 class Subject(Protocol):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.nodes.ports import CHANGED_COLOR, Port, color
-from mxeon.conformance.nodes.subject import Values
+from mxeon.conformance.samples.batch import Values
 
 # Ports by the range that is asked of them; a change is another value than any default.
 RANGES = {

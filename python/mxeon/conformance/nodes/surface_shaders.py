@@ -3,14 +3,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from mxeon.conformance.nodes.ports import draw
-from mxeon.conformance.nodes.subject import Changes, Values
 from mxeon.conformance.nodes.surface_inputs import GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs
-from mxeon.conformance.samples.batch import Array, Candidate
+from mxeon.conformance.samples.batch import Array, Candidate, Changes, Values
 from mxeon.shaders.nodes import document_text, node_text
 
 WHOLE = "surface pairs"  # kind of probe
@@ -50,11 +49,11 @@ class SurfaceShader:
         """Names of the inputs that its lobes may depend on."""
         return tuple(self.table.changed)
 
-    def with_flag(self, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+    def with_flag(self, inputs: Values) -> Values:
         """The inputs."""
         return inputs
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this shader alone."""
         return document_text(node_text(self.node, "surfaceshader", "shading"))
 

@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: each output of the utility nodes of pbrlib."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, draw, draw_edges
-from mxeon.conformance.nodes.subject import Changes
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
-from mxeon.models.nodes.utilities import UTILITIES, UtilityNode, Values
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
+from mxeon.models.nodes.utilities import UTILITIES, UtilityNode
+from mxeon.models.nodes.utilities import Values as Function
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
 VALUES, OSL_VALUES = "utility values", "utility values in OSL"  # kinds of probes
@@ -102,7 +101,7 @@ class UtilitySubject:
             if port.name in self.inputs
         }
 
-    def document(self, inputs: Mapping[str, Any] | None = None) -> str:
+    def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that emits this output, with these inputs."""
         values = {**self.row.inputs, **(inputs or {})}
         ports = "".join(
@@ -147,7 +146,7 @@ class UtilitySubject:
         )
         return (own, *others)
 
-    def _of(self, values: Values, batch: Batch) -> Array:
+    def _of(self, values: Function, batch: Batch) -> Array:
         """The output of a function, as a color."""
         output = np.asarray(values(self._whole(batch))[self.output])
         color = np.zeros((len(batch.wo), 3))

@@ -4,7 +4,7 @@
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 import mxeon
 from mxeon.conformance.accuracy import surface_shaders as surfaces
 from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE, sum_of
+from mxeon.conformance.diagnosis.verdicts import not_measured
 from mxeon.conformance.probes.pictures import picture_pairs
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Picture, Result
+from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result
 from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
@@ -30,7 +31,7 @@ from mxeon.shaders.scene import Scene, sphere
 # Nodes whose shaders take an albedo from a fit.
 FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
 
-Pixels: TypeAlias = NDArray[Any]
+Pixels: TypeAlias = NDArray[np.floating]
 Case: TypeAlias = tuple[Scene, Pixels, Pixels]  # with the host's picture and the reference's
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
@@ -128,25 +129,29 @@ def _judge_material(
     """One material; `front_lit` where the host has its model for s >= 0 only."""
     scenes = host_row(host.name).scenes
     subject = f"{file.name}: {shader.element}"
-    fields: dict[str, Any] = {"subject": subject, "host": host.name, "library": library}
+    place: Place = {
+        "check": "picture",
+        "claim": MATCH,
+        "subject": subject,
+        "host": host.name,
+        "library": library,
+    }
     try:
         images = [host.picture(shader, scene) for scene in scenes]
-    except NotRun as reason:
-        return Result("picture", MATCH, **fields, verdict=NOT_RUN, reason=str(reason)), ()
-    except ShaderError as error:
-        return Result("picture", MATCH, **fields, verdict=FAILED, diagnosis=str(error)), ()
+    except (NotRun, ShaderError) as error:
+        return not_measured(place, error), ()
     references: list[Pixels | None] = [None] * len(scenes)
     try:
         _assert_judged(shader, host)
         expected = [judge.picture(shader, scene) for scene in scenes]
     except OutsideModel as reason:
-        return Result("picture", MATCH, **fields, verdict=NOT_RUN, reason=str(reason)), ()
+        return not_measured(place, reason), ()
     except NotRun as reason:
-        result = _judge_finite(fields, images, str(reason))
+        result = _judge_finite(place, images, str(reason))
     else:
         references = [*expected]
         cases = list(zip(scenes, images, expected, strict=True))
-        result = _judge_match(fields, cases, _tolerance(shader), front_lit)
+        result = _judge_match(place, cases, _tolerance(shader), front_lit)
     return result, tuple(
         _picture(file, shader, host, library, case)
         for case in zip(scenes, images, references, strict=True)
@@ -202,12 +207,12 @@ def _tolerance(shader: Shader) -> Tolerance:
     return TEXTURED if _textured(shader) else PLAIN
 
 
-def _categories(elements: Iterable[Any]) -> set[str]:
+def _categories(elements: Iterable[mx.Element]) -> set[str]:
     """Categories of nodes."""
     return {each.getCategory() for each in elements}
 
 
-def _inner(shader: Shader) -> Iterator[Any]:
+def _inner(shader: Shader) -> Iterator[mx.Element]:
     """Nodes of a shader's document, and those of the graphs that define them."""
     waiting, seen = [shader.document], set()
     while waiting:
@@ -224,14 +229,12 @@ def _textured(shader: Shader) -> bool:
     return any(port.type == "filename" and port.value for port in shader.inputs)
 
 
-def _judge_finite(fields: dict[str, Any], images: Sequence[Pixels], reason: str) -> Result:
+def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result:
     """Result for a material that the models do not cover: its pixels have to be numbers."""
     control = [np.where(np.arange(3) == 0, np.nan, images[0])]
     error, control_error = _not_finite(images), _not_finite(control)
     return Result(
-        "finite",
-        FINITE,
-        **fields,
+        **(place | {"check": "finite", "claim": FINITE}),
         verdict=PASSED if error == 0 < control_error else FAILED,
         error=error,
         unit="pixels",
@@ -248,7 +251,7 @@ def _not_finite(images: Sequence[Pixels]) -> float:
 
 
 def _judge_match(
-    fields: dict[str, Any], cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
+    place: Place, cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
 ) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
     scaled = tolerance.unit == FITTED.unit
@@ -259,9 +262,7 @@ def _judge_match(
     control_error, _ = _worst_pixel((first, brighter, expected), front_lit, scaled)
     caught = control_error > tolerance.value
     return Result(
-        "picture",
-        MATCH,
-        **fields,
+        **place,
         verdict=PASSED if error <= tolerance.value and caught else FAILED,
         error=error,
         unit=tolerance.unit,

@@ -2,7 +2,6 @@
 """Pictures of one material as each host shows it, for the page on which hosts stand together."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +12,11 @@ from mxeon.conformance.probes.pictures import Mask, PictureProbe, PlaneProbe, pi
 from mxeon.conformance.probes.polyhedron import FacetPairProbe, FacetProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.results import PORTRAIT, Picture
-from mxeon.conformance.samples.batch import Array, Batch, rounded
+from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.scene import BACK, SIDE, Scene, sphere
 
-INPUTS: dict[str, Any] = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
+INPUTS: Values = {"color": (0.8, 0.4, 0.1), "roughness": 1.0}
 SIZE = 96
 SCENES = tuple(replace(scene, size=SIZE) for scene in (SIDE, BACK))
 

@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -235,7 +235,7 @@ class SchlickProbe(MicrofacetProbe):
     kind: ClassVar[str] = SCHLICK
 
 
-def simple(inputs: Mapping[str, Any]) -> dict[str, Any]:
+def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
     The roughness is the same in both directions. The index of a dielectric is at least 1: the fits of

@@ -7,12 +7,12 @@ from functools import cached_property
 from typing import ClassVar
 
 from mxeon.conformance.nodes.bsdf import MICROFACET_KINDS, BsdfSubject
-from mxeon.conformance.nodes.subject import Subject, Values
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.batch import Batch
+from mxeon.conformance.samples.batch import Batch, Values
 
 SIZE = 64  # of pictures
 

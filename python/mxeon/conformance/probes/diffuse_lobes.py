@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of the diffuse lobe of surface shaders, whose other lobes cannot be switched off."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -16,7 +15,8 @@ from mxeon.conformance.probes.pictures import (
     PictureProbe,
     PlaneProbe,
 )
-from mxeon.conformance.samples.batch import LOBE_RIM, Array, Batch
+from mxeon.conformance.samples.batch import LOBE_RIM, Array, Batch, Values
+from mxeon.shaders.document.values import Plain
 from mxeon.shaders.generation import Shader
 
 
@@ -43,12 +43,12 @@ class DiffuseLobeProbe(PictureProbe):
         lambert = picture(batch.altered(color=(1.0, 1.0, 1.0), roughness=0.0)) - others
         return (picture(batch) - others) / lambert * batch.wi[:, 2:]
 
-    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
+    def _shader(self, inputs: Values) -> Shader:
         """One shader for all inputs: long as it is, it is compiled once."""
         shader = super()._shader(PICTURE_INPUTS[0])
         values = {self.subject.color: inputs["color"], self.subject.roughness: inputs["roughness"]}
         ports = (
-            replace(port, value=values.get(port.path.rsplit("/", 1)[-1], port.value))
+            replace(port, value=cast(Plain, values.get(port.path.rsplit("/", 1)[-1], port.value)))
             for port in shader.inputs
         )
         return replace(shader, inputs=tuple(ports))
@@ -59,7 +59,7 @@ class DiffuseLobePlaneProbe(DiffuseLobeProbe, PlaneProbe):
 
     kind: ClassVar[str] = "plane lobes"
 
-    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
+    def _shader(self, inputs: Values) -> Shader:
         return PictureProbe._shader(self, inputs)
 
 

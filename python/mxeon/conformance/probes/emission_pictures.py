@@ -2,12 +2,13 @@
 """Probes of nodes that emit light on hosts that make pictures: a sphere in the dark."""
 
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from mxeon.conformance.nodes.emission import PICTURES, EmissionSubject
 from mxeon.conformance.probes.emission import NodeProbe, implementation
+from mxeon.conformance.probes.pictures import Mask
 from mxeon.conformance.probes.probe import ValueProbe
 from mxeon.conformance.samples.batch import RIM, Array, Batch
 from mxeon.errors import NotRun
@@ -44,7 +45,7 @@ class EmissionPictureProbe(NodeProbe, ValueProbe):
         return np.asarray(image[sphere(DARK.size).mask][_views()[1]], np.float64)
 
 
-def _views() -> tuple[Array, Any]:
+def _views() -> tuple[Array, Mask]:
     """Directions to the viewer at the points of the sphere, and which are away from its rim."""
     points = sphere(DARK.size)
     wo = local_directions(points.normal[points.mask], VIEW)

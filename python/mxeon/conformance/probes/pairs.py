@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,8 +109,16 @@ class PairProbe(LobeProbe):
         wo, wi = pairs
         return Batch(wo, wi, {**inputs(rng, len(wo)), **node_inputs(rng, len(wo))})
 
-    def _evaluate(self, batch: Batch, branch: str, **options: Any) -> Array:
+    def _evaluate(
+        self,
+        batch: Batch,
+        branch: str,
+        output: str = "response",
+        irradiance: NDArray[np.float32] | None = None,
+    ) -> Array:
         inputs = self.subject.with_flag(batch.inputs)
         wo, wi = batch.world(batch.wo), batch.world(batch.wi)
-        values = self.host.evaluate(self._shader, wo, wi, inputs, branch, **options)
+        values = self.host.evaluate(
+            self._shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
+        )
         return values.astype(np.float64)

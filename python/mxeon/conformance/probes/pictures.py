@@ -4,17 +4,17 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.nodes.subject import LobeSubject, Values
+from mxeon.conformance.nodes.subject import LobeSubject
 from mxeon.conformance.probes.probe import LobeProbe
-from mxeon.conformance.samples.batch import RIM, Array, Batch
+from mxeon.conformance.samples.batch import RIM, Array, Batch, Values
 from mxeon.hosts import front_lit_only
 from mxeon.hosts.base import Host
 from mxeon.shaders.plane import LIGHTS, plane_pairs
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 # Colors and roughnesses of the pictures that stand for a node on hosts that only make pictures.
-PICTURE_INPUTS: tuple[dict[str, Any], ...] = (
+PICTURE_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
@@ -81,7 +81,7 @@ class PictureProbe(LobeProbe):
             for inputs in PICTURE_INPUTS
         ]
 
-    def _batch(self, scene: Scene, inputs: Mapping[str, Any]) -> Batch:
+    def _batch(self, scene: Scene, inputs: Values) -> Batch:
         wo, wi, mask = self.points(scene)
         return Batch(wo[mask], wi[mask], inputs, scene)
 
@@ -102,10 +102,10 @@ class PictureProbe(LobeProbe):
         values = self._radiance(self._shader(batch.inputs), scene)
         return values[self.points(scene)[2]].astype(np.float64)
 
-    def _shader(self, inputs: Mapping[str, Any]) -> Shader:
+    def _shader(self, inputs: Values) -> Shader:
         return _compile(self.host, self.subject.document(inputs), self.library)
 
-    def _radiance(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def _radiance(self, shader: Shader, scene: Scene) -> NDArray[np.floating]:
         """The host's values at all points of a picture."""
         return self.host.picture(shader, scene)[sphere(scene.size).mask]
 
@@ -124,7 +124,7 @@ class PlaneProbe(PictureProbe):
         wo, wi = plane_pairs(scene)
         return wo, wi, self._mask(wo, wi)
 
-    def _radiance(self, shader: Shader, scene: Scene) -> NDArray[Any]:
+    def _radiance(self, shader: Shader, scene: Scene) -> NDArray[np.floating]:
         return self.host.plane(shader, scene)
 
 

@@ -8,8 +8,9 @@ from typing import ClassVar, NoReturn, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.conformance.nodes.subject import Changes, LobeSubject, Subject, ValuedSubject, Values
-from mxeon.conformance.samples.batch import FEW, Array, Batch, Candidate
+from mxeon.conformance.nodes.subject import LobeSubject, Subject, ValuedSubject
+from mxeon.conformance.results import Claims
+from mxeon.conformance.samples.batch import FEW, Array, Batch, Candidate, Changes, Values
 from mxeon.hosts.base import Host
 
 
@@ -213,7 +214,7 @@ class Probe:
         self._lacks("albedo_candidates")
 
     @property
-    def claims(self) -> Mapping[str, str]:
+    def claims(self) -> Claims:
         """What a result says of a renderer's own node beside its verdict."""
         return {}
 

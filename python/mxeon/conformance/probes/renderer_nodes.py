@@ -4,20 +4,20 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar, cast
+from typing import ClassVar, cast
 
 import numpy as np
 
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
-from mxeon.conformance.nodes.subject import Values
 from mxeon.conformance.probes.pictures import PICTURE_SIZE, PictureProbe, picture_pairs, scene_of
-from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.results import Claims
+from mxeon.conformance.samples.batch import Array, Batch, Values
 from mxeon.hosts.base import Host
 from mxeon.hosts.renderer import RendererHost
 from mxeon.models import table as reference
 from mxeon.shaders.scene import sphere
 
-EXACT_INPUTS: tuple[dict[str, Any], ...] = (
+EXACT_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
     {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
@@ -36,11 +36,11 @@ class NativeProbe(PictureProbe):
         super().__init__(cast(Host, host), subject, library)  # which keeps it, and asks it nothing
 
     @property
-    def claims(self) -> dict[str, str]:
+    def claims(self) -> Claims:
         """Titles of the model that the node claims, and of the form of it that is judged."""
         claimed, *_ = self.subject.forms or (self.subject.model,)
-        names = {"claimed": claimed, "model": self.subject.model}
-        return {key: reference.model(name).title for key, name in names.items()}
+        title, own = (reference.model(name).title for name in (claimed, self.subject.model))
+        return {"claimed": title, "model": own}
 
     def _picture(self, batch: Batch) -> Array:
         scene, inputs = scene_of(batch), batch.inputs

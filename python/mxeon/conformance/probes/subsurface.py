@@ -4,7 +4,6 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from mxeon.conformance.nodes.subsurface import SubsurfaceSubject
 from mxeon.conformance.probes.bsdf import BsdfProbe
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.batch import Array, Batch, Candidate
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
 from mxeon.conformance.samples.measurement import Case
 from mxeon.models.media.subsurface import diffusion_blur
 from mxeon.models.nodes.subsurface import circle_blur
@@ -27,7 +26,7 @@ SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # of a sphere
 LEAST_HEIGHT = 0.3  # of its normals; next to the rim a pixel's point is far from the next one's
 
 
-MATERIALS: tuple[dict[str, Any], ...] = (  # from one whose light is everywhere to one like a plane
+MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one like a plane
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": 0.0},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
 )
@@ -95,7 +94,7 @@ ON_SPHERES = (
 )
 
 
-def _points(scene: Scene, inputs: dict[str, Any]) -> Batch:
+def _points(scene: Scene, inputs: Values) -> Batch:
     """Points of a sphere away from its rim, those in the shadow among them."""
     normal = sphere(scene.size).normal[_inner(scene.size)]
     wo, wi = (local_directions(normal, each) for each in (VIEW, scene.light or VIEW))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of surface shaders as a whole, on hosts that evaluate any pairs."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
 from mxeon.hosts.calls import NORMAL, TANGENT
+from mxeon.shaders.document.values import Plain
 from mxeon.shaders.generation import Shader, generate
 
 PAIRS = 256  # of directions, each with a material of its own
@@ -91,11 +93,11 @@ class SurfaceShaderProbe(PairProbe):
         return Batch(np.tile(few.wo, (len(rows), 1)), np.tile(few.wi, (len(rows), 1)), inputs)
 
     @property
-    def _defaults(self) -> dict[str, Any]:
+    def _defaults(self) -> Mapping[str, Plain]:
         """Values of the inputs that a document does not set."""
         vectors = {name: TANGENT if "tangent" in name else NORMAL for name in self.subject.inputs}
         ports = {port.path.rsplit("/", 1)[-1]: port.value for port in self._shader.inputs}
-        return vectors | ports
+        return {**vectors, **ports}
 
     def response(self, batch: Batch, branch: str) -> Array:
         """Values in any branch, (N, 3)."""

@@ -11,7 +11,8 @@ import numpy as np
 from mxeon.conformance.nodes.bsdf import FILM_PAIRS
 from mxeon.conformance.nodes.thin_films import THICK
 from mxeon.conformance.probes.bsdf import MicrofacetProbe, simple
-from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.probes.pictures import Mask
+from mxeon.conformance.samples.batch import SEED, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import special_directions
 
 PAIRS = 1 << 8  # random ones, and special ones; each average over a film's curve takes long
@@ -91,7 +92,7 @@ class FilmProbe(MicrofacetProbe):
         return Batch(wo, wi, inputs)
 
 
-def _steep(batch: Batch) -> Array:
+def _steep(batch: Batch) -> Mask:
     """Pairs whose half vector is not at grazing to either."""
     half = batch.wo + batch.wi
     length = np.linalg.norm(half, axis=1)

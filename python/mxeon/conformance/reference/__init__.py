@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon import hosts
 from mxeon.conformance.reference.graph import Graph
@@ -60,13 +59,13 @@ class Host(base.Host):
     def evaluate(
         self,
         shader: Shader,
-        wo: NDArray[Any],
-        wi: NDArray[Any],
-        inputs: Mapping[str, Any],
+        wo: NDArray[np.float64],
+        wi: NDArray[np.float64],
+        inputs: Mapping[str, ArrayLike],
         branch: str,
         *,
         output: str = "response",
-        irradiance: NDArray[Any] | None = None,
+        irradiance: NDArray[np.floating] | None = None,
     ) -> NDArray[np.float64]:
         """Values of the document's lobes; see `mxeon.hosts.base.Host`.
 

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
+from mxeon.conformance.reference.operations import Operation, Values
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
 from mxeon.models.nodes.emissions import BASE, Emission
@@ -17,7 +16,7 @@ from mxeon.models.nodes.emissions import EMISSIONS as ROWS
 COLORS = ("color", "color0", "color90", "base")
 
 
-def _radiance(row: Emission, points: ShadingPoints, *values: Any) -> Any:
+def _radiance(row: Emission, points: ShadingPoints, *values: Values) -> Values:
     wo = points.view
     inputs = {
         name: np.broadcast_to(value, wo.shape)
@@ -35,6 +34,6 @@ def _ports(row: Emission) -> tuple[str, ...]:
     return tuple("base" if name == BASE else name for name in row.inputs)
 
 
-def emissions(points: ShadingPoints) -> dict[str, tuple[tuple[str, ...], Callable[..., Any]]]:
+def emissions(points: ShadingPoints) -> dict[str, Operation]:
     """Category -> its inputs, and the radiance at points by them."""
     return {row.category: (_ports(row), partial(_radiance, row, points)) for row in ROWS}

@@ -9,13 +9,14 @@ everywhere, or that a mix leaves out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from operator import itemgetter
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import MaterialX as mx
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference.emissions import emissions
 from mxeon.conformance.reference.images import looked_up
@@ -28,7 +29,7 @@ from mxeon.conformance.reference.nodes import (
     node_lobe,
     plain,
 )
-from mxeon.conformance.reference.operations import OPERATIONS, fitted
+from mxeon.conformance.reference.operations import OPERATIONS, Operation, Value, Values, fitted
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.conformance.reference.utilities import UTILITIES
 from mxeon.conformance.reference.walk import evaluated
@@ -38,13 +39,18 @@ from mxeon.models.core.layering import Bsdf
 from mxeon.shaders.document.graphs import reachable
 
 Path: TypeAlias = tuple[str, ...]  # see Graph
-Step: TypeAlias = tuple[Callable[..., Any], tuple[Path, ...]]
+Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
 # Where nothing is connected: black, and for a lobe nothing at all, which hides nothing.
-UNCONNECTED = {"BSDF": NOTHING, "EDF": np.zeros(3), "surfaceshader": np.zeros(3), "VDF": None}
+UNCONNECTED: dict[str, Value] = {
+    "BSDF": NOTHING,
+    "EDF": np.zeros(3),
+    "surfaceshader": np.zeros(3),
+    "VDF": None,
+}
 NUMBERS = ("float", "boolean", "integer")
 # A surface with its opacity and what it emits, or its lobes alone.
-SURFACES: dict[bool, tuple[tuple[str, ...], Callable[..., Any]]] = {
+SURFACES: dict[bool, Operation] = {
     True: (("bsdf", "edf", "opacity"), lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity),
     False: (("bsdf",), lambda bsdf: bsdf.value),
 }
@@ -71,9 +77,9 @@ class Graph:
 
     def __init__(
         self,
-        document: Any,
+        document: mx.Document,
         points: ShadingPoints,
-        inputs: Mapping[str, Any] | None = None,
+        inputs: Mapping[str, ArrayLike] | None = None,
         emits: bool = True,
     ) -> None:
         self._document = document
@@ -83,10 +89,10 @@ class Graph:
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
         self._hiding: set[Path] = set()  # and those of what they are made of
-        self._elements: dict[Path, Any] = {}
+        self._elements: dict[Path, mx.Element] = {}
         self._steps: dict[Path, Step] = {}
 
-    def element(self, name_path: str) -> Any:
+    def element(self, name_path: str) -> Values:
         """Values of the renderable element at a name path, (N, 3).
 
         Raises
@@ -102,12 +108,12 @@ class Graph:
             path = self._inner((), root)
             self._parts([path])
             self._hiding.update(self._parts(self._tops))
-            return self._evaluate(path)
+            return np.asarray(self._evaluate(path), np.float64)
 
     def _parts(self, roots: Iterable[Path]) -> dict[Path, tuple[Path, ...]]:
         return reachable(roots, lambda path: self._step(path)[1])
 
-    def _evaluate(self, root: Path) -> Any:
+    def _evaluate(self, root: Path) -> Value:
         return evaluated(root, self._parts([root]), lambda path: self._step(path)[0])
 
     def _step(self, path: Path) -> Step:
@@ -137,36 +143,38 @@ class Graph:
         raise NotRun(f"reference: there is no model for node {category!r}")
 
     @cached_property
-    def _operations(self) -> dict[str, tuple[tuple[str, ...], Callable[..., Any]]]:
+    def _operations(self) -> dict[str, Operation]:
         """Nodes that compute numbers or colors, some of them by the points."""
         surface = {"surface": SURFACES[self._emits], "surfacematerial": (("surfaceshader",), _same)}
         return {**OPERATIONS, **UTILITIES, **emissions(self._points), **surface}
 
-    def _inside(self, path: Path, node: Any, output: str = "") -> Path | None:
+    def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path | None:
         """Path of what an output of a node has in its nodegraph; None if that is none."""
         graph = node.getImplementation()
-        outputs: Any = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else ()
+        outputs: Sequence[mx.Output] = (
+            graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else ()
+        )
         named = [each for each in outputs if each.getName() == output] or outputs
         if len(named) != 1 or not named[0].getConnectedNode():
             return None
         return self._connected(path, named[0])
 
-    def _weighs(self, path: Path, node: Any) -> bool:
+    def _weighs(self, path: Path, node: mx.Node) -> bool:
         """Whether a lobe without a model has a weight that is not 0 everywhere."""
         if not definition(node).getActiveInput("weight"):
             return True
-        return bool(np.any(self._evaluate(self._source(path, "weight"))))
+        return bool(np.any(np.asarray(self._evaluate(self._source(path, "weight")))))
 
-    def _lobe(self, path: Path, node: Any) -> Step:
+    def _lobe(self, path: Path, node: mx.Node) -> Step:
         names = tuple(port.getName() for port in definition(node).getActiveInputs())
 
-        def lobe(*values: Any) -> Bsdf:
+        def lobe(*values: Values) -> Bsdf:
             inputs = dict(zip(names, values, strict=True))
             return node_lobe(node, inputs, self._points, path in self._hiding)
 
         return lobe, self._sources(path, names)
 
-    def _combination(self, path: Path, node: Any) -> Step:
+    def _combination(self, path: Path, node: mx.Node) -> Step:
         """Step of a node that combines lobes; a mix leaves out what has no share."""
         category = node.getCategory()
         ports, operation = COMBINATIONS[category]
@@ -189,7 +197,7 @@ class Graph:
         for name in ("absorption", "scattering") if volume else ():
             if definition(volume).getActiveInput(name) is None:
                 continue
-            if np.any(self._evaluate(self._source(base, name))):
+            if np.any(np.asarray(self._evaluate(self._source(base, name)))):
                 raise NotRun("reference: there is no model for a layer over a volume")
 
     def _sources(self, path: Path, names: tuple[str, ...]) -> tuple[Path, ...]:
@@ -217,13 +225,13 @@ class Graph:
         element = self._elements.get(path)
         return element is not None and element.getCategory() in LOBES
 
-    def _given(self, path: Path, name: str) -> Any:
+    def _given(self, path: Path, name: str) -> Values:
         """Value that was handed in, (N, 1) if it is one number for each point."""
         number = self._port(path, name).getType() in NUMBERS
         value = np.asarray(self._inputs[name])
         return np.reshape(value, (-1, 1)) if number else value
 
-    def _connected(self, around: Path, port: Any) -> Path:
+    def _connected(self, around: Path, port: mx.PortElement) -> Path:
         """Path of what an input or output within another path is connected to."""
         node, source = port.getConnectedNode(), port
         graph, scope = node.getParent(), port.getParent()
@@ -244,7 +252,7 @@ class Graph:
             return inner
         raise NotRun(f"reference: there is no model for node {node.getCategory()!r}")
 
-    def _value(self, path: Path, name: str, port: Any) -> Any:
+    def _value(self, path: Path, name: str, port: mx.Input) -> Value:
         """Value of an input without a connection, in the document's color space."""
         element = self._elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
@@ -256,9 +264,12 @@ class Graph:
             value = declared.getValue()
         if port.getType() in UNCONNECTED:
             return UNCONNECTED[port.getType()]
-        return self._linear(port, plain(value)) if port.getType() == "color3" else plain(value)
+        constant = plain(value)
+        if port.getType() == "color3" and isinstance(constant, np.ndarray):
+            return self._linear(port, constant)
+        return constant
 
-    def _port(self, path: Path, name: str) -> Any:
+    def _port(self, path: Path, name: str) -> mx.Input:
         """Input of a node, or else of its nodedef."""
         element = self._elements.get(path)
         nodedef = element.getNodeDef() if element else None
@@ -268,19 +279,19 @@ class Graph:
             raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
         return port
 
-    def _inner(self, around: Path, element: Any) -> Path:
+    def _inner(self, around: Path, element: mx.Element) -> Path:
         """Path of an element within another path."""
         path = (*around, element.getNamePath())
         self._elements[path] = element
         return path
 
-    def _constant(self, path: Path, name: str, value: Any) -> Path:
+    def _constant(self, path: Path, name: str, value: Value) -> Path:
         """Path of a value that has no parts."""
         constant = (*path, f":{name}")
         self._steps[constant] = (lambda: value), ()
         return constant
 
-    def _linear(self, element: Any, value: Any) -> Any:
+    def _linear(self, element: mx.Element, value: Values) -> Values:
         """Color in the document's linear space, as the generators' color management has it."""
         space = element.getActiveColorSpace()
         if space in ("", "none", self._document.getColorSpace() or "lin_rec709"):
@@ -290,9 +301,9 @@ class Graph:
         return srgb_decoded(value)
 
 
-def _same(value: Any) -> Any:
+def _same(value: Value) -> Value:
     return value
 
 
-def _computed(kind: str, operation: Callable[..., Any], *values: Any) -> Any:
+def _computed(kind: str, operation: Callable[..., Value], *values: Value) -> Value:
     return fitted(kind, operation(*values))

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
+import MaterialX as mx
 import numpy as np
-from numpy.typing import NDArray
 
+from mxeon.conformance.reference.operations import Values
 from mxeon.errors import NotRun
 from mxeon.hosts.textures import read_texture
 
@@ -16,8 +16,8 @@ CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read
 
 
 def looked_up(
-    node: Any, texcoord: NDArray[np.float64] | None, linear: Callable[[Any, Any], Any]
-) -> Any:
+    node: mx.Node, texcoord: Values | None, linear: Callable[[mx.Element, Values], Values]
+) -> Values:
     """Values of an image node: texel centers at half-integers, v = 0 at the bottom.
 
     Parameters
@@ -49,16 +49,17 @@ def looked_up(
     return linear(file, value) if channels == 3 else value
 
 
-def _bilinear(texels: NDArray[np.float64], texcoord: NDArray[np.float64]) -> Any:
+def _bilinear(texels: Values, texcoord: Values) -> Values:
     height, width = texels.shape[:2]
     texel = texcoord * [width, height] - 0.5
     corner = np.floor(texel).astype(int)
     u, v = (texel - corner).T[..., None]
     x, y = corner.T
 
-    def at(dx: int, dy: int) -> Any:
-        return texels[(y + dy) % height, (x + dx) % width]
+    def at(dx: int, dy: int) -> Values:
+        values: Values = texels[(y + dy) % height, (x + dx) % width]
+        return values
 
     lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
     upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
-    return lower * (1.0 - v) + upper * v
+    return np.asarray(lower * (1.0 - v) + upper * v)

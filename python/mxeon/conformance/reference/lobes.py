@@ -3,7 +3,7 @@
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -103,7 +103,7 @@ def _albedo(
     low = float(np.sqrt(wo[:, 2].min()))
     series = _series(albedo, material, low, ISOTROPIC if turns else ANISOTROPIC)
     if series is not None:
-        result: Any = chebyshev.chebval2d(*_arguments(wo, low), series).T
+        result = chebyshev.chebval2d(*_arguments(wo, low), series).T
         return np.asarray(result, np.float64)
     if not turns:
         raise NotRun("reference: the albedo of so anisotropic a lobe takes too long over a picture")

@@ -4,18 +4,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
+import MaterialX as mx
 import numpy as np
-from numpy.typing import NDArray
 
 from mxeon.conformance.reference.lobes import diffuse, weighted
+from mxeon.conformance.reference.operations import Values
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.node import PbrNode
+from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
 COMPONENTS = {"color3": 3, "vector2": 2}
@@ -37,7 +38,9 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
 }
 
 
-def node_lobe(node: Any, inputs: Mapping[str, Any], points: ShadingPoints, layered: bool) -> Bsdf:
+def node_lobe(
+    node: mx.Node, inputs: Mapping[str, Values], points: ShadingPoints, layered: bool
+) -> Bsdf:
     """Lobe of a node.
 
     Parameters
@@ -78,7 +81,7 @@ def node_lobe(node: Any, inputs: Mapping[str, Any], points: ShadingPoints, layer
     return weighted(values, weight, row.layerable)
 
 
-def definition(node: Any) -> Any:
+def definition(node: mx.Node) -> mx.NodeDef:
     """Nodedef of a node.
 
     Raises
@@ -91,7 +94,7 @@ def definition(node: Any) -> Any:
     raise NotRun(f"reference: node {node.getNamePath()!r} has no definition")
 
 
-def _row(node: Any, inputs: Mapping[str, Any]) -> PbrNode:
+def _row(node: mx.Node, inputs: Mapping[str, Values]) -> PbrNode:
     """Row of the model that a node with these inputs has."""
     category = node.getCategory()
     if category in DIFFUSE_NODES:
@@ -102,18 +105,20 @@ def _row(node: Any, inputs: Mapping[str, Any]) -> PbrNode:
     raise NotRun(f"reference: there is no model for this mode of node {category!r}")
 
 
-def _assert_known(node: Any, row: PbrNode, inputs: Mapping[str, Any]) -> None:
+def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Values]) -> None:
     """Raise NotRun if an input that the model does not have differs from its default."""
     for port, value in inputs.items():
         if port in ("weight", "normal", "tangent", FLAG, *FILM, *row.inputs, *row.fixed):
             continue
-        if not np.array_equal(value, plain(definition(node).getActiveInput(port).getValue())):
+        if not np.array_equal(
+            value, np.asarray(plain(definition(node).getActiveInput(port).getValue()))
+        ):
             raise NotRun(
                 f"reference: there is no model for input {port!r} of node {node.getCategory()!r}"
             )
 
 
-def _shaped(node: Any, port: str, value: Any) -> NDArray[np.float64]:
+def _shaped(node: mx.Node, port: str, value: Values) -> Values:
     """Value of an input as (1,) or (N,) if it is a number, else with its components."""
     if definition(node).getActiveInput(port).getType() in ("float", "boolean"):
         return np.reshape(np.asarray(value, np.float64), -1)
@@ -125,7 +130,7 @@ def _shaped(node: Any, port: str, value: Any) -> NDArray[np.float64]:
     )
 
 
-def combined(name: str, operation: Callable[..., Bsdf], *values: Any) -> Bsdf:
+def combined(name: str, operation: Callable[..., Bsdf], *values: Bsdf | Values) -> Bsdf:
     """Lobes combined; the values of numbers are the node's own."""
     try:
         return operation(*values)
@@ -133,7 +138,7 @@ def combined(name: str, operation: Callable[..., Bsdf], *values: Any) -> Bsdf:
         raise OutsideModel(f"reference: node {name!r}: {error}") from None
 
 
-def plain(value: Any) -> Any:
+def plain(value: Plain) -> Values | bool | str | None:
     """A MaterialX value as a bool, a string, an array or None."""
     if value is None or isinstance(value, (bool, str)):
         return value

@@ -7,20 +7,25 @@ returns is repeated over the components of the node's type, so that a number bec
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from operator import add, mul, pow, sub, truediv
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.models.core.layering import Bsdf
+
 Values: TypeAlias = NDArray[np.float64]
+# What a node or an input of a document has: numbers, a flag, a text, a lobe, outputs by name, or nothing.
+Value: TypeAlias = Values | bool | str | Bsdf | Mapping[str, Values] | None
+Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]  # its inputs, the function
 
 # Types of several components, and how many.
 WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 
-def fitted(kind: str, value: Any) -> Any:
+def fitted(kind: str, value: Value) -> Value:
     """Value with the components of a type: a number once for each, what is missing 0 or opaque."""
     width = WIDTHS.get(kind, 1)
     if width == 1 or value is None or isinstance(value, str):
@@ -47,12 +52,12 @@ def _normalize(value: Values) -> Values:
     return value / _magnitude(value)
 
 
-def _combine(*values: Any) -> Values:
+def _combine(*values: Values) -> Values:
     parts = np.broadcast_arrays(*(np.atleast_1d(value) for value in values))
     return np.concatenate(parts, axis=-1)
 
 
-def _extract(value: Values, index: Any) -> Values:
+def _extract(value: Values, index: Values) -> Values:
     return np.take(value, [int(np.ravel(index)[0])], axis=-1)
 
 
@@ -82,10 +87,10 @@ def _normalmap(
     return _normalize(np.where(black, normal, turned))
 
 
-def _when(compare: Callable[..., Any]) -> Callable[..., Any]:
+def _when(compare: Callable[..., NDArray[np.bool_]]) -> Callable[..., Values]:
     """One of two values, by a comparison of two others."""
 
-    def choose(value1: Any, value2: Any, in1: Any, in2: Any) -> Any:
+    def choose(value1: Values, value2: Values, in1: Values, in2: Values) -> Values:
         return np.where(compare(value1, value2), in1, in2)
 
     return choose
@@ -95,7 +100,7 @@ ONE, TWO = ("in",), ("in1", "in2")
 COMPARED = ("value1", "value2", "in1", "in2")
 
 # Category -> its inputs, and the function of them.
-OPERATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Any]]] = {
+OPERATIONS: dict[str, Operation] = {
     "constant": (("value",), lambda value: value),
     "convert": (ONE, lambda value: np.asarray(value, np.float64)),
     "dot": (ONE, lambda value: value),

@@ -3,17 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from functools import partial
-from typing import Any
 
 import numpy as np
 
+from mxeon.conformance.reference.operations import Operation, Values
 from mxeon.models.nodes.utilities import UTILITIES as ROWS
 from mxeon.models.nodes.utilities import UtilityNode
 
 
-def _values(row: UtilityNode, *values: Any) -> Any:
+def _values(row: UtilityNode, *values: Values) -> Values | Mapping[str, Values]:
     """The one output of a node, or all by name, from values as `operations` has them."""
     columns = [
         np.atleast_2d(np.asarray(value, np.float64).reshape(-1, np.size(default)))
@@ -30,6 +30,6 @@ def _values(row: UtilityNode, *values: Any) -> Any:
 
 
 # Category -> its inputs, and the function of them; of several outputs, a value for each name.
-UTILITIES: dict[str, tuple[tuple[str, ...], Callable[..., Any]]] = {
+UTILITIES: dict[str, Operation] = {
     row.category: (tuple(row.inputs), partial(_values, row)) for row in ROWS
 }

@@ -5,14 +5,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any, TypeVar
+from typing import TypeVar
 
 Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
 
 
 def evaluated(
-    root: Key, parts: Mapping[Key, tuple[Key, ...]], function: Callable[[Key], Callable[..., Any]]
-) -> Any:
+    root: Key, parts: Mapping[Key, tuple[Key, ...]], function: Callable[[Key], Callable[..., Value]]
+) -> Value:
     """Value of a key: neither a long chain nor a key with many uses does harm.
 
     Parameters
@@ -23,7 +24,7 @@ def evaluated(
     function : callable (key) -> callable
     """
     uses = Counter(part for inner in parts.values() for part in inner)
-    values: dict[Key, Any] = {}
+    values: dict[Key, Value] = {}
     waiting = [root]
     while waiting:
         key = waiting[-1]

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any
 
 from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Run
@@ -39,7 +38,9 @@ def check(
     wait: float = WAIT,
     policy: Policy = DEFAULT,
     nodes: Sequence[str] = (),
-    progress: Callable[[Iterable[Any], int], Iterable[Any]] = lambda tasks, total: tasks,
+    progress: Callable[
+        [Iterable[tuple[int, Findings]], int], Iterable[tuple[int, Findings]]
+    ] = lambda tasks, total: tasks,
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
@@ -207,7 +208,8 @@ def _executor(
 def _outcomes(tasks: Sequence[Task], executor: Executor) -> Iterator[tuple[int, Findings]]:
     """Findings of the tasks as they come, each with its position."""
     for position, outcome in executor(tasks):
-        findings: Any = outcome.value
+        findings = outcome.value
+        assert findings is None or isinstance(findings, Findings)
         yield position, findings or not_run(tasks[position], outcome.failure)
 
 

@@ -17,10 +17,11 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Self
+from typing import Self, cast
 
 import numpy as np
 from filelock import FileLock, Timeout
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.records import StoredImage, make_converter
 from mxeon.conformance.run.journal_lines import (
@@ -125,8 +126,9 @@ class Journal:
         self.findings = contents.findings
         return self._write(contents.lines)
 
-    def _to_json(self, record: Plan | Findings) -> Any:
-        return make_converter(self._path.parent).unstructure(record)
+    def _to_json(self, record: Plan | Findings) -> dict[str, object]:
+        values: dict[str, object] = make_converter(self._path.parent).unstructure(record)
+        return values
 
     def _write(self, lines: dict[int, bytes]) -> dict[int, bytes]:
         with replacing(self._path) as beside:
@@ -145,7 +147,7 @@ class Journal:
             os.ftruncate(self._file, size)
             raise OSError(error.errno, error.strerror, str(self._path)) from None
 
-    def _store(self, image: Any) -> Any:
+    def _store(self, image: ArrayLike) -> NDArray[np.float32]:
         """An image in a file of the folder."""
         pixels = BytesIO()
         np.save(pixels, np.asarray(image, np.float32))
@@ -153,7 +155,7 @@ class Journal:
         path = self._path.with_name(f"{name}.npy")
         with replacing(path) as beside:
             beside.write_bytes(pixels.getbuffer())
-        return StoredImage(path)
+        return cast(NDArray[np.float32], StoredImage(path))  # read anew by each use
 
 
 def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findings]]:

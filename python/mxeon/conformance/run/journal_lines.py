@@ -9,7 +9,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 import cattrs
 
@@ -103,21 +103,16 @@ def _task(line: bytes, seed: str, plan: Plan, converter: cattrs.Converter) -> tu
 
 
 def _images(findings: Findings) -> list[StoredImage]:
-    images: list[Any] = [
-        image
-        for picture in findings.pictures
-        for image in (picture.image, picture.reference)
-        if image is not None
-    ]
-    return images
+    images = (each for picture in findings.pictures for each in (picture.image, picture.reference))
+    return [cast(StoredImage, image) for image in images if image is not None]
 
 
-def to_line(record: dict[str, Any], seed: str = "") -> bytes:
+def to_line(record: dict[str, object], seed: str = "") -> bytes:
     """A record as a line, with a digest of it and of the plan's line, whose digest is `seed`."""
     return (json.dumps(record | {"digest": _digest(record, seed)}) + "\n").encode()
 
 
-def _checked(line: bytes, seed: str = "") -> tuple[dict[str, Any], str]:
+def _checked(line: bytes, seed: str = "") -> tuple[dict[str, object], str]:
     """The record of a line, and its digest."""
     record = json.loads(line)
     if HALF in line.lower():
@@ -128,5 +123,5 @@ def _checked(line: bytes, seed: str = "") -> tuple[dict[str, Any], str]:
     return record, digest
 
 
-def _digest(record: dict[str, Any], seed: str) -> str:
+def _digest(record: dict[str, object], seed: str) -> str:
     return hashlib.sha256((seed + json.dumps(record)).encode()).hexdigest()

@@ -4,7 +4,7 @@
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from mxeon.conformance.checks.application import judge_curve, judge_subject
 from mxeon.conformance.checks.table import CHECKS
@@ -115,7 +115,7 @@ class Judge:
             If the host cannot be opened here.
         """
         try:
-            return _with_pages(Findings(**self._findings(task)))
+            return _with_pages(self._findings(task))
         except InterfaceError as reason:
             return not_run(task, str(reason))
         except DocumentError as reason:
@@ -139,46 +139,48 @@ class Judge:
             raise host
         return host
 
-    def _findings(self, task: Task) -> dict[str, Any]:
+    def _findings(self, task: Task) -> Findings:
         if task.check == DEFINITION:
-            return {"results": check_definitions(task.library)}
+            return Findings(check_definitions(task.library))
         if task.check == SOURCE:
-            return {"results": check_texts(subjects(task.library), task.library)}
+            return Findings(check_texts(subjects(task.library), task.library))
         if task.check == DOCUMENT:
             return self._generate(task)
         host = self._host(task.host)
-        return self._on_host(task, host) | {"hosts": (host.identity(),)}
+        return replace(self._on_host(task, host), hosts=(host.identity(),))
 
-    def _on_host(self, task: Task, host: Host | RendererHost) -> dict[str, Any]:
+    def _on_host(self, task: Task, host: Host | RendererHost) -> Findings:
         if isinstance(host, Host):
             if task.check == PICTURE:
                 return self._document(task, host)
             if task.check == INVERSION:
                 inversion = InversionProbe(host, task.subject, task.library)
-                return {"results": judge_inversion(inversion)}
+                return Findings(judge_inversion(inversion))
             if task.check == FUNCTIONS:
-                return {"results": judge_functions(FunctionProbe(host, task.library))}
+                return Findings(judge_functions(FunctionProbe(host, task.library)))
         probe = self._probe(host, task.subject, task.library)
         if task.check == CURVE:
-            return {"curves": judge_curve(probe)}
+            return Findings(curves=judge_curve(probe))
         results = judge_subject(probe, (ROWS[task.check],))
-        return {"results": results, "pictures": _portraits(task, probe)}
+        return Findings(results, _portraits(task, probe))
 
-    def _generate(self, task: Task) -> dict[str, Any]:
+    def _generate(self, task: Task) -> Findings:
         path = Path(task.subject)
         try:
-            records = generate_document(path, task.host, task.library, self._policy)
+            results, notes = generate_document(path, task.host, task.library, self._policy)
         except DocumentError as error:
             return _unread(path, error)
-        return dict(zip(("results", "notes"), records, strict=True))
+        return Findings(results, notes=notes)
 
-    def _document(self, task: Task, host: Host) -> dict[str, Any]:
+    def _document(self, task: Task, host: Host) -> Findings:
         path = Path(task.subject)
         try:
-            records = judge_document(path, host, self._reference, task.library, self._policy)
+            results, pictures, notes = judge_document(
+                path, host, self._reference, task.library, self._policy
+            )
         except (DocumentError, ImageError) as error:
             return _unread(path, error)
-        return dict(zip(("results", "pictures", "notes"), records, strict=True))
+        return Findings(results, pictures, notes=notes)
 
 
 def _portraits(task: Task, probe: Probe) -> tuple[Picture, ...]:
@@ -191,11 +193,11 @@ def _portraits(task: Task, probe: Probe) -> tuple[Picture, ...]:
         return ()
 
 
-def _unread(path: Path, error: DocumentError | ImageError) -> dict[str, Any]:
+def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
     """Findings of a document that cannot be read: of one of ours, the library is to blame."""
     if path.resolve().is_relative_to(examples_folder()) and isinstance(error, DocumentError):
         raise error
-    return {"errors": (str(error),)}
+    return Findings(errors=(str(error),))
 
 
 def _with_pages(findings: Findings) -> Findings:
@@ -205,7 +207,7 @@ def _with_pages(findings: Findings) -> Findings:
 
 def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
     """The probe of a subject on a host."""
-    probe: Any = PROBES[host_row(host.name).probe]
+    probe = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}
     nodes = {subject.title: subject for subject in PBR_SUBJECTS}
     if title in nodes:
@@ -217,5 +219,5 @@ def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
         assert isinstance(host, Host)  # a renderer of its own materials has none
         return SURFACE_PROBES[probe](host, surfaces[title], library)
     rows = renderer_nodes(host.name) or SUBJECTS
-    made = probe(host, next(row for row in rows if row.title == title), library)
+    made = probe(cast(Host, host), next(row for row in rows if row.title == title), library)
     return made.nearest_form() if isinstance(made, ExactProbe) else made

@@ -10,7 +10,6 @@ import platform
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import MaterialX as mx
 import moderngl
@@ -208,7 +207,7 @@ def _titles(nodes: Sequence[str]) -> set[str]:
     return {row.title for row in _rows() if row.node in nodes}
 
 
-def _rows() -> list[Any]:
+def _rows() -> list[Subject]:
     """The nodes that are judged."""
     return [*SUBJECTS, *PBR_SUBJECTS, *SURFACES]
 
@@ -226,7 +225,7 @@ def inversions(library: str) -> list[str]:
 
 
 def _on_host(
-    host: str, library: str, files: Iterable[Path], nodes: Iterable[Any]
+    host: str, library: str, files: Iterable[Path], nodes: Iterable[Subject]
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib."""
     probe, row = probe_type(host), host_row(host)
@@ -245,7 +244,7 @@ def _on_host(
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
         kind = probe_type_of(each, probe)
-        closure = getattr(each, "closure", True) and _is_renderers(row.target, library)
+        closure = each.closure and _is_renderers(row.target, library)
         if kind and not closure and _is_judged(each, library):
             yield from _checks_of(each, kind.kind, host, library)
     if row.surfaces:
@@ -266,7 +265,7 @@ def _is_renderers(target: str, library: str) -> bool:
 
 def _is_judged(subject: Subject, library: str) -> bool:
     """Whether a node is judged with a library: one that no library of ours repairs, with stock."""
-    return library not in LIBRARIES or library in (getattr(subject, "libraries", ()) or LIBRARIES)
+    return library not in LIBRARIES or library in (subject.libraries or LIBRARIES)
 
 
 def _native(host: str) -> Iterator[Task]:

@@ -3,10 +3,10 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mxeon.models import table as reference
 from mxeon.models.table import Model
@@ -20,6 +20,8 @@ RIM = 0.05  # smallest cosine judged in a picture: nearer to the rim a pixel's p
 LOBE_RIM = 0.25  # of a lobe below others
 
 Array = NDArray[np.float64]
+Values: TypeAlias = Mapping[str, ArrayLike]  # of a node's inputs, by name
+Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change of one of them
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,11 @@ class Batch:
 
     wo: Array
     wi: Array
-    inputs: Mapping[str, Any]
+    inputs: Mapping[str, Any]  # array_like, which NumPy types so that nobody can compute with it
     scene: Scene | None = None
     frame: Array | None = None
 
-    def altered(self, **inputs: Any) -> "Batch":
+    def altered(self, **inputs: ArrayLike) -> "Batch":
         """The same pairs with other inputs."""
         return replace(self, inputs={**self.inputs, **inputs})
 
@@ -53,7 +55,7 @@ class Batch:
         """The first pairs of the batch."""
         return self.where(slice(count))
 
-    def where(self, rows: Any) -> "Batch":
+    def where(self, rows: slice | NDArray[np.bool_] | NDArray[np.integer]) -> "Batch":
         """Some pairs of the batch: a slice, a mask or indices of them."""
         count = len(self.wo)
         inputs = {

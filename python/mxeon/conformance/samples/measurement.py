@@ -3,14 +3,14 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples.batch import Array, Batch, Values
 
-Metric = Callable[[Array, Any], Array]  # of measured and expected values: error of each row
+Metric = Callable[[Array, Array], Array]  # of measured and expected values: error of each row
 
 
 class Case(NamedTuple):
@@ -73,13 +73,13 @@ def worst_of(metric: Metric, cases: Iterable[Case]) -> Measurement:
 
 def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
     """Directions and inputs of one row of a batch."""
-    columns: dict[str, Any] = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
+    columns: Values = {"wo": batch.wo, "wi": batch.wi, **batch.inputs}
     return {
         name: np.ravel(_row(values, row, len(batch.wo))).astype(float).tolist()
         for name, values in columns.items()
     }
 
 
-def _row(values: Any, row: int, count: int) -> Any:
+def _row(values: ArrayLike, row: int, count: int) -> ArrayLike:
     """One row of values, or the values that hold for all rows."""
-    return values[row] if np.shape(values) and len(values) == count else values
+    return np.asarray(values)[row] if np.shape(values)[:1] == (count,) else values

@@ -7,7 +7,6 @@ from its documentation: this is read, not run.
 
 import re
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 import numpy as np
 
@@ -64,12 +63,10 @@ def _judge(subject: DiffuseSubject, target: str, profile: str | None, library: s
         weightless = _without_weight(text)
         control = _faults(subject, Renderer(target, target, profile), weightless)
     except (NotRun, ShaderError) as error:
-        fields: dict[str, Any] = {"subject": title, "host": HOST, "library": library}
+        place = (CLAIM.key, CLAIM.sentence, title, HOST, library)
         if isinstance(error, NotRun):
-            return Result(CLAIM.key, CLAIM.sentence, **fields, verdict=NOT_RUN, reason=str(error))
-        return Result(
-            CLAIM.key, CLAIM.sentence, **fields, verdict=FAILED, diagnosis=f"{target}: {error}"
-        )
+            return Result(*place, verdict=NOT_RUN, reason=str(error))
+        return Result(*place, verdict=FAILED, diagnosis=f"{target}: {error}")
     return counted(CLAIM, title, library, len(faults), len(control), "; ".join(faults))
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,9 +34,10 @@ from mxeon.conformance.text.tree import (
 from mxeon.errors import NotRun
 
 Array = NDArray[np.float64]
+Value: TypeAlias = Any  # Array, str or Closures: the function that takes it knows which
 
 TRIPLES = ("color", "vector", "normal", "vec3", "float3", "point")
-SIGNS: Mapping[str, Callable[[Array, Array], Any]] = {
+SIGNS: Mapping[str, Callable[[Array, Array], Array]] = {
     "+": np.add,
     "-": np.subtract,
     "*": np.multiply,
@@ -50,7 +51,7 @@ SIGNS: Mapping[str, Callable[[Array, Array], Any]] = {
     "&&": np.logical_and,
     "||": np.logical_or,
 }
-MATHEMATICS: Mapping[str, Callable[..., Any]] = {
+MATHEMATICS: Mapping[str, Callable[..., Array]] = {
     "abs": np.abs,
     "clamp": np.clip,
     "cos": np.cos,
@@ -79,10 +80,7 @@ class Closure:
 
     name: str
     weight: Array
-    arguments: Mapping[str, Any]
-
-
-Value = Any  # ndarray, str, or tuple of Closure
+    arguments: Mapping[str, Value]
 
 
 class Interpreter:

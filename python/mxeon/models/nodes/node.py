@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from numpy.typing import ArrayLike
+
 from mxeon.models.core.arrays import Array
 
 Inputs: TypeAlias = Mapping[str, Array]
@@ -82,5 +84,5 @@ class PbrNode:
     transmits: bool = False
     fitted: bool = False
     reciprocal: bool = True
-    mirror: Mapping[str, object] = field(default_factory=dict, hash=False)
+    mirror: Mapping[str, ArrayLike] = field(default_factory=dict, hash=False)
     variants: tuple[Variant, ...] = ()
