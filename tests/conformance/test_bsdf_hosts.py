@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.accuracy import engine
-from mxeon.conformance.accuracy.diffuse import BSDF_RAY, VALUES
+from mxeon.conformance.accuracy.accuracy import ACCURACY
+from mxeon.conformance.accuracy.diffuse import BSDF_RAY
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
@@ -48,7 +49,7 @@ def test_the_error_of_an_engines_power_is_that_of_a_value_of_the_sheen():
 
 
 def test_only_a_sheen_of_powers_takes_the_engine_into_its_tolerance():
-    own = VALUES["fitted pairs"]
+    own = ACCURACY["fitted pairs"].value
     sheen, burley = (
         partial(engine.widen_for_engine, own, SUBJECTS[name], SUBJECTS[name].kind)
         for name in ("conty_kulla", "burley")
@@ -71,7 +72,7 @@ def test_the_repaired_nodes_are_the_specifications_in_other_languages(hosts, nam
     host, subject = hosts(name), SUBJECTS[model]
     probe = bsdf_probe_type(subject, PairProbe)(host, subject, "eonlib")
     batch = probe.batches[1]
-    tolerance = VALUES[probe.kind]
+    tolerance = ACCURACY[probe.kind].value
     errors = tolerance.metric(probe.direct(batch), subject.expected(batch))
     assert errors.max() <= tolerance.value
 

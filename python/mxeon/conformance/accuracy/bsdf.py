@@ -1,23 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tolerances of the checks of the other BSDF nodes of pbrlib, by kind of probe."""
+"""Tolerances of the checks of the other BSDF nodes of pbrlib."""
 
 import math
 
-from mxeon.conformance.accuracy.hair import HAIR_ALBEDO, HAIR_FRAME, HAIR_VALUE
-from mxeon.conformance.nodes.bsdf import (
-    CLOSED,
-    COMBINED,
-    FILM_PAIRS,
-    FITTED,
-    HAIR,
-    KINDS,
-    MICROFACET,
-    MICROFACET_KINDS,
-    NESTED,
-    QUADRATURES,
-    SCHLICK,
-    SHEEN,
-)
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.conformance.samples.measurement import absolute, mean_error, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
@@ -226,76 +211,42 @@ FILM_ENERGY = Tolerance(
     "the fits of the compensation, of which a mirror has another share than a film",
 )
 
-# By kind of probe.
-VALUES = {
-    CLOSED: DIFFUSE_VALUE,
-    SHEEN: ZELTNER_VALUE,
-    FITTED: CONTY_KULLA_VALUE,
-    MICROFACET: MICROFACET_VALUE,
-    SCHLICK: MICROFACET_VALUE,
-    COMBINED: COMBINED_VALUE,
-    NESTED: NESTED_VALUE,
-    HAIR: HAIR_VALUE,
-    FILM_PAIRS: FILM_VALUE,
-}
-ALBEDOS = {
-    CLOSED: CLOSED_ALBEDO,
-    SHEEN: CLOSED_ALBEDO,
-    FITTED: CONTY_KULLA_ALBEDO,
-    MICROFACET: MICROFACET_ALBEDO,
-    SCHLICK: MICROFACET_ALBEDO,
-    COMBINED: COMBINED_ALBEDO,
-    NESTED: COMBINED_ALBEDO,
-    HAIR: HAIR_ALBEDO,
-    FILM_PAIRS: FILM_ALBEDO,
-}
-THROUGHPUTS = {**ALBEDOS, SCHLICK: SCHLICK_THROUGHPUT}
-FRAMES = {
-    CLOSED: FLAT_FRAME,
-    SHEEN: FLAT_FRAME,
-    FITTED: FLAT_FRAME,
-    MICROFACET: MICROFACET_FRAME,
-    SCHLICK: MICROFACET_FRAME,
-    HAIR: HAIR_FRAME,
-}
-INTEGRALS = {
-    kind: Tolerance(
-        rounded_up(VALUES[kind].value + quadrature),
-        "albedo",
-        absolute,
-        f"an average of values, each within {VALUES[kind].value:.2g}, and the error of the quadrature on "
-        f"the equations, {quadrature:.0e}; rounded up",
-    )
-    for kind, quadrature in QUADRATURES.items()
-}
 WHITE_FURNACE = Tolerance(
     4e-3,
     "light",
     absolute,
     "the light that a repaired layer over white may gain or lose, of which the quadrature takes 6e-4",
 )
-LAYERS = {
-    kind: Tolerance(
-        rounded_up(INTEGRALS[kind].value + THROUGHPUTS[kind].value),
+
+
+def integral_of(value: Tolerance, quadrature: float) -> Tolerance:
+    """Tolerance of an integral of values, by the error of its quadrature on the equations."""
+    return Tolerance(
+        rounded_up(value.value + quadrature),
+        "albedo",
+        absolute,
+        f"an average of values, each within {value.value:.2g}, and the error of the quadrature on "
+        f"the equations, {quadrature:.0e}; rounded up",
+    )
+
+
+def layer_of(integral: Tolerance, throughput: Tolerance) -> Tolerance:
+    """Tolerance of the light of a lobe over a white base."""
+    return Tolerance(
+        rounded_up(integral.value + throughput.value),
         "light",
         absolute,
-        f"an albedo within {INTEGRALS[kind].value:.2g}, and a throughput within "
-        f"{THROUGHPUTS[kind].value:.2g}; rounded up",
+        f"an albedo within {integral.value:.2g}, and a throughput within {throughput.value:.2g}; "
+        "rounded up",
     )
-    for kind in KINDS
-}
-LAYERS |= dict.fromkeys(MICROFACET_KINDS, WHITE_FURNACE)
-TRANSMITTED = {  # by kind of probe of transmission
-    "transmission pairs": MICROFACET_ALBEDO,
-    "Schlick transmission pairs": SCHLICK_THROUGHPUT,
-}
-CLEAR = {
-    kind: Tolerance(
+
+
+def clear_of(passed: Tolerance) -> Tolerance:
+    """Tolerance of the light that microfacets reflect and transmit."""
+    return Tolerance(
         rounded_up(MICROFACET_ALBEDO.value + passed.value),
         "light",
         absolute,
         f"a reflected albedo within {MICROFACET_ALBEDO.value:.2g}, and light that passes within "
         f"{passed.value:.2g}; rounded up",
     )
-    for kind, passed in TRANSMITTED.items()
-}

@@ -6,7 +6,6 @@ The tests and the benchmarks that judge the same quantities import them.
 
 import math
 
-from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
 from mxeon.conformance.samples.batch import LOBE_RIM, RIM
 from mxeon.conformance.samples.edge_cases import TURNED
 from mxeon.conformance.samples.measurement import absolute, mean_error, relative, scaled
@@ -275,44 +274,3 @@ BSDF_PLANE_NOISE = Tolerance(
     mean_error,
     "that of testrender's pictures, for a quarter of their pixels",
 )
-BSDF_PICTURE_KINDS = ("bsdf pictures", "microfacet pictures", "bsdf planes", "microfacet planes")
-
-# By kind of probe: those of a value, and of an albedo.
-VALUES = {
-    "pairs": VALUE,
-    "pictures": CYCLES_RAY,
-    "planes": TESTRENDER,
-    "bsdf pictures": BSDF_RAY,
-    "microfacet pictures": BSDF_RAY,
-    "bsdf planes": BSDF_PLANE,
-    "microfacet planes": BSDF_PLANE,
-    "exact": EXACT,
-    "facets": FACETS,
-    "coarse facets": COARSE_FACETS,
-    "facet pairs": FACET_PAIRS,
-    **bsdf_tolerances.VALUES,
-}
-LOBES = {
-    "lobes": LOBE,
-    "plane lobes": TESTRENDER,
-    "exact": EXACT,
-    "facets": FACETS,
-    "coarse facets": COARSE_FACETS,
-    "facet pairs": FACET_PAIRS,
-}
-ALBEDOS = {
-    "pairs": ENVIRONMENT,
-    "pictures": CYCLES_NOISE,
-    "planes": TESTRENDER_NOISE,
-    "bsdf pictures": BSDF_NOISE,
-    "microfacet pictures": BSDF_NOISE,
-    "bsdf planes": BSDF_PLANE_NOISE,
-    "microfacet planes": BSDF_PLANE_NOISE,
-    "exact": EXACT_SURROUNDINGS,
-    "facets": FACET_NOISE,
-    "coarse facets": COARSE_FACETS,
-    "facet pairs": FACET_NOISE,
-    **bsdf_tolerances.ALBEDOS,
-}
-THROUGHPUTS = bsdf_tolerances.THROUGHPUTS
-FRAMES = {"pairs": FRAME, **bsdf_tolerances.FRAMES}

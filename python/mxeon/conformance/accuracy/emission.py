@@ -12,7 +12,6 @@ from mxeon.conformance.nodes.emission import (
     EXPONENTS,
     LEAST_FALLOFF,
     MEDIUM,
-    PICTURES,
     POWER,
 )
 from mxeon.conformance.nodes.media import MediumSubject
@@ -103,7 +102,6 @@ EXITANCES = {
     )
     for kind, tolerance in RADIANCES.items()
 }
-FRONTS = {**RADIANCES, PICTURES: PICTURE_RADIANCE}
 
 
 def widen_for_functions(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:

@@ -21,9 +21,8 @@ CURVE_COSINES = np.linspace(0.05, 1.0, 20)
 
 def applies(check: Check, subject: Subject, kind: str, host: str) -> bool:
     """Whether a check applies to a subject, with a kind of probe, on a host."""
-    return (
-        subject.model in check.models and kind in check.tolerances and check.applies(subject, host)
-    )
+    asked = subject.model in check.models and check.applies(subject, host)
+    return asked and check.tolerance(kind) is not None
 
 
 def judge_subject(probe: Probe, checks: Sequence[Check] = CHECKS) -> tuple[Result, ...]:
@@ -82,7 +81,9 @@ def judge_check(check: Check, probe: Probe) -> Result:
         "library": probe.library,
         **probe.claims,
     }
-    tolerance = check.adapt(check.tolerances[probe.kind], probe.subject, probe.kind, probe.host)
+    allowed = check.tolerance(probe.kind)
+    assert allowed is not None, f"{check.key} cannot be asked of {probe.kind}"
+    tolerance = check.adapt(allowed, probe.subject, probe.kind, probe.host)
     diagnosis = Diagnosis()
     try:
         with renderer_warnings() as notes:

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A row of the table of checks."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
+from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
 from mxeon.conformance.checks.controls import Control
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
@@ -28,8 +29,11 @@ class Check:
     variant : str
         The error that the control makes.
     control : callable (probe) -> probe
-    tolerances : dict of str to Tolerance
-        By kind of probe; one that is missing cannot be asked.
+    allowed : Quantity or Tolerance
+        The quantity by whose accuracy a kind of probe is judged, which it may lack; or the tolerance
+        where it is the same for all.
+    pairs : bool
+        Whether it asks for pairs of directions that not every host shows.
     applies : callable (subject, host) -> bool
         Whether the check can be asked about a subject of those models on the host of a name.
     diagnose : callable (probe) -> Diagnosis
@@ -46,8 +50,16 @@ class Check:
     measure: Callable[[Probe, Metric], Measurement]
     variant: str
     control: Control
-    tolerances: Mapping[str, Tolerance]
+    allowed: Quantity | Tolerance
+    pairs: bool = False
     applies: Callable[[Subject, str], bool] = lambda subject, host: True
     diagnose: Callable[[Probe], Diagnosis] = diagnosis.diagnose_value
     open: bool = False
     adapt: Callable[[Tolerance, Subject, str, Host], Tolerance] = lambda tolerance, *_: tolerance
+
+    def tolerance(self, kind: str) -> Tolerance | None:
+        """The tolerance for a kind of probe, or None where it cannot be asked."""
+        accuracy = ACCURACY[kind]
+        if self.pairs and not accuracy.pairs:
+            return None
+        return self.allowed if isinstance(self.allowed, Tolerance) else accuracy.of(self.allowed)

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that combine two lobes."""
 
-from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.checks import bsdf_measures, measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all, shifted
 from mxeon.conformance.checks.names import COMBINATION
 from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.nodes.bsdf import COMBINED, NESTED
 
 CHECKS = (
     Check(
@@ -17,7 +15,8 @@ CHECKS = (
         measures.value,
         "each pair has the inputs of another",
         shifted,
-        {COMBINED: tolerances.COMBINED_VALUE, NESTED: tolerances.NESTED_VALUE},
+        "value",
+        pairs=True,
     ),
     Check(
         "combined_albedo",
@@ -26,7 +25,8 @@ CHECKS = (
         measures.environment,
         "each pair has the inputs of another",
         shifted,
-        dict.fromkeys((COMBINED, NESTED), tolerances.COMBINED_ALBEDO),
+        "albedo",
+        pairs=True,
         diagnose=diagnosis.diagnose_albedo,
     ),
     Check(
@@ -36,7 +36,7 @@ CHECKS = (
         bsdf_measures.passing,
         "all light passes",
         pass_all,
-        dict.fromkeys((COMBINED, NESTED), tolerances.COMBINED_ALBEDO),
+        "throughput",
         diagnose=diagnosis.diagnose_throughput,
         open=True,
     ),

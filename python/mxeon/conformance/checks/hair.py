@@ -8,7 +8,6 @@ from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import with_inputs
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.nodes.bsdf import HAIR
 from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
@@ -60,7 +59,7 @@ CHECKS = tuple(
         _measure(key),
         "the normal is turned about the fiber by a tenth",
         without_offset,
-        {HAIR: HAIR_REGIONS[key]},
+        HAIR_REGIONS[key],
         diagnose=_diagnose(key),
         open=True,
     )

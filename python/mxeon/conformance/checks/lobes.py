@@ -18,10 +18,8 @@ from mxeon.conformance.checks.names import COMBINATION, EMITTER, FRAMED, MEDIUM_
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as wiring
 from mxeon.conformance.diagnosis.candidates import Diagnosis
-from mxeon.conformance.nodes.bsdf import BSDFS, CLOSED, COMBINED, FITTED, HAIR, KINDS, NESTED, SHEEN
+from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import DiffuseLobe, DiffuseSubject
-from mxeon.conformance.nodes.emission import KINDS as EMISSION_KINDS
-from mxeon.conformance.nodes.emission import MEDIUM, PICTURES
 from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.nodes.subject import Subject
@@ -29,7 +27,6 @@ from mxeon.conformance.nodes.subsurface import SUBSURFACES
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import ON_SPHERES, sphere_cases
 from mxeon.conformance.samples.measurement import worst_of
-from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.hosts import front_lit_only
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.hair import HAIR_NODE
@@ -48,12 +45,6 @@ SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
 
 
-def of_bsdfs(tolerance: Tolerance, pictures: bool = False) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of the other BSDF nodes; in pictures, if told."""
-    kinds = (*KINDS, HAIR) + (tolerances.BSDF_PICTURE_KINDS if pictures else ())
-    return dict.fromkeys(kinds, tolerance)
-
-
 def diagnose_sphere(probe: Probe) -> Diagnosis:
     """The explanation of light on a sphere."""
     cases = list(sphere_cases(probe))
@@ -70,9 +61,15 @@ def is_lobe(subject: Subject, host: str) -> bool:
     return isinstance(subject, DiffuseLobe) or subject.model == "lambert"
 
 
+def is_node(subject: Subject, host: str) -> bool:
+    """Whether a subject is a node, and not the lobe of a surface shader."""
+    return not isinstance(subject, DiffuseLobe)
+
+
 def is_alone(subject: Subject, host: str) -> bool:
     """Whether no other lobe lies beside the diffuse one."""
-    return not (isinstance(subject, RendererNode) and subject.others)
+    others = isinstance(subject, RendererNode) and subject.others
+    return is_node(subject, host) and not others
 
 
 def is_sampled(subject: Subject, host: str) -> bool:
@@ -93,7 +90,8 @@ CHECKS = (
         measures.value,
         "every channel gets the mean color",
         gray,
-        tolerances.VALUES,
+        "value",
+        applies=is_node,
         open=True,
         adapt=widen_for_engine,
     ),
@@ -104,8 +102,8 @@ CHECKS = (
         measures.value,
         "every channel gets the mean color",
         gray,
-        tolerances.LOBES,
-        is_lobe,
+        "value",
+        applies=is_lobe,
     ),
     Check(
         "environment",
@@ -114,9 +112,9 @@ CHECKS = (
         measures.environment,
         "every channel gets the mean color",
         gray,
-        tolerances.ALBEDOS,
-        has_environment,
-        diagnosis.diagnose_albedo,
+        "albedo",
+        applies=has_environment,
+        diagnose=diagnosis.diagnose_albedo,
         open=True,
     ),
     Check(
@@ -126,7 +124,7 @@ CHECKS = (
         measures.quadrature,
         "every channel gets the mean color",
         gray,
-        {"pairs": tolerances.INTEGRAL},
+        "integral",
     ),
     Check(
         "furnace",
@@ -135,9 +133,9 @@ CHECKS = (
         measures.furnace,
         "reflectance is 0.99",
         with_inputs(color=(0.99, 0.99, 0.99)),
-        tolerances.ALBEDOS,
-        has_environment,
-        diagnosis.diagnose_albedo,
+        "albedo",
+        applies=has_environment,
+        diagnose=diagnosis.diagnose_albedo,
     ),
     Check(
         "black",
@@ -146,17 +144,8 @@ CHECKS = (
         measures.black,
         "a thousandth is added to every value",
         offset,
-        {
-            "pairs": tolerances.ZERO,
-            "pictures": tolerances.ZERO,
-            "planes": tolerances.ZERO,
-            **of_bsdfs(tolerances.ZERO, pictures=True),
-            "exact": tolerances.ZERO,
-            "facets": tolerances.ZERO,
-            "coarse facets": tolerances.ZERO,
-            "facet pairs": tolerances.ZERO,
-        },
-        is_alone,
+        tolerances.ZERO,
+        applies=is_alone,
     ),
     Check(
         "density",
@@ -165,9 +154,9 @@ CHECKS = (
         sampling_measures.density,
         "roughness is dropped",
         with_inputs(roughness=0.0),
-        {"facet pairs": tolerances.OWN_DENSITY},
-        is_sampled,
-        lambda probe: Diagnosis("the density is not that of the paper's listings"),
+        tolerances.OWN_DENSITY,
+        applies=is_sampled,
+        diagnose=lambda probe: Diagnosis("the density is not that of the paper's listings"),
     ),
     Check(
         "samples",
@@ -176,9 +165,9 @@ CHECKS = (
         sampling_measures.samples,
         "the density is that of roughness 0",
         with_inputs(roughness=0.0),
-        {"facet pairs": tolerances.CHI_SQUARE},
-        is_sampled,
-        lambda probe: Diagnosis("the drawn directions do not have the density"),
+        tolerances.CHI_SQUARE,
+        applies=is_sampled,
+        diagnose=lambda probe: Diagnosis("the drawn directions do not have the density"),
     ),
     Check(
         "frame",
@@ -187,7 +176,7 @@ CHECKS = (
         measures.frame,
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
-        tolerances.FRAMES,
+        "frame",
         diagnose=wiring.diagnose_frame,
     ),
     Check(
@@ -197,7 +186,8 @@ CHECKS = (
         measures.surroundings,
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
-        dict.fromkeys(("pairs", CLOSED, SHEEN, FITTED, HAIR), tolerances.SURROUNDINGS),
+        tolerances.SURROUNDINGS,
+        pairs=True,
         diagnose=wiring.diagnose_surroundings,
     ),
     Check(
@@ -207,7 +197,7 @@ CHECKS = (
         lambda probe, metric: worst_of(metric, sphere_cases(probe)),
         "the mean free path is 0.3 in every channel",
         with_inputs(radius=(0.3, 0.3, 0.3)),
-        {CLOSED: bsdf_tolerances.RINGS},
+        bsdf_tolerances.RINGS,
         diagnose=diagnose_sphere,
     ),
     Check(
@@ -227,7 +217,8 @@ CHECKS = (
         measures.throughput,
         "the response is taken for the throughput",
         take_response,
-        {"pairs": tolerances.OPAQUE, **of_bsdfs(tolerances.OPAQUE)},
+        tolerances.OPAQUE,
+        pairs=True,
         diagnose=wiring.diagnose_throughput,
     ),
     Check(
@@ -237,11 +228,7 @@ CHECKS = (
         measures.reciprocity,
         "the value carries cos(theta_o) once more",
         scale_cosine(1),
-        {
-            "pairs": tolerances.RECIPROCITY,
-            **bsdf_tolerances.VALUES,
-            "facet pairs": tolerances.FACET_PAIRS,
-        },
+        "reciprocity",
     ),
     Check(
         "lambert",
@@ -250,13 +237,7 @@ CHECKS = (
         measures.lambert,
         "roughness is 0.1",
         with_inputs(roughness=0.1),
-        {
-            "pairs": tolerances.LAMBERT,
-            "pictures": tolerances.CYCLES_RAY,
-            "planes": tolerances.TESTRENDER,
-            "exact": tolerances.EXACT,
-            "facets": tolerances.FACETS,
-        },
+        "lambert",
     ),
     Check(
         "flag",
@@ -265,13 +246,9 @@ CHECKS = (
         measures.flag,
         "the flag is dropped",
         with_inputs(**{FLAG: True}),
-        {
-            "pairs": tolerances.difference_of(tolerances.VALUE),
-            "pictures": tolerances.difference_of(tolerances.CYCLES_RAY),
-            "planes": tolerances.difference_of(tolerances.TESTRENDER),
-        },
-        has_flag,
-        wiring.diagnose_flag,
+        "difference",
+        applies=has_flag,
+        diagnose=wiring.diagnose_flag,
     ),
     Check(
         "inputs",
@@ -280,18 +257,8 @@ CHECKS = (
         measures.inputs,
         "every change is dropped",
         drop_changes,
-        {
-            "pairs": tolerances.count_of("inputs"),
-            "pictures": tolerances.count_of("inputs"),
-            "planes": tolerances.count_of("inputs"),
-            **of_bsdfs(tolerances.count_of("inputs"), pictures=True),
-            "exact": tolerances.count_of("inputs"),
-            "facets": tolerances.count_of("inputs"),
-            "coarse facets": tolerances.count_of("inputs"),
-            "facet pairs": tolerances.count_of("inputs"),
-            **dict.fromkeys((COMBINED, NESTED), tolerances.count_of("inputs")),
-            **dict.fromkeys((*EMISSION_KINDS, MEDIUM, PICTURES), tolerances.count_of("inputs")),
-        },
+        tolerances.count_of("inputs"),
+        applies=is_node,
         diagnose=wiring.diagnose_inputs,
     ),
     Check(
@@ -301,7 +268,8 @@ CHECKS = (
         measures.finite,
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
-        {"pairs": tolerances.count_of("values"), **of_bsdfs(tolerances.count_of("values"))},
+        tolerances.count_of("values"),
+        pairs=True,
         diagnose=wiring.diagnose_finite,
     ),
 )

@@ -6,16 +6,9 @@ from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
 from mxeon.conformance.diagnosis import inputs as wiring
-from mxeon.conformance.nodes.bsdf import MICROFACET, MICROFACET_KINDS
-from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
-
-
-def of_microfacets(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of microfacets."""
-    return dict.fromkeys(MICROFACET_KINDS, tolerance)
 
 
 CHECKS = (
@@ -26,7 +19,7 @@ CHECKS = (
         measures.lossless,
         "values are 2 % too large",
         scale(1.02),
-        of_microfacets(tolerances.INTEGRALS[MICROFACET]),
+        "integral",
     ),
     Check(
         "shape",
@@ -35,7 +28,8 @@ CHECKS = (
         measures.shape,
         "the roughness is a tenth larger",
         rougher,
-        of_microfacets(tolerances.SHAPE),
+        tolerances.SHAPE,
+        pairs=True,
         open=True,
     ),
     Check(
@@ -45,7 +39,8 @@ CHECKS = (
         measures.retroreflection,
         "the flag is dropped",
         with_inputs(retroreflective=False),
-        of_microfacets(tolerances.RETROREFLECTION),
+        tolerances.RETROREFLECTION,
+        pairs=True,
         diagnose=wiring.diagnose_retroreflection,
     ),
     Check(
@@ -55,7 +50,8 @@ CHECKS = (
         measures.anisotropy,
         "the tangent is dropped",
         with_inputs(tangent=(1.0, 0.0, 0.0)),
-        of_microfacets(tolerances.ANISOTROPY),
+        tolerances.ANISOTROPY,
+        pairs=True,
         diagnose=wiring.diagnose_tangent,
     ),
     Check(
@@ -65,7 +61,8 @@ CHECKS = (
         measures.stretched,
         "the roughness is the same in both directions",
         isotropic,
-        of_microfacets(tolerances.ANISOTROPIC_ALBEDO),
+        tolerances.ANISOTROPIC_ALBEDO,
+        pairs=True,
         diagnose=wiring.diagnose_stretched,
     ),
 )

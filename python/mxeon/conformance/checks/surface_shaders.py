@@ -3,13 +3,12 @@
 
 import numpy as np
 
-from mxeon.conformance.accuracy import surface_shaders as tolerances
 from mxeon.conformance.accuracy.diffuse import count_of
 from mxeon.conformance.checks import measures, surface_measures
 from mxeon.conformance.checks import surface_diagnosis as diagnosis
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, scale, shifted
-from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
+from mxeon.conformance.nodes.surface_shaders import SHADERS
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 
@@ -35,7 +34,7 @@ CHECKS = (
         measures.value,
         "each pair has the inputs of another",
         shifted,
-        {WHOLE: tolerances.VALUE},
+        "value",
         diagnose=diagnosis.diagnose_lobes,
     ),
     Check(
@@ -45,7 +44,7 @@ CHECKS = (
         measures.environment,
         "each view has the inputs of another",
         shifted,
-        {WHOLE: tolerances.ALBEDO},
+        "albedo",
         diagnose=diagnosis.diagnose_sum,
     ),
     Check(
@@ -55,7 +54,7 @@ CHECKS = (
         surface_measures.furnace,
         "every value is a tenth lower",
         scale(0.9),
-        {WHOLE: tolerances.ALBEDO},
+        "albedo",
         diagnose=diagnosis.diagnose_sum,
     ),
     Check(
@@ -65,7 +64,7 @@ CHECKS = (
         surface_measures.energy,
         "every value is half as high again",
         scale(1.5),
-        {WHOLE: tolerances.ALBEDO},
+        "albedo",
         diagnose=diagnosis.diagnose_sum,
     ),
     Check(
@@ -75,7 +74,7 @@ CHECKS = (
         surface_measures.reach,
         "every change is dropped",
         ignore_changes,
-        {WHOLE: count_of("inputs")},
+        count_of("inputs"),
         diagnose=diagnosis.diagnose_reach,
     ),
 )

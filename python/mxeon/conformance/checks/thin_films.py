@@ -18,7 +18,6 @@ from mxeon.conformance.checks.film_measures import (
 )
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as wiring
-from mxeon.conformance.nodes.bsdf import FILM_PAIRS
 from mxeon.conformance.nodes.thin_films import FILM_MODELS, LAYERED
 
 CHECKS = (
@@ -29,7 +28,7 @@ CHECKS = (
         measures.value,
         "the film is a quarter thicker",
         thicker,
-        {FILM_PAIRS: bsdf_tolerances.FILM_VALUE},
+        "value",
         open=True,
     ),
     Check(
@@ -39,7 +38,7 @@ CHECKS = (
         film_limit,
         "every film has an index of 1.5",
         with_inputs(thinfilm_ior=1.5),
-        {FILM_PAIRS: bsdf_tolerances.FILM_LIMIT},
+        bsdf_tolerances.FILM_LIMIT,
         open=True,
     ),
     Check(
@@ -49,7 +48,7 @@ CHECKS = (
         film_energy,
         "values are 100 times as large",
         brighter,
-        {FILM_PAIRS: bsdf_tolerances.FILM_ENERGY},
+        bsdf_tolerances.FILM_ENERGY,
     ),
     Check(
         "film_environment",
@@ -58,7 +57,7 @@ CHECKS = (
         measures.environment,
         "the film is a quarter thicker",
         thicker,
-        {FILM_PAIRS: bsdf_tolerances.FILM_ALBEDO},
+        "albedo",
         diagnose=diagnosis.diagnose_albedo,
         open=True,
     ),
@@ -69,7 +68,7 @@ CHECKS = (
         film_average,
         "the film is a quarter thicker",
         thicker,
-        {FILM_PAIRS: bsdf_tolerances.FILM_MEAN},
+        bsdf_tolerances.FILM_MEAN,
         diagnose=diagnose_average,
         open=True,
     ),
@@ -80,7 +79,7 @@ CHECKS = (
         film_visible,
         "the film is a quarter thicker",
         thicker,
-        {FILM_PAIRS: bsdf_tolerances.FILM_STEEP},
+        bsdf_tolerances.FILM_STEEP,
         diagnose=diagnose_visible,
         open=True,
     ),
@@ -91,7 +90,7 @@ CHECKS = (
         bsdf_measures.layering,
         "all light passes",
         pass_all,
-        {FILM_PAIRS: bsdf_tolerances.FILM_ALBEDO},
+        "throughput",
         diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
@@ -101,7 +100,7 @@ CHECKS = (
         measures.finite,
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
-        {FILM_PAIRS: tolerances.count_of("values")},
+        tolerances.count_of("values"),
         diagnose=wiring.diagnose_finite,
     ),
 )

@@ -11,23 +11,16 @@ from mxeon.conformance.checks.controls import Altered, drop_changes, offset, sca
 from mxeon.conformance.diagnosis import inputs as wiring
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
 from mxeon.conformance.nodes.transmission import (
-    TRANSMISSION_KINDS,
     TRANSMITTING,
     TransmissionSubject,
 )
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case
-from mxeon.conformance.samples.tolerance import Tolerance
 
 MODELS = tuple(subject.model for subject in TRANSMITTING)
 BOTH = tuple(subject.model for subject in TRANSMITTING if subject.reflects)
 UNSHADOWED = "the mean of 1 - F over the normals seen, divided by G_1 of the view"
-
-
-def of_all(tolerance: Tolerance) -> dict[str, Tolerance]:
-    """The same tolerance for every kind of probe of transmission."""
-    return dict.fromkeys(TRANSMISSION_KINDS, tolerance)
 
 
 def infinite(probe: Probe) -> Altered:
@@ -85,7 +78,7 @@ CHECKS = (
         measures.transmitted,
         "values are twice as large",
         scale(2.0),
-        tolerances.TRANSMITTED,
+        "value",
         diagnose=diagnose_transmitted,
     ),
     Check(
@@ -95,7 +88,7 @@ CHECKS = (
         measures.clear,
         "values are 5 % too large",
         scale(1.05),
-        tolerances.CLEAR,
+        "light",
         diagnose=diagnose_transmitted,
     ),
     Check(
@@ -105,7 +98,7 @@ CHECKS = (
         measures.kept,
         "a thousandth is added to every value",
         offset,
-        of_all(tolerances.RETROREFLECTION),
+        tolerances.RETROREFLECTION,
         diagnose=unknown,
     ),
     Check(
@@ -115,7 +108,7 @@ CHECKS = (
         measures.critical,
         "the index is another",
         with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
-        tolerances.TRANSMITTED,
+        "value",
         diagnose=diagnose_transmitted,
     ),
     Check(
@@ -125,7 +118,7 @@ CHECKS = (
         measures.refraction,
         "the index is another",
         with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
-        of_all(SURROUNDINGS),
+        SURROUNDINGS,
         diagnose=unknown,
     ),
     Check(
@@ -135,7 +128,7 @@ CHECKS = (
         measures.finite,
         "values are divided by 0",
         infinite,
-        of_all(count_of("values")),
+        count_of("values"),
         diagnose=diagnose_finite,
     ),
     Check(
@@ -145,7 +138,7 @@ CHECKS = (
         measures.inputs,
         "every change is dropped",
         drop_changes,
-        of_all(count_of("inputs")),
+        count_of("inputs"),
         diagnose=diagnose_inputs,
     ),
 )

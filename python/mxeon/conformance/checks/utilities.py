@@ -8,7 +8,6 @@ from mxeon.conformance.checks import utility_measures as value_measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
 from mxeon.conformance.diagnosis import inputs as wiring
-from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES
 from mxeon.models.nodes.utilities import UTILITIES
 
 NAMES = tuple(row.category for row in UTILITIES)
@@ -21,7 +20,7 @@ CHECKS = (
         value_measures.value,
         "each row has the inputs of another",
         shifted,
-        dict.fromkeys((VALUES, OSL_VALUES), tolerances.ALPHA),  # each output has its own
+        "value",
         diagnose=value_measures.explained,
         open=True,
         adapt=tolerances.utility_tolerance,
@@ -33,7 +32,7 @@ CHECKS = (
         value_measures.round_trip,
         "each row has the inputs of another",
         shifted,
-        dict.fromkeys((VALUES, OSL_VALUES), tolerances.ROUND_TRIP),
+        tolerances.ROUND_TRIP,
         applies=lambda subject, host: subject.title == "artistic_ior, ior",
         diagnose=value_measures.explained,
     ),
@@ -44,7 +43,7 @@ CHECKS = (
         measures.inputs,
         "every change is dropped",
         drop_changes,
-        dict.fromkeys((VALUES, OSL_VALUES), count_of("inputs")),
+        count_of("inputs"),
         diagnose=wiring.diagnose_inputs,
     ),
     Check(
@@ -54,7 +53,8 @@ CHECKS = (
         value_measures.finite,
         "one output is not a number",
         no_number,
-        {VALUES: count_of("values")},
+        count_of("values"),
+        pairs=True,
         diagnose=value_measures.explained_finite,
     ),
 )

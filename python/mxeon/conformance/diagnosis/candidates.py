@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagnosis of a failure: the known model, defect or fault that explains it, or its place."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 
 import numpy as np
 
-from mxeon.conformance.accuracy.diffuse import ALBEDOS, LOBES, THROUGHPUTS, VALUES
-from mxeon.conformance.accuracy.emission import FRONTS, TRANSMITTANCE
+from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
 from mxeon.conformance.diagnosis.faults import DIRECT, ENVIRONMENT, Fault, scaled_by
 from mxeon.conformance.diagnosis.regions import Mask, smallest
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.nodes.emission import MEDIUM
 from mxeon.conformance.probes.cases import (
     albedo_cases,
     back_cases,
@@ -76,7 +74,7 @@ def diagnose_value(probe: Probe) -> Diagnosis:
     """The explanation of the probe's values for pairs of directions."""
     candidates = probe.value_candidates
     return _explained(
-        probe, list(value_cases(probe)), candidates, DIRECT, _tolerance(probe, VALUES)
+        probe, list(value_cases(probe)), candidates, DIRECT, _tolerance(probe, "value")
     )
 
 
@@ -92,7 +90,7 @@ def diagnose_albedo(probe: Probe) -> Diagnosis:
     """The explanation of the probe's environment branch."""
     candidates = probe.albedo_candidates
     cases = list(albedo_cases(probe))
-    return _explained(probe, cases, candidates, ENVIRONMENT, _tolerance(probe, ALBEDOS))
+    return _explained(probe, cases, candidates, ENVIRONMENT, _tolerance(probe, "albedo"))
 
 
 @lru_cache(maxsize=2)
@@ -125,8 +123,7 @@ def diagnose_medium(probe: Probe) -> Diagnosis:
 
 def _of_emission(probe: Probe, cases: Sequence[Case]) -> Diagnosis:
     """The explanation of radiances and transmittances."""
-    tolerance = {**FRONTS, MEDIUM: TRANSMITTANCE}[probe.kind]
-    return _explained(probe, cases, probe.value_candidates, (), tolerance)
+    return _explained(probe, cases, probe.value_candidates, (), _tolerance(probe, "value"))
 
 
 def diagnose_cases(
@@ -141,7 +138,7 @@ def _of_rest(probe: Probe, cases: Sequence[Case]) -> Diagnosis:
     *albedos, nothing = probe.albedo_candidates
     candidates = [Candidate(each.title, partial(_rest, each), each.permitted) for each in albedos]
     candidates.append(Candidate("all light passes", partial(_rest, nothing)))
-    return _explained(probe, cases, candidates, (), _tolerance(probe, THROUGHPUTS))
+    return _explained(probe, cases, candidates, (), _tolerance(probe, "throughput"))
 
 
 def _rest(candidate: Candidate, batch: Batch) -> Array:
@@ -149,9 +146,12 @@ def _rest(candidate: Candidate, batch: Batch) -> Array:
     return np.maximum(1.0 - candidate.values(batch), 0.0)
 
 
-def _tolerance(probe: Probe, tolerances: Mapping[str, Tolerance]) -> Tolerance:
-    """The tolerance of a probe's kind; that of a lobe where it is one below others."""
-    return {**LOBES, **tolerances}[probe.kind]
+def _tolerance(probe: Probe, quantity: Quantity) -> Tolerance:
+    """The tolerance of a quantity; that of a value where a probe has no other."""
+    accuracy = ACCURACY[probe.kind]
+    tolerance = accuracy.of(quantity) or accuracy.value
+    assert tolerance is not None, f"nothing is asked of {probe.kind}"
+    return tolerance
 
 
 def _explained(

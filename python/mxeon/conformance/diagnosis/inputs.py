@@ -5,7 +5,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.conformance.accuracy.diffuse import FRAMES, OPAQUE, SURROUNDINGS
+from mxeon.conformance.accuracy.accuracy import ACCURACY
+from mxeon.conformance.accuracy.diffuse import OPAQUE, SURROUNDINGS
 from mxeon.conformance.diagnosis.candidates import (
     NEAR,
     Diagnosis,
@@ -95,8 +96,9 @@ def diagnose_throughput(probe: Probe) -> Diagnosis:
 
 def diagnose_frame(probe: Probe) -> Diagnosis:
     """Whether the normal is dropped or not turned, in the first branch that is wrong."""
+    tolerance = ACCURACY[probe.kind].frame
+    assert tolerance is not None, f"no frame is asked of {probe.kind}"
     for case, branch in zip(frame_cases(probe), ("direct", "environment"), strict=True):
-        tolerance = FRAMES[probe.kind]
         wrong = tolerance.metric(case.measured, case.expected) > tolerance.value
         if not wrong.any():
             continue

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How exact each kind of probe is: one row for each, with a tolerance for each quantity."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from mxeon.conformance.accuracy import bsdf, diffuse, emission, hair, surface_shaders, utilities
+from mxeon.conformance.nodes import emission as emissions
+from mxeon.conformance.nodes.bsdf import (
+    CLOSED,
+    COMBINED,
+    FILM_PAIRS,
+    FITTED,
+    HAIR,
+    MICROFACET,
+    NESTED,
+    QUADRATURES,
+    SCHLICK,
+    SHEEN,
+)
+from mxeon.conformance.nodes.surface_shaders import WHOLE
+from mxeon.conformance.nodes.transmission import SCHLICK_TRANSMITTED, TRANSMITTED
+from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES
+from mxeon.conformance.samples.tolerance import Tolerance
+
+Quantity: TypeAlias = Literal[
+    "value",
+    "albedo",
+    "throughput",
+    "frame",
+    "integral",
+    "light",
+    "reciprocity",
+    "lambert",
+    "difference",
+]
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Tolerances of a kind of probe by quantity; None where no check asks it for one.
+
+    Attributes
+    ----------
+    value : Tolerance or None
+        Of values in direct light, radiances, transmittances and outputs.
+    albedo, throughput : Tolerance or None
+    frame : Tolerance or None
+        Of values and albedos in turned frames.
+    integral : Tolerance or None
+        Of values summed over directions.
+    light : Tolerance or None
+        Of all light that a lobe and what lies below it return.
+    reciprocity : Tolerance or None
+        Of values times both cosines.
+    lambert : Tolerance or None
+        Of values that have no roughness.
+    pairs : bool
+        Whether its host evaluates any pairs of directions, those at the edges of the domain too.
+    """
+
+    value: Tolerance | None = None
+    albedo: Tolerance | None = None
+    throughput: Tolerance | None = None
+    frame: Tolerance | None = None
+    integral: Tolerance | None = None
+    light: Tolerance | None = None
+    reciprocity: Tolerance | None = None
+    lambert: Tolerance | None = None
+    pairs: bool = True
+
+    @property
+    def difference(self) -> Tolerance | None:
+        """Tolerance of the difference of two values."""
+        return self.value and diffuse.difference_of(self.value)
+
+    def of(self, quantity: Quantity) -> Tolerance | None:
+        """Tolerance of a quantity."""
+        tolerance: Tolerance | None = getattr(self, quantity)
+        return tolerance
+
+
+def _lobe(
+    kind: str,
+    value: Tolerance,
+    albedo: Tolerance,
+    frame: Tolerance,
+    throughput: Tolerance | None = None,
+    light: Tolerance | None = None,
+) -> Accuracy:
+    """Accuracy of a BSDF node on a host that evaluates any pairs."""
+    passed, integral = throughput or albedo, bsdf.integral_of(value, QUADRATURES[kind])
+    light = light or bsdf.layer_of(integral, passed)
+    return Accuracy(value, albedo, passed, frame, integral, light, reciprocity=value)
+
+
+def _seen(
+    value: Tolerance, albedo: Tolerance | None = None, lambert: Tolerance | None = None
+) -> Accuracy:
+    """Accuracy of a host that shows a node from some directions."""
+    return Accuracy(value, albedo, lambert=lambert, pairs=False)
+
+
+def _emission(kind: str) -> Accuracy:
+    """Accuracy of an emission on a host that evaluates any views."""
+    return Accuracy(emission.RADIANCES[kind], integral=emission.EXITANCES[kind])
+
+
+# By kind of probe.
+ACCURACY: Mapping[str, Accuracy] = {
+    "pairs": Accuracy(
+        diffuse.VALUE,
+        diffuse.ENVIRONMENT,
+        frame=diffuse.FRAME,
+        integral=diffuse.INTEGRAL,
+        reciprocity=diffuse.RECIPROCITY,
+        lambert=diffuse.LAMBERT,
+    ),
+    "pictures": _seen(diffuse.CYCLES_RAY, diffuse.CYCLES_NOISE, diffuse.CYCLES_RAY),
+    "planes": _seen(diffuse.TESTRENDER, diffuse.TESTRENDER_NOISE, diffuse.TESTRENDER),
+    "bsdf pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
+    "microfacet pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
+    "bsdf planes": _seen(diffuse.BSDF_PLANE, diffuse.BSDF_PLANE_NOISE),
+    "microfacet planes": _seen(diffuse.BSDF_PLANE, diffuse.BSDF_PLANE_NOISE),
+    "lobes": _seen(diffuse.LOBE),
+    "plane lobes": _seen(diffuse.TESTRENDER),
+    "exact": _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
+    "facets": _seen(diffuse.FACETS, diffuse.FACET_NOISE, diffuse.FACETS),
+    "coarse facets": _seen(diffuse.COARSE_FACETS, diffuse.COARSE_FACETS),
+    "facet pairs": Accuracy(
+        diffuse.FACET_PAIRS,
+        diffuse.FACET_NOISE,
+        reciprocity=diffuse.FACET_PAIRS,
+        pairs=False,
+    ),
+    CLOSED: _lobe(CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
+    SHEEN: _lobe(SHEEN, bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
+    FITTED: _lobe(FITTED, bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO, bsdf.FLAT_FRAME),
+    MICROFACET: _lobe(
+        MICROFACET,
+        bsdf.MICROFACET_VALUE,
+        bsdf.MICROFACET_ALBEDO,
+        bsdf.MICROFACET_FRAME,
+        light=bsdf.WHITE_FURNACE,
+    ),
+    SCHLICK: _lobe(
+        SCHLICK,
+        bsdf.MICROFACET_VALUE,
+        bsdf.MICROFACET_ALBEDO,
+        bsdf.MICROFACET_FRAME,
+        bsdf.SCHLICK_THROUGHPUT,
+        bsdf.WHITE_FURNACE,
+    ),
+    HAIR: _lobe(HAIR, hair.HAIR_VALUE, hair.HAIR_ALBEDO, hair.HAIR_FRAME),
+    COMBINED: Accuracy(bsdf.COMBINED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
+    NESTED: Accuracy(bsdf.NESTED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
+    FILM_PAIRS: Accuracy(bsdf.FILM_VALUE, bsdf.FILM_ALBEDO, bsdf.FILM_ALBEDO),
+    TRANSMITTED: Accuracy(bsdf.MICROFACET_ALBEDO, light=bsdf.clear_of(bsdf.MICROFACET_ALBEDO)),
+    SCHLICK_TRANSMITTED: Accuracy(
+        bsdf.SCHLICK_THROUGHPUT, light=bsdf.clear_of(bsdf.SCHLICK_THROUGHPUT)
+    ),
+    emissions.CLOSED: _emission(emissions.CLOSED),
+    emissions.POWER: _emission(emissions.POWER),
+    emissions.CONE: _emission(emissions.CONE),
+    emissions.PICTURES: _seen(emission.PICTURE_RADIANCE),
+    emissions.MEDIUM: Accuracy(emission.TRANSMITTANCE),
+    emissions.SURFACES: _seen(emission.OPACITY),
+    emissions.ABSENT: Accuracy(),
+    VALUES: Accuracy(utilities.ALPHA),  # each output has its own
+    OSL_VALUES: _seen(utilities.ALPHA),
+    WHOLE: Accuracy(surface_shaders.VALUE, surface_shaders.ALBEDO),
+}
