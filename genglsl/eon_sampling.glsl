@@ -103,7 +103,7 @@ vec3 eon_flat_draw(float v, float u2, float q)
 }
 
 // Drawn from one of the four parts, chosen by what their integrals over pi leave of u1; wo has
-// azimuth 0. The flat part's integral is 1. The others share one power, the dearest operation:
+// azimuth 0. The flat part's integral is 1. The others share a power, the most expensive operation:
 // where lanes of a processor choose different parts, it takes every lane through all.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {

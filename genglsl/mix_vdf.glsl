@@ -6,7 +6,7 @@
 
 void mix_vdf(ClosureData closureData, VDF fg, VDF bg, float mixValue, out VDF result)
 {
-    // No power of 0: what float32 has no logarithm of is as dark.
+    // Avoid pow(0, x): what float32 has no logarithm of is black.
     float share = clamp(mixValue, 0.0, 1.0);
     vec3 front = pow(max(fg.throughput, vec3(1e-30)), vec3(share));
     vec3 back = pow(max(bg.throughput, vec3(1e-30)), vec3(1.0 - share));

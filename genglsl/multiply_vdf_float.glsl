@@ -5,7 +5,7 @@
 
 void multiply_vdf_float(ClosureData closureData, VDF in1, float in2, out VDF result)
 {
-    // No power of 0: what float32 has no logarithm of is as dark.
+    // Avoid pow(0, x): what float32 has no logarithm of is black.
     result.response = vec3(0.0);
     result.throughput = pow(max(in1.throughput, vec3(1e-30)), vec3(max(in2, 0.0)));
 }

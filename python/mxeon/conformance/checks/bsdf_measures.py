@@ -59,7 +59,7 @@ def lossless(probe: Probe, metric: Metric) -> Measurement:
     """Albedo of a lobe that reflects all light, integrated from the host's values, against 1."""
     batch, weights = probe.integrated
     mirror = batch.altered(**subject_of(probe, BsdfSubject).row.mirror)
-    views, albedo = _summed(probe, mirror, weights)
+    views, albedo = summed(probe, mirror, weights)
     return worst_of(metric, [Case(views, albedo, np.ones_like(albedo))])
 
 
@@ -136,10 +136,10 @@ def integral(probe: Probe, metric: Metric) -> Measurement:
 
 def _integral(probe: Probe) -> tuple[Batch, Array]:
     """Views of the integrated materials, and their albedos from the host's values, (N, 3)."""
-    return _summed(probe, *probe.integrated)
+    return summed(probe, *probe.integrated)
 
 
-def _summed(probe: Probe, batch: Batch, weights: Array) -> tuple[Batch, Array]:
+def summed(probe: Probe, batch: Batch, weights: Array) -> tuple[Batch, Array]:
     """Views of materials in many directions of light, and their albedos, (N, 3)."""
     count, nodes = weights.shape
     values = probe.direct(batch).reshape(count, nodes, 3)

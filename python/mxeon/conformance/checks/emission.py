@@ -15,6 +15,7 @@ from mxeon.conformance.nodes.emission import (
     SURFACES,
     UNIMPLEMENTED,
 )
+from mxeon.conformance.probes.cases import value_cases
 from mxeon.conformance.probes.probe import Probe
 
 
@@ -34,7 +35,7 @@ def diagnose_opacity(probe: Probe) -> Diagnosis:
         tolerances.OPACITY.metric(
             case.measured, probe.expected(case.batch.altered(opacity=1.0))
         ).max()
-        for case in measures.opacity_cases(probe)
+        for case in value_cases(probe)
     )
     return Diagnosis("the opacity is ignored" if full <= tolerances.OPACITY.value else "")
 
@@ -100,7 +101,7 @@ CHECKS = (
         "opacity",
         "The light that a surface emits is scaled by its opacity.",
         (SURFACES,),
-        measures.opacity,
+        value,
         "the opacity is 1",
         with_inputs(opacity=1.0),
         "value",

@@ -25,7 +25,7 @@ LEAST_INDEX = 1.05  # of a substrate whose lobe is compared
 
 
 def film_limit(probe: Probe, metric: Metric) -> Measurement:
-    """Values under a film of index 1, and under one next to nothing, against those without."""
+    """Values under a film of index 1, and under one of THIN_LIMIT, against those without."""
     batch = _compared(probe)
     bare = probe.direct(batch.altered(thinfilm_thickness=0.0))
     cases = [Case(batch, probe.direct(batch.altered(thinfilm_ior=1.0)), bare)]

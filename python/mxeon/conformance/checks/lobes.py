@@ -16,7 +16,7 @@ from mxeon.conformance.checks.controls import (
 )
 from mxeon.conformance.checks.names import COMBINATION, EMITTER, FRAMED, MEDIUM_NAMES, OTHERS
 from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import DiffuseLobe, DiffuseSubject
@@ -177,7 +177,7 @@ CHECKS = (
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
         "frame",
-        diagnose=wiring.diagnose_frame,
+        diagnose=input_diagnosis.diagnose_frame,
     ),
     Check(
         "surroundings",
@@ -188,7 +188,7 @@ CHECKS = (
         with_inputs(normal=(0.0, 0.0, 1.0)),
         tolerances.SURROUNDINGS,
         pairs=True,
-        diagnose=wiring.diagnose_surroundings,
+        diagnose=input_diagnosis.diagnose_surroundings,
     ),
     Check(
         "sphere",
@@ -219,7 +219,7 @@ CHECKS = (
         take_response,
         tolerances.OPAQUE,
         pairs=True,
-        diagnose=wiring.diagnose_throughput,
+        diagnose=input_diagnosis.diagnose_throughput,
     ),
     Check(
         "reciprocity",
@@ -248,7 +248,7 @@ CHECKS = (
         with_inputs(**{FLAG: True}),
         "difference",
         applies=has_flag,
-        diagnose=wiring.diagnose_flag,
+        diagnose=input_diagnosis.diagnose_flag,
     ),
     Check(
         "inputs",
@@ -259,7 +259,7 @@ CHECKS = (
         drop_changes,
         tolerances.count_of("inputs"),
         applies=is_node,
-        diagnose=wiring.diagnose_inputs,
+        diagnose=input_diagnosis.diagnose_inputs,
     ),
     Check(
         "finite",
@@ -270,6 +270,6 @@ CHECKS = (
         scale_cosine(-1),
         tolerances.count_of("values"),
         pairs=True,
-        diagnose=wiring.diagnose_finite,
+        diagnose=input_diagnosis.diagnose_finite,
     ),
 )

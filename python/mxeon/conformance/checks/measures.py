@@ -25,7 +25,8 @@ from mxeon.conformance.samples.measurement import (
     Measurement,
     Metric,
     absolute,
-    point_of,
+    count_named,
+    count_not_finite,
     worst_of,
 )
 from mxeon.hosts import front_lit_only
@@ -149,12 +150,10 @@ def flag(probe: Probe, _: Metric) -> Measurement:
 
 def inputs(probe: Probe, _: Metric) -> Measurement:
     """Number of inputs of the node that change nothing."""
-    dead = dead_inputs(probe)
-    return Measurement(len(dead), {name: [0.0] for name in dead})
+    return count_named(dead_inputs(probe))
 
 
 def finite(probe: Probe, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
-    batch, values, _expected = edge_case(probe)
-    bad = ~np.isfinite(values).all(axis=1)
-    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+    case = edge_case(probe)
+    return count_not_finite(case.batch, case.measured)

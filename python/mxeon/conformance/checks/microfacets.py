@@ -5,7 +5,7 @@ from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
-from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
@@ -41,7 +41,7 @@ CHECKS = (
         with_inputs(retroreflective=False),
         tolerances.RETROREFLECTION,
         pairs=True,
-        diagnose=wiring.diagnose_retroreflection,
+        diagnose=input_diagnosis.diagnose_retroreflection,
     ),
     Check(
         "anisotropy",
@@ -52,7 +52,7 @@ CHECKS = (
         with_inputs(tangent=(1.0, 0.0, 0.0)),
         tolerances.ANISOTROPY,
         pairs=True,
-        diagnose=wiring.diagnose_tangent,
+        diagnose=input_diagnosis.diagnose_tangent,
     ),
     Check(
         "anisotropic_albedo",
@@ -63,6 +63,6 @@ CHECKS = (
         isotropic,
         tolerances.ANISOTROPIC_ALBEDO,
         pairs=True,
-        diagnose=wiring.diagnose_stretched,
+        diagnose=input_diagnosis.diagnose_stretched,
     ),
 )

@@ -5,7 +5,7 @@ import numpy as np
 
 from mxeon.conformance.nodes.surface_shaders import SurfaceShader
 from mxeon.conformance.probes.probe import Probe, subject_of
-from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, count_named, worst_of
 
 BRANCHES = ("direct", "environment", "transmission")
 
@@ -24,8 +24,7 @@ def furnace(probe: Probe, metric: Metric) -> Measurement:
 
 def reach(probe: Probe, _: Metric) -> Measurement:
     """Number of inputs that change something where the page says nothing, or the reverse."""
-    wrong = misplaced(probe)
-    return Measurement(len(wrong), {name: [0.0] for name in wrong})
+    return count_named(misplaced(probe))
 
 
 def misplaced(probe: Probe) -> list[str]:

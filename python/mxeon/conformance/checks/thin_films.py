@@ -17,7 +17,7 @@ from mxeon.conformance.checks.film_measures import (
     thicker,
 )
 from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.nodes.thin_films import FILM_MODELS, LAYERED
 
 CHECKS = (
@@ -101,6 +101,6 @@ CHECKS = (
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
         tolerances.count_of("values"),
-        diagnose=wiring.diagnose_finite,
+        diagnose=input_diagnosis.diagnose_finite,
     ),
 )

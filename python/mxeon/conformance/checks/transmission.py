@@ -8,7 +8,7 @@ from mxeon.conformance.accuracy.diffuse import SURROUNDINGS, count_of
 from mxeon.conformance.checks import transmission_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
-from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
 from mxeon.conformance.nodes.transmission import (
     TRANSMITTING,
@@ -67,7 +67,7 @@ def diagnose_finite(probe: Probe) -> Diagnosis:
 
 def unknown(probe: Probe) -> Diagnosis:
     """No explanation."""
-    return Diagnosis(wiring.UNKNOWN)
+    return Diagnosis(input_diagnosis.UNKNOWN)
 
 
 CHECKS = (

@@ -6,7 +6,14 @@ import numpy as np
 from mxeon.conformance.nodes.transmission import TransmissionSubject
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.conformance.samples.measurement import Case, Measurement, Metric, point_of, worst_of
+from mxeon.conformance.samples.measurement import (
+    Case,
+    Measurement,
+    Metric,
+    count_named,
+    count_not_finite,
+    worst_of,
+)
 from mxeon.conformance.samples.uneven_environment import sky, sky_map
 from mxeon.models.microfacet.ggx import smith_g1
 from mxeon.models.transmission.refraction import refraction_direction
@@ -152,9 +159,8 @@ def _smooth(probe: Probe) -> Batch:
 
 def finite(probe: Probe, _: Metric) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
-    batch, values, _expected = finite_case(probe)
-    bad = ~np.isfinite(values).all(axis=1)
-    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+    case = finite_case(probe)
+    return count_not_finite(case.batch, case.measured)
 
 
 def finite_case(probe: Probe) -> Case:
@@ -167,8 +173,7 @@ def finite_case(probe: Probe) -> Case:
 
 def inputs(probe: Probe, _: Metric) -> Measurement:
     """Number of inputs that change no light through the surface, and of those that must not."""
-    wrong = wrong_inputs(probe)
-    return Measurement(len(wrong), {name: [0.0] for name in wrong})
+    return count_named(wrong_inputs(probe))
 
 
 def wrong_inputs(probe: Probe) -> list[str]:

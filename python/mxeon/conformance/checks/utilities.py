@@ -7,7 +7,7 @@ from mxeon.conformance.checks import measures
 from mxeon.conformance.checks import utility_measures as value_measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
-from mxeon.conformance.diagnosis import inputs as wiring
+from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.models.nodes.utilities import UTILITIES
 
 NAMES = tuple(row.category for row in UTILITIES)
@@ -44,7 +44,7 @@ CHECKS = (
         "every change is dropped",
         drop_changes,
         count_of("inputs"),
-        diagnose=wiring.diagnose_inputs,
+        diagnose=input_diagnosis.diagnose_inputs,
     ),
     Check(
         "output_finite",

@@ -12,7 +12,13 @@ from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.conformance.samples.measurement import Case, Measurement, Metric, point_of, worst_of
+from mxeon.conformance.samples.measurement import (
+    Case,
+    Measurement,
+    Metric,
+    count_not_finite,
+    worst_of,
+)
 from mxeon.models.microfacet.artistic_ior import normal_reflectance
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY
 
@@ -43,9 +49,7 @@ def explained(probe: Probe) -> Diagnosis:
 
 def finite(probe: Probe, _: Metric) -> Measurement:
     """Number of outputs that are not finite, at the ends of the ranges and beyond."""
-    batch = probe.edges
-    bad = np.asarray(~np.isfinite(probe.direct(batch)).all(axis=1))
-    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+    return count_not_finite(probe.edges, probe.direct(probe.edges))
 
 
 def explained_finite(probe: Probe) -> Diagnosis:

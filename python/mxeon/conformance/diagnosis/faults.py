@@ -109,7 +109,6 @@ def _of_weight() -> Iterator[Fault]:
 
 COMMON = (
     *_of_weight(),
-    Fault("the weight is applied twice", values=_scaled(_column("weight"))),
     *_of_colors(),
     *_of_roughness(),
 )

@@ -14,7 +14,7 @@ import numpy as np
 from mxeon.conformance.accuracy.diffuse import DENSITY, LOSS, PART, VALUE, direction_of
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
-from mxeon.conformance.functions import numpy_functions as twins
+from mxeon.conformance.functions import numpy_functions
 from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.samples.measurement import Measurement, absolute, relative
@@ -75,7 +75,7 @@ class FunctionProbe:
     @cached_property
     def sine_error(self) -> float:
         """Error of the engine's own cosine and sine over a turn, of which samples are made."""
-        u = twins.random_columns()["u2"]
+        u = numpy_functions.random_columns()["u2"]
         exact = np.maximum(np.abs(np.cos(2.0 * np.pi * u)), np.abs(np.sin(2.0 * np.pi * u)))
         return float(np.abs(self.host.execute(ENGINE, "mxeon_engine", u)[:, 0] - exact).max())
 
@@ -85,7 +85,7 @@ class FunctionProbe:
         names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
         slots = functions.parameters(text, functions.EACH)
-        count = twins.POINTS
+        count = numpy_functions.POINTS
         rows = {
             name: np.zeros((count * len(names), 1 if kind == "float" else 3))
             for kind, name in slots
@@ -94,7 +94,7 @@ class FunctionProbe:
             block = slice(number * count, (number + 1) * count)
             rows["which"][block] = number
             kinds = [kind for kind, _ in functions.signature(language, name)]
-            *others, last = twins.arguments(name, twins.random_columns())
+            *others, last = numpy_functions.arguments(name, numpy_functions.random_columns())
             for slot, values in zip(
                 functions.slot_names(kinds), [*others, scale * last], strict=True
             ):
@@ -128,7 +128,7 @@ class FunctionCheck:
 
 def value_error(function: str, values: Array) -> float:
     """Largest error of a model, in pi f cos, or of an albedo."""
-    columns = twins.random_columns()
+    columns = numpy_functions.random_columns()
     scale = np.pi * columns["mu_i"][:, None] if "_brdf" in function else 1.0
     return float(absolute(scale * (values - _expected(function)), 0.0).max())
 
@@ -251,15 +251,15 @@ def _allowed(function: str, probe: FunctionProbe) -> float:
 
 @cache
 def _expected(function: str) -> Array:
-    return twins.expected(function, twins.random_columns())
+    return numpy_functions.expected(function, numpy_functions.random_columns())
 
 
 @cache
 def _condition(function: str) -> Array:
     """1, or the value if larger, and by how much it changes with each of its numbers, (N,)."""
-    columns, exact = twins.random_columns(), _expected(function)
+    columns, exact = numpy_functions.random_columns(), _expected(function)
     total: Array = np.maximum(1.0, np.abs(exact).max(axis=1))
-    for name in twins.numbers(function):
-        moved = twins.expected(function, twins.moved(columns, name, STEP))
+    for name in numpy_functions.numbers(function):
+        moved = numpy_functions.expected(function, numpy_functions.moved(columns, name, STEP))
         total = total + np.abs(moved - exact).max(axis=1) / STEP
     return np.asarray(total)

@@ -41,7 +41,7 @@ from mxeon.shaders.document.graphs import reachable
 Path: TypeAlias = tuple[str, ...]  # see Graph
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
-# Where nothing is connected: black, and for a lobe nothing at all, which hides nothing.
+# Where nothing is connected: black, and for a lobe zero, which hides nothing.
 UNCONNECTED: dict[str, Value] = {
     "BSDF": NOTHING,
     "EDF": np.zeros(3),

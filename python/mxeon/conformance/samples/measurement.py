@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measured values beside expected ones, the error of each row, and the worst of them."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -69,6 +69,17 @@ def worst_of(metric: Metric, cases: Iterable[Case]) -> Measurement:
             values = {"measured": measured[row].tolist(), "expected": expected[row].tolist()}
             worst = Measurement(float(errors[row]), {**point_of(batch, row), **values})
     return worst
+
+
+def count_not_finite(batch: Batch, values: Array) -> Measurement:
+    """Number of rows that are not finite, and the first of them."""
+    bad = ~np.isfinite(values).all(axis=1)
+    return Measurement(int(bad.sum()), point_of(batch, int(bad.argmax())) if bad.any() else {})
+
+
+def count_named(names: Sequence[str]) -> Measurement:
+    """Number of inputs that are wrong, and their names."""
+    return Measurement(len(names), {name: [0.0] for name in names})
 
 
 def point_of(batch: Batch, row: int) -> dict[str, list[float]]:
