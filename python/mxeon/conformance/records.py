@@ -82,12 +82,15 @@ def make_converter(folder: Path | None = None) -> cattrs.Converter:
     converter = cattrs.Converter(
         forbid_extra_keys=True, unstruct_collection_overrides={tuple: list}
     )
+    # Types are exact: JSON takes true for 1.
     for kind, words in ((str, "a text"), (bool, "true or false"), (int, "a whole number")):
         converter.register_structure_hook(kind, _exactly(kind, words))
+    # Numbers that are not finite are texts.
     converter.register_structure_hook(float, _number)
     converter.register_unstructure_hook(float, spelled)
     converter.register_structure_hook_func(_is_array, lambda rows, _: np.array(rows, dtype=float))
     converter.register_unstructure_hook_func(_is_array, lambda array: array.tolist())
+    # Records whose keys in JSON are other ones.
     for record in (Control, Result):
         _register(converter, record, FIGURE)
     if folder is not None:

@@ -204,15 +204,18 @@ def _summarize_results(results: Sequence[Result]) -> Summary:
     tally = Counter(result.verdict for result in results)
     counts = {verdict: tally[verdict] for verdict in VERDICTS}
     total = len(results)
+    # A failure decides.
     if counts[FAILED]:
         failed = Counter(result.location for result in results if result.verdict == FAILED)
         listed = "; ".join(f"{count} on {location}" for location, count in failed.items())
         return Summary(FAILED, counts, f"{counts[FAILED]} of {total} checks failed: {listed}.")
+    # Then what did not run.
     if not counts[PASSED] + counts[DIFFERS]:
         return Summary(NOT_RUN, counts, "No check ran.")
     if counts[NOT_RUN]:
         sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} checks did not run."
         return Summary(NOT_RUN, counts, sentence)
+    # All ran: they passed, or differ where they may.
     hosts = " and ".join(dict.fromkeys(result.location for result in results))
     if counts[DIFFERS]:
         sentence = (

@@ -73,6 +73,7 @@ def judge_curve(probe: Probe) -> tuple[AlbedoCurve, ...]:
 
 def judge_check(check: Check, probe: Probe) -> Result:
     """The result of a row of the table for a probe, with its control and a diagnosis."""
+    # What the result is of, and how wrong it may be.
     place: Place = {
         "check": check.key,
         "claim": check.claim,
@@ -84,6 +85,7 @@ def judge_check(check: Check, probe: Probe) -> Result:
     allowed = check.tolerance(probe.kind)
     assert allowed is not None, f"{check.key} cannot be asked of {probe.kind}"
     tolerance = check.adapt(allowed, probe.subject, probe.kind, probe.host)
+    # The error, that of the control, and what explains a failure.
     diagnosis = Diagnosis()
     try:
         with renderer_warnings() as notes:
@@ -93,6 +95,7 @@ def judge_check(check: Check, probe: Probe) -> Result:
                 diagnosis = check.diagnose(probe)
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
+    # A permitted function excuses an open check alone.
     diagnosis = replace(diagnosis, permitted=check.open and diagnosis.permitted)
     if diagnosis.text:
         diagnosis = replace(diagnosis, text="; ".join([diagnosis.text, *notes]))

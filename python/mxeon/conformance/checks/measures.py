@@ -138,9 +138,11 @@ def flag(probe: Probe, _: Metric) -> Measurement:
     error = largest = 0.0
     for batch in probe.few:
         batch = batch.altered(roughness=np.minimum(batch.inputs["roughness"], 1.0))
+        # Leave out the pairs for which the host has no closure of the flagged model.
         rows = slice(None)
         if front_lit_only(probe.host.name, "qon"):
             rows = (batch.wo[:, :2] * batch.wi[:, :2]).sum(axis=1) >= 0.0
+        # Compare the change of the host with that of the models.
         on, off = (probe.direct(batch.altered(**{FLAG: state})) for state in (True, False))
         models = batch.expected("eon") - batch.expected("qon")
         error = np.maximum(error, absolute(on - off, models)[rows].max(initial=0.0))

@@ -40,6 +40,7 @@ def samples(probe: Probe, _: Metric) -> Measurement:
 
 def _deviation(probe: Probe, mu: float) -> float:
     """Standard deviations by which the counts of one viewer's samples leave their density."""
+    # Draw directions, and count them in bins of the hemisphere.
     rng = np.random.default_rng(SEED)
     wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
     wi = probe.sample(_batch(np.broadcast_to(wo, (SAMPLES, 3))), rng.random((SAMPLES, 2)))
@@ -52,6 +53,7 @@ def _deviation(probe: Probe, mu: float) -> float:
     observed = np.append(counts[kept], SAMPLES - counts[kept].sum())
     mean = np.append(expected[kept], SAMPLES - expected[kept].sum())
     mean[-1] = max(mean[-1], LEAST)
+    # Make a standard normal of the chi-square, by Wilson and Hilferty.
     chi_square, freedom = ((observed - mean) ** 2 / mean).sum(), len(mean) - 1
     spread = 2.0 / (9.0 * freedom)
     return float(((chi_square / freedom) ** (1.0 / 3.0) - (1.0 - spread)) / np.sqrt(spread))

@@ -23,10 +23,12 @@ LOBES = {
 
 def diagnose_lobes(probe: Probe) -> Diagnosis:
     """The lobe whose absence leaves the smallest error of the worst pairs."""
+    # Pick the worst pairs.
     [batch] = probe.batches
     expected = probe.expected(batch)
     worst = np.argsort(scaled(probe.direct(batch), expected))[-WORST:]
     pairs = batch.where(worst)
+    # Find their error without each lobe.
     errors = {}
     for lobe, inputs in LOBES.items():
         if names := tuple(name for name in inputs if name in batch.inputs):

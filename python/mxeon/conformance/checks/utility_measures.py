@@ -54,11 +54,13 @@ def finite(probe: Probe, _: Metric) -> Measurement:
 
 def explained_finite(probe: Probe) -> Diagnosis:
     """The explanation of outputs that are not finite: a bound that an input of each exceeds."""
+    # Find the outputs that are not finite.
     batch = probe.edges
     bad = np.asarray(~np.isfinite(probe.direct(batch)).all(axis=1))
     if not bad.any():
         return Diagnosis()
     share = f"{int(bad.sum())} of {len(bad)} outputs are not finite"
+    # Look for an input that is out of its range in all of them.
     for name, values in batch.inputs.items():
         rows = np.reshape(values, (len(bad), -1))
         low, high = rows.min(axis=1), rows.max(axis=1)

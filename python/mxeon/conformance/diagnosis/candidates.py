@@ -162,14 +162,17 @@ def _explained(
     tolerance: Tolerance,
 ) -> Diagnosis:
     """The explanation of cases, by candidates and by faults on the way to the first, the own one."""
+    # What is not finite has no distance to anything.
     unbounded = not_finite(cases)
     if unbounded:
         return Diagnosis(unbounded)
+    # Rank the candidates by their distance.
     few = probe.diagnosed
     short = [Case(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     own = candidates[0]
     models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])
+    # Look for a fault of the first where no other explains the values.
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         faults = (*faults, scaled_by(_factor(short)))
         distances = {fault.text: _distance(short, own, fault, tolerance) for fault in faults}
@@ -249,13 +252,16 @@ def _model(
     errors = [tolerance.metric(case.measured, case.expected) for case in cases]
     wrong: list[Mask] = [error > tolerance.value for error in errors]
     (first, least), (_, rival) = ranking[:2]
+    # Another model explains all.
     if first != own and least <= max(tolerance.value, SAME * rival):
         return sentence(ranking) + _flag(probe, first)
+    # The own one is right but for a region, or but for its exactness.
     place = region([case.batch for case in cases], wrong)
     if place or not any(map(np.any, wrong)):
         return place or "every value is right by itself"
     if first == own and max(error.max() for error in errors) <= INEXACT * tolerance.value:
         return f"the model is right, {own} (rms {least:.2g}), but not as exact as it has to be"
+    # Another one is near, or none.
     if first != own and least <= NEAR * rival:
         return sentence(ranking)
     share = 100.0 * np.concatenate(wrong).mean()

@@ -102,11 +102,13 @@ def diagnose_frame(probe: Probe) -> Diagnosis:
         wrong = tolerance.metric(case.measured, case.expected) > tolerance.value
         if not wrong.any():
             continue
+        # Whether the surface's normal takes the place of the node's.
         expected = probe.expected if branch == "direct" else probe.expected_albedo
         dropped = expected(normal_ignored(case.batch))
         if tolerance.metric(case.measured, dropped).max() <= tolerance.value:
             text = "the node's normal is ignored: the surface's takes its place"
         else:
+            # Or else where it is wrong, and which axis has no effect.
             text = not_finite([case]) or region([case.batch], [wrong])
             text = text or without_effect(probe, "tangent")
             text = text or without_effect(probe, "curve_direction") or UNKNOWN

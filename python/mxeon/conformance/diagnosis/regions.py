@@ -49,12 +49,14 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
     mu_o, mu_i = wo[:, 2], wi[:, 2]
     dot = (wo * wi).sum(axis=1)
     s = dot - mu_o * mu_i
+    # Where formulas divide or cancel.
     yield "with dot(N, V) above 1 by a rounding", mu_o > 1.0
     yield "with dot(N, L) above 1 by a rounding", mu_i > 1.0
     yield "with both directions on the horizon", (mu_o == 0.0) & (mu_i == 0.0)
     yield "in exact retro-reflection (L = V)", _equal(wo, wi)
     yield "in the mirror direction", _equal(wo * [-1.0, -1.0, 1.0], wi)
     yield "with the half vector along the normal", _upright(wo, wi)
+    # By one cosine, then by both.
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield f"with the {name} along the normal", mu >= 1.0
         yield f"with the {name}'s cosine above 0.99", mu > 0.99
@@ -66,6 +68,7 @@ def _directions(batch: Batch) -> Iterator[tuple[str, Mask]]:
             f"with both cosines in [0, {limit:g}]",
             (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit),
         )
+    # By the side of the light, and by the angle between the two.
     yield "with light from below the horizon", mu_i < 0.0
     yield "with dot(V, L) above 0.999", dot > 0.999
     yield "with dot(V, L) above 0.99", dot > 0.99
@@ -82,6 +85,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     )
     colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
     color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
+    # By numbers that every node has.
     yield "with a negative weight", weight < 0.0
     yield "with weight 0", weight == 0.0
     yield "with weight 0 or below", weight <= 0.0
@@ -96,11 +100,13 @@ def _inputs(batch: Batch) -> Iterator[tuple[str, Mask]]:
     yield "with the largest roughness", roughness >= 0.999999 * roughness.max()
     yield "with a roughness above 1", roughness > 1.0
     yield "with a roughness above 0", roughness > 0.0
+    # By inputs of some nodes.
     for name, words in INDICES.items():
         index = _rows(batch.inputs.get(name, 1.0), count)
         yield f"with {words} of 0", _any(index == 0.0)
     if "cuticle_angle" in batch.inputs:
         yield "with a tilted cuticle", _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
+    # By colors and normals.
     yield "with a white color", (color == 1.0).all(axis=1)
     yield "with a gray color", (color == color[:, :1]).all(axis=1)
     yield "with a color channel at 0", _any(color == 0.0)

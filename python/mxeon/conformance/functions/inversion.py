@@ -170,6 +170,7 @@ def _worst(probe: InversionProbe, values: Array, errors: Array) -> Measurement:
 
 def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
     """The other inversion that the values are, if any; the color itself is one."""
+    # The functions that it can be.
     color, roughness = probe.inputs
     known = {"the color itself": color} | {
         name: function(color, roughness)
@@ -178,6 +179,7 @@ def _nearest(probe: InversionProbe, values: Array) -> Diagnosis:
     }
     if not np.isfinite(values).all():
         return Diagnosis("values that are not finite")
+    # Rank them by their distance.
     distances = {
         name: float(np.sqrt(np.mean((values - each) ** 2))) for name, each in known.items()
     }

@@ -81,10 +81,12 @@ class FunctionProbe:
 
     def _values(self, scale: float) -> Mapping[str, Array]:
         """Values of the functions, in one call; each of them has POINTS rows."""
+        # A function that calls the one of a number.
         language = self.host.language
         names = [name for name in functions.names(language) if name not in self.missing_functions]
         text = functions.dispatched(self.text, names, language)
         slots = functions.parameters(text, functions.EACH)
+        # A block of rows for each function.
         count = numpy_functions.POINTS
         rows = {
             name: np.zeros((count * len(names), 1 if kind == "float" else 3))
@@ -99,6 +101,7 @@ class FunctionProbe:
                 functions.slot_names(kinds), [*others, scale * last], strict=True
             ):
                 rows[slot][block] = values.reshape(count, -1)
+        # Evaluate all at once.
         columns = [rows[name] if kind != "float" else rows[name][:, 0] for kind, name in slots]
         values = self.host.execute(text, functions.EACH, *columns).astype(np.float64)
         return dict(zip(names, np.split(values, len(names)), strict=True))
@@ -230,10 +233,12 @@ def _measure(
 
 def _diagnosis(check: FunctionCheck, probe: FunctionProbe) -> str:
     """The functions that are wrong by themselves, and those of the row that use them."""
+    # Tell functions that are wrong by themselves from those that use a wrong one.
     errors = {name: row_of(name).error(name, values) for name, values in probe.values.items()}
     wrong = {name: error for name, error in errors.items() if error > _allowed(name, probe)}
     uses = functions.uses(probe.text)
     causes = [name for name in wrong if not any(other in wrong for other in uses[name])]
+    # Keep those that this check judges, and their causes.
     affected = [name for name in wrong if row_of(name) is check]
     own = [
         name for name in causes if name in affected or any(name in uses[each] for each in affected)

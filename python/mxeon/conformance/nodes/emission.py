@@ -147,6 +147,7 @@ class EmissionSubject:
 
     def emission_text(self, inputs: Values | None = None) -> str:
         """XML of the node and of those that it takes, with a value of each input."""
+        # The inputs of each node, the normal by a node of its own.
         kinds = {port.name: port.kind for port in self.ports}
         values = {port.name: _default(port) for port in self.drawn} | dict(inputs or {})
         ports = {name: "" for name in ("emission", *self.sources)}
@@ -160,6 +161,7 @@ class EmissionSubject:
                 ports["emission"] += '    <input name="normal" type="vector3" nodename="axis" />\n'
             else:
                 ports[node or "emission"] += input_text(name, kinds[path], value)
+        # The emissions that are combined, then the node.
         nodes = (node_text("uniform_edf", "EDF", name, ports[name]) for name in self.sources)
         return (
             axis

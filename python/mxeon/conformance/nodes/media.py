@@ -95,6 +95,7 @@ class MediumSubject:
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that lets light into the medium."""
+        # The inputs of each node.
         sources = SOURCES.get(self.node, {})
         ports = {name: "" for name in ("medium", *sources.values())}
         for port in self.ports:
@@ -102,6 +103,7 @@ class MediumSubject:
             value = np.full(COMPONENTS[port.kind], 0.5)
             ports[node or "medium"] += input_text(name, port.kind, value)
         ports["medium"] += "".join(PORT.format(*each) for each in sources.items())
+        # The media that are combined, the node, and a surface over it.
         media = [
             node_text("anisotropic_vdf", "VDF", name, ports[name]) for name in sources.values()
         ]

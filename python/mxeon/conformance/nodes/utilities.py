@@ -103,12 +103,14 @@ class UtilitySubject:
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that emits this output, with these inputs."""
+        # The node.
         values = {**self.row.inputs, **(inputs or {})}
         ports = "".join(
             input_text(name, self._kind(name), values[name]) for name in self.row.inputs
         )
         kind, single = self.row.outputs[self.output], len(self.row.outputs) == 1
         text = node_text(self.node, kind if single else "multioutput", NAME, ports)
+        # Its output as a color, which a surface emits.
         source, port = NAME, "" if single else self.output
         if kind != "color3":
             text += node_text("convert", "color3", COLOR, _connected("in", kind, NAME, port))

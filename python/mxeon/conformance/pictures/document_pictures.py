@@ -95,6 +95,7 @@ def judge_document(
     DocumentError
         If no shader can be made from the document.
     """
+    # Compile the document, and keep what the generator says.
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
@@ -105,6 +106,7 @@ def judge_document(
         for message in messages
         if isinstance(message, ApproximationWarning)
     }
+    # Judge each of its materials.
     results: list[Result] = []
     pictures: list[Picture] = []
     for shader in shaders:
@@ -112,6 +114,7 @@ def judge_document(
         result, images = _judge_material(file, shader, host, judge, library, front_lit)
         results.append(result)
         pictures += images
+    # Name the element of each approximation and limit, and the file of the rest.
     notes = [(text, f"{file.name}: {element}") for element, text in approximations.items()]
     notes += [
         (text, f"{file.name}: {shader.element}")
@@ -136,10 +139,12 @@ def _judge_material(
         "host": host.name,
         "library": library,
     }
+    # The host's pictures.
     try:
         images = [host.picture(shader, scene) for scene in scenes]
     except (NotRun, ShaderError) as error:
         return not_measured(place, error), ()
+    # Compare them with the reference's, or ask for numbers where it has no model.
     references: list[Pixels | None] = [None] * len(scenes)
     try:
         _assert_judged(shader, host)
@@ -276,6 +281,7 @@ def _judge_match(
 
 def _worst_pixel(case: Case, front_lit: bool, scaled: bool) -> tuple[float, dict[str, list[float]]]:
     """Largest error times cos(theta_o), and its pixel; relative above 1 if scaled."""
+    # Errors of the pixels that show the sphere.
     scene, image, reference = case
     mask = sphere(scene.size).mask
     wo, wi, _ = picture_pairs(scene)
@@ -284,6 +290,7 @@ def _worst_pixel(case: Case, front_lit: bool, scaled: bool) -> tuple[float, dict
         error /= np.maximum(1.0, np.abs(reference[mask]).max(axis=-1))
     if front_lit:
         error = np.where((wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0, error, 0.0)
+    # The largest, and its place.
     worst = int(error.argmax())
     row, column = np.argwhere(mask)[worst]
     return float(error[worst]), {

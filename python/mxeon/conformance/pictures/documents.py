@@ -27,6 +27,7 @@ def generate_document(
     NotRun
         If the host reads no documents, or this MaterialX has no generator for its target.
     """
+    # Refuse a host without a generator.
     target = host_row(host).target
     if not target:
         raise NotRun(
@@ -34,6 +35,7 @@ def generate_document(
         )
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
+    # Generate, and keep what the generator says.
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", MissingFileWarning)
@@ -44,6 +46,7 @@ def generate_document(
         for message in messages
         if isinstance(message, (CodeWarning, DocumentWarning))
     ]
+    # Cut the document in half as a control.
     error = float(not shaders)
     caught = _refused(file.read_bytes(), target, library)
     result = Result(

@@ -129,6 +129,7 @@ class BsdfProbe(PairProbe):
 
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
         """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
+        # Gauss nodes, moved to the horizon and to the normal, and even azimuths.
         x, w = np.polynomial.legendre.leggauss(NODES)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)  # dense at the horizon and around the normal
@@ -136,6 +137,7 @@ class BsdfProbe(PairProbe):
         azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
         phi = azimuth + 2.0 * np.pi * (np.arange(NODES) + 0.5) / NODES
         radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
+        # Directions and their weights.
         columns = (
             radius * np.cos(phi),
             radius * np.sin(phi),
@@ -216,11 +218,13 @@ class MicrofacetProbe(BsdfProbe):
 
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
         """Directions and weights of a quadrature over the normals that each view sees."""
+        # Gauss nodes of the height of visible normals, and even azimuths.
         x, w = np.polynomial.legendre.leggauss(NODES)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(NODES) + 0.5) / NODES)
         count = height.size
         views, alpha = (np.repeat(each, count, axis=0) for each in (wo, inputs["roughness"]))
         u = np.tile(height.ravel(), len(wo)), np.tile(around.ravel(), len(wo))
+        # Lights that they reflect, weighted by the inverse density.
         wi = reflected(views, alpha, *u)
         lit = wi[:, 2] > 0.0
         wi[~lit] = (0.0, 0.0, 1.0)

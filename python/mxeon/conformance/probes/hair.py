@@ -79,11 +79,13 @@ class HairProbe(BsdfProbe):
     def region(self, key: str) -> Batch:
         """FEW pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
         rng, row = np.random.default_rng(SEED), REGIONS[key]
+        # Views of the region.
         sine = 0.9 * (2.0 * rng.random(FEW) - 1.0)
         low, high = row.azimuths
         azimuth = (low + (high - low) * rng.random(FEW)) * rng.choice([-1.0, 1.0], FEW)
         cosine = np.sqrt(1.0 - sine * sine)
         wo = rounded([sine, cosine * np.sin(azimuth), cosine * np.cos(azimuth)])
+        # Its roughnesses, tilts and tints.
         inputs = self.subject.random_inputs(rng, FEW)
         inputs["cuticle_angle"] = 0.5 + 2.0 * row.tilt * (inputs["cuticle_angle"] - 0.5)
         if row.ior:
@@ -119,13 +121,16 @@ def _sides(rng: np.random.Generator, count: int) -> Array:
 
 def aimed(rng: np.random.Generator, wo: Array, inputs: dict[str, Array]) -> Array:
     """Directions of light in one of the lobes R, TT and TRT of each view, float32 numbers, (N, 3)."""
+    # Choose a lobe for each view.
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)
     v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T
+    # Draw the longitudinal angle around the one that the cuticle sends it to.
     view, _ = section(wo.T, inputs["ior"])
     tilt = (2.0 - 3.0 * lobe) * np.pi * (inputs["cuticle_angle"] - 0.5)
     theta = -np.arcsin(np.clip(view.sin_o, -1.0, 1.0)) - tilt
     theta = theta + np.sqrt(np.minimum(v, 1.0)) * rng.standard_normal(count)
+    # Draw the azimuth from its logistic distribution.
     u = 1e-3 + 0.998 * rng.random(count)
     exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi
     phi = np.arctan2(wo[:, 2], wo[:, 1]) + exit_angle + SCALE * s * np.log(u / (1.0 - u))

@@ -75,11 +75,13 @@ class SurfaceShaderProbe(PairProbe):
     @cached_property
     def changed(self) -> Batch:
         """A few views for each input: of the material with every lobe, then with a change of it."""
+        # Materials without and with each change.
         table = self.subject.table
         rows = []
         for name in self.subject.inputs:
             before = {**table.seen, **table.needs.get(name, {})}
             rows += [before, {**before, name: table.changed[name]}]
+        # A few views of each.
         [batch] = self.batches
         few = batch.first(CHANGED)
         defaults = self._defaults

@@ -42,9 +42,11 @@ class Host(base.Host):
             If the scene asks for paths.
         """
         self.refuse_paths(scene)
+        # The points that the picture shows.
         points = sphere(scene.size)
         normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
         wo = np.broadcast_to(VIEW, normal.shape)
+        # The light at them, and the graph's value.
         if scene.light is not None:
             wi, strength = np.broadcast_to(scene.light, normal.shape), np.pi
         elif isinstance(scene.environment, float):

@@ -125,15 +125,18 @@ class Graph:
     def _node_step(self, path: Path) -> Step:
         node = self._elements[path]
         category, kind = node.getCategory(), node.getType()
+        # Lobes, and what combines them.
         if category in LOBES:
             return self._lobe(path, node)
         if kind == "BSDF" and category in COMBINATIONS:
             return self._combination(path, node)
+        # Numbers, colors and surfaces.
         if category == "image":
             return partial(looked_up, node, self._points.texcoord, self._linear), ()
         if category in self._operations:
             ports, operation = self._operations[category]
             return partial(_computed, kind, operation), self._sources(path, ports)
+        # A nodegraph that defines the node, or nothing of what has no weight.
         if kind == "surfaceshader" and self._shader is None:
             self._shader = path
         if inner := self._inside(path, node):
@@ -178,11 +181,13 @@ class Graph:
         """Step of a node that combines lobes; a mix leaves out what has no share."""
         category = node.getCategory()
         ports, operation = COMBINATIONS[category]
+        # A mix leaves out what has no share.
         if category == "mix":
             share = self._evaluate(self._source(path, "mix"))
             for port, none in (("bg", 0.0), ("fg", 1.0)):
                 if np.all(share == none):
                     return _same, self._sources(path, (port,))
+        # A layer asks its top for a throughput; a volume below must be empty.
         if category == "layer":
             self._tops.append(self._source(path, "top"))
             if definition(node).getActiveInput("base").getType() != "BSDF":
@@ -233,6 +238,7 @@ class Graph:
 
     def _connected(self, around: Path, port: mx.PortElement) -> Path:
         """Path of what an input or output within another path is connected to."""
+        # Find the node, inside this path or in a graph of the document.
         node, source = port.getConnectedNode(), port
         graph, scope = node.getParent(), port.getParent()
         if port.getNodeGraphString():
@@ -242,6 +248,7 @@ class Graph:
         if graph.getNamePath() != scope.getNamePath():
             around = self._inner((), graph)
         path, output = self._inner(around, node), source.getOutputString()
+        # Of several outputs pick the one that is connected.
         if node.getType() != "multioutput":
             return path
         if node.getCategory() in UTILITIES:
@@ -254,11 +261,13 @@ class Graph:
 
     def _value(self, path: Path, name: str, port: mx.Input) -> Value:
         """Value of an input without a connection, in the document's color space."""
+        # A vector of the surface, if the definition says so.
         element = self._elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else None
         if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
             return self._points.geometry(declared.getDefaultGeomPropString())
+        # The value that is written, or else the default.
         value = port.getValue()
         if value is None and declared:  # a connection that MaterialX ignores
             value = declared.getValue()

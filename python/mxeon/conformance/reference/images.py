@@ -33,11 +33,13 @@ def looked_up(
     NotRun
         If the image is read in another way.
     """
+    # Refuse what is read in another way.
     if texcoord is None or node.getInput("texcoord") is not None:
         raise NotRun("reference: images are read at the sphere's own coordinates only")
     file = node.getInput("file")
     if not file or not file.getValueString():
         raise NotRun("reference: an image must name its file itself")
+    # Read the texels, and as many channels as the type has.
     texels = read_texture(file.getValueString()).astype(np.float64)
     channels = CHANNELS.get(node.getType(), 0)
     if not 0 < channels <= texels.shape[-1]:
@@ -50,6 +52,7 @@ def looked_up(
 
 
 def _bilinear(texels: Values, texcoord: Values) -> Values:
+    # The texel's corner, and the place between it and the next one.
     height, width = texels.shape[:2]
     texel = texcoord * [width, height] - 0.5
     corner = np.floor(texel).astype(int)
@@ -60,6 +63,7 @@ def _bilinear(texels: Values, texcoord: Values) -> Values:
         values: Values = texels[(y + dy) % height, (x + dx) % width]
         return values
 
+    # Two interpolations along u, one along v.
     lower = at(0, 0) * (1.0 - u) + at(1, 0) * u
     upper = at(0, 1) * (1.0 - u) + at(1, 1) * u
     return np.asarray(lower * (1.0 - v) + upper * v)

@@ -48,10 +48,12 @@ def lit(wo: Values, wi: Values, irradiance: float) -> Lobe:
     above = wo[:, 2] > 0.0
 
     def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+        # The value, on the side to which the node scatters.
         value = np.zeros(wo.shape)
         shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
         f = node.value(wo[shown], wi[shown], _at(inputs, shown))
         value[shown] = irradiance * f * np.abs(wi[shown, 2:])
+        # The light that it leaves to what lies below.
         left = np.zeros(wo.shape)
         if layered and node.layerable:
             left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above))
@@ -95,6 +97,7 @@ def _albedo(
     albedo: Albedo, node: PbrNode, wo: Values, inputs: Inputs, points: NDArray[np.bool_]
 ) -> Values:
     """Albedo at `points`, of which `wo` are the directions."""
+    # What is computed fast, or for other materials at each point, needs no series.
     closed = not node.fitted and node.integral is None
     if closed or len(wo) < FEW or any(len(value) > 1 for value in inputs.values()):
         return albedo(wo, _at(inputs, points))
@@ -147,12 +150,14 @@ def _series(
         for name, values in material
     }
     for degree, turns in degrees:
+        # The albedo at Chebyshev's points.
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
         mu, phi = np.meshgrid(
             np.square(low + (1.0 - low) * 0.5 * (1.0 + x)), 0.5 * np.arccos(y), indexing="ij"
         )
         wo = _directions(mu.ravel(), phi.ravel())
         values = albedo(wo, _at(inputs, np.ones(len(wo), bool))).reshape(*mu.shape, 3)
+        # Its coefficients, until the last ones are small.
         series = np.einsum("xi,yj,xyc->ijc", _transform(x), _transform(y), values)
         tails = [series[-degree // 8 :], series[:, -2:] if turns else np.zeros(1)]
         if max(float(np.abs(tail).max()) for tail in tails) < TAIL:

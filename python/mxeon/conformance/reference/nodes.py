@@ -58,6 +58,7 @@ def node_lobe(
     NotRun
         If an input has a value that the models do not cover.
     """
+    # A lobe without a weight scatters nothing.
     name = f"reference: node {node.getNamePath()!r}"
     weight = np.reshape(inputs["weight"], (-1, 1))
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
@@ -65,6 +66,7 @@ def node_lobe(
     if not weight.any():
         layerable = any(row.layerable for row in LOBES[node.getCategory()])
         return Bsdf(np.zeros(3), np.full(3, 1.0 if layerable else 0.0))
+    # The model, its arguments, and its value.
     row = _row(node, inputs)
     _assert_known(node, row, inputs)
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()

@@ -28,12 +28,14 @@ def evaluated(
     waiting = [root]
     while waiting:
         key = waiting[-1]
+        # Values of the parts come first.
         if key in values:
             waiting.pop()
         elif missing := [part for part in parts[key] if part not in values]:
             waiting.append(missing[0])
         else:
             values[key] = function(key)(*(values[part] for part in parts[key]))
+            # Forget a part after its last use.
             for part in parts[key]:
                 uses[part] -= 1
                 if not uses[part]:

@@ -66,11 +66,13 @@ def digests(
 
 def _named(document: Path, policy: Policy) -> list[str]:
     """The files that a document includes and names, and those that the included ones do."""
+    # Begin with the document.
     home, seen = Path(os.path.realpath(document)).parent, set[str]()
     waiting: list[str | Path] = [document]
     while waiting:
         text_file = waiting.pop()
         for key, name in _names(_text(text_file, policy), policy.elements):
+            # Every file of each name, once; included documents are read in their turn.
             folders = {home, Path(os.path.realpath(text_file)).parent, Path.cwd()}
             for path in _paths(name, folders | set(map(Path, policy.path))):
                 allowed = policy.outside or inside(path, home, policy.path)
@@ -92,6 +94,7 @@ def _text(path: Path | str, policy: Policy) -> str:
 
 def _names(text: str, elements: int) -> list[tuple[str, str]]:
     """Attributes of a document that may name files, with their prefix: as far as it may be read."""
+    # Prefixes of the elements that are open.
     names: list[tuple[str, str]] = []
     prefixes = [""]
 
@@ -106,6 +109,7 @@ def _names(text: str, elements: int) -> list[tuple[str, str]]:
     def refuse(*_: object) -> None:
         raise InputError("no document that is refused has findings of its files")
 
+    # Read what is well formed.
     parser = expat.ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = start, lambda _: prefixes.pop()
     parser.StartDoctypeDeclHandler = refuse

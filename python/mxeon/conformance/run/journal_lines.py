@@ -52,6 +52,7 @@ def read_lines(folder: Path) -> Contents:
     ValueError
         If there is none, or none that this version reads.
     """
+    # The plan, on the first line.
     path = folder / NAME
     converter = make_converter(path.parent)
     try:
@@ -60,6 +61,7 @@ def read_lines(folder: Path) -> Contents:
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {NAME} of a run; there is none") from None
     plan, seed = _header(header, path, converter)
+    # Findings, of which a torn or damaged line has none.
     valid = {PLAN: header}
     findings: dict[int, Findings] = {}
     damaged = []
@@ -71,6 +73,7 @@ def read_lines(folder: Path) -> Contents:
         except ERRORS:
             damaged.append(f"line {number}")
             continue
+        # A picture's file has to be as it was written.
         if all(image.whole for image in _images(part)):
             valid[task], findings[task] = line, part
         else:

@@ -150,6 +150,7 @@ class Judge:
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Host | RendererHost) -> Findings:
+        # What is no check of the table.
         if isinstance(host, Host):
             if task.check == PICTURE:
                 return self._document(task, host)
@@ -158,6 +159,7 @@ class Judge:
                 return Findings(judge_inversion(inversion))
             if task.check == FUNCTIONS:
                 return Findings(judge_functions(FunctionProbe(host, task.library)))
+        # A node: its curve, or a check with its pictures.
         probe = self._probe(host, task.subject, task.library)
         if task.check == CURVE:
             return Findings(curves=judge_curve(probe))
@@ -210,14 +212,17 @@ def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
     probe = PROBES[host_row(host.name).probe]
     surfaces = {surface.title: surface for surface in SURFACES}
     nodes = {subject.title: subject for subject in PBR_SUBJECTS}
+    # A node of pbrlib.
     if title in nodes:
         assert isinstance(host, Host)  # a renderer of its own materials has none
         kind = probe_type_of(nodes[title], probe)
         assert kind is not None  # or there were no task
         return kind(host, nodes[title], library)
+    # The diffuse lobe of a surface shader.
     if title in surfaces:
         assert isinstance(host, Host)  # a renderer of its own materials has none
         return SURFACE_PROBES[probe](host, surfaces[title], library)
+    # A diffuse node, of the library or of the renderer's own.
     rows = renderer_nodes(host.name) or SUBJECTS
     made = probe(cast(Host, host), next(row for row in rows if row.title == title), library)
     return made.nearest_form() if isinstance(made, ExactProbe) else made

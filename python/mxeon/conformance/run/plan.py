@@ -161,11 +161,13 @@ def make_plan(
     ImportError
         If this MaterialX is too old.
     """
+    # Refuse what is unknown, and drop repeats.
     check_version()
     _assert_known("host", hosts, host_names())
     _assert_known("node", nodes, (*node_names(), ALL))
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
+    # Tasks of every library on every host, then of renderers' own nodes.
     tasks: list[Task] = []
     documents: list[str] = []
     for library in libraries:
@@ -179,6 +181,7 @@ def make_plan(
             tasks += _on_host(host, library, paths, PBR_SUBJECTS if nodes else COMMON_SUBJECTS)
     for host in hosts:
         tasks += _native(host)
+    # Keep those of the nodes that are asked for.
     if nodes and ALL not in nodes:
         chosen = {*_titles(nodes), *map(str, files)}
         tasks = [task for task in tasks if task.subject in chosen]
@@ -228,16 +231,19 @@ def _on_host(
     host: str, library: str, files: Iterable[Path], nodes: Iterable[Subject]
 ) -> Iterator[Task]:
     """Tasks of one host with one library, for files and nodes of pbrlib."""
+    # Hosts that read text alone, or show nodes of their own.
     probe, row = probe_type(host), host_row(host)
     if probe is None:
         yield Task(HOST, EVERY_NODE, host, library)
     if probe is None or issubclass(probe, NativeProbe):
         return
+    # Functions and inversions.
     language = "osl" if row.target == "osl" else "glsl"
     if probe.kind in functions.KINDS and has_functions(library, language):
         yield Task(FUNCTIONS, TWINS, host, library)
     if probe is PairProbe:
         yield from (Task(INVERSION, node, host, library) for node in inversions(library))
+    # Diffuse nodes, the other nodes, and lobes of surface shaders.
     for subject in subjects(library):
         yield from _checks_of(subject, probe.kind, host, library)
         if probe is PairProbe:

@@ -135,12 +135,14 @@ def _kind(specification: Specification, definition: mx.NodeDef) -> list[str]:
 
 def differences(specification: Specification, inputs: Ports, outputs: list[str]) -> list[str]:
     """Differences between a definition and its specification, in words."""
+    # Which inputs there are, and in which order.
     author, expected = specification.author, specification.inputs
     faults = [f"there is no input {name}" for name in expected if name not in inputs]
     faults += [f"{author} has no input {name}" for name in inputs if name not in expected]
     order = [name for name in inputs if name in expected]
     if order != [name for name in expected if name in inputs]:
         faults.append(f"the inputs are in the order {', '.join(order)}")
+    # What each is, and the output.
     for name in order:
         faults += _differences(specification, name, inputs[name])
     if outputs != [specification.output]:

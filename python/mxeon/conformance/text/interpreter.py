@@ -119,11 +119,13 @@ class Interpreter:
         return self._run(function, arguments)
 
     def _run(self, function: Function, arguments: list[Value]) -> Value:
+        # Give the parameters their arguments.
         names = [name for _, name in function.parameters]
         outputs = [name for kind, name in function.parameters if kind.startswith("output ")]
         if len(arguments) != len(names) - len(outputs):
             raise Unreadable(f"{function.name} gets {len(arguments)} arguments")
         variables = dict(zip(names, arguments, strict=False))
+        # Take what the body returns, or its first output.
         result = self._execute(statements(function.body), variables)
         if result is None and outputs:
             result = variables.get(outputs[0])
@@ -134,10 +136,12 @@ class Interpreter:
     def _execute(self, body: tuple[Statement, ...], variables: dict[str, Value]) -> Value | None:
         """Value that the body returns; assignments change `variables`."""
         for statement in body:
+            # A value ends the body.
             if isinstance(statement, Return):
                 return self._evaluate(statement.value, variables)
             if isinstance(statement, Assignment):
                 variables[statement.name] = self._evaluate(statement.value, variables)
+            # A branch may end it.
             if isinstance(statement, If):
                 taken = statement.yes if self._holds(statement, variables) else statement.no
                 result = self._execute(taken, variables)
@@ -183,6 +187,7 @@ class Interpreter:
         raise Unreadable(f"{name} is not defined")
 
     def _called(self, call: Call, variables: Mapping[str, Value]) -> Value:
+        # Closures, functions of the text, and built-in ones.
         arguments = [(name, self._evaluate(each, variables)) for name, each in call.arguments]
         positional = [value for _, value in arguments]
         if call.name in self._closures:
@@ -196,6 +201,7 @@ class Interpreter:
         word = call.name.removeprefix("math::")
         if word in MATHEMATICS:
             return MATHEMATICS[word](*map(_number, positional))
+        # Whatever else is unknown, or not read.
         namespace = call.name.rpartition("::")[0]
         defined = re.search(rf"^[\w ]* {re.escape(call.name)}\s*\(", self._text, re.MULTILINE)
         if not defined and namespace in ("", "df", "math", "base", "state"):

@@ -55,11 +55,13 @@ class Renderer:
 
     def value(self, closure: Closure, wo: Array, wi: Array) -> Array:
         """Value of a closure times its weight, (N, 3)."""
+        # The models that the closure is made of.
         arguments = closure.arguments
         color, roughness = _channels(arguments["color"]), arguments["roughness"][:, 0]
         fon, eon = (
             each(wo, wi, color, roughness) for each in (formulas.fon_brdf, formulas.eon_brdf)
         )
+        # Their sum, as the renderer takes it.
         if self.target == "mdl":
             white = np.ones((3, 1))
             loss = formulas.eon_brdf(wo, wi, white, roughness)
@@ -75,12 +77,14 @@ class Renderer:
 
     def _oren_nayar(self, arguments: Mapping[str, Value]) -> Closures:
         """OSL's closure: (normal N, color albedo, float roughness, "energy_compensation", int)."""
+        # Refuse arguments that the closure does not have.
         known = {"0": "normal", "1": "color", "2": "roughness"}
         keyword = f'"{FLAG}"'
         for name in arguments:
             if name not in (*known, keyword):
                 kind = f"keyword {name}" if '"' in name else f"argument {name}"
                 self.faults.append(f"{kind} is not known to OSL")
+        # Read those that it has, of which Cycles lacks the flag.
         values = {FLAG: arguments.get(keyword, BLACK)}
         if self.profile == "cycles" and keyword in arguments:
             self.faults.append(f"keyword {keyword} is not known to Cycles")

@@ -130,11 +130,13 @@ class _Parser:
 
     def statement(self) -> list[Statement]:
         """One statement, a block as several; an empty one or a mere declaration as none."""
+        # A block.
         if self._take("{"):
             block: list[Statement] = []
             while not self._take("}"):
                 block += self.statement()
             return block
+        # A statement by its first word, or else an assignment.
         if self._take("return"):
             value = self.expression()
             self._expect(";")
@@ -157,12 +159,14 @@ class _Parser:
         return Choice(condition, yes, self.expression())
 
     def _assignment(self) -> list[Statement]:
+        # The words before the sign, of which the last is the name.
         words = []
         while self.more and self._peek() not in ("=", ";"):
             words.append(self._peek())
             self._next += 1
         if not words or not words[-1].isidentifier() or "(" in words or words[0] in LOOPS:
             raise NotRun(f"statement {' '.join(words)} is not read")
+        # A declaration without a value changes nothing.
         if self._take(";"):
             return []
         self._expect("=")
@@ -192,10 +196,12 @@ class _Parser:
         return value
 
     def _primary(self) -> Expression:
+        # An expression in parentheses.
         if self._take("("):
             value = self.expression()
             self._expect(")")
             return value
+        # A number, a text, a call or a name.
         word = self._peek()
         self._next += 1
         if word[0].isdigit() or (word[0] == "." and len(word) > 1):
