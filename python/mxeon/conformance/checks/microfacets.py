@@ -9,8 +9,6 @@ from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
-
-
 CHECKS = (
     Check(
         "lossless",

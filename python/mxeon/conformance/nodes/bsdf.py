@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes.ports import Port, changes, color, draw, draw_edges, materials
+from mxeon.conformance.nodes.subject import RowSubject
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
@@ -110,7 +111,7 @@ PORTS: dict[str, tuple[Port, ...]] = {
 
 
 @dataclass(frozen=True)
-class BsdfSubject:
+class BsdfSubject(RowSubject):
     """A mode of a node of `mxeon.models.nodes`.
 
     Attributes
@@ -120,24 +121,12 @@ class BsdfSubject:
 
     row: PbrNode
 
-    libraries: ClassVar[tuple[str, ...]] = ()
     closure: ClassVar[bool] = True
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         words = [f"{name} {value}" for name, value in self.row.fixed.items()]
         return ", ".join([self.row.category, *words])
-
-    @property
-    def node(self) -> str:
-        """Category of the node."""
-        return self.row.category
-
-    @property
-    def model(self) -> str:
-        """Name of its row."""
-        return self.row.name
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -152,7 +141,6 @@ class BsdfSubject:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of its inputs."""
         return tuple(port.name for port in self.ports)
 
     @property
@@ -171,12 +159,10 @@ class BsdfSubject:
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """For each input: inputs without and with a change of it alone, which must be seen."""
         return changes(self.ports)
 
     @property
     def black(self) -> Values:
-        """Inputs with which it scatters no light; none where it always scatters some."""
         return {name: (0.0, 0.0, 0.0) for name in BLACK if name in self.row.inputs}
 
     @property
@@ -185,20 +171,16 @@ class BsdfSubject:
         return any(port.name == "roughness" and port.kind == "vector2" for port in self.ports)
 
     def with_flag(self, inputs: Values) -> Values:
-        """The inputs."""
         return inputs
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that is this node alone, with these inputs."""
         types = {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
         return material_text(self.node, {**(inputs or {}), **self.row.fixed}, self.node, types)
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random values of the inputs of the row, float32 numbers."""
         return draw(rng, count, self.drawn)
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Values of which half lie on an edge."""
         return draw_edges(rng, count, self.drawn)
 
     def expected(self, batch: Batch) -> Array:
@@ -206,7 +188,6 @@ class BsdfSubject:
         return _expected(self.row, self.row.value, batch)
 
     def albedo(self, batch: Batch) -> Array:
-        """Directional albedo with weight, (N, 3)."""
         return _albedo(self.row.albedo, batch)
 
     def integral(self, batch: Batch) -> Array:

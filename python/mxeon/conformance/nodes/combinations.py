@@ -67,7 +67,6 @@ class CombinedSubject(BsdfSubject):
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         return TITLES.get(self.model, self.node)
 
     @property
@@ -88,7 +87,6 @@ class CombinedSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        """Kind of its probe."""
         return NESTED if self.model in combinations.NESTED else COMBINED
 
     @property

@@ -48,15 +48,12 @@ class ModelSubject:
 
     @property
     def black(self) -> Values:
-        """Inputs with which it reflects nothing."""
         return {"color": (0.0, 0.0, 0.0)}
 
     def expected(self, batch: Batch) -> Array:
-        """pi f cos(theta_i) of the model, (N, 3)."""
         return batch.expected(self.model)
 
     def albedo(self, batch: Batch) -> Array:
-        """Directional albedo of the model, (N, 3)."""
         return batch.albedo(self.model)
 
     def sky(self, batch: Batch) -> Array:
@@ -120,26 +117,21 @@ class DiffuseSubject(ModelSubject):
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         flag = "" if self.flag is None else f", energy_compensation {str(self.flag).lower()}"
         return self.node + flag
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the node's inputs."""
         return tuple(name for name in self.names if self.flag is not None or name != FLAG)
 
     def with_flag(self, inputs: Values) -> Values:
-        """Inputs with the subject's flag, unless they set it."""
         return inputs if self.flag is None else {FLAG: self.flag, **inputs}
 
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that is this node alone, with these inputs."""
         return material_text(self.node, self.with_flag(inputs or {}), self.node)
 
     @property
     def changes(self) -> dict[str, Changes]:
-        """For each input: inputs without and with a change of it alone, which must be seen."""
         values = {**CHANGES, FLAG: not self.flag}
         return {name: ({}, {name: values[name]}) for name in self.inputs}
 

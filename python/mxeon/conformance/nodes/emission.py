@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.nodes.bsdf import broadcast_inputs
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw, materials
+from mxeon.conformance.nodes.subject import RowSubject
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.models.nodes.emissions import (
     AMOUNT,
@@ -64,7 +65,7 @@ DARK = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 
 @dataclass(frozen=True)
-class EmissionSubject:
+class EmissionSubject(RowSubject):
     """A row of `mxeon.models.nodes.emissions`.
 
     Attributes
@@ -80,30 +81,16 @@ class EmissionSubject:
     connections: str = ""
     sources: tuple[str, ...] = ()
 
-    libraries: ClassVar[tuple[str, ...]] = ()
-
     @property
     def closure(self) -> bool:
-        """Whether eonlib leaves it to the closures of a renderer, in OSL."""
         return self.row.name != "conical"
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         if not self.combined:
             return self.node
         scaled = f", in2 {self.drawn[-1].kind}" if FACTOR in self.row.inputs else ""
         return f"{self.node}, EDF{scaled}"
-
-    @property
-    def node(self) -> str:
-        """Category of the node."""
-        return self.row.category
-
-    @property
-    def model(self) -> str:
-        """Name of its row."""
-        return self.row.name
 
     @property
     def combined(self) -> bool:
@@ -123,7 +110,6 @@ class EmissionSubject:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Paths of these inputs."""
         return tuple(port.name for port in self.ports)
 
     @property
@@ -133,12 +119,10 @@ class EmissionSubject:
 
     @property
     def kind(self) -> str:
-        """Kind of its probe."""
         return {"conical": CONE, "schlick_emission": POWER}.get(self.row.name, CLOSED)
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """For each input: inputs without and with a change of it alone, which must be seen."""
         return changes(self.ports)
 
     def document(self, inputs: Values | None = None) -> str:
@@ -170,14 +154,12 @@ class EmissionSubject:
         )
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random values of the inputs of the row, float32 numbers."""
         inputs = draw(rng, count, self.drawn)
         if self.row.name == "conical":
             inputs |= random_cones(rng, count)
         return inputs
 
     def expected(self, batch: Batch) -> Array:
-        """Radiance towards each view, (N, 3)."""
         return _radiance(self.row.value, batch)
 
     def exitance(self, batch: Batch) -> Array:

@@ -48,7 +48,6 @@ class HairSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        """Kind of its probe."""
         return HAIR
 
     @property
@@ -63,7 +62,6 @@ class HairSubject(BsdfSubject):
 
     @property
     def black(self) -> Values:
-        """Inputs with which it scatters no light."""
         return dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
 
     def expected(self, batch: Batch) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 from mxeon.conformance.nodes.bsdf import broadcast_inputs
 from mxeon.conformance.nodes.emission import MEDIUM
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw
+from mxeon.conformance.nodes.subject import RowSubject
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
 from mxeon.models.nodes.node import Inputs
@@ -35,7 +36,7 @@ PORTS = """    <input name="top" type="BSDF" nodename="top" />
 
 
 @dataclass(frozen=True)
-class MediumSubject:
+class MediumSubject(RowSubject):
     """A row of `mxeon.models.nodes.media`.
 
     Attributes
@@ -46,12 +47,10 @@ class MediumSubject:
     row: Medium
 
     kind: ClassVar[str] = MEDIUM
-    libraries: ClassVar[tuple[str, ...]] = ()
     closure: ClassVar[bool] = True
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         if not self.combined:
             return self.node
         scaled = f", in2 {self.ports[-1].kind}" if FACTOR in self.inputs else ""
@@ -61,16 +60,6 @@ class MediumSubject:
     def combined(self) -> bool:
         """Whether it combines media."""
         return self.row in COMBINED_MEDIA
-
-    @property
-    def node(self) -> str:
-        """Category of the node."""
-        return self.row.category
-
-    @property
-    def model(self) -> str:
-        """Name of its row."""
-        return self.row.name
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -85,12 +74,10 @@ class MediumSubject:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Paths of these inputs."""
         return self.row.inputs
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """For each input: inputs without and with a change of it alone."""
         return changes(self.ports)
 
     def document(self, inputs: Values | None = None) -> str:

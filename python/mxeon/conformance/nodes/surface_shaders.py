@@ -36,7 +36,6 @@ class SurfaceShader:
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         return f"{self.node}, every lobe"
 
     @property
@@ -50,7 +49,6 @@ class SurfaceShader:
         return tuple(self.table.changed)
 
     def with_flag(self, inputs: Values) -> Values:
-        """The inputs."""
         return inputs
 
     def document(self, inputs: Values | None = None) -> str:

@@ -18,12 +18,10 @@ class FilmSubject(BsdfSubject):
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         return f"{self.row.category}, thin film"
 
     @property
     def kind(self) -> str:
-        """Kind of its probe."""
         return FILM_PAIRS
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:

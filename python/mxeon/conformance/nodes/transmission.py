@@ -7,7 +7,7 @@ from mxeon.conformance.nodes.bsdf import SCHLICK, BsdfSubject
 from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
 
 # Kinds of probes.
-TRANSMITTED, SCHLICK_TRANSMITTED = TRANSMISSION_KINDS = (
+TRANSMITTED, SCHLICK_TRANSMITTED = (
     "transmission pairs",
     "Schlick transmission pairs",
 )
@@ -19,7 +19,6 @@ class TransmissionSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        """Kind of its probe."""
         return SCHLICK_TRANSMITTED if super().kind == SCHLICK else TRANSMITTED
 
     @property

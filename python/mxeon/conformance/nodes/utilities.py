@@ -63,19 +63,16 @@ class UtilitySubject:
 
     @property
     def title(self) -> str:
-        """Name in reports."""
         if len(self.row.outputs) == 1:
             return self.row.category
         return f"{self.row.category}, {self.output}"
 
     @property
     def node(self) -> str:
-        """Category of the node."""
         return self.row.category
 
     @property
     def model(self) -> str:
-        """Name of its row."""
         return self.row.category
 
     @property
@@ -93,7 +90,6 @@ class UtilitySubject:
 
     @property
     def changes(self) -> dict[str, Changes]:
-        """For each input: inputs without and with a change of it alone, which must be seen."""
         before = {port.name: _filled(port, port.default) for port in self.ports}
         return {
             port.name: (before, {**before, port.name: _filled(port, port.change)})
@@ -120,11 +116,9 @@ class UtilitySubject:
         return document_text(text + node_text("surface", "surfaceshader", "shading", surface))
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Random values inside the ranges, float32 numbers."""
         return draw(rng, count, self.ports)
 
     def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        """Values of which half lie on an edge."""
         return draw_edges(rng, count, self.ports)
 
     def outside_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:

@@ -67,7 +67,6 @@ class BsdfProbe(PairProbe):
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
-        """Directions of view for albedos, which do not depend on `wi`."""
         pairs, special, *_ = self.batches
         return tuple(
             batch.where(batch.wo[:, 2] >= self.least_cosine).first(ALBEDOS)
@@ -110,7 +109,6 @@ class BsdfProbe(PairProbe):
 
     @cached_property
     def integrals(self) -> Array:
-        """Integrals of the values of the integrated materials, by the equations, (N, 3)."""
         batch, weights = self.integrated
         return self.subject.integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
 

@@ -40,7 +40,6 @@ class NodeProbe(Probe):
     kind: ClassVar[str]
 
     def missing(self, text: str) -> bool:
-        """Whether the target has no implementation of a node of a document."""
         return implementation(self.host, text, self.library) is None
 
     @cached_property
@@ -101,7 +100,6 @@ class EmissionProbe(NodeProbe, ValueProbe):
         return Batch(wo, wo, {name: value[each] for name, value in inputs.items()}), weights
 
     def direct(self, batch: Batch) -> Array:
-        """Radiance towards each view, (N, 3)."""
         wo = batch.world(batch.wo)
         evaluate = self.host.evaluate
         values = evaluate(self.shader, wo, wo, batch.inputs, "emission", output="radiance")

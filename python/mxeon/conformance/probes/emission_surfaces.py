@@ -15,8 +15,6 @@ from mxeon.models.media.shading import surface_radiance
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
 DARK = Scene("dark", size=8)
-
-
 OPACITIES = (0.0, 0.25, 1.0)
 
 

@@ -36,7 +36,6 @@ class MediumProbe(NodeProbe, ValueProbe):
 
     @cached_property
     def through(self) -> Array:
-        """Light that comes through the media of the batch, over that without them, (N, 3)."""
         (batch,) = self.batches
         coefficients = (each for each in self.subject.inputs if np.shape(batch.inputs[each])[1:])
         clear = batch.altered(**dict.fromkeys(coefficients, (0.0, 0.0, 0.0)))

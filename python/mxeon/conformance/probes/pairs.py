@@ -60,7 +60,7 @@ class PairProbe(LobeProbe):
     @cached_property
     def few(self) -> tuple[Batch, ...]:
         """FEW of the random pairs and the special ones; both directions are above the horizon."""
-        pairs, special, _ = self.batches
+        pairs, special, *_ = self.batches
         return pairs.first(FEW), special
 
     @property
@@ -70,7 +70,6 @@ class PairProbe(LobeProbe):
 
     @property
     def edges(self) -> Batch:
-        """Pairs and inputs at the edges of the domain."""
         return diffuse_edges()
 
     @cached_property
@@ -93,15 +92,12 @@ class PairProbe(LobeProbe):
         return Batch(wo, wi, inputs, frame=frames)
 
     def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3)."""
         return np.pi * self._evaluate(batch, "direct")
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values of the environment branch, (N, 3); the environment is uniform unless given."""
         return self._evaluate(batch, "environment", irradiance=irradiance)
 
     def throughput(self, batch: Batch, branch: str) -> Array:
-        """The share of the light from below that passes the node, in one of BRANCHES, (N, 3)."""
         return self._evaluate(batch, branch, output="throughput")
 
     def _batch(self, rng: np.random.Generator, pairs: tuple[Array, Array], inputs: Draw) -> Batch:

@@ -31,11 +31,7 @@ PICTURE_INPUTS: tuple[Values, ...] = (
 
 
 PICTURE_SIZE = 128
-
-
 Mask: TypeAlias = NDArray[np.bool_]
-
-
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are judged
 
 
@@ -65,7 +61,6 @@ class PictureProbe(LobeProbe):
         return tuple(self._batch(scene, inputs) for inputs in self._inputs)
 
     def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3)."""
         return self._picture(batch)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:

@@ -97,7 +97,6 @@ class FacetPairProbe(FacetProbe):
         return self.batches[:2]
 
     def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3)."""
         count = len(batch.wo)
         color = np.broadcast_to(batch.inputs["color"], (count, 3))
         roughness = np.broadcast_to(batch.inputs["roughness"], count)
@@ -105,12 +104,10 @@ class FacetPairProbe(FacetProbe):
         return np.pi * values.astype(np.float64)
 
     def density(self, batch: Batch) -> Array:
-        """Density in solid angle of the directions that the renderer draws, (N,)."""
         roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
         return self.host.density(batch.wo, batch.wi, roughness).astype(np.float64)
 
     def sample(self, batch: Batch, u: Array) -> Array:
-        """Directions that the renderer draws, (N, 3)."""
         roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
         return self.host.sample(batch.wo, u, roughness).astype(np.float64)
 

@@ -18,14 +18,8 @@ from mxeon.models.nodes.subsurface import circle_blur
 from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
 
 COSINES = np.linspace(-1.0, 1.0, 129)
-
-
 SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # of a sphere of radius 1
-
-
 LEAST_HEIGHT = 0.3  # of its normals; next to the rim a pixel's point is far from the next one's
-
-
 MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one like a plane
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": 0.0},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
@@ -48,7 +42,6 @@ class SubsurfaceProbe(BsdfProbe):
         return tuple(_points(scene, inputs) for scene in SCENES for inputs in MATERIALS)
 
     def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3)."""
         if batch.scene is None:
             return super().direct(batch)
         document = self.subject.document(batch.inputs)

@@ -45,7 +45,6 @@ class SurfaceShaderProbe(PairProbe):
 
     @property
     def few(self) -> tuple[Batch, ...]:
-        """All of them."""
         return self.batches
 
     @cached_property
@@ -68,7 +67,6 @@ class SurfaceShaderProbe(PairProbe):
 
     @cached_property
     def white(self) -> Batch:
-        """Views of the material that loses no light."""
         [batch] = self.cosines
         return replace(batch, inputs=self.subject.table.white)
 
@@ -102,7 +100,6 @@ class SurfaceShaderProbe(PairProbe):
         return {**vectors, **ports}
 
     def response(self, batch: Batch, branch: str) -> Array:
-        """Values in any branch, (N, 3)."""
         return self._evaluate(batch, branch)
 
     def expected(self, batch: Batch) -> Array:

@@ -60,7 +60,6 @@ class FilmProbe(MicrofacetProbe):
 
     @cached_property
     def steep(self) -> Batch:
-        """Views of rough films, of which masking takes the facets whose curve is another."""
         return self._views(VIEWS, STEEP)
 
     def _views(self, count: int, ranges: Mapping[str, tuple[float, float]]) -> Batch:

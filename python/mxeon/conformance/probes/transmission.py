@@ -27,12 +27,10 @@ class TransmissionProbe(MicrofacetProbe):
     subject: TransmissionSubject
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        """Light of an environment through the surface, (N, 3); it is uniform unless given."""
         return self._evaluate(batch, "transmission", irradiance=radiance)
 
     @cached_property
     def reflection(self) -> MicrofacetProbe:
-        """The probe of the node where it only reflects."""
         return MicrofacetProbe(self.host, self.subject.reflection, self.library)
 
 

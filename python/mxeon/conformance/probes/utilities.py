@@ -59,7 +59,6 @@ class UtilityProbe(ValueProbe):
         return values.astype(np.float64)
 
     def other(self, output: str) -> "UtilityProbe":
-        """The probe of another output of the node."""
         return type(self)(self.host, replace(self.subject, output=output), self.library)
 
 
@@ -78,7 +77,6 @@ class UtilityOslProbe(UtilityProbe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """The same."""
         return self.batches
 
 
