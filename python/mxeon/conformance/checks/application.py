@@ -89,8 +89,8 @@ def judge_check(check: Check, probe: Probe) -> Result:
     diagnosis = Diagnosis()
     try:
         with renderer_warnings() as notes:
-            right = check.measure(probe, tolerance.metric)
-            wrong = check.measure(check.control(probe), tolerance.metric)
+            right = check.measured(probe, tolerance.metric)
+            wrong = check.measured(check.control(probe), tolerance.metric)
             if right.error > tolerance.value:
                 diagnosis = check.diagnose(probe)
     except (NotRun, ShaderError) as error:

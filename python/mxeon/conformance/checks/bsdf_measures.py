@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of the other BSDF nodes of pbrlib: energy, layering, and their frames."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -8,11 +9,11 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.probes.cases import layering_cases, stretched_case, transmission_cases
+from mxeon.conformance.probes.cases import layering_cases, stretched_case
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
-from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.measurement import Case
 
 FEW = 1 << 12
 ROUNDED = 1e-9  # difference of two albedos that are the same
@@ -20,50 +21,40 @@ LEAST_INDEX = 1.2  # of a dielectric whose values are divided
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
 
 
-def layering(probe: Probe, metric: Metric) -> Measurement:
-    """Throughput of a layer against 1 - E, in the branches that light a base from above."""
-    return worst_of(metric, layering_cases(probe))
-
-
-def passing(probe: Probe, metric: Metric) -> Measurement:
+def passing(probe: Probe) -> Iterable[Case]:
     """Throughput of a combination against 1 - E, where it is negative as `layer` takes it: 0."""
     cases = (
         case._replace(measured=np.maximum(case.measured, 0.0)) for case in layering_cases(probe)
     )
-    return worst_of(metric, cases)
+    return cases
 
 
-def transmission(probe: Probe, metric: Metric) -> Measurement:
-    """Throughput of a layer against 1 - E, in the branch of light through the base."""
-    return worst_of(metric, transmission_cases(probe))
-
-
-def layer(probe: Probe, metric: Metric) -> Measurement:
+def layer(probe: Probe) -> Iterable[Case]:
     """Light that a lobe reflects and light that it passes to a white base, against all of it."""
     views, albedo = _integral(probe)
     total = albedo + probe.throughput(views, "direct")
     # Where the equations gain energy by themselves, no throughput makes up for it.
     own = subject_of(probe, BsdfSubject).albedo(views)
     sound = np.asarray((probe.integrals <= own + ROUNDED).all(axis=1))
-    return worst_of(metric, [Case(views.where(sound), total[sound], np.ones((1, 3)))])
+    return [Case(views.where(sound), total[sound], np.ones((1, 3)))]
 
 
-def energy(probe: Probe, metric: Metric) -> Measurement:
+def energy(probe: Probe) -> Iterable[Case]:
     """Albedos above 1, and above what the node's own equations have."""
     views, albedo = _integral(probe)
     allowed = np.maximum(1.0, probe.integrals)
-    return worst_of(metric, [Case(views, np.maximum(albedo, allowed), allowed)])
+    return [Case(views, np.maximum(albedo, allowed), allowed)]
 
 
-def lossless(probe: Probe, metric: Metric) -> Measurement:
+def lossless(probe: Probe) -> Iterable[Case]:
     """Albedo of a lobe that reflects all light, integrated from the host's values, against 1."""
     batch, weights = probe.integrated
     mirror = batch.altered(**subject_of(probe, BsdfSubject).row.mirror)
     views, albedo = summed(probe, mirror, weights)
-    return worst_of(metric, [Case(views, albedo, np.ones_like(albedo))])
+    return [Case(views, albedo, np.ones_like(albedo))]
 
 
-def shape(probe: Probe, metric: Metric) -> Measurement:
+def shape(probe: Probe) -> Iterable[Case]:
     """Ratio of two values of one view against that of the equations: compensation cancels."""
     batch, other = (_clear(each.first(FEW)) for each in probe.mirrored)
     first, second = probe.expected(batch), probe.expected(other)
@@ -73,7 +64,7 @@ def shape(probe: Probe, metric: Metric) -> Measurement:
     with np.errstate(invalid="ignore"):
         measured = probe.direct(batch) * second / scale
         expected = probe.direct(other) * first / scale
-    return worst_of(metric, [Case(batch.where(lit), measured[lit], expected[lit])])
+    return [Case(batch.where(lit), measured[lit], expected[lit])]
 
 
 def _clear(batch: Batch) -> Batch:
@@ -89,22 +80,22 @@ def _clear(batch: Batch) -> Batch:
     return batch.altered(**changes)
 
 
-def retroreflection(probe: Probe, metric: Metric) -> Measurement:
+def retroreflection(probe: Probe) -> Iterable[Case]:
     """Values in retroreflective mode against those of the mirrored view."""
     cases = []
     for batch in probe.few:
         mirrored = replace(batch, wo=batch.wo * [-1.0, -1.0, 1.0])
         measured = probe.direct(batch.altered(retroreflective=True))
         cases.append(Case(batch, measured, probe.direct(mirrored.altered(retroreflective=False))))
-    return worst_of(metric, cases)
+    return cases
 
 
-def stretched(probe: Probe, metric: Metric) -> Measurement:
+def stretched(probe: Probe) -> Iterable[Case]:
     """The environment branch of anisotropic materials against the integrals of their values."""
-    return worst_of(metric, [stretched_case(probe)])
+    return [stretched_case(probe)]
 
 
-def anisotropy(probe: Probe, metric: Metric) -> Measurement:
+def anisotropy(probe: Probe) -> Iterable[Case]:
     """Values with a turned tangent against those of directions turned the other way."""
     batch = probe.mirrored[0].first(FEW)
     batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_COSINE)
@@ -118,7 +109,7 @@ def anisotropy(probe: Probe, metric: Metric) -> Measurement:
         wi=_turned_back(batch.wi, tangent),
     )
     measured = probe.direct(batch.altered(tangent=tangent))
-    return worst_of(metric, [Case(batch, measured, probe.direct(turned))])
+    return [Case(batch, measured, probe.direct(turned))]
 
 
 def _turned_back(w: Array, tangent: Array) -> Array:
@@ -128,10 +119,10 @@ def _turned_back(w: Array, tangent: Array) -> Array:
     return rounded([along, across, w[:, 2]])
 
 
-def integral(probe: Probe, metric: Metric) -> Measurement:
+def integral(probe: Probe) -> Iterable[Case]:
     """Directional albedo, integrated from the host's values, against that of the equations."""
     views, albedo = _integral(probe)
-    return worst_of(metric, [Case(views, albedo, probe.integrals)])
+    return [Case(views, albedo, probe.integrals)]
 
 
 def _integral(probe: Probe) -> tuple[Batch, Array]:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A row of the table of checks."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
@@ -10,7 +10,7 @@ from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.measurement import Measurement, Metric
+from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.hosts.base import Host
 
@@ -25,7 +25,8 @@ class Check:
         One word, and a sentence.
     models : tuple of str
         The models that it holds for.
-    measure : callable (probe, metric) -> Measurement
+    measure : callable (probe) -> iterable of Case or Measurement
+        What is compared, of which the worst row counts; or a number of its own.
     variant : str
         The error that the control makes.
     control : callable (probe) -> probe
@@ -47,7 +48,7 @@ class Check:
     key: str
     claim: str
     models: tuple[str, ...]
-    measure: Callable[[Probe, Metric], Measurement]
+    measure: Callable[[Probe], Iterable[Case] | Measurement]
     variant: str
     control: Control
     allowed: Quantity | Tolerance
@@ -56,6 +57,11 @@ class Check:
     diagnose: Callable[[Probe], Diagnosis] = diagnosis.diagnose_value
     open: bool = False
     adapt: Callable[[Tolerance, Subject, str, Host], Tolerance] = lambda tolerance, *_: tolerance
+
+    def measured(self, probe: Probe, metric: Metric) -> Measurement:
+        """The worst error of a probe."""
+        found = self.measure(probe)
+        return found if isinstance(found, Measurement) else worst_of(metric, found)
 
     def tolerance(self, kind: str) -> Tolerance | None:
         """The tolerance for a kind of probe, or None where it cannot be asked."""

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the nodes that combine two lobes."""
 
-from mxeon.conformance.checks import bsdf_measures, measures
+from mxeon.conformance.checks import bsdf_measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all, shifted
 from mxeon.conformance.checks.names import COMBINATION
 from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.probes.cases import albedo_cases, value_cases
 
 CHECKS = (
     Check(
         "combination",
         "The value of two lobes together is that of the node's equation.",
         COMBINATION,
-        measures.value,
+        value_cases,
         "each pair has the inputs of another",
         shifted,
         "value",
@@ -22,7 +23,7 @@ CHECKS = (
         "combined_albedo",
         "The environment branch of two lobes together gives their albedo.",
         COMBINATION,
-        measures.environment,
+        albedo_cases,
         "each pair has the inputs of another",
         shifted,
         "albedo",

@@ -6,7 +6,6 @@ from mxeon.conformance.accuracy.diffuse import count_of
 from mxeon.conformance.checks import emission_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import gray, offset, scale, shifted, with_inputs
-from mxeon.conformance.checks.measures import value
 from mxeon.conformance.checks.names import EMITTER, MEDIUM_NAMES
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
@@ -15,7 +14,7 @@ from mxeon.conformance.nodes.emission import (
     SURFACES,
     UNIMPLEMENTED,
 )
-from mxeon.conformance.probes.cases import value_cases
+from mxeon.conformance.probes.cases import back_cases, transmittance_cases, value_cases
 from mxeon.conformance.probes.probe import Probe
 
 
@@ -55,7 +54,7 @@ CHECKS = (
         "radiance",
         "The radiance is that of the node's equation for every view from the front.",
         EMITTER,
-        value,
+        value_cases,
         "every channel gets the mean color",
         gray,
         "value",
@@ -66,7 +65,7 @@ CHECKS = (
         "back",
         "The back of the surface emits what the equation has for it.",
         EMITTER,
-        measures.back,
+        back_cases,
         "a thousandth is added to every value",
         offset,
         "value",
@@ -90,7 +89,7 @@ CHECKS = (
         "transmittance",
         "A medium passes what its coefficients leave over one meter.",
         MEDIUM_NAMES,
-        measures.transmittance,
+        transmittance_cases,
         "each view has the coefficients of another",
         shifted,
         "value",
@@ -101,7 +100,7 @@ CHECKS = (
         "opacity",
         "The light that a surface emits is scaled by its opacity.",
         (SURFACES,),
-        value,
+        value_cases,
         "the opacity is 1",
         with_inputs(opacity=1.0),
         "value",

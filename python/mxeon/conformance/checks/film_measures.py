@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements and controls of microfacets under a thin film."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, diagnose_alb
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.measurement import Case
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 
 Values = Callable[[Batch], Array]
@@ -24,7 +24,7 @@ THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 LEAST_INDEX = 1.05  # of a substrate whose lobe is compared
 
 
-def film_limit(probe: Probe, metric: Metric) -> Measurement:
+def film_limit(probe: Probe) -> Iterable[Case]:
     """Values under a film of index 1, and under one of THIN_LIMIT, against those without."""
     batch = _compared(probe)
     bare = probe.direct(batch.altered(thinfilm_thickness=0.0))
@@ -32,12 +32,12 @@ def film_limit(probe: Probe, metric: Metric) -> Measurement:
     if "color0" not in batch.inputs:  # whose curve is taken at another angle under a film
         thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
         cases.append(Case(batch, probe.direct(thin), bare))
-    return worst_of(metric, cases)
+    return cases
 
 
-def film_average(probe: Probe, metric: Metric) -> Measurement:
+def film_average(probe: Probe) -> Iterable[Case]:
     """F_ss of a film, from values at two roughnesses, against that of the equations."""
-    return worst_of(metric, [average_case(probe)])
+    return [average_case(probe)]
 
 
 def average_case(probe: Probe) -> Case:
@@ -48,7 +48,7 @@ def average_case(probe: Probe) -> Case:
     return Case(batch.where(bright), measured[bright], expected[bright])
 
 
-def film_visible(probe: Probe, metric: Metric) -> Measurement:
+def film_visible(probe: Probe) -> Iterable[Case]:
     """A film's mean over the visible facets, from its albedo, against that of the equations."""
     batch, *_ = average_case(probe)
     albedos = (
@@ -59,7 +59,7 @@ def film_visible(probe: Probe, metric: Metric) -> Measurement:
         _visible(probe, direct, albedo, batch)
         for direct, albedo in zip(_sides(probe), albedos, strict=True)
     )
-    return worst_of(metric, [Case(batch, measured, expected)])
+    return [Case(batch, measured, expected)]
 
 
 def diagnose_average(probe: Probe) -> Diagnosis:
@@ -148,14 +148,14 @@ def brighter(probe: Probe) -> Altered:
     return Altered(probe, values=values)
 
 
-def film_energy(probe: Probe, metric: Metric) -> Measurement:
+def film_energy(probe: Probe) -> Iterable[Case]:
     """Values under a film, where they exceed those of a lobe that reflects all light."""
     cases = []
     for batch in probe.few[::2]:  # a mirror of index 0 is another check where directions are exact
         mirror = batch.altered(thinfilm_thickness=0.0, **subject_of(probe, BsdfSubject).row.mirror)
         most = probe.direct(mirror)
         cases.append(Case(batch, np.maximum(probe.direct(batch), most), most))
-    return worst_of(metric, cases)
+    return cases
 
 
 def _compared(probe: Probe) -> Batch:

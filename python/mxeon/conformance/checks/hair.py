@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of the hair node alone: its lobes apart, where they are wide, narrow, or seen straight."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from mxeon.conformance.accuracy.hair import HAIR_REGIONS
 from mxeon.conformance.checks.check import Check
@@ -10,7 +10,7 @@ from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.measurement import Case
 from mxeon.models.hair.defects import FORMS, TILTED
 from mxeon.models.nodes.hair import HAIR_NODE
 
@@ -30,9 +30,9 @@ def _case(probe: Probe, key: str) -> Case:
     return Case(batch, probe.direct(batch), probe.expected(batch))
 
 
-def _measure(key: str) -> Callable[[Probe, Metric], Measurement]:
+def _measure(key: str) -> Callable[[Probe], Iterable[Case]]:
     """Values of a region against those of the equations."""
-    return lambda probe, metric: worst_of(metric, [_case(probe, key)])
+    return lambda probe: [_case(probe, key)]
 
 
 def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:

@@ -5,6 +5,7 @@ from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all
 from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.probes.cases import layering_cases, transmission_cases
 from mxeon.models.nodes import NODES
 
 LAYERS = tuple(row.name for row in NODES if row.layerable)
@@ -14,7 +15,7 @@ CHECKS = (
         "layering",
         "The throughput of a layer is 1 - E for light from above, for every weight.",
         LAYERS,
-        measures.layering,
+        layering_cases,
         "all light passes",
         pass_all,
         "throughput",
@@ -24,7 +25,7 @@ CHECKS = (
         "transmission",
         "The throughput of a layer is 1 - E for light through the base as well.",
         LAYERS,
-        measures.transmission,
+        transmission_cases,
         "all light passes",
         pass_all,
         "throughput",

@@ -24,9 +24,9 @@ from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.subsurface import SUBSURFACES
+from mxeon.conformance.probes.cases import albedo_cases, frame_cases, value_cases
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import ON_SPHERES, sphere_cases
-from mxeon.conformance.samples.measurement import worst_of
 from mxeon.hosts import front_lit_only
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.hair import HAIR_NODE
@@ -87,7 +87,7 @@ CHECKS = (
         "value",
         "The value is the model's for every pair of directions, back-lit and grazing ones included.",
         (*ROUGH, *OTHERS),
-        measures.value,
+        value_cases,
         "every channel gets the mean color",
         gray,
         "value",
@@ -99,7 +99,7 @@ CHECKS = (
         "lobe",
         "The diffuse lobe of the surface shader is the model's.",
         (*ANY, *SMOOTH),
-        measures.value,
+        value_cases,
         "every channel gets the mean color",
         gray,
         "value",
@@ -109,7 +109,7 @@ CHECKS = (
         "environment",
         "The environment branch gives the directional albedo.",
         (*ROUGH, *OTHERS, *SMOOTH),
-        measures.environment,
+        albedo_cases,
         "every channel gets the mean color",
         gray,
         "albedo",
@@ -173,7 +173,7 @@ CHECKS = (
         "frame",
         "The value depends on the directions in the surface's frame, turned to the viewer.",
         (*ANY, *FRAMED),
-        measures.frame,
+        frame_cases,
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
         "frame",
@@ -194,7 +194,7 @@ CHECKS = (
         "sphere",
         "On a sphere the diffusion profile spreads light, by the radius and the anisotropy.",
         (SUBSURFACE_NODE.name,),
-        lambda probe, metric: worst_of(metric, sphere_cases(probe)),
+        sphere_cases,
         "the mean free path is 0.3 in every channel",
         with_inputs(radius=(0.3, 0.3, 0.3)),
         bsdf_tolerances.RINGS,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of the checks: the worst error of a probe, and its point."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
 
@@ -10,24 +11,19 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.probes.cases import (
     BRANCHES,
     WHITE,
-    albedo_cases,
     dead_inputs,
     edge_case,
-    frame_cases,
     surroundings_case,
     throughput_cases,
-    value_cases,
 )
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import (
     Case,
     Measurement,
-    Metric,
     absolute,
     count_named,
     count_not_finite,
-    worst_of,
 )
 from mxeon.hosts import front_lit_only
 from mxeon.models import table as reference
@@ -38,34 +34,19 @@ COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
 
 
-def value(probe: Probe, metric: Metric) -> Measurement:
-    """Values against the model's, over all pairs of the probe."""
-    return worst_of(metric, value_cases(probe))
-
-
-def environment(probe: Probe, metric: Metric) -> Measurement:
-    """The environment branch against the closed form of the directional albedo."""
-    return worst_of(metric, albedo_cases(probe))
-
-
-def frame(probe: Probe, metric: Metric) -> Measurement:
-    """Values in turned frames, of which half have a normal that faces away, against those in none."""
-    return worst_of(metric, frame_cases(probe))
-
-
-def surroundings(probe: Probe, metric: Metric) -> Measurement:
+def surroundings(probe: Probe) -> Iterable[Case]:
     """The environment branch under an uneven sky, over that in a uniform one, against the sky."""
-    return worst_of(metric, [surroundings_case(probe)])
+    return [surroundings_case(probe)]
 
 
-def quadrature(probe: Probe, metric: Metric) -> Measurement:
+def quadrature(probe: Probe) -> Iterable[Case]:
     """Directional albedo, integrated from the host's values, against its closed form."""
     cases: list[Case] = []
     for mu, color, roughness in product((0.1, 0.3, 0.6, 0.95), COLORS, (0.25, 1.0)):
         wo = np.array([[np.sqrt(1.0 - mu * mu), 0.0, mu]])
         batch = Batch(wo, wo, {"color": color, "roughness": roughness})
         cases.append(Case(batch, *integrated(probe, mu, color, roughness)))
-    return worst_of(metric, cases)
+    return cases
 
 
 def integrated(
@@ -89,30 +70,24 @@ def integrated(
     return measured, row.closed_albedo_dir(mu, color, roughness)
 
 
-def black(probe: Probe, metric: Metric) -> Measurement:
+def black(probe: Probe) -> Iterable[Case]:
     """Values of a black surface against 0."""
     batches = [batch.altered(**probe.black) for batch in probe.few]
-    return worst_of(
-        metric, (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches)
-    )
+    return (Case(batch, probe.direct(batch), np.zeros((1, 3))) for batch in batches)
 
 
-def throughput(probe: Probe, metric: Metric) -> Measurement:
+def throughput(probe: Probe) -> Iterable[Case]:
     """Throughput against 0 of an opaque node, in every branch and for every weight."""
-    return worst_of(
-        metric, (case for branch in BRANCHES for case in throughput_cases(probe, branch))
-    )
+    return (case for branch in BRANCHES for case in throughput_cases(probe, branch))
 
 
-def furnace(probe: Probe, metric: Metric) -> Measurement:
+def furnace(probe: Probe) -> Iterable[Case]:
     """Albedo of a white surface against 1."""
     batches = [batch.altered(color=WHITE, weight=1.0) for batch in probe.cosines]
-    return worst_of(
-        metric, (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches)
-    )
+    return (Case(batch, probe.albedo(batch), np.ones((1, 3))) for batch in batches)
 
 
-def reciprocity(probe: Probe, metric: Metric) -> Measurement:
+def reciprocity(probe: Probe) -> Iterable[Case]:
     """f(wo, wi) against f(wi, wo), both times both cosines."""
     cases: list[Case] = []
     for batch in probe.few:
@@ -122,18 +97,16 @@ def reciprocity(probe: Probe, metric: Metric) -> Measurement:
             forward = probe.direct(batch) * batch.wo[:, 2:]
             backward = probe.direct(swapped) * np.abs(batch.wi[:, 2:])
         cases.append(Case(batch, forward, backward))
-    return worst_of(metric, cases)
+    return cases
 
 
-def lambert(probe: Probe, metric: Metric) -> Measurement:
+def lambert(probe: Probe) -> Iterable[Case]:
     """Values at roughness 0 against Lambert's."""
     batches = [batch.altered(roughness=0.0) for batch in probe.few]
-    return worst_of(
-        metric, (Case(batch, probe.direct(batch), batch.expected("lambert")) for batch in batches)
-    )
+    return (Case(batch, probe.direct(batch), batch.expected("lambert")) for batch in batches)
 
 
-def flag(probe: Probe, _: Metric) -> Measurement:
+def flag(probe: Probe) -> Measurement:
     """The change that the flag makes, against the models' difference, relative to the largest."""
     error = largest = 0.0
     for batch in probe.few:
@@ -150,12 +123,12 @@ def flag(probe: Probe, _: Metric) -> Measurement:
     return Measurement(float(error / largest), {"expected": [float(largest)]})
 
 
-def inputs(probe: Probe, _: Metric) -> Measurement:
+def inputs(probe: Probe) -> Measurement:
     """Number of inputs of the node that change nothing."""
     return count_named(dead_inputs(probe))
 
 
-def finite(probe: Probe, _: Metric) -> Measurement:
+def finite(probe: Probe) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
     case = edge_case(probe)
     return count_not_finite(case.batch, case.measured)

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of a renderer's own sampling: its density, and its directions against that."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import SEED, Array, Batch
-from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of
+from mxeon.conformance.samples.measurement import Case, Measurement
 from mxeon.models.sampling.cltc import eon_cltc_pdf
 
 COSINES = (0.05, 0.3, 0.7, 0.99)  # of the viewer
@@ -16,7 +18,7 @@ LEAST = 10.0  # samples that a bin has to expect
 ROUGHNESS = 1.0
 
 
-def density(probe: Probe, metric: Metric) -> Measurement:
+def density(probe: Probe) -> Iterable[Case]:
     """The renderer's density against that of the paper's sampling."""
     cases: list[Case] = []
     for batch in probe.few:
@@ -24,10 +26,10 @@ def density(probe: Probe, metric: Metric) -> Measurement:
         measured = probe.density(batch)[:, np.newaxis]
         expected = eon_cltc_pdf(batch.wo, batch.wi, batch.inputs["roughness"])[:, np.newaxis]
         cases.append(Case(batch, measured, expected))
-    return worst_of(metric, cases)
+    return cases
 
 
-def samples(probe: Probe, _: Metric) -> Measurement:
+def samples(probe: Probe) -> Measurement:
     """Deviation of the chi-square of directions against their own density, in standard deviations.
 
     Drawn for COSINES at ROUGHNESS. The cube root of a chi-square over its degrees of freedom is

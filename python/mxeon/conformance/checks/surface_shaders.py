@@ -4,11 +4,12 @@
 import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.checks import measures, surface_measures
 from mxeon.conformance.checks import surface_diagnosis as diagnosis
+from mxeon.conformance.checks import surface_measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, scale, shifted
 from mxeon.conformance.nodes.surface_shaders import SHADERS
+from mxeon.conformance.probes.cases import albedo_cases, value_cases
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 
@@ -31,7 +32,7 @@ CHECKS = (
         "lobes",
         "Direct light is that of all lobes by the layer equation.",
         MODELS,
-        measures.value,
+        value_cases,
         "each pair has the inputs of another",
         shifted,
         "value",
@@ -41,7 +42,7 @@ CHECKS = (
         "lobes_albedo",
         "The environment branch gives the albedo of all lobes by the layer equation.",
         MODELS,
-        measures.environment,
+        albedo_cases,
         "each view has the inputs of another",
         shifted,
         "albedo",

@@ -3,7 +3,7 @@
 
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
 from mxeon.conformance.accuracy import diffuse as tolerances
-from mxeon.conformance.checks import bsdf_measures, measures
+from mxeon.conformance.checks import measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
 from mxeon.conformance.checks.film_measures import (
@@ -19,13 +19,14 @@ from mxeon.conformance.checks.film_measures import (
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.nodes.thin_films import FILM_MODELS, LAYERED
+from mxeon.conformance.probes.cases import albedo_cases, layering_cases, value_cases
 
 CHECKS = (
     Check(
         "film",
         "The value under a thin film has the film's Airy reflectance.",
         FILM_MODELS,
-        measures.value,
+        value_cases,
         "the film is a quarter thicker",
         thicker,
         "value",
@@ -54,7 +55,7 @@ CHECKS = (
         "film_environment",
         "The environment branch has the film's directional albedo.",
         FILM_MODELS,
-        measures.environment,
+        albedo_cases,
         "the film is a quarter thicker",
         thicker,
         "albedo",
@@ -87,7 +88,7 @@ CHECKS = (
         "film_throughput",
         "The throughput of a layer under a film is 1 - E of the film.",
         LAYERED,
-        bsdf_measures.layering,
+        layering_cases,
         "all light passes",
         pass_all,
         "throughput",

@@ -34,7 +34,7 @@ def infinite(probe: Probe) -> Altered:
 
 def diagnose_transmitted(probe: Probe) -> Diagnosis:
     """Whether the light is divided by G_1, as MaterialX does for reflection; and where it is NaN."""
-    cases = measures.transmitted_cases(probe)
+    cases = measures.transmitted(probe)
     near, far = (
         np.sqrt(np.mean(np.concatenate([_squares(case, found(case)) for case in cases])))
         for found in (

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of light through microfacets: its share, its place, and what it leaves alone."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from mxeon.conformance.nodes.transmission import TransmissionSubject
@@ -9,10 +11,8 @@ from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import (
     Case,
     Measurement,
-    Metric,
     count_named,
     count_not_finite,
-    worst_of,
 )
 from mxeon.conformance.samples.uneven_environment import sky, sky_map
 from mxeon.models.microfacet.ggx import smith_g1
@@ -28,13 +28,8 @@ NORMAL = (0.0, 0.0, 1.0)
 ONE = np.ones((1, 3))
 
 
-def transmitted(probe: Probe, metric: Metric) -> Measurement:
-    """Light of a uniform environment through the surface, against the limits of the equations."""
-    return worst_of(metric, transmitted_cases(probe))
-
-
-def transmitted_cases(probe: Probe) -> list[Case]:
-    """The cases of `transmitted`: what is expected is the nearest value inside the limits.
+def transmitted(probe: Probe) -> list[Case]:
+    """Light of a uniform environment through the surface, against the nearest value inside the limits.
 
     One is what the BTDF passes, without compensation; the other all that is not reflected. The first is
     the larger for some colors of Schlick's curve, of which the text compensates too much.
@@ -71,16 +66,16 @@ def over_masking(subject: TransmissionSubject, batch: Batch) -> Array:
     return value
 
 
-def clear(probe: Probe, metric: Metric) -> Measurement:
+def clear(probe: Probe) -> Iterable[Case]:
     """Light of a uniform environment that a white lobe reflects and transmits, against all of it."""
     cases = []
     for batch in probe.cosines:
         white = batch.altered(tint=(1.0, 1.0, 1.0), weight=1.0)
         cases.append(Case(white, probe.albedo(white) + probe.transmitted(white), ONE))
-    return worst_of(metric, cases)
+    return cases
 
 
-def kept(probe: Probe, metric: Metric) -> Measurement:
+def kept(probe: Probe) -> Iterable[Case]:
     """Reflection beside transmission, against that of the node that only reflects, or none."""
     cases = []
     for batch in probe.cosines:
@@ -95,7 +90,7 @@ def kept(probe: Probe, metric: Metric) -> Measurement:
                 else ONE
             )
             cases.append(Case(batch, probe.throughput(batch, branch), expected))
-    return worst_of(metric, cases)
+    return cases
 
 
 def _reflection(probe: Probe, output: str, batch: Batch) -> Array:
@@ -106,7 +101,7 @@ def _reflection(probe: Probe, output: str, batch: Batch) -> Array:
     return value
 
 
-def critical(probe: Probe, metric: Metric) -> Measurement:
+def critical(probe: Probe) -> Iterable[Case]:
     """Light through smooth surfaces against 1 - F, and against none beyond the critical angle."""
     batch = _smooth(probe)
     functions, mu = (
@@ -117,12 +112,12 @@ def critical(probe: Probe, metric: Metric) -> Measurement:
     edge = np.sqrt(np.maximum(1.0 - index * index, 0.0))
     batch, mu = (batch.where(np.abs(mu - edge) > CRITICAL), mu[np.abs(mu - edge) > CRITICAL])
     passed = functions.tint(batch.inputs) * (1.0 - functions.fresnel(mu, batch.inputs))
-    return worst_of(metric, [Case(batch, probe.transmitted(batch), batch.strength * passed)])
+    return [Case(batch, probe.transmitted(batch), batch.strength * passed)]
 
 
-def refraction(probe: Probe, metric: Metric) -> Measurement:
+def refraction(probe: Probe) -> Iterable[Case]:
     """An uneven environment through smooth surfaces, over a uniform one, against its place."""
-    return worst_of(metric, [refraction_case(probe)])
+    return [refraction_case(probe)]
 
 
 def refraction_case(probe: Probe) -> Case:
@@ -157,7 +152,7 @@ def _smooth(probe: Probe) -> Batch:
     return batch.altered(roughness=(0.0, 0.0))
 
 
-def finite(probe: Probe, _: Metric) -> Measurement:
+def finite(probe: Probe) -> Measurement:
     """Number of values at the edges of the domain that are not finite."""
     case = finite_case(probe)
     return count_not_finite(case.batch, case.measured)
@@ -171,7 +166,7 @@ def finite_case(probe: Probe) -> Case:
     return Case(batch, values, np.zeros_like(values))
 
 
-def inputs(probe: Probe, _: Metric) -> Measurement:
+def inputs(probe: Probe) -> Measurement:
     """Number of inputs that change no light through the surface, and of those that must not."""
     return count_named(wrong_inputs(probe))
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of the utility nodes: their values in units in which roundings are alike."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -15,21 +15,14 @@ from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import (
     Case,
     Measurement,
-    Metric,
     count_not_finite,
-    worst_of,
 )
 from mxeon.models.microfacet.artistic_ior import normal_reflectance
 from mxeon.models.nodes.utilities import LARGEST_REFLECTIVITY
 
 
-def value(probe: Probe, metric: Metric) -> Measurement:
+def value(probe: Probe) -> Iterator[Case]:
     """Outputs against those of the equations."""
-    return worst_of(metric, cases(probe))
-
-
-def cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `value`."""
     unit = UNITS.get(probe.subject.title, _as_it_is)
     for batch in probe.batches:
         measured, expected = probe.direct(batch), probe.expected(batch)
@@ -44,10 +37,10 @@ def explained(probe: Probe) -> Diagnosis:
         for each in probe.value_candidates
     ]
     tolerance = utility_tolerance(ALPHA, probe.subject, probe.kind, probe.host)
-    return diagnosis.diagnose_cases(probe, list(cases(probe)), candidates, tolerance)
+    return diagnosis.diagnose_cases(probe, list(value(probe)), candidates, tolerance)
 
 
-def finite(probe: Probe, _: Metric) -> Measurement:
+def finite(probe: Probe) -> Measurement:
     """Number of outputs that are not finite, at the ends of the ranges and beyond."""
     return count_not_finite(probe.edges, probe.direct(probe.edges))
 
@@ -71,7 +64,7 @@ def explained_finite(probe: Probe) -> Diagnosis:
     return Diagnosis(share)
 
 
-def round_trip(probe: Probe, metric: Metric) -> Measurement:
+def round_trip(probe: Probe) -> Iterable[Case]:
     """Reflectance at normal incidence of an artistic index, against the reflectivity asked for."""
     extinction = probe.other("extinction")
     measured = []
@@ -79,7 +72,7 @@ def round_trip(probe: Probe, metric: Metric) -> Measurement:
         reflectance = normal_reflectance(probe.direct(batch), extinction.direct(batch))
         asked = np.minimum(batch.inputs["reflectivity"], LARGEST_REFLECTIVITY)
         measured.append(Case(batch, reflectance, asked))
-    return worst_of(metric, measured)
+    return measured
 
 
 def _in_unit(

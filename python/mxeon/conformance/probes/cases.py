@@ -16,19 +16,19 @@ LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one
 
 
 def value_cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `value`."""
+    """Values against the expected ones, over all pairs of the probe."""
     for batch in probe.batches:
         yield Case(batch, probe.direct(batch), probe.expected(batch))
 
 
 def albedo_cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `environment`."""
+    """The environment branch against the directional albedo."""
     for batch, expected in zip(probe.cosines, probe.albedos, strict=True):
         yield Case(batch, probe.albedo(batch), expected)
 
 
 def frame_cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `frame`."""
+    """Values in turned frames, of which half have a normal that faces away, against those in none."""
     batch = probe.turned
     local = replace(batch.altered(normal=(0.0, 0.0, 1.0), tangent=(1.0, 0.0, 0.0)), frame=None)
     for output in (probe.direct, probe.albedo):
@@ -79,13 +79,13 @@ LIGHT = ("direct", "environment")  # branches that light a base from above
 
 
 def layering_cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `layering`."""
+    """Throughput of a layer against 1 - E, in the branches that light a base from above."""
     for branch in LIGHT:
         yield from _throughput_cases(probe, branch)
 
 
 def transmission_cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `transmission`."""
+    """Throughput of a layer against 1 - E, in the branch of light through the base."""
     return _throughput_cases(probe, "transmission")
 
 
@@ -101,13 +101,13 @@ def stretched_case(probe: Probe) -> Case:
 
 
 def back_cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `back`."""
+    """Radiance towards views from the back."""
     batch = probe.backs
     yield Case(batch, probe.direct(batch), probe.expected(batch))
 
 
 def transmittance_cases(probe: Probe) -> Iterator[Case]:
-    """The cases of `transmittance`."""
+    """Light through a medium and the throughput of a surface over it, against its transmittance."""
     (batch,) = probe.batches
     expected = probe.expected(batch)
     yield Case(batch, probe.direct(batch), expected)
