@@ -23,6 +23,7 @@ from mxeon.conformance.pictures import document_pictures as image
 from mxeon.conformance.probes.families import COMMON_SUBJECTS, PBR_SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
 from mxeon.conformance.run import check, judge, plan
 from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
@@ -130,6 +131,15 @@ def test_every_check_says_what_it_allows_and_what_it_must_catch(row):
     assert tolerances
     for tolerance in tolerances:
         assert tolerance.value >= 0.0 and tolerance.unit and tolerance.derivation
+
+
+def kinds(probe):
+    """Kinds of a class of probes and of those derived from it."""
+    return {getattr(probe, "kind", None)}.union(*map(kinds, probe.__subclasses__()))
+
+
+def test_every_kind_of_probe_has_one_accuracy():
+    assert kinds(Probe) - {None} == set(ACCURACY)
 
 
 # --- eonlib on OpenGL ---------------------------------------------------------------------------
