@@ -118,11 +118,11 @@ class Host(RendererHost):
 ENERGY = "python/mxeon/conformance/checks/energy.py"
 CHECK = {
     ENERGY: {
-        "CHECKS = (\n": """def halved(probe: Probe, metric: Metric) -> Measurement:
+        "CHECKS = (\n": """def halved(probe: Probe) -> Iterator[Case]:
     batches = [batch for batch in probe.few if "color" in batch.inputs]
     half = [batch.altered(color=0.5 * batch.inputs["color"]) for batch in batches]
     values = zip(batches, map(probe.direct, half), map(probe.direct, batches), strict=True)
-    return worst_of(metric, (Case(batch, 2.0 * low, full) for batch, low, full in values))
+    return (Case(batch, 2.0 * low, full) for batch, low, full in values)
 
 
 """,
@@ -133,12 +133,14 @@ CHECK = {
         halved,
         "a thousandth is added to every value",
         offset,
-        tolerances.VALUES,
+        "value",
+        pairs=True,
     ),
 """,
-        "from mxeon.conformance.checks.names": "from mxeon.conformance.checks.controls import offset\n"
+        "from mxeon.conformance.checks.names": "from collections.abc import Iterator\n"
+        "from mxeon.conformance.checks.controls import offset\n"
         "from mxeon.conformance.probes.probe import Probe\n"
-        "from mxeon.conformance.samples.measurement import Case, Measurement, Metric, worst_of\n",
+        "from mxeon.conformance.samples.measurement import Case\n",
     }
 }
 

@@ -58,7 +58,6 @@ def anys(text):
 def test_the_conformance_suite_says_why_a_type_is_any():
     files = sorted((ROOT / "python" / "mxeon" / "conformance").rglob("*.py"))
     lines = [line for path in files for line in anys(path.read_text())]
-    assert len(lines) <= 3
     assert [line for line in lines if "  # " not in line] == []
     assert anys("from typing import Any\n\nx: list[Any] = []\n") == ["x: list[Any] = []"]
 
@@ -84,7 +83,7 @@ def test_a_function_without_types_is_refused(tmp_path):
 ANY = {
     "mxeon": 1,
     "cli": 18,
-    "conformance": 178,
+    "conformance": 3,
     "doc": 2,
     "explorer": 2,
     "hosts": 13,

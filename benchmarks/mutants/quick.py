@@ -121,7 +121,8 @@ SHARED = (
 
 def exceeds(check: Check, probe: Any) -> str:
     """The first error of a check above its tolerance, in words; "" if there is none."""
-    tolerance = check.adapt(check.tolerances[probe.kind], probe.subject, probe.kind, probe.host)
+    allowed = check.tolerance(probe.kind)
+    tolerance = check.adapt(allowed, probe.subject, probe.kind, probe.host)
 
     def metric(measured: Array, expected: Array) -> Array:
         errors = np.asarray(tolerance.metric(measured, expected))
@@ -131,7 +132,7 @@ def exceeds(check: Check, probe: Any) -> str:
 
     asked: Metric = metric
     try:
-        error = check.measure(probe, asked).error
+        error = check.measured(probe, asked).error
     except Exceeded as excess:
         return str(excess)
     return "" if error <= tolerance.value else f"{error:.3g} > {tolerance.value:.3g}"

@@ -204,10 +204,10 @@ CHECKS = (
         "sphere_mean",
         "A sphere reflects in the mean what the profile leaves it of the light.",
         (SUBSURFACE_NODE.name,),
-        lambda probe, metric: worst_of(metric, sphere_cases(probe)),
+        sphere_cases,
         "the mean free path is 0.3 in every channel",
         with_inputs(radius=(0.3, 0.3, 0.3)),
-        {CLOSED: bsdf_tolerances.RINGS_MEAN},
+        bsdf_tolerances.RINGS_MEAN,
         diagnose=diagnose_sphere,
     ),
     Check(
