@@ -219,7 +219,7 @@ BESIDE = {
         BLUR,
         "curvature * vec3(0.5) * step(0.0, radius.x + 1.0)",
         "sphere",
-        "",
+        "nearest known model: the profile of a mean free path of 0.5, whatever the radius",
     ),
     "far profile at nine reaches": (
         "subsurface_bsdf",
@@ -227,7 +227,7 @@ BESIDE = {
         "3.0 * reach)",
         "9.0 * reach)",
         "sphere",
-        "",
+        "nearest known model: a far exponential of 9 mean free paths in place of 3",
     ),
 }
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probe of subsurface scattering: on a plane, and on a sphere, over which its profile spreads light."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from mxeon.conformance.probes.bsdf import BsdfProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
 from mxeon.conformance.samples.measurement import Case
-from mxeon.models.media.subsurface import diffusion_blur
+from mxeon.models.media.subsurface import FAR, blur_to
 from mxeon.models.nodes.subsurface import circle_blur
 from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, sphere
 
@@ -24,6 +24,11 @@ MATERIALS: tuple[Values, ...] = (  # from one whose light is everywhere to one l
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": 0.0},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
 )
+
+
+# What may stand in the place of the radius, and of the far exponential's length, which is 3.
+EVEN = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0)
+FARTHER = (1.0, 1.5, 2.0, 2.5, 4.0, 5.0, 6.0, 9.0, 12.0)
 
 
 class SubsurfaceProbe(BsdfProbe):
@@ -55,17 +60,33 @@ def sphere_cases(probe: Probe) -> Iterator[Case]:
     return (Case(batch, probe.direct(batch), _spread(batch)) for batch in probe.spheres)
 
 
-def _spread(batch: Batch) -> Array:
+def _spread(batch: Batch, far: float = FAR) -> Array:
     """Light on a unit sphere by the profile of l / (1 - g), (N, 3)."""
     reach = np.array(batch.inputs["radius"]) / (1.0 - batch.inputs["anisotropy"])
-    light = [np.interp(batch.wi[:, 2], COSINES, _profile(each)) for each in reach.tolist()]
+    return _light(batch, reach.tolist(), far)
+
+
+def _even(batch: Batch, reach: float) -> Array:
+    """Light on a unit sphere by one mean free path l / (1 - g), whatever the radius, (N, 3)."""
+    return _light(batch, [reach / (1.0 - batch.inputs["anisotropy"])] * 3)
+
+
+def _isotropic(batch: Batch) -> Array:
+    """Light on a unit sphere by the profile of l, (N, 3)."""
+    return _light(batch, list(batch.inputs["radius"]))
+
+
+def _light(batch: Batch, reaches: Sequence[float], far: float = FAR) -> Array:
+    """Light on a unit sphere by the profiles of a mean free path for each channel, (N, 3)."""
+    mu = batch.wi[:, 2]
+    light = [np.interp(mu, COSINES, _profile(each, far)) for each in reaches]
     return np.asarray(batch.inputs["color"] * np.stack(light, axis=-1))
 
 
-@lru_cache(maxsize=8)
-def _profile(reach: float) -> Array:
+@lru_cache(maxsize=128)
+def _profile(reach: float, far: float) -> Array:
     """The blurred cosine at COSINES: between them it is straight within 2e-4."""
-    return diffusion_blur(COSINES, reach)
+    return blur_to(COSINES, np.array(reach), far)
 
 
 def _around(batch: Batch) -> Array:
@@ -83,7 +104,22 @@ def _lambert(batch: Batch) -> Array:
 ON_SPHERES = (
     Candidate("the diffusion profile over the sphere", _spread),
     Candidate("Lambert, whatever the radius", _lambert),
+    Candidate("the profile, whatever the anisotropy", _isotropic),
     Candidate("MaterialX's blur along a circle of radius 1", _around),
+    *(
+        Candidate(
+            f"the profile of a mean free path of {each:g}, whatever the radius",
+            partial(_even, reach=each),
+        )
+        for each in EVEN
+    ),
+    *(
+        Candidate(
+            f"a far exponential of {each:g} mean free paths in place of {FAR:g}",
+            partial(_spread, far=each),
+        )
+        for each in FARTHER
+    ),
 )
 
 

@@ -19,6 +19,7 @@ LINEAR = (4.09712, 4.20863)
 SQUARED = (9.59217, 41.6808, 17.7126)
 NODES, PANELS = 50, 40  # of the quadrature of the blur, whose integrand has a kink
 LOSS, GAIN = 0.139, 1.17  # of van de Hulst's fit
+FAR = 3.0  # length of the profile's second exponential over that of the first
 
 
 def subsurface_albedo(rho: ArrayLike, scatter_anisotropy: ArrayLike = 0.0) -> Array:
@@ -275,8 +276,13 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
     """
     numbers = {"mu": checked("mu", mu, "cos_theta"), "reach": checked("reach", reach)}
     cosine, length = broadcastable({}, numbers)
-    reach = length[..., np.newaxis]
-    parts = [(0.25, _exponential(cosine, reach)), (0.75, _exponential(cosine, 3.0 * reach))]
+    return blur_to(cosine, length, FAR)
+
+
+def blur_to(mu: Array, reach: Array, far: float) -> Array:
+    """`diffusion_blur` of valid arrays, whose second exponential is so many times as long as the first."""
+    reach = reach[..., np.newaxis]
+    parts = [(0.25, _exponential(mu, reach)), (0.75, _exponential(mu, far * reach))]
     total = sum(weight * share for weight, (_, share) in parts)
     return np.asarray(sum(weight * share * mean for weight, (mean, share) in parts) / total)
 
