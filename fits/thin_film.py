@@ -2,42 +2,67 @@
 """Errors of `genglsl/thin_film.glsl` against all orders and whole averages: python -m fits.thin_film.
 
 The shader sums six orders and a geometric series after them, averages over the hemisphere in six
-cosines and over the visible facets in nine. Nothing is fitted; this measures what each costs, over random
-films of up to 1000 nm on each kind of substrate.
+cosines and over the visible facets in nine. Nothing is fitted; this measures what each costs, over films
+of up to 1000 nm on each kind of substrate, and over the thin ones that two checks ask of. The largest
+error is searched for: around the worst of random films, in ever smaller steps. Next to the normal all
+azimuths are the same, so that nine facets are three: the mean over them is worst there.
 """
 
 import numpy as np
 
+from mxeon.conformance.probes.thin_films import LEAST_OIL, MOST_COSINE, STEEP
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import film_curve
 from mxeon.models.thin_film.lobe import film_albedo_dir
 
-SEED, COUNT, VIEWS = 1, 1 << 12, 1 << 8
-LEAST_COSINE, LEAST_ALPHA = 0.1, 1e-2
+SEED, COUNT = 1, 1 << 9  # films of a step
+KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # the worst of them; distances from these, of a range of 1
+NUMBERS, LEAST = (
+    10,
+    1e-3,
+)  # of a film, its substrate and its view; the least, since 0 reflects nothing
+# Each in a range: roughness, cosine of the view, thickness in nm, index.
+FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
+SLANTED = {**FILMS, "mu": (0.1, MOST_COSINE)}
+THIN = {**STEEP, "index": (LEAST_OIL, 2.5)}
 WHITE = {"color82": 1.0, "color90": 1.0}
 
 
-def substrates(rng, count):
-    """Random inputs of the three nodes, by category."""
-    color = 0.2 + 2.8 * rng.random((3, count))
+def substrates(unit):
+    """Inputs of the three nodes, by category, from numbers in [0, 1], shape (6, N)."""
+    count = unit.shape[1]
     return {
-        "dielectric_bsdf": {"ior": 1.0 + 2.0 * rng.random(count), "tint": np.ones((3, 1))},
-        "conductor_bsdf": {"ior": color, "extinction": 0.2 + 5.8 * rng.random((3, count))},
+        "dielectric_bsdf": {"ior": 1.0 + 2.0 * unit[0], "tint": np.ones((3, 1))},
+        "conductor_bsdf": {"ior": 0.5 + 2.5 * unit[:3], "extinction": 0.2 + 5.8 * unit[3:]},
         "generalized_schlick_bsdf": {
-            "color0": rng.random((3, count)),
+            "color0": unit[:3],
             **{name: np.full((3, count), value) for name, value in WHITE.items()},
             "exponent": np.full(count, 5.0),
         },
     }
 
 
-def films(rng, count):
-    """Random films."""
-    return {
-        "thinfilm_thickness": 1000.0 * rng.random(count),
-        "thinfilm_ior": 1.0 + 1.5 * rng.random(count),
-    }
+def filmed(category, ranges, unit):
+    """Inputs of a node under a film, roughness and cosine of a view, from numbers in [0, 1]."""
+    alpha, mu, thickness, index = (
+        low + (high - low) * each for (low, high), each in zip(ranges.values(), unit, strict=False)
+    )
+    films = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
+    return substrates(unit[4:])[category] | films, alpha, mu
+
+
+def largest(errors, ranges, category):
+    """The largest error of films in ranges that a search finds."""
+    rng = np.random.default_rng(SEED)
+    unit = rng.random((NUMBERS, COUNT))
+    found = errors(category, *filmed(category, ranges, unit))
+    for step in STEPS:
+        worst = unit[:, np.argsort(found)[-KEPT:]].repeat(COUNT // KEPT // 4, axis=1)
+        near = np.clip(worst + step * rng.standard_normal(worst.shape), LEAST, 1.0)
+        found = np.append(found, errors(category, *filmed(category, ranges, near)))
+        unit = np.append(unit, near, axis=1)
+    return float(found.max())
 
 
 def six_orders(r, phase, opd, _):
@@ -55,8 +80,8 @@ def six_orders(r, phase, opd, _):
     return total
 
 
-def orders_error(category, material, mu):
-    """Largest error of the sum, relative to the largest channel."""
+def orders_errors(category, material, _, mu):
+    """Errors of the sum, relative to the largest channel."""
     curve = film_curve(category)
     exact = curve.at(mu, **material)
     all_orders, film._all_orders = film._all_orders, six_orders
@@ -64,17 +89,17 @@ def orders_error(category, material, mu):
         short = curve.at(mu, **material)
     finally:
         film._all_orders = all_orders
-    return float((np.abs(short - exact) / exact.max(axis=0)).max())
+    return (np.abs(short - exact) / exact.max(axis=0)).max(axis=0)
 
 
-def average_error(category, material):
-    """Largest error of F_ss in six cosines."""
+def average_errors(category, material, *_):
+    """Errors of F_ss in six cosines."""
     x, w = _gauss(6)
     curve = film_curve(category)
     average = sum(
         weight * curve.at(np.asarray(mu), **material) for mu, weight in zip(x, w, strict=True)
     )
-    return float(np.abs(average - curve.average(**material)).max())
+    return np.abs(average - curve.average(**material)).max(axis=0)
 
 
 def _gauss(count):
@@ -88,21 +113,18 @@ def _gauss(count):
     return 0.5 * (1.0 + nodes), vectors[0] ** 2
 
 
-def visible_error(category, material, rng):
-    """Largest error of the average over the visible facets in nine of them."""
-    mu = LEAST_COSINE + (1.0 - LEAST_COSINE) * rng.random(VIEWS)
+def visible_errors(category, material, alpha, mu):
+    """Errors of the average over the visible facets in nine of them."""
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
-    alpha = LEAST_ALPHA ** rng.random(VIEWS)
-    few = {name: value[..., :VIEWS] for name, value in material.items()}
-    inputs = {name: value.T for name, value in few.items()}
+    inputs = {name: value.T for name, value in material.items()}
     inputs["roughness"] = np.repeat(alpha[:, np.newaxis], 2, axis=1)
-    white = inputs | {"thinfilm_thickness": np.zeros(VIEWS)} | MIRRORS[category]
+    white = inputs | {"thinfilm_thickness": np.zeros_like(mu)} | MIRRORS[category]
     exact = [film_albedo_dir(category, wo, each, compensate=False) for each in (inputs, white)]
     total, weights = 0.0, 0.0
     for cosine, weight in _facets(wo, alpha):
-        total += weight * film_curve(category).at(np.clip(cosine, 0.0, 1.0), **few)
+        total += weight * film_curve(category).at(np.clip(cosine, 0.0, 1.0), **material)
         weights += weight
-    return float(np.abs(total / weights - (exact[0] / exact[1]).T).max())
+    return np.abs(total / weights - (exact[0] / exact[1]).T).max(axis=0)
 
 
 MIRRORS = {
@@ -131,22 +153,26 @@ def _facets(wo, alpha):
             yield c, height * 2.0 * mu_i * wo[:, 2] / smith
 
 
-def errors():
-    """Largest errors by category: of the orders, of F_ss and of the visible facets."""
-    rng = np.random.default_rng(SEED)
-    result = {}
-    for category, material in substrates(rng, COUNT).items():
-        material |= films(rng, COUNT)
-        mu = LEAST_COSINE + (1.0 - LEAST_COSINE) * rng.random(COUNT)
-        few = {name: value[..., :VIEWS] for name, value in material.items()}
-        result[category] = (
-            orders_error(category, material, mu),
-            average_error(category, few),
-            visible_error(category, material, rng),
-        )
-    return result
+# What is measured, by name: errors, and the ranges of films.
+MEASURED = {
+    "orders": (orders_errors, FILMS),
+    "F_ss": (average_errors, FILMS),
+    "F_ss of thin films": (average_errors, THIN),
+    "visible facets": (visible_errors, SLANTED),
+    "visible facets under thin films": (visible_errors, THIN),
+    "visible facets, all views": (visible_errors, FILMS),
+}
+
+
+def errors(names):
+    """Largest errors by name, each by category."""
+    return {
+        name: {category: largest(*MEASURED[name], category) for category in MIRRORS}
+        for name in names
+    }
 
 
 if __name__ == "__main__":
-    for name, (orders, average, visible) in errors().items():
-        print(f"{name}: orders {orders:.2g}, F_ss {average:.2g}, visible facets {visible:.2g}")
+    for name, found in errors([*MEASURED]).items():
+        text = ", ".join(f"{category} {error:.3g}" for category, error in found.items())
+        print(f"{name}: {text}")

@@ -66,9 +66,9 @@ CONE_RADIANCE = Tolerance(
     rounded_up(cone_roundings() * ROUNDING),
     UNIT,
     scaled,
-    "at most 720 roundings of float32, 2^-24 each: twelve of the cosine of each angle and seven beside "
-    "them, times the slope of a smoothstep over 20 degrees, 3/2 over its width in cosine, and eight of "
-    "the step; rounded up",
+    f"at most {cone_roundings():.0f} roundings of float32, 2^-24 each: twelve of the cosine of each angle "
+    f"and seven beside them, times the slope of a smoothstep over {LEAST_FALLOFF:.0f} degrees, 3/2 over its "
+    "width in cosine, and eight of the step; rounded up",
 )
 PICTURE_RADIANCE = Tolerance(
     rounded_up(5 * 6 * ROUNDING / RIM + 8 * ROUNDING),

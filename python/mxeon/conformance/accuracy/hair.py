@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from mxeon.conformance.nodes.hair import LEAST_SCALE, LEAST_VARIANCE
+from mxeon.conformance.nodes.hair import LEAST_SCALE, LEAST_VARIANCE, WIDE_SCALE, WIDE_VARIANCE
 from mxeon.conformance.nodes.hair_regions import REGIONS, Region
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED
 from mxeon.conformance.samples.measurement import absolute, scaled
@@ -77,6 +77,16 @@ HAIR_FRAME = Tolerance(
     scaled,
     "two values, in which five roundings of each product of turned vectors come to those of an "
     "angle; rounded up",
+)
+# Mean slopes of the logarithms of a Gaussian and of a logistic function.
+MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
+HAIR_MEAN = Tolerance(
+    float(rounded_up((MEAN_SLOPE * ANGLE + CHAIN) * ROUNDING)),
+    UNIT,
+    scaled,
+    f"of an integral: {CHAIN} roundings of float32, 2^-24 each, and {ANGLE} in an angle, times the mean "
+    f"slope of the logarithm, sqrt(2 / pi v) of M and 1 / 2 s' of N, of lobes from v = {WIDE_VARIANCE:g} "
+    f"and s = {WIDE_SCALE:g} on; rounded up",
 )
 HAIR_ALBEDO = Tolerance(
     rounded_up(CHAIN * ROUNDING),

@@ -36,7 +36,7 @@ QUADRATURES = {  # largest error of a probe's integrals of the equations
     FITTED: 2e-4,
     MICROFACET: 6e-4,
     SCHLICK: 6e-4,
-    HAIR: 1e-4,
+    HAIR: 5e-6,
 }
 BLACK = ("color", "tint", "color0", "color90")  # inputs that are 0 where nothing is scattered
 NOTHING = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))

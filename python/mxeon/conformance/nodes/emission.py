@@ -38,7 +38,7 @@ EMITTER = """  <surface name="shading" type="surfaceshader">
   </surface>
 """
 PORT = '    <input name="{}" type="EDF" nodename="{}" />\n'
-LEAST_FALLOFF = 20.0  # degrees of full angle between the cones: what rounds is divided by it
+LEAST_FALLOFF = 60.0  # degrees of full angle between the cones: what rounds is divided by it
 EXPONENTS = (1.0, 8.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"

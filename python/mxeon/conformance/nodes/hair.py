@@ -16,6 +16,7 @@ from mxeon.models.nodes.hair import HAIR_NODE
 from mxeon.models.nodes.node import Inputs
 
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # of random pairs
+WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # least ones of values that are integrated
 MOST_VARIANCE, MOST_SCALE = 100.0, 10.0  # which the node of artistic roughness reaches
 # Share of R, TT, TRT and TRRT+ that takes light from the viewer's side.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])

@@ -8,15 +8,13 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import HAIR
-from mxeon.conformance.nodes.hair import HairSubject
+from mxeon.conformance.nodes.hair import WIDE_SCALE, WIDE_VARIANCE, HairSubject
 from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.probes.bsdf import FEW, NODES, PAIRS, BsdfProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED, special_directions
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.hair.formulas import SCALE, section
-
-WIDE = (0.05, 0.3)  # least variance and scale of values that are integrated
 
 
 class HairProbe(BsdfProbe):
@@ -99,7 +97,8 @@ class HairProbe(BsdfProbe):
 
     def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
         """Wide lobes without tilt."""
-        wide = {name: np.maximum(inputs[name], WIDE) for name in ROUGHNESSES}
+        least = WIDE_VARIANCE, WIDE_SCALE
+        wide = {name: np.maximum(inputs[name], least) for name in ROUGHNESSES}
         return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
 
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:

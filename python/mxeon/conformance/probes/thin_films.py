@@ -20,7 +20,8 @@ ALBEDOS = 24
 FEW = 1 << 6  # pairs of a control
 VIEWS = 16  # whose averages are judged by themselves
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
-STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 150.0)}  # see `steep`
+STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `steep`
+MOST_COSINE = 0.9  # of other views of albedos: next to 1 the shader's nine facets are three
 LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
 
@@ -55,7 +56,8 @@ class FilmProbe(MicrofacetProbe):
     @property
     def cosines(self) -> tuple[Batch, ...]:
         """ALBEDOS views of the random pairs, and as many where few facets stand for all the least."""
-        batch = super(MicrofacetProbe, self).cosines[0].first(ALBEDOS)
+        slanted = self.batches[0].where(self.batches[0].wo[:, 2] <= MOST_COSINE)
+        batch = slanted.where(slanted.wo[:, 2] >= self.least_cosine).first(ALBEDOS)
         return replace(batch, inputs=simple(batch.inputs)), self._views(ALBEDOS, HARD)
 
     @cached_property
