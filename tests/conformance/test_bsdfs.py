@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.bsdf import LEAST_ESS
+from mxeon.conformance.accuracy.bsdf import LEAST_ESS, SEEN_ESS
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS, QUADRATURES
@@ -12,11 +12,13 @@ from mxeon.conformance.probes import bsdf as bsdf_probes
 from mxeon.conformance.probes.bsdf import BSDF_PROBES
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.microfacet.ggx_formulas import half_vector, ndf, visibility
 from tests.support.wrong_libraries import wrong_copy, wrong_stock_node
 
 SUBJECTS = {subject.model: subject for subject in BSDFS}
 ROWS = {check.key: check for check in CHECKS}
 SMALL = {"PAIRS": 1 << 9, "FEW": 1 << 8, "ALBEDOS": 1 << 5, "MATERIALS": 32}
+ALPHAS = np.linspace(0.02, 1.0, 50)
 MICROFACETS = ("dielectric", "conductor", "schlick")
 
 # What fails with stock MaterialX, and words of each diagnosis; every other check passes.
@@ -297,3 +299,14 @@ def test_the_least_albedo_of_microfacets_is_that_of_the_roughest_along_the_norma
     assert np.isclose(ggx_albedo_dir(1.0, 1.0), LEAST_ESS, rtol=1e-10)
     mu, alpha = np.meshgrid(np.linspace(1e-4, 1.0, 12), np.linspace(1e-3, 1.0, 12))
     assert ggx_albedo_dir(mu, alpha).min() >= LEAST_ESS * (1.0 - 1e-10)
+
+
+def test_values_count_with_the_largest_share_that_the_tolerance_has():
+    mu, alpha = (each.ravel() for each in np.meshgrid(np.linspace(0.05, 1.0, 20), ALPHAS))
+    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])[..., np.newaxis]
+    cosine = np.linspace(0.0, 1.0, 201)
+    wi = np.stack([-np.sqrt(1.0 - cosine * cosine), 0.0 * cosine, cosine])[:, np.newaxis]
+    facets = ndf(half_vector(wo, wi)[0], (alpha[:, np.newaxis],) * 2)
+    values = np.pi * facets * visibility(mu[:, np.newaxis], cosine, alpha[:, np.newaxis]) * cosine
+    share = np.minimum(values.max(axis=1), 1.0) / ggx_albedo_dir(mu, alpha)
+    assert SEEN_ESS - 0.02 < share.max() <= SEEN_ESS

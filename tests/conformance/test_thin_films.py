@@ -30,7 +30,6 @@ STOCK = {
         "film": (DIFFERS, f"{CHOICES}, and its compensation"),
         "film_limit": (DIFFERS, CHOICES),
         "film_average": (DIFFERS, AVERAGE),
-        "film_visible": (DIFFERS, f"{CHOICES}, in light from all sides"),
         "film_throughput": (FAILED, f"{CHOICES}: {FITTED}"),
     },
     "conductor_bsdf": {
@@ -126,11 +125,12 @@ def test_every_check_of_a_film_has_a_shader_that_it_fails():
 
 
 def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
-    monkeypatch.setattr(fit, "COUNT", 1 << 7)  # of 2^9, around whose worst the script searches
-    monkeypatch.setattr(fit, "STEPS", (0.05,))
-    errors = fit.errors([*STATED])
+    errors = fit.errors(["orders"])
+    monkeypatch.setattr(fit, "COUNT", 1 << 5)  # of 2^9: averages take long
+    monkeypatch.setattr(fit, "STEPS", (0.1, 0.05))
+    errors |= fit.errors([name for name in STATED if name != "orders"])
     for name, most in STATED.items():
-        assert 0.1 * most < max(errors[name].values()) <= most
+        assert 0.2 * most < max(errors[name].values()) <= most
 
 
 def judged(host, node, library):

@@ -18,6 +18,9 @@ DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
 CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
 SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
+# Largest v / E_ss of the values pi f cos of facets that reflect everything, v at most 1: the errors of a
+# compensation count relative where values are above 1. It is at alpha 0.58 and a cosine of 0.6, where v is 1.
+SEEN_ESS = 1.58
 
 
 def sum_of(directions: int) -> float:
@@ -52,11 +55,18 @@ CONTY_KULLA_VALUE = Tolerance(
 )
 COMPENSATION = (ESS_FIT + FRESNEL_FIT * (1.0 - LEAST_ESS)) / LEAST_ESS  # its error, relative
 MICROFACET_VALUE = Tolerance(
-    rounded_up(COMPENSATION),
+    rounded_up(ESS_FIT * SEEN_ESS + FRESNEL_FIT * (SEEN_ESS - 1.0)),
     SCALED,
     scaled,
-    "the fits of E_ss, 5e-4, and of F_ss, 3.6e-4, as they enter 1 + F_ss (1 - E_ss) / E_ss where E_ss "
-    "is least, 1 - ln 2 = 0.31; rounded up",
+    "the fits of E_ss, 5e-4, and of F_ss, 3.6e-4, as they enter 1 + F_ss (1 - E_ss) / E_ss: the first "
+    "over E_ss, which is least where values are small, so that at most 1.58 of it counts, and the second "
+    "with 0.58; rounded up",
+)
+MICROFACET_MEAN = Tolerance(
+    rounded_up(COMPENSATION),
+    "albedo",
+    absolute,
+    "the same errors, relative, where E_ss is least, 1 - ln 2 = 0.31; rounded up",
 )
 CLOSED_ALBEDO = Tolerance(
     rounded_up(32 * ROUNDING),
@@ -169,13 +179,12 @@ FILM_HEIGHTS = (
 )
 FILM_VALUE = Tolerance(
     rounded_up(
-        0.5 * (ESS_FIT + FILM_AVERAGE * (1.0 - LEAST_ESS)) / LEAST_ESS + FILM_ORDERS,
+        ESS_FIT * SEEN_ESS + FILM_AVERAGE * (SEEN_ESS - 1.0) + FILM_ORDERS,
     ),
     SCALED,
     scaled,
     "the sum of six orders, 8.2e-3 of the film's reflectance, and the fit of E_ss, 5e-4, and F_ss in "
-    "six cosines, 7.9e-3, as they enter the compensation where E_ss is least, 0.31: at alpha 1, where "
-    "pi f cos without F is at most 1/2. Few films come near to it: thin metals at grazing have the first, "
+    "six cosines, 7.9e-3, as they enter a value, the first with 1.58 and the second with 0.58. Few films come near to it: thin metals at grazing have the first, "
     "indices far apart the second, which `film_average` judges by itself; rounded up",
 )
 FILM_ALBEDO = Tolerance(
@@ -200,12 +209,11 @@ FILM_STEEP = Tolerance(
     "the mean over nine visible facets of rough lobes under films of 50 to 100 nm, 1.1e-2",
 )
 FILM_LIMIT = Tolerance(
-    rounded_up(FILM_HEIGHTS + 0.5 * FRESNEL_FIT * (1.0 - LEAST_ESS) / LEAST_ESS),
+    rounded_up(FILM_HEIGHTS + FRESNEL_FIT * (SEEN_ESS - 1.0)),
     SCALED,
     scaled,
     "the sensitivities, whose heights add up to 1 within 1.3e-3, and the fit of F_ss without a film, "
-    "3.6e-4, as it enters the compensation at alpha 1, where pi f cos without F is at most 1/2; E_ss is "
-    "the same with a film and without; rounded up",
+    "3.6e-4, as it enters a value, with 0.58; E_ss is the same with a film and without; rounded up",
 )
 FILM_ENERGY = Tolerance(
     MICROFACET_VALUE.value,

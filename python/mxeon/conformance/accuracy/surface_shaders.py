@@ -11,7 +11,7 @@ VALUE = Tolerance(
     2 * MICROFACET_VALUE.value + LAYERS,
     SCALED,
     scaled,
-    "two lobes of microfacets, each within 3e-3, and the throughputs of two of them, each within 5e-3, "
+    "two lobes of microfacets, each within 1e-3, and the throughputs of two of them, each within 5e-3, "
     "and of a sheen, within 1.6e-3, over bases of which no more than 1 comes out",
 )
 ALBEDO = Tolerance(

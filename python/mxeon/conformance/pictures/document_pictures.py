@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.accuracy import surface_shaders as surfaces
-from mxeon.conformance.accuracy.bsdf import MICROFACET_VALUE, sum_of
+from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, sum_of
 from mxeon.conformance.diagnosis.verdicts import not_measured
 from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result
@@ -51,7 +51,7 @@ TEXTURED = Tolerance(
 )
 
 FITTED = Tolerance(
-    MICROFACET_VALUE.value + sum_of(256),
+    MICROFACET_MEAN.value + sum_of(256),
     "pi f cos, relative above 1, times cos(theta_o)",
     absolute,
     "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "
