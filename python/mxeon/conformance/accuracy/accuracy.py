@@ -88,9 +88,11 @@ def _lobe(
     frame: Tolerance,
     throughput: Tolerance | None = None,
     light: Tolerance | None = None,
+    mean: Tolerance | None = None,
 ) -> Accuracy:
-    """Accuracy of a BSDF node on a host that evaluates any pairs."""
-    passed, integral = throughput or albedo, bsdf.integral_of(value, QUADRATURES[kind])
+    """Accuracy of a BSDF node on a host that evaluates any pairs; `mean` of values in an integral."""
+    passed = throughput or albedo
+    integral = bsdf.integral_of(mean or value, QUADRATURES[kind])
     light = light or bsdf.layer_of(integral, passed)
     return Accuracy(value, albedo, passed, frame, integral, light, reciprocity=value)
 
@@ -143,6 +145,7 @@ ACCURACY: Mapping[str, Accuracy] = {
         bsdf.MICROFACET_ALBEDO,
         bsdf.MICROFACET_FRAME,
         light=bsdf.WHITE_FURNACE,
+        mean=bsdf.MICROFACET_MEAN,
     ),
     SCHLICK: _lobe(
         SCHLICK,
@@ -151,8 +154,9 @@ ACCURACY: Mapping[str, Accuracy] = {
         bsdf.MICROFACET_FRAME,
         bsdf.SCHLICK_THROUGHPUT,
         bsdf.WHITE_FURNACE,
+        bsdf.MICROFACET_MEAN,
     ),
-    HAIR: _lobe(HAIR, hair.HAIR_VALUE, hair.HAIR_ALBEDO, hair.HAIR_FRAME),
+    HAIR: _lobe(HAIR, hair.HAIR_VALUE, hair.HAIR_ALBEDO, hair.HAIR_FRAME, mean=hair.HAIR_MEAN),
     COMBINED: Accuracy(bsdf.COMBINED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
     NESTED: Accuracy(bsdf.NESTED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
     FILM_PAIRS: Accuracy(bsdf.FILM_VALUE, bsdf.FILM_ALBEDO, bsdf.FILM_ALBEDO),

@@ -18,8 +18,8 @@ DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
 CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
 SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
-# Largest v / E_ss of the values pi f cos of facets that reflect everything, v at most 1: the errors of a
-# compensation count relative where values are above 1. It is at alpha 0.58 and a cosine of 0.6, where v is 1.
+# Largest v / E_ss, v the value pi f cos of facets that reflect everything, or 1 if that is less, as
+# errors of a compensation count: at alpha 0.58 and a cosine of 0.6.
 SEEN_ESS = 1.58
 
 
@@ -174,13 +174,9 @@ FILM_AVERAGE = 7.9e-3  # F_ss in six cosines
 FILM_THIN_AVERAGE = 1.4e-3  # the same of films of 50 to 100 nm
 FILM_VISIBLE = 4.4e-2  # mean over the visible facets in nine of them, for cosines of up to 0.9
 FILM_THIN_VISIBLE = 1.1e-2  # the same for films of 50 to 100 nm, alpha and cosine from 0.6 on
-FILM_HEIGHTS = (
-    1.3e-3  # sum of the sensitivities' heights, which the text gives in five digits, over 1
-)
+FILM_HEIGHTS = 1.3e-3  # sum of the sensitivities' heights, of five digits, over 1
 FILM_VALUE = Tolerance(
-    rounded_up(
-        ESS_FIT * SEEN_ESS + FILM_AVERAGE * (SEEN_ESS - 1.0) + FILM_ORDERS,
-    ),
+    rounded_up(ESS_FIT * SEEN_ESS + FILM_AVERAGE * (SEEN_ESS - 1.0) + FILM_ORDERS),
     SCALED,
     scaled,
     "the sum of six orders, 8.2e-3 of the film's reflectance, and the fit of E_ss, 5e-4, and F_ss in "
@@ -192,9 +188,8 @@ FILM_ALBEDO = Tolerance(
     "albedo",
     absolute,
     "the mean over nine visible facets, 4.4e-2, and F_ss in six cosines, 7.9e-3, times the light that "
-    "is lost, at most 0.69; and the fit of E_ss, 5e-4: the fit of a lobe's albedo has no part in a "
-    "film's. The first is of films of 1000 nm, whose fringes nine facets do not see; `film_visible` judges "
-    "it where they do; rounded up",
+    "is lost, at most 0.69; and the fit of E_ss, 5e-4. The first is of films of 1000 nm, whose fringes "
+    "nine facets do not see; `film_visible` judges it where they do; rounded up",
 )
 FILM_MEAN = Tolerance(
     rounded_up(FILM_THIN_AVERAGE),
