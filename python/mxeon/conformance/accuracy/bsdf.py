@@ -58,9 +58,8 @@ MICROFACET_VALUE = Tolerance(
     rounded_up(ESS_FIT * SEEN_ESS + FRESNEL_FIT * (SEEN_ESS - 1.0)),
     SCALED,
     scaled,
-    "the fits of E_ss, 5e-4, and of F_ss, 3.6e-4, as they enter 1 + F_ss (1 - E_ss) / E_ss: the first "
-    "over E_ss, which is least where values are small, so that at most 1.58 of it counts, and the second "
-    "with 0.58; rounded up",
+    "the fits of E_ss, 5e-4, and of F_ss, 3.6e-4, in 1 + F_ss (1 - E_ss) / E_ss: E_ss is least where "
+    "values are small, so that at most 1.58 of the first and 0.58 of the second count; rounded up",
 )
 MICROFACET_MEAN = Tolerance(
     rounded_up(COMPENSATION),
