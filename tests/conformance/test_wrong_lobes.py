@@ -203,6 +203,7 @@ def test_the_other_hosts_see_what_is_around_the_model(hosts, tmp_path, host, nam
 
 
 # Of nodes beside the rough diffuse ones, by name: node, file, text, the other text, key, words.
+PROFILES = {"conical_edf": "profiles/pbrlib"}  # of nodes that are not in `libraries`
 BLUR = "curvature * max(radius, vec3(0.0))"
 BESIDE = {
     "light from the viewer's side": (
@@ -221,6 +222,14 @@ BESIDE = {
         "sphere",
         "nearest known model: the profile of a mean free path of 0.5, whatever the radius",
     ),
+    "sine of a cone to the seventh power": (
+        "conical_edf",
+        "conical_edf.glsl",
+        "w / 42.0 * tail",
+        "w / 42.0",
+        "exitance",
+        "but not as exact as it has to be",
+    ),
     "far profile at nine reaches": (
         "subsurface_bsdf",
         "subsurface_blur.glsl",
@@ -237,9 +246,10 @@ def test_a_wrong_line_of_another_node_fails_the_check_meant_for_it(gl, tmp_path,
     title, file, text, other, key, words = BESIDE[name]
     [subject] = [each for each in PBR_SUBJECTS if each.title == title]
     probe = probe_type_of(subject, PairProbe)
+    profile = PROFILES.get(title, "libraries")
     for library, verdict in (
         ("eonlib", PASSED),
-        (wrong_copy(tmp_path, text, other, f"genglsl/{file}"), FAILED),
+        (wrong_copy(tmp_path, text, other, f"genglsl/{file}", library=profile), FAILED),
     ):
         [result] = judge_subject(
             probe(gl, subject, library), [row for row in CHECKS if row.key == key]
