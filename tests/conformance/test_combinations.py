@@ -27,6 +27,8 @@ COMBINED_WRONG = {  # of stock MaterialX: verdict of its combinations that are o
     "mix_sum": (FAILED, ENDED, {"combined_throughput"}),
     "mix_layer": (FAILED, ENDED, {"combined_throughput"}),
     "layer_sum": (FAILED, ENDED, {"combination", "combined_albedo", "combined_throughput"}),
+    # Stock's sheen passes light by its albedo without the color.
+    "layer_colored": (FAILED, "", {"combination", "combined_albedo", "combined_throughput"}),
 }
 # Wrong lines of eonlib: file, text, the text in its place, and the rows and the check that see them.
 PASSES = "combined_throughput"

@@ -32,6 +32,7 @@ STOCK = {
     "tilted_lobes": "values that are not finite with a tilted cuticle",
     "wide_lobes": "nearest known model: every roughness in [0.001, 1] (rms ",
     "straight_views": "",
+    "low_index": "values that are not finite",
     "surroundings": "",
 }
 
@@ -58,6 +59,10 @@ WRONG = {
     "sine by a cosine": (
         "vec2(wo.z, -wo.y) / c", "vec2(wo.z / c, -sign(wo.y) * sqrt(1.0 - wo.z * wo.z / (c * c)))",
         "straight_views", "",
+    ),
+    "index below 1": (
+        "(ior - wo.x) * (ior + wo.x)", "(max(ior, 1.0) - wo.x) * (max(ior, 1.0) + wo.x)",
+        "low_index", "",
     ),
     "exit on the other side": ("vec2(wo.z, -wo.y)", "wo.zy", "value", ""),
     "too bright": (
