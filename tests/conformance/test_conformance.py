@@ -110,7 +110,7 @@ def test_special_pairs_are_exact():
         mu_o == 0.0,
         mu_i == 0.0,
         np.maximum(mu_o, mu_i) < 1e-6,
-        special.inputs["weight"] == np.float32(1e-3),
+        special.inputs["weight"] == np.float32(1e-4),
         special.inputs["occlusion"] == 0.0,
         special.inputs["roughness"] == np.float32(1e-3),
         outside.wi[:, 2] < 0.0,

@@ -25,7 +25,7 @@ def inputs(row, count=COUNT):
     values = {}
     for name in row.inputs:
         colored = name in VECTORS or (row.category == "conductor_bsdf" and name == "ior")
-        colored |= name.endswith("in2") and "color3" in row.name
+        colored |= name.endswith("/color") or (name.endswith("in2") and "color3" in row.name)
         shape = (count, 3) if colored else (count,)
         values[name] = 0.3 + 0.6 * rng.random(shape)
         if name == "exponent":

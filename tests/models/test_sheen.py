@@ -9,7 +9,7 @@ from mxeon.models.core.quadrature import albedo_dir_quadrature, hemisphere_nodes
 from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
 from mxeon.models.diffuse.translucent import translucent_btdf
 from mxeon.models.sheen import conty_kulla_brdf, zeltner_albedo_dir, zeltner_brdf
-from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
+from mxeon.models.sheen.conty_kulla import _rule, conty_kulla_albedo_dir
 from tests.support import tolerances
 
 BRDFS = (conty_kulla_brdf, zeltner_brdf, burley_brdf)
@@ -180,3 +180,8 @@ REFUSED = (
 def test_what_leaves_its_range_is_refused(function, arguments, message):
     with pytest.raises(ValueError, match=message):
         function(*arguments)
+
+
+def test_the_rule_of_conty_kulla_integrates_what_ends_in_a_root():
+    x, weights = _rule.__wrapped__()  # which others may have cached
+    np.testing.assert_allclose([weights.sum(), weights @ np.sqrt(x)], [1.0, 2.0 / 3.0], rtol=1e-10)

@@ -230,3 +230,15 @@ def test_the_average_of_a_curve_is_weighted_by_the_cosine(thickness):
     expected = (2.0 * mu * values).mean(axis=-1)
     # 400 middles, and the twelve nodes of the average at grazing, where the curve is steep.
     assert np.allclose(curve.average(**material), expected, atol=1e-3)
+
+
+def test_a_film_refuses_forms_and_inputs_of_another_type():
+    with pytest.raises(ValueError, match="^form must be a Form; got 'x'$"):
+        film_dielectric(0.5, 500.0, 1.5, 1.5, form="x")
+    wo = [[0.0, 0.0, 1.0]]
+    with pytest.raises(ValueError, match="^inputs must be a mapping of names to values; got 3$"):
+        film_brdf("dielectric_bsdf", wo, wo, 3)
+    with pytest.raises(
+        ValueError, match="^inputs must have ior, roughness, thinfilm_ior, thinfilm_"
+    ):
+        film_brdf("dielectric_bsdf", wo, wo, {"tint": 1.0})

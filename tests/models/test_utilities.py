@@ -79,7 +79,7 @@ def test_planck_radiance_integrates_to_the_stefan_boltzmann_law():
         assert power == pytest.approx(STEFAN_BOLTZMANN * kelvin**4, rel=1e-6)
 
 
-def test_a_blackbody_has_luminance_1_and_colors_of_colour_science():
+def test_a_blackbody_has_luminance_1_and_the_colors_of_a_library():
     colour = pytest.importorskip("colour")
     shape = colour.SpectralShape(360, 830, 1)
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
