@@ -25,6 +25,14 @@ def test_an_output_that_is_the_input_is_refused(arguments, output, tmp_path, cap
     assert file.read_text() == "text"
 
 
+def test_a_page_of_the_field_is_not_written_through_a_link(tmp_path, capsys):
+    other, link = tmp_path / "other", tmp_path / "field.html"
+    other.write_text("mine")
+    link.symlink_to(other)
+    assert main(["report", "field", str(tmp_path), "--output", str(link)]) == MISUSE
+    assert "output must be no link" in capsys.readouterr().err and other.read_text() == "mine"
+
+
 def test_a_kit_is_written_over_a_kit_alone(tmp_path, monkeypatch, capsys):
     (tmp_path / "README.md").write_text("mine")
     monkeypatch.chdir(tmp_path)

@@ -48,6 +48,7 @@ def run_field(options: argparse.Namespace) -> int:
     from mxeon.report import write_field
     from mxeon.report.field import read_field
 
+    arguments.assert_no_link(options.output)
     entries = read_field(options.reports)
     page = write_field(entries, options.output)
     print(one_line(f"field: {page}, {len(entries)} rows"))
