@@ -17,12 +17,15 @@ from pathlib import Path
 from benchmarks import page, record
 from mxeon.errors import NotRun
 
-GROUPS = ("shaders", "noise", "materials", "instructions", "cycles", "models", "tool", "check")
+GROUPS = (
+    "shaders", "noise", "materials", "instructions", "registers", "cycles", "models", "tool", "check",
+)  # fmt: skip
 QUICK = {
     "shaders": {"rounds": 5},
     "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"rounds": 3, "size": 256},
     "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
+    "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},

@@ -14,16 +14,16 @@ from mxeon.errors import NotRun
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import document_text
 
-COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S", "frag", "-o")
+COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S")
 OPTIMIZER = ("spirv-opt", "-O")
 HEADER = 5  # words before the first instruction, whose high half counts its words
 
 
 def sources(node):
-    """Fragment shader of a material in Vulkan's GLSL, by library."""
+    """Stages of a material in Vulkan's GLSL, by library."""
     text = document_text(NODES[node])
     return {
-        library: generate(text, "vulkan", library=library, lights=True)[0].stages["pixel"]
+        library: generate(text, "vulkan", library=library, lights=True)[0].stages
         for library in LIBRARIES
     }
 
@@ -43,7 +43,13 @@ def compiled(source, optimize=False):
             )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "shader.spv")
-        subprocess.run([*COMPILER, file], input=source, text=True, check=True, capture_output=True)
+        subprocess.run(
+            [*COMPILER, "frag", "-o", file],
+            input=source,
+            text=True,
+            check=True,
+            capture_output=True,
+        )
         if optimize:
             subprocess.run([*OPTIMIZER, file, "-o", file], check=True, capture_output=True)
         words = np.fromfile(file, "<u4")
@@ -58,7 +64,7 @@ def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
     """The `Group` of nodes; a film is a value of an input and adds no instruction."""
     figures = []
     for node in nodes:
-        numbers = [[compiled(each, optimize=True)] for each in sources(node).values()]
+        numbers = [[compiled(each["pixel"], optimize=True)] for each in sources(node).values()]
         figures += [
             figure(f"{node}, eonlib", "instructions", numbers[0]),
             ratio(f"{node}, eonlib / stock", *numbers),

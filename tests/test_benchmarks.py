@@ -7,7 +7,19 @@ import numpy as np
 import pytest
 
 from benchmarks import __main__ as command
-from benchmarks import check, cycles, lights, materials, models, noise, page, record, shaders, tool
+from benchmarks import (
+    check,
+    cycles,
+    lights,
+    materials,
+    models,
+    noise,
+    page,
+    record,
+    registers,
+    shaders,
+    tool,
+)  # fmt: skip
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
 from mxeon.models import eon_brdf
 from mxeon.models.sampling import SAMPLERS
@@ -49,6 +61,7 @@ SMALLEST = {
     },
     "materials": {"rounds": 1, "size": 32, "nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar",)},
+    "registers": {"nodes": ("oren_nayar",)},
     "cycles": {"rounds": 1, "size": 32, "samples": (64,)},
     "models": {"rounds": 1, "pairs": (1000,)},
     "tool": {"rounds": 1, "counts": (1, 2), "documents": 1},
@@ -63,7 +76,10 @@ def test_each_group_is_measured_and_written_to_its_page(gl, tmp_path, monkeypatc
     monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
     monkeypatch.setattr(cycles, "processor_seconds", lambda pid: 0.0)  # less than a tick
     monkeypatch.setattr(command, "QUICK", small)
-    with available(name if name == "cycles" else "gl"):
+    host = {"cycles": "cycles", "registers": "registers"}.get(name, "gl")
+    with available(host):
+        if name == "registers":
+            registers.driver()
         assert command.main([name, "--quick", "--output", str(tmp_path)]) == 0
     ((group, _),) = record.read(tmp_path / "performance.json")
     assert group.name == name and group.figures
