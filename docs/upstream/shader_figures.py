@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.probes.bsdf import SchlickProbe
+from mxeon.conformance.probes.bsdf import MicrofacetProbe
 from mxeon.conformance.samples.batch import Batch
 from mxeon.hosts import open_host
 from mxeon.models.media.subsurface import diffusion_blur
@@ -40,7 +40,7 @@ def throughput_changes():
         if each.node == "generalized_schlick_bsdf" and "film" not in each.title
     ]
     with closing(open_host("gl")) as host:
-        probe = SchlickProbe(host, subject, "stock")
+        probe = MicrofacetProbe(host, subject, "stock")
         return {
             f"{name}_{branch}": _change(probe, branch, name, value)
             for name, value in CHANGES.items()

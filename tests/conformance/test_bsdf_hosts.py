@@ -12,8 +12,9 @@ from mxeon.conformance.accuracy.diffuse import BSDF_RAY
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
-from mxeon.conformance.probes.bsdf import BSDF_PROBES
-from mxeon.conformance.probes.bsdf_pictures import PICTURES, bsdf_probe_type
+from mxeon.conformance.probes.bsdf import BsdfProbe
+from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe, BsdfPlaneProbe
+from mxeon.conformance.probes.families import probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
 from mxeon.conformance.probes.polyhedron import PROBES
@@ -27,7 +28,7 @@ SUBJECTS = {subject.model: subject for subject in BSDFS}
 
 def judged(host, model, key):
     """Result of a check of a stock node on a host."""
-    probe = bsdf_probe_type(SUBJECTS[model], PROBES[{"cycles": "pictures"}.get(host.name, "pairs")])
+    probe = probe_type_of(SUBJECTS[model], PROBES[{"cycles": "pictures"}.get(host.name, "pairs")])
     return judge_check(ROWS[key], probe(host, SUBJECTS[model], "stock"))
 
 
@@ -70,7 +71,7 @@ def test_a_node_is_judged_on_every_host_that_evaluates(hosts, name):
 @pytest.mark.parametrize("model", ["zeltner", "dielectric"])
 def test_the_repaired_nodes_are_the_specifications_in_other_languages(hosts, name, model):
     host, subject = hosts(name), SUBJECTS[model]
-    probe = bsdf_probe_type(subject, PairProbe)(host, subject, "eonlib")
+    probe = probe_type_of(subject, PairProbe)(host, subject, "eonlib")
     batch = probe.batches[1]
     tolerance = ACCURACY[probe.kind].value
     errors = tolerance.metric(probe.direct(batch), subject.expected(batch))
@@ -79,10 +80,10 @@ def test_the_repaired_nodes_are_the_specifications_in_other_languages(hosts, nam
 
 def test_a_host_has_probes_by_what_it_shows():
     for subject in BSDFS:
-        assert bsdf_probe_type(subject, PairProbe) is BSDF_PROBES[subject.kind]
-        for probe in (PictureProbe, PlaneProbe):
-            assert bsdf_probe_type(subject, probe) is PICTURES[probe][subject.anisotropic]
-        assert bsdf_probe_type(subject, NativeProbe) is None
+        assert issubclass(probe_type_of(subject, PairProbe), BsdfProbe)
+        assert probe_type_of(subject, PictureProbe) is BsdfPictureProbe
+        assert probe_type_of(subject, PlaneProbe) is BsdfPlaneProbe
+        assert probe_type_of(subject, NativeProbe) is None
 
 
 def test_the_materials_of_pictures_have_every_input_of_the_model():
@@ -92,14 +93,14 @@ def test_the_materials_of_pictures_have_every_input_of_the_model():
 
 
 def test_light_comes_from_below_where_a_node_transmits():
-    probe = PICTURES[PlaneProbe][False](Engine(0.0), SUBJECTS["translucent"], "stock")
+    probe = BsdfPlaneProbe(Engine(0.0), SUBJECTS["translucent"], "stock")
     assert all((batch.wi[:, 2] < 0.0).all() and len(batch.wi) for batch in probe.batches)
 
 
 def test_cycles_burley_is_the_model_and_its_microfacets_lose_energy(hosts):
     host, subject = hosts("cycles"), SUBJECTS["conductor"]
     assert judged(host, "burley", "value").verdict == PASSED
-    probe = PICTURES[PictureProbe][True](host, subject, "stock")
+    probe = BsdfPictureProbe(host, subject, "stock")
     batch = probe.batches[0]
     single = next(each for each in subject.value_candidates if "no energy" in each.title)
     values, tolerance = probe.direct(batch), BSDF_RAY.value

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The other BSDF nodes of pbrlib: verdicts on stock MaterialX, and on shaders with one wrong line."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,8 +10,8 @@ from mxeon.conformance.accuracy.bsdf import LEAST_ESS, SEEN_ESS
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS, QUADRATURES
-from mxeon.conformance.probes import bsdf as bsdf_probes
-from mxeon.conformance.probes.bsdf import BSDF_PROBES
+from mxeon.conformance.probes.families import probe_type_of
+from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.microfacet.ggx_formulas import half_vector, ndf, visibility
@@ -17,7 +19,8 @@ from tests.support.wrong_libraries import wrong_copy, wrong_stock_node
 
 SUBJECTS = {subject.model: subject for subject in BSDFS}
 ROWS = {check.key: check for check in CHECKS}
-SMALL = {"PAIRS": 1 << 9, "FEW": 1 << 8, "ALBEDOS": 1 << 5, "MATERIALS": 32}
+# Few pairs: what is wrong here is wrong for most.
+FEWER = {"pairs": 1 << 9, "few": 1 << 8, "albedos": 1 << 5, "materials": 32, "mirrored": 1 << 9}
 ALPHAS = np.linspace(0.02, 1.0, 50)
 MICROFACETS = ("dielectric", "conductor", "schlick")
 
@@ -198,15 +201,6 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_pairs():
-    """Let probes have few pairs: what is wrong here is wrong for most."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name, count in SMALL.items():
-            patch.setattr(bsdf_probes, name, count)
-        yield
-
-
 # --- stock MaterialX ----------------------------------------------------------------------------
 
 
@@ -264,10 +258,16 @@ def test_every_check_of_the_nodes_has_a_shader_that_it_fails():
     }
 
 
+def probe_of(subject, host=None, library="stock"):
+    """The probe of a node, of few pairs."""
+    probe = probe_type_of(subject, PairProbe)
+    return probe(host, subject, library, replace(probe.usual, **FEWER))
+
+
 def judged(host, model, library, *keys):
     """Results of the checks of a node, or of those of these keys."""
     subject = SUBJECTS[model]
-    probe = BSDF_PROBES[subject.kind](host, subject, library)
+    probe = probe_of(subject, host, library)
     rows = [ROWS[key] for key in keys] or CHECKS
     return [judge_check(row, probe) for row in rows if applies(row, subject, probe.kind, host.name)]
 
@@ -277,7 +277,7 @@ def judged(host, model, library, *keys):
 
 @pytest.mark.parametrize("model", ["burley", "translucent", "conty_kulla", "zeltner", "schlick"])
 def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(model):
-    probe = BSDF_PROBES[SUBJECTS[model].kind](None, SUBJECTS[model], "stock")
+    probe = probe_of(SUBJECTS[model])
     batch, weights = probe.integrated
     values = probe.subject.expected(batch).reshape(*weights.shape, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
@@ -286,12 +286,10 @@ def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(model):
 
 @pytest.mark.parametrize("model", SUBJECTS)
 def test_a_node_scatters_nothing_to_the_other_side(model):
-    probe = BSDF_PROBES[SUBJECTS[model].kind](None, SUBJECTS[model], "stock")
+    probe = probe_of(SUBJECTS[model])
     batch, *_ = probe.batches
     values = probe.subject.expected(batch.first(1 << 6))
-    other = probe.subject.expected(
-        bsdf_probes.replace(batch, wi=batch.wi * [1.0, 1.0, -1.0]).first(1 << 6)
-    )
+    other = probe.subject.expected(replace(batch, wi=batch.wi * [1.0, 1.0, -1.0]).first(1 << 6))
     assert values.max() > 0.0 and not other.any()
 
 

@@ -11,7 +11,7 @@ import pytest
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
-from mxeon.conformance.probes.bsdf import BSDF_PROBES
+from mxeon.conformance.probes.bsdf import CombinedProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.core.layering import Bsdf, add, layer, multiply, throughput
 from tests.support.wrong_libraries import copy_of_eonlib, replace_text
@@ -61,7 +61,7 @@ WRONG = (
 
 
 def combined_results(gl, subject, library):
-    probe = BSDF_PROBES[subject.kind](gl, subject, library)
+    probe = CombinedProbe(gl, subject, library)
     rows = [row for row in CHECKS if applies(row, subject, subject.kind, "gl")]
     return {row.key: judge_check(row, probe) for row in rows}
 

@@ -20,7 +20,7 @@ from mxeon.conformance.functions.shader_functions import (
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.pictures import document_pictures as image
-from mxeon.conformance.probes.families import COMMON_SUBJECTS, PBR_SUBJECTS
+from mxeon.conformance.probes.families import ALL_SUBJECTS, COMMON_SUBJECTS, PBR_SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.probes.probe import Probe
@@ -134,12 +134,12 @@ def test_every_check_says_what_it_allows_and_what_it_must_catch(row):
 
 
 def kinds(probe):
-    """Kinds of a class of probes and of those derived from it."""
-    return {getattr(probe, "kind", None)}.union(*map(kinds, probe.__subclasses__()))
+    """Kinds that a class of probes and those derived from it have for every subject."""
+    return {probe.shown}.union(*map(kinds, probe.__subclasses__()))
 
 
 def test_every_kind_of_probe_has_one_accuracy():
-    assert kinds(Probe) - {None} == set(ACCURACY)
+    assert {each.kind for each in ALL_SUBJECTS} | kinds(Probe) - {""} == set(ACCURACY)
 
 
 # --- eonlib on OpenGL ---------------------------------------------------------------------------

@@ -14,7 +14,8 @@ from mxeon.conformance.accuracy.emission import (
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.emission import CONE, EDFS, LEAST_FALLOFF
-from mxeon.conformance.probes.families import ALL_PROBES, EMISSION_SUBJECTS, emission_probe_type
+from mxeon.conformance.probes.families import EMISSION_SUBJECTS, PROBES, probe_type_of
+from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run.plan import make_plan
@@ -78,7 +79,7 @@ WRONG = {
 def judged(host, title, library, *keys):
     """Results of the checks of a subject, or of those of these keys, by key."""
     subject = SUBJECTS[title]
-    probe = ALL_PROBES[subject.kind](host, subject, library)
+    probe = PROBES[PairProbe][subject.kind](host, subject, library)
     rows = [row for row in CHECKS if applies(row, subject, probe.kind, host.name)]
     return {row.key: judge_check(row, probe) for row in rows if row.key in (keys or ROWS)}
 
@@ -162,7 +163,7 @@ def test_every_check_of_emission_has_a_shader_that_it_fails():
 
 @pytest.mark.parametrize("subject", EDFS, ids=lambda each: each.title)
 def test_the_quadrature_of_the_equations_is_as_exact_as_its_tolerance_says(subject):
-    probe = ALL_PROBES[subject.kind](None, subject, "stock")
+    probe = PROBES[PairProbe][subject.kind](None, subject, "stock")
     batch, weights = probe.integrated
     values = subject.expected(batch).reshape(*weights.shape, 3)
     exitance = subject.exitance(batch.where(np.arange(len(weights)) * weights.shape[1])) / np.pi
@@ -171,7 +172,7 @@ def test_the_quadrature_of_the_equations_is_as_exact_as_its_tolerance_says(subje
 
 
 def test_the_falloffs_that_are_asked_are_as_wide_as_the_tolerance_says():
-    probe = ALL_PROBES[CONE](None, SUBJECTS["conical_edf"], "stock")
+    probe = PROBES[PairProbe][CONE](None, SUBJECTS["conical_edf"], "stock")
     assert 115.0 < cone_roundings() < 120.0
     for batch in (*probe.batches, probe.backs):
         inner, outer = (batch.inputs[f"{name}_angle"] for name in ("inner", "outer"))
@@ -197,7 +198,7 @@ def test_nodes_that_no_library_repairs_are_judged_with_stock_alone():
 )
 def test_emission_is_exact_in_osl(hosts, title, library):
     host, subject = hosts("cycles"), SUBJECTS[title]
-    probe = emission_probe_type(subject, PictureProbe)(host, subject, library)
+    probe = probe_type_of(subject, PictureProbe)(host, subject, library)
     result = judge_check(ROWS["radiance"], probe)
     assert result.verdict == PASSED and result.control.caught, result.diagnosis
 
@@ -209,7 +210,7 @@ def test_osl_applies_the_opacity_of_emission_and_lacks_the_same_nodes(hosts):
         ("conical_edf", "implemented", FAILED),
         ("anisotropic_vdf", "transmittance", NOT_RUN),
     ):
-        probe = emission_probe_type(SUBJECTS[title], PictureProbe)(host, SUBJECTS[title], "stock")
+        probe = probe_type_of(SUBJECTS[title], PictureProbe)(host, SUBJECTS[title], "stock")
         assert judge_check(ROWS[key], probe).verdict == verdict
 
 

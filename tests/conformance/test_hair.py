@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hair node: verdicts on stock MaterialX, on eonlib, and on shaders with one wrong line."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,6 @@ from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import HAIR, QUADRATURES
 from mxeon.conformance.nodes.hair import HAIRS
-from mxeon.conformance.probes import bsdf as probes
-from mxeon.conformance.probes import hair as hair_probes
 from mxeon.conformance.probes.hair import HairProbe, aimed
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.models.hair import ROUGHNESSES, TINTS
@@ -18,7 +18,9 @@ from tests.support.wrong_libraries import wrong_eonlib_node
 
 (SUBJECT,) = HAIRS
 ROWS = {row.key: row for row in CHECKS if applies(row, SUBJECT, HAIR, "gl")}
-SMALL = {"PAIRS": 1 << 9, "FEW": 1 << 8, "NODES": 32}
+FEWER = replace(
+    HairProbe.usual, pairs=1 << 9, few=1 << 8, nodes=32
+)  # wrong ones are wrong for many
 
 # What fails with stock MaterialX, and words of each diagnosis; every other check passes.
 STOCK = {
@@ -92,19 +94,9 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_pairs():
-    """Let the probe have few pairs: what is wrong here is wrong for many."""
-    with pytest.MonkeyPatch.context() as patch:
-        for module in (probes, hair_probes):
-            for name, count in SMALL.items():
-                patch.setattr(module, name, count)
-        yield
-
-
 def judged(host, library, keys=tuple(ROWS)):
     """Results of checks of the node by their keys."""
-    probe = HairProbe(host, SUBJECT, library)
+    probe = HairProbe(host, SUBJECT, library, FEWER)
     return {key: judge_check(ROWS[key], probe) for key in keys}
 
 
@@ -135,7 +127,7 @@ def test_every_check_has_a_shader_that_it_fails():
 
 
 def test_pairs_are_aimed_into_the_lobes_of_both_sides():
-    random, aimed, special = HairProbe(None, SUBJECT, "stock").batches
+    random, aimed, special = HairProbe(None, SUBJECT, "stock", FEWER).batches
     for batch in (random, aimed, special):
         assert (batch.wi[:, 2] < 0.0).any() and (batch.wi[:, 2] > 0.0).any()
         assert np.abs(np.linalg.norm(batch.wi, axis=1) - 1.0).max() < 1e-6
@@ -153,9 +145,7 @@ def test_a_light_aimed_without_spread_is_where_a_lobe_is_largest():
     assert exits == {(-0.28, 0.0, 0.96), (-0.28, 0.0, -0.96)}
 
 
-def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says(monkeypatch):
-    for module in (probes, hair_probes):
-        monkeypatch.setattr(module, "NODES", 48)
+def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says():
     probe = HairProbe(None, SUBJECT, "stock")
     batch, weights = probe.integrated
     values = SUBJECT.expected(batch).reshape(*weights.shape, 3)
@@ -169,4 +159,4 @@ def test_inputs_are_those_of_the_node_and_float32_numbers():
     assert set(SUBJECT.changes) == set(SUBJECT.inputs)
     assert all(np.array_equal(each, each.astype(np.float32)) for each in inputs.values())
     assert SUBJECT.black == dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
-    assert not SUBJECT.passed(HairProbe(None, SUBJECT, "stock").few[0]).any()
+    assert not SUBJECT.passed(HairProbe(None, SUBJECT, "stock", FEWER).few[0]).any()

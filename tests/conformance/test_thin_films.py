@@ -11,7 +11,6 @@ from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.thin_films import CHECKS
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.thin_films import FILMS
-from mxeon.conformance.probes import thin_films
 from mxeon.conformance.probes.thin_films import FilmProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from tests.support.wrong_libraries import wrong_copy
@@ -22,7 +21,9 @@ CHOICES = "MaterialX's matrix, orders and mixed channels"
 HALF = "half of the substrate's reflectance, and MaterialX's choices"
 FITTED = "the bare lobe's fit, and the film in the compensation"
 AVERAGE = "the compensation has F at the half vector in place of its average"
-SMALL = {"PAIRS": 1 << 6, "ALBEDOS": 12, "VIEWS": 8}
+FEWER = replace(
+    FilmProbe.usual, pairs=1 << 6, albedos=12, materials=8
+)  # wrong ones are wrong for most
 
 # What fails or differs with stock MaterialX, with words of the diagnosis; all else passes.
 STOCK = {
@@ -86,15 +87,6 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_pairs():
-    """Let probes have few pairs: what is wrong here is wrong for most."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name, count in SMALL.items():
-            patch.setattr(thin_films, name, count)
-        yield
-
-
 @pytest.mark.parametrize("node", SUBJECTS)
 def test_stock_materialx_has_its_known_films_and_no_others(gl, node):
     for result in judged(gl, node, "stock"):
@@ -113,9 +105,8 @@ def test_the_films_of_eonlib_pass(gl, node):
 def test_a_wrong_line_of_a_film_fails_a_check(gl, tmp_path, name):
     node, text, other, key = WRONG[name]
     row = replace(ROWS[key], diagnose=lambda probe: Diagnosis("wrong"))  # which takes long
-    probe = FilmProbe(
-        gl, SUBJECTS[node], wrong_copy(tmp_path, text, other, *FILMS_IN, library="profiles/pbrlib")
-    )
+    library = wrong_copy(tmp_path, text, other, *FILMS_IN, library="profiles/pbrlib")
+    probe = FilmProbe(gl, SUBJECTS[node], library, FEWER)
     result = judge_check(row, probe)
     assert result.verdict == FAILED and result.control.caught
 
@@ -135,6 +126,6 @@ def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
 
 def judged(host, node, library):
     """Results of the checks of a film."""
-    probe = FilmProbe(host, SUBJECTS[node], library)
+    probe = FilmProbe(host, SUBJECTS[node], library, FEWER)
     rows = [row for row in CHECKS if applies(row, probe.subject, probe.kind, host.name)]
     return [judge_check(row, probe) for row in rows]

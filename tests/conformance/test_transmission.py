@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Light through microfacets: verdicts on stock MaterialX and eonlib, and on shaders with a wrong line."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,10 +10,9 @@ from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.transmission_measures import through_sphere
 from mxeon.conformance.nodes.transmission import TRANSMITTING
-from mxeon.conformance.probes import bsdf as bsdf_probes
-from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.families import probe_type_of
 from mxeon.conformance.probes.pictures import PictureProbe
-from mxeon.conformance.probes.transmission import transmission_probe_type
+from mxeon.conformance.probes.transmission import TransmissionProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.hosts import raster
 from mxeon.models.transmission import refraction
@@ -46,12 +47,14 @@ WRONG = {
 }  # fmt: skip
 
 
+# Few views: what is wrong here is wrong by far.
+FEWER = replace(TransmissionProbe.usual, pairs=1 << 8, few=1 << 7, albedos=1 << 5, mirrored=1 << 8)
+
+
 @pytest.fixture(scope="module", autouse=True)
-def few_pairs():
-    """Let probes have few views, and environments few directions: what is wrong here is wrong by far."""
+def few_directions():
+    """Let environments have few directions: what is wrong here is wrong by far."""
     with pytest.MonkeyPatch.context() as patch:
-        for name, count in {"PAIRS": 1 << 8, "FEW": 1 << 7, "ALBEDOS": 1 << 5}.items():
-            patch.setattr(bsdf_probes, name, count)
         patch.setitem(raster.EVALUATION, "u_envRadianceSamples", 128)
         yield
 
@@ -59,7 +62,7 @@ def few_pairs():
 def judged(host, model, library, *keys):
     """Results of the checks of a node, or of those of these keys."""
     subject = SUBJECTS[model]
-    probe = transmission_probe_type(subject, PairProbe)(host, subject, library)
+    probe = TransmissionProbe(host, subject, library, FEWER)
     return [
         judge_check(row, probe)
         for row in ROWS
@@ -105,4 +108,4 @@ def test_a_sphere_turns_a_view_twice_by_the_same_angle():
 
 
 def test_pictures_are_not_asked_of_transmission():
-    assert transmission_probe_type(TRANSMITTING[0], PictureProbe) is None
+    assert probe_type_of(TRANSMITTING[0], PictureProbe) is None

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The utility nodes of pbrlib: verdicts on stock MaterialX and eonlib, and on shaders with one wrong line."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,6 @@ from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.utility_measures import UNITS
 from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
-from mxeon.conformance.probes import utilities as probes
 from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.conformance.samples.batch import Batch
@@ -141,13 +142,7 @@ WRONG = {
 }
 
 
-@pytest.fixture(scope="module", autouse=True)
-def few_inputs():
-    """Let probes have few inputs: what is wrong here is wrong for most."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(probes, "COUNT", 1 << 9)
-        patch.setattr(probes, "FEW", 1 << 7)
-        yield
+FEWER = replace(UtilityProbe.usual, pairs=1 << 9, few=1 << 7)  # wrong ones are wrong for most
 
 
 @pytest.fixture(scope="module")
@@ -161,7 +156,7 @@ def cycles():
 
 def judged(probe_type, host, library, keys=KEYS, titles=SUBJECTS):
     """Results of the checks of some subjects."""
-    found = [probe_type(host, SUBJECTS[title], library) for title in titles]
+    found = [probe_type(host, SUBJECTS[title], library, FEWER) for title in titles]
     return [
         judge_check(ROWS[key], probe)
         for probe in found

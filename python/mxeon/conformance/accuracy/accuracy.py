@@ -18,6 +18,7 @@ from mxeon.conformance.nodes.bsdf import (
     QUADRATURES,
     SCHLICK,
     SHEEN,
+    SUBSURFACE,
 )
 from mxeon.conformance.nodes.surface_shaders import WHOLE
 from mxeon.conformance.nodes.transmission import SCHLICK_TRANSMITTED, TRANSMITTED
@@ -122,9 +123,7 @@ ACCURACY: Mapping[str, Accuracy] = {
     "pictures": _seen(diffuse.CYCLES_RAY, diffuse.CYCLES_NOISE, diffuse.CYCLES_RAY),
     "planes": _seen(diffuse.TESTRENDER, diffuse.TESTRENDER_NOISE, diffuse.TESTRENDER),
     "bsdf pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
-    "microfacet pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
     "bsdf planes": _seen(diffuse.BSDF_PLANE, diffuse.BSDF_PLANE_NOISE),
-    "microfacet planes": _seen(diffuse.BSDF_PLANE, diffuse.BSDF_PLANE_NOISE),
     "lobes": _seen(diffuse.LOBE),
     "plane lobes": _seen(diffuse.TESTRENDER),
     "exact": _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
@@ -137,6 +136,7 @@ ACCURACY: Mapping[str, Accuracy] = {
         pairs=False,
     ),
     CLOSED: _lobe(CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
+    SUBSURFACE: _lobe(CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
     SHEEN: _lobe(SHEEN, bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
     FITTED: _lobe(FITTED, bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO, bsdf.FLAT_FRAME),
     MICROFACET: _lobe(

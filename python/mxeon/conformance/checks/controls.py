@@ -33,7 +33,7 @@ class Altered(Probe):
         values: Callable[[Batch, Array], Array] = lambda batch, values: values,
         throughputs: Callable[[Batch, Array], Array] = lambda batch, values: values,
     ) -> None:
-        super().__init__(probe.host, probe.subject, probe.library)
+        super().__init__(probe.host, probe.subject, probe.library, probe.counts)
         self.probe, self.batch, self.values, self.throughputs = probe, batch, values, throughputs
 
     def __getattribute__(self, name: str) -> object:

@@ -167,7 +167,7 @@ def _explained(
     if unbounded:
         return Diagnosis(unbounded)
     # Rank the candidates by their distance.
-    few = probe.diagnosed
+    few = probe.counts.diagnosed
     short = [Case(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
     own = candidates[0]
     models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}

@@ -27,6 +27,7 @@ CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
 )
 MICROFACET_KINDS = (MICROFACET, SCHLICK)
 HAIR = "hair pairs"  # of the hair node
+SUBSURFACE = "subsurface pairs"  # of subsurface scattering
 COMBINED = "combined pairs"  # of a node that combines lobes
 NESTED = "nested pairs"  # of a node that combines a sum
 FILM_PAIRS = "film pairs"  # of microfacets under a thin film

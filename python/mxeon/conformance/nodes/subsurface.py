@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import BsdfSubject, broadcast_inputs
+from mxeon.conformance.nodes.bsdf import SUBSURFACE, BsdfSubject, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE, circle_blur
 
@@ -15,6 +15,10 @@ LEAST_COSINE = 1e-6  # M_FLOAT_EPS of MaterialX
 @dataclass(frozen=True)
 class SubsurfaceSubject(BsdfSubject):
     """The node of subsurface scattering. Its radius and its anisotropy are not seen on a plane."""
+
+    @property
+    def kind(self) -> str:
+        return SUBSURFACE
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:

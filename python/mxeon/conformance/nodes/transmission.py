@@ -7,7 +7,7 @@ from mxeon.conformance.nodes.bsdf import SCHLICK, BsdfSubject
 from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
 
 # Kinds of probes.
-TRANSMITTED, SCHLICK_TRANSMITTED = (
+TRANSMITTED, SCHLICK_TRANSMITTED = KINDS = (
     "transmission pairs",
     "Schlick transmission pairs",
 )

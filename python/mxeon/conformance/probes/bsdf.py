@@ -8,17 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import (
-    CLOSED,
-    COMBINED,
-    FITTED,
-    MICROFACET,
-    NESTED,
-    SCHLICK,
-    SHEEN,
-    BsdfSubject,
-)
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import (
     LEAST_COLOR82,
@@ -28,31 +20,24 @@ from mxeon.conformance.samples.edge_cases import (
 )
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 
-PAIRS = 1 << 12
-FEW = 1 << 10
-ALBEDOS = 1 << 7  # directions of view whose albedo is asked
-MATERIALS = 64  # whose values are integrated
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
-NODES = 48  # of a quadrature, in cosine and in azimuth
 
 
 class BsdfProbe(PairProbe):
     """A node of pbrlib on a host that evaluates any pairs."""
 
-    kind: ClassVar[str] = CLOSED
-    diagnosed: ClassVar[int] = 1 << 11  # pairs of each batch that a diagnosis looks at
-
+    usual: ClassVar[Counts] = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
     least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
 
     subject: BsdfSubject
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """PAIRS random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
         rng = np.random.default_rng(SEED)
-        pairs = directions(rng, PAIRS), directions(rng, PAIRS)
+        pairs = directions(rng, self.counts.pairs), directions(rng, self.counts.pairs)
         return (
             self._batch(rng, self._lit(pairs), self.subject.random_inputs),
             self._batch(rng, self._lit(special_directions(rng)), self.subject.special_inputs),
@@ -61,15 +46,15 @@ class BsdfProbe(PairProbe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of the random pairs and the special ones."""
+        """Few of the random pairs, and the special ones."""
         pairs, special, *_ = self.batches
-        return pairs.first(FEW), special
+        return pairs.first(self.counts.few), special
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
         pairs, special, *_ = self.batches
         return tuple(
-            batch.where(batch.wo[:, 2] >= self.least_cosine).first(ALBEDOS)
+            batch.where(batch.wo[:, 2] >= self.least_cosine).first(self.counts.albedos)
             for batch in (pairs, special)
         )
 
@@ -92,18 +77,17 @@ class BsdfProbe(PairProbe):
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
-        """MATERIALS materials in each NODES^2 directions of light, and the weights of their values.
+        """Materials, each in nodes^2 directions of light, and the weights of their values.
 
         The weighted sum of pi f cos over a material's directions is its directional albedo.
         """
-        rng = np.random.default_rng(SEED)
-        mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(MATERIALS)
-        radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(MATERIALS)
+        rng, count = np.random.default_rng(SEED), self.counts.materials
+        mu = LEAST_VIEW + (1.0 - LEAST_VIEW) * rng.random(count)
+        radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
         wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
-        inputs = self.subject.random_inputs(rng, MATERIALS)
-        inputs = self._integrable(inputs)
+        inputs = self._integrable(self.subject.random_inputs(rng, count))
         wi, weights = self._nodes(wo, inputs)
-        each = np.repeat(np.arange(MATERIALS), wi.shape[1])
+        each = np.repeat(np.arange(count), wi.shape[1])
         spread = {name: values[each] for name, values in inputs.items()}
         return Batch(wo[each], wi.reshape(-1, 3), spread), weights
 
@@ -128,12 +112,13 @@ class BsdfProbe(PairProbe):
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
         """Directions (M, K, 3) and weights (M, K) of a quadrature over each view's hemisphere."""
         # Gauss nodes, moved to the horizon and to the normal, and even azimuths.
-        x, w = np.polynomial.legendre.leggauss(NODES)
+        count = self.counts.nodes
+        x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)  # dense at the horizon and around the normal
         slope = 6.0 * t * (1.0 - t) * 0.5 * w
         azimuth = np.arctan2(wo[:, 1], wo[:, 0])[:, np.newaxis, np.newaxis]
-        phi = azimuth + 2.0 * np.pi * (np.arange(NODES) + 0.5) / NODES
+        phi = azimuth + 2.0 * np.pi * (np.arange(count) + 0.5) / count
         radius = np.sqrt(1.0 - mu * mu)[:, np.newaxis]
         # Directions and their weights.
         columns = (
@@ -142,29 +127,21 @@ class BsdfProbe(PairProbe):
             self._side * mu[:, np.newaxis] + 0.0 * phi,
         )
         wi = rounded(columns).reshape(len(wo), -1, 3)
-        weights = np.repeat(slope * 2.0 / NODES, NODES)
+        weights = np.repeat(slope * 2.0 / count, count)
         return wi, np.broadcast_to(weights, wi.shape[:2])
-
-
-class SheenProbe(BsdfProbe):
-    """A sheen, whose value has high powers."""
-
-    kind: ClassVar[str] = SHEEN
 
 
 class FittedProbe(BsdfProbe):
     """A sheen whose albedo a shader takes from a fit."""
 
-    kind: ClassVar[str] = FITTED
     least_cosine: ClassVar[float] = FIT_COSINE
 
 
 class MicrofacetProbe(BsdfProbe):
     """A node of microfacets, whose values are large near the mirror direction."""
 
-    kind: ClassVar[str] = MICROFACET
+    usual: ClassVar[Counts] = replace(BsdfProbe.usual, diagnosed=1 << 8)  # references take long
     least_cosine: ClassVar[float] = FIT_COSINE
-    diagnosed: ClassVar[int] = 1 << 8  # their references take long
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -173,8 +150,8 @@ class MicrofacetProbe(BsdfProbe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of the random pairs, the special ones, and FEW near the mirror direction."""
-        return (*super().few, self.mirrored[0].first(FEW))
+        """Few of the random pairs, the special ones, and few near the mirror direction."""
+        return (*super().few, self.mirrored[0].first(self.counts.few))
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
@@ -184,10 +161,10 @@ class MicrofacetProbe(BsdfProbe):
     @cached_property
     def stretched(self) -> tuple[Batch, Array]:
         """Views of materials whose roughness has a direction, and the integrals of their values."""
-        rng = np.random.default_rng(SEED)
-        inputs = simple(self.subject.random_inputs(rng, MATERIALS))
-        inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, MATERIALS)))
-        batch = Batch(directions(rng, MATERIALS), directions(rng, MATERIALS), inputs)
+        rng, count = np.random.default_rng(SEED), self.counts.materials
+        inputs = simple(self.subject.random_inputs(rng, count))
+        inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
+        batch = Batch(directions(rng, count), directions(rng, count), inputs)
         batch = batch.where(batch.wo[:, 2] >= LEAST_STRETCHED)
         return batch, self.subject.integral(batch)
 
@@ -200,8 +177,7 @@ class MicrofacetProbe(BsdfProbe):
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:
         """Two lights near the mirror direction of each view, by normals that the view sees."""
-        rng = np.random.default_rng(SEED)
-        count = 2 * FEW
+        rng, count = np.random.default_rng(SEED), self.counts.mirrored
         wo, inputs = directions(rng, count), self.subject.random_inputs(rng, count)
         first, second = (
             reflected(wo, inputs["roughness"], rng.random(count), rng.random(count))
@@ -217,8 +193,9 @@ class MicrofacetProbe(BsdfProbe):
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
         """Directions and weights of a quadrature over the normals that each view sees."""
         # Gauss nodes of the height of visible normals, and even azimuths.
-        x, w = np.polynomial.legendre.leggauss(NODES)
-        height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(NODES) + 0.5) / NODES)
+        nodes = self.counts.nodes
+        x, w = np.polynomial.legendre.leggauss(nodes)
+        height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(nodes) + 0.5) / nodes)
         count = height.size
         views, alpha = (np.repeat(each, count, axis=0) for each in (wo, inputs["roughness"]))
         u = np.tile(height.ravel(), len(wo)), np.tile(around.ravel(), len(wo))
@@ -227,21 +204,15 @@ class MicrofacetProbe(BsdfProbe):
         lit = wi[:, 2] > 0.0
         wi[~lit] = (0.0, 0.0, 1.0)
         density = np.where(lit, ggx_pdf(views, wi, alpha), np.inf)
-        weights = np.tile(np.meshgrid(0.5 * w, np.ones(NODES))[0].ravel() / NODES, len(wo))
+        weights = np.tile(np.meshgrid(0.5 * w, np.ones(nodes))[0].ravel() / nodes, len(wo))
         return wi.reshape(len(wo), count, 3), (weights / (np.pi * density)).reshape(len(wo), count)
-
-
-class SchlickProbe(MicrofacetProbe):
-    """A node of microfacets whose curve may dip at 82 degrees."""
-
-    kind: ClassVar[str] = SCHLICK
 
 
 def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
     The roughness is the same in both directions. The index of a dielectric is at least 1: the fits of
-    shaders end there, and NODES^2 directions do not resolve a critical angle. Deep dips at 82
+    shaders end there, and nodes^2 directions do not resolve a critical angle. Deep dips at 82
     degrees, which turn F negative, are left out.
     """
     changed = dict(inputs)
@@ -261,33 +232,13 @@ def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
 class CombinedProbe(BsdfProbe):
     """A node that combines two lobes, whose weights stay 1."""
 
-    kind: ClassVar[str] = COMBINED
-
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Random pairs and special ones; those outside are asked of the lobes."""
-        rng = np.random.default_rng(SEED)
-        wo, wi = directions(rng, PAIRS), directions(rng, PAIRS)
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
+        wo, wi = directions(rng, count), directions(rng, count)
         special = special_directions(rng)
         return (
-            Batch(wo, wi, self.subject.random_inputs(rng, PAIRS)),
+            Batch(wo, wi, self.subject.random_inputs(rng, count)),
             Batch(*special, self.subject.random_inputs(rng, len(special[0]))),
         )
-
-
-class NestedProbe(CombinedProbe):
-    """A node that combines a sum of two lobes."""
-
-    kind: ClassVar[str] = NESTED
-
-
-PROBES = (
-    BsdfProbe,
-    SheenProbe,
-    FittedProbe,
-    MicrofacetProbe,
-    SchlickProbe,
-    CombinedProbe,
-    NestedProbe,
-)
-BSDF_PROBES = {probe.kind: probe for probe in PROBES}

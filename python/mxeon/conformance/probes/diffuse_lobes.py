@@ -7,7 +7,6 @@ from typing import ClassVar, cast
 import numpy as np
 
 from mxeon.conformance.nodes.diffuse import DiffuseLobe
-from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import (
     PICTURE_INPUTS,
     PICTURE_SIZE,
@@ -27,7 +26,7 @@ class DiffuseLobeProbe(PictureProbe):
     model, shows how much of the light reaches the lobe and comes back.
     """
 
-    kind: ClassVar[str] = "lobes"
+    shown: ClassVar[str] = "lobes"
     size: ClassVar[int] = PICTURE_SIZE // 4  # the shaders are long
 
     subject: DiffuseLobe
@@ -57,14 +56,7 @@ class DiffuseLobeProbe(PictureProbe):
 class DiffuseLobePlaneProbe(DiffuseLobeProbe, PlaneProbe):
     """The diffuse lobe of a surface shader on a plane."""
 
-    kind: ClassVar[str] = "plane lobes"
+    shown: ClassVar[str] = "plane lobes"
 
     def _shader(self, inputs: Values) -> Shader:
         return PictureProbe._shader(self, inputs)
-
-
-# Of surface shaders, by the class for nodes.
-SURFACE_PROBES: dict[type[PairProbe] | type[PictureProbe], type[DiffuseLobeProbe]] = {
-    PairProbe: DiffuseLobeProbe,
-    PlaneProbe: DiffuseLobePlaneProbe,
-}

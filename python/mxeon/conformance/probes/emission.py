@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.emission import CLOSED, CONE, POWER, EmissionSubject
-from mxeon.conformance.probes.probe import Probe, ValueProbe
+from mxeon.conformance.nodes.emission import EmissionSubject
+from mxeon.conformance.probes.probe import Counts, Probe, ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
@@ -15,10 +15,6 @@ from mxeon.hosts.base import Host
 from mxeon.models.media.emission import cone_cosine
 from mxeon.shaders.generation import Shader
 
-VIEWS = 1 << 12
-FEW = 1 << 10
-MATERIALS = 128  # whose radiance is integrated
-NODES = 16  # of a quadrature on each smooth piece
 EDGE = 1e-3  # cosine from a hard edge: within it the engine's own cosine decides
 CONES = ("inner", "outer")
 NO_IMPLEMENTATION = "Could not find a matching implementation"
@@ -36,8 +32,6 @@ def implementation(host: Host, text: str, library: str) -> Shader | None:
 
 class NodeProbe(Probe):
     """A node of which a host is asked whether it has it."""
-
-    kind: ClassVar[str]
 
     def missing(self, text: str) -> bool:
         return implementation(self.host, text, self.library) is None
@@ -60,7 +54,7 @@ class NodeProbe(Probe):
 class EmissionProbe(NodeProbe, ValueProbe):
     """An EDF node on a host that evaluates its radiance for any view."""
 
-    kind: ClassVar[str] = CLOSED
+    usual: ClassVar[Counts] = Counts(1 << 12, 1 << 10, materials=128, nodes=16)
 
     subject: EmissionSubject
 
@@ -71,32 +65,35 @@ class EmissionProbe(NodeProbe, ValueProbe):
         mu = np.repeat(GRID, 64)
         radius = np.sqrt(1.0 - mu * mu)
         special = rounded([radius, 0.0 * mu, mu])
-        return self._views(rng, directions(rng, VIEWS)), self._views(rng, special)
+        return (
+            self._views(rng, directions(rng, self.counts.pairs)),
+            self._views(rng, special),
+        )
 
     @property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of the random views."""
-        return (self.batches[0].first(FEW),)
+        """Few of the random views."""
+        return (self.batches[0].first(self.counts.few),)
 
     @cached_property
     def backs(self) -> Batch:
-        """FEW views from the back."""
+        """Few views from the back."""
         rng = np.random.default_rng(SEED)
-        return self._views(rng, directions(rng, FEW) * [1.0, 1.0, -1.0])
+        return self._views(rng, directions(rng, self.counts.few) * [1.0, 1.0, -1.0])
 
     @cached_property
     def integrated(self) -> tuple[Batch, Array]:
-        """MATERIALS emissions at the nodes of a quadrature, and weights of their radiance.
+        """Emissions at the nodes of a quadrature, and weights of their radiance.
 
         The weighted sum over the views of a material is its exitance over pi.
         """
-        rng = np.random.default_rng(SEED)
-        inputs = self.subject.random_inputs(rng, MATERIALS)
-        mu, weights = _nodes(self._stops(inputs))
+        rng, count = np.random.default_rng(SEED), self.counts.materials
+        inputs = self.subject.random_inputs(rng, count)
+        mu, weights = _nodes(self._stops(inputs), self.counts.nodes)
         azimuth = 2.0 * np.pi * rng.random(mu.shape)
         radius = np.sqrt(1.0 - mu * mu)
         wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu]).reshape(-1, 3)
-        each = np.repeat(np.arange(MATERIALS), mu.shape[1])
+        each = np.repeat(np.arange(count), mu.shape[1])
         return Batch(wo, wo, {name: value[each] for name, value in inputs.items()}), weights
 
     def direct(self, batch: Batch) -> Array:
@@ -109,20 +106,12 @@ class EmissionProbe(NodeProbe, ValueProbe):
         return Batch(wo, wo, self.subject.random_inputs(rng, len(wo)))
 
     def _stops(self, inputs: dict[str, Array]) -> Array:
-        """Cosines between which the radiance is smooth, (MATERIALS, 1 + pieces)."""
-        return np.broadcast_to([0.0, 1.0], (MATERIALS, 2))
-
-
-class PowerProbe(EmissionProbe):
-    """An emission with a power in it."""
-
-    kind: ClassVar[str] = POWER
+        """Cosines between which the radiance is smooth, (M, 1 + pieces)."""
+        return np.broadcast_to([0.0, 1.0], (self.counts.materials, 2))
 
 
 class ConeProbe(EmissionProbe):
     """An emission inside a cone, whose axis is an input."""
-
-    kind: ClassVar[str] = CONE
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -135,16 +124,17 @@ class ConeProbe(EmissionProbe):
 
     def _at_edges(self, rng: np.random.Generator) -> Batch:
         """Views a little inside and outside of the cones."""
-        inputs = self.subject.random_inputs(rng, FEW)
-        angle = np.where(np.arange(FEW) % 2, inputs["inner_angle"], inputs["outer_angle"])
-        step = np.where(rng.random(FEW) < 0.5, -2.0, 2.0) * EDGE
+        count = self.counts.few
+        inputs = self.subject.random_inputs(rng, count)
+        angle = np.where(np.arange(count) % 2, inputs["inner_angle"], inputs["outer_angle"])
+        step = np.where(rng.random(count) < 0.5, -2.0, 2.0) * EDGE
         mu = np.clip(cone_cosine(angle) + step, 0.0, 1.0)
         wo = rounded([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu])
         return _away(Batch(wo, wo, inputs))
 
     def _turned(self, rng: np.random.Generator) -> Batch:
         """Views in frames whose normals are the axes."""
-        frames = turned_frames(rng, FEW)
+        frames = turned_frames(rng, self.counts.few)
         wo = turned_directions(rng, len(frames))
         inputs = self.subject.random_inputs(rng, len(frames))
         inputs["normal"] = rounded(frames[:, :, 2].T)
@@ -152,7 +142,7 @@ class ConeProbe(EmissionProbe):
 
     def _stops(self, inputs: dict[str, Array]) -> Array:
         inner, outer = (np.clip(cone_cosine(inputs[f"{name}_angle"]), 0.0, 1.0) for name in CONES)
-        ends = np.zeros((MATERIALS, 2)) + [0.0, 1.0]
+        ends = np.zeros((len(inner), 2)) + [0.0, 1.0]
         return np.sort(np.column_stack([ends, inner, np.minimum(inner, outer)]), axis=1)
 
 
@@ -163,15 +153,12 @@ def _away(batch: Batch) -> Batch:
     return batch.where(~hard | (np.abs(np.maximum(batch.wo[:, 2], 0.0) - edge) >= EDGE))
 
 
-def _nodes(stops: Array) -> tuple[Array, Array]:
+def _nodes(stops: Array, count: int) -> tuple[Array, Array]:
     """Cosines and weights, (M, K), of integrals of 2 mu over the pieces between stops."""
-    x, w = np.polynomial.legendre.leggauss(NODES)
+    x, w = np.polynomial.legendre.leggauss(count)
     low, high = stops[:, :-1, np.newaxis], stops[:, 1:, np.newaxis]
     t = 0.5 * (x + 1.0)  # high - mu = t^2 (high - low): dense at the upper end, where powers root
     mu = high - t * t * (high - low)
     mu = mu.astype(np.float32).astype(np.float64)
     weights = 2.0 * mu * (high - low) * w * t
     return mu.reshape(len(stops), -1), weights.reshape(len(stops), -1)
-
-
-PROBES = {probe.kind: probe for probe in (EmissionProbe, PowerProbe, ConeProbe)}

@@ -20,7 +20,7 @@ DARK = Scene("dark", size=32)
 class EmissionPictureProbe(NodeProbe, ValueProbe):
     """An EDF node on a sphere in the dark."""
 
-    kind: ClassVar[str] = PICTURES
+    shown: ClassVar[str] = PICTURES
 
     subject: EmissionSubject
 

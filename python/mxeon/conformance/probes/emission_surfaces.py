@@ -3,11 +3,9 @@
 
 from dataclasses import replace
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.emission import ABSENT, SURFACES
 from mxeon.conformance.nodes.emission_surfaces import COLOR, SurfaceSubject
 from mxeon.conformance.probes.emission import NodeProbe
 from mxeon.conformance.samples.batch import Array, Batch
@@ -20,8 +18,6 @@ OPACITIES = (0.0, 0.25, 1.0)
 
 class SurfaceEmissionProbe(NodeProbe):
     """A surface on a host that draws it in the dark, one picture for each opacity."""
-
-    kind: ClassVar[str] = SURFACES
 
     subject: SurfaceSubject
 
@@ -42,9 +38,3 @@ class SurfaceEmissionProbe(NodeProbe):
         shader = self.host.compile(self.subject.document(batch.inputs), library=self.library)[0]
         image = self.host.picture(shader, replace(DARK))
         return np.asarray(image[sphere(DARK.size).mask], np.float64)
-
-
-class AbsentProbe(NodeProbe):
-    """A node that is only asked for."""
-
-    kind: ClassVar[str] = ABSENT

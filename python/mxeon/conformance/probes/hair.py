@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import HAIR
 from mxeon.conformance.nodes.hair import WIDE_SCALE, WIDE_VARIANCE, HairSubject
 from mxeon.conformance.nodes.hair_regions import REGIONS
-from mxeon.conformance.probes.bsdf import FEW, NODES, PAIRS, BsdfProbe
+from mxeon.conformance.probes.bsdf import BsdfProbe
+from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED, special_directions
 from mxeon.models.hair import ROUGHNESSES
@@ -20,33 +20,27 @@ from mxeon.models.hair.formulas import SCALE, section
 class HairProbe(BsdfProbe):
     """The hair node on a host that evaluates any pairs."""
 
-    kind: ClassVar[str] = HAIR
-    diagnosed: ClassVar[int] = 1 << 9
+    usual: ClassVar[Counts] = replace(BsdfProbe.usual, diagnosed=1 << 9)
 
     subject: HairSubject
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """PAIRS random pairs, as many in the lobes, and special ones, with roughness above 0."""
-        rng = np.random.default_rng(SEED)
-        wo, inputs = directions(rng, PAIRS), self.subject.random_inputs(rng, PAIRS)
-        free = directions(rng, PAIRS) * _sides(rng, PAIRS)
-        special = special_directions(rng)
-        count = len(special[0])
+        """Random pairs, as many in the lobes, and special ones, with roughness above 0."""
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
+        wo, inputs = directions(rng, count), self.subject.random_inputs(rng, count)
+        free = directions(rng, count) * _sides(rng, count)
+        view, light = special_directions(rng)
         return (
-            Batch(wo, free, {**inputs, "occlusion": np.round(rng.random(PAIRS), 2)}),
+            Batch(wo, free, {**inputs, "occlusion": np.round(rng.random(count), 2)}),
             Batch(wo, aimed(rng, wo, inputs), inputs),
-            Batch(
-                special[0],
-                special[1] * _sides(rng, count),
-                self.subject.random_inputs(rng, count),
-            ),
+            Batch(view, light * _sides(rng, len(view)), self.subject.random_inputs(rng, len(view))),
         )
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of the random pairs, and of those in the lobes."""
-        return tuple(batch.first(FEW) for batch in self.batches[:2])
+        """Few of the random pairs, and of those in the lobes."""
+        return tuple(batch.first(self.counts.few) for batch in self.batches[:2])
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
@@ -75,23 +69,23 @@ class HairProbe(BsdfProbe):
         return replace(batch.altered(**wide), wi=batch.wi * sides)
 
     def region(self, key: str) -> Batch:
-        """FEW pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
-        rng, row = np.random.default_rng(SEED), REGIONS[key]
+        """Pairs in the lobes of a row of REGIONS, with each lobe in a channel of its own."""
+        rng, row, count = np.random.default_rng(SEED), REGIONS[key], self.counts.few
         # Views of the region.
-        sine = 0.9 * (2.0 * rng.random(FEW) - 1.0)
+        sine = 0.9 * (2.0 * rng.random(count) - 1.0)
         low, high = row.azimuths
-        azimuth = (low + (high - low) * rng.random(FEW)) * rng.choice([-1.0, 1.0], FEW)
+        azimuth = (low + (high - low) * rng.random(count)) * rng.choice([-1.0, 1.0], count)
         cosine = np.sqrt(1.0 - sine * sine)
         wo = rounded([sine, cosine * np.sin(azimuth), cosine * np.cos(azimuth)])
         # Its roughnesses, tilts and tints.
-        inputs = self.subject.random_inputs(rng, FEW)
+        inputs = self.subject.random_inputs(rng, count)
         inputs["cuticle_angle"] = 0.5 + 2.0 * row.tilt * (inputs["cuticle_angle"] - 0.5)
         if row.ior:
             least, most = row.ior
-            inputs["ior"] = rounded([np.linspace(least, most, FEW)])[:, 0]
+            inputs["ior"] = rounded([np.linspace(least, most, count)])[:, 0]
         for name in ROUGHNESSES:
             inputs[name] = rounded(
-                low * (high / low) ** rng.random(FEW) for low, high in (row.variances, row.scales)
+                low * (high / low) ** rng.random(count) for low, high in (row.variances, row.scales)
             )
         return Batch(wo, aimed(rng, wo, inputs), {**inputs, **row.tints})
 
@@ -103,12 +97,13 @@ class HairProbe(BsdfProbe):
 
     def _nodes(self, wo: Array, inputs: dict[str, Array]) -> tuple[Array, Array]:
         """Directions (M, K, 3) and weights (M, K) of a quadrature over all lights."""
-        x, w = np.polynomial.legendre.leggauss(NODES)
-        phi = 2.0 * np.pi * (np.arange(2 * NODES) + 0.5) / (2 * NODES)
+        count = self.counts.nodes
+        x, w = np.polynomial.legendre.leggauss(count)
+        phi = np.pi * (np.arange(2 * count) + 0.5) / count
         sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
         cosine = np.sqrt(1.0 - sine * sine)
         wi = rounded([sine, cosine * np.cos(angle), cosine * np.sin(angle)])
-        weights = np.tile(w, 2 * NODES) / NODES
+        weights = np.tile(w, 2 * count) / count
         shape = (len(wo), *wi.shape)
         return np.broadcast_to(wi, shape), np.broadcast_to(weights, shape[:2])
 

@@ -6,28 +6,25 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.emission import MEDIUM
 from mxeon.conformance.nodes.media import MediumSubject
 from mxeon.conformance.probes.emission import NodeProbe
-from mxeon.conformance.probes.probe import ValueProbe
+from mxeon.conformance.probes.probe import Counts, ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
-
-VIEWS = 1 << 8
 
 
 class MediumProbe(NodeProbe, ValueProbe):
     """A VDF node on a host that evaluates what a surface over it lets through."""
 
-    kind: ClassVar[str] = MEDIUM
+    usual: ClassVar[Counts] = Counts(1 << 8)
 
     subject: MediumSubject
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Random views, and random inputs of the node."""
-        rng = np.random.default_rng(SEED)
-        wo = directions(rng, VIEWS)
-        inputs = self.subject.random_inputs(rng, VIEWS)
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
+        wo = directions(rng, count)
+        inputs = self.subject.random_inputs(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], inputs),)
 
     def direct(self, batch: Batch) -> Array:

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import DrawnSubject
 from mxeon.conformance.probes.probe import LobeProbe
-from mxeon.conformance.samples.batch import FEW, PAIRS, SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import (
     diffuse_edges,
     node_inputs,
@@ -38,8 +38,6 @@ Draw: TypeAlias = Callable[[np.random.Generator, int], dict[str, Array]]
 class PairProbe(LobeProbe):
     """A node on a host that evaluates any pairs."""
 
-    kind: ClassVar[str] = "pairs"
-
     subject: DrawnSubject
 
     @cached_property
@@ -48,9 +46,9 @@ class PairProbe(LobeProbe):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """PAIRS random pairs, a quarter of each direction grazing; special ones; and outside ones."""
+        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
         rng = np.random.default_rng(SEED)
-        pairs = directions(rng, PAIRS), directions(rng, PAIRS)
+        pairs = tuple(directions(rng, self.counts.pairs) for _ in range(2))
         return (
             self._batch(rng, pairs, self.subject.random_inputs),
             self._batch(rng, special_directions(rng), self.subject.special_inputs),
@@ -59,9 +57,9 @@ class PairProbe(LobeProbe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of the random pairs and the special ones; both directions are above the horizon."""
+        """Few of the random pairs and the special ones; both directions are above the horizon."""
         pairs, special, *_ = self.batches
-        return pairs.first(FEW), special
+        return pairs.first(self.counts.few), special
 
     @property
     def cosines(self) -> tuple[Batch, ...]:

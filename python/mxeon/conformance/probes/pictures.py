@@ -38,7 +38,7 @@ Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are ju
 class PictureProbe(LobeProbe):
     """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
 
-    kind: ClassVar[str] = "pictures"
+    shown: ClassVar[str] = "pictures"
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     size: ClassVar[int] = PICTURE_SIZE
 
@@ -108,7 +108,7 @@ class PictureProbe(LobeProbe):
 class PlaneProbe(PictureProbe):
     """A node on a plane: every pixel is another direction of view."""
 
-    kind: ClassVar[str] = "planes"
+    shown: ClassVar[str] = "planes"
     scenes: ClassVar[tuple[Scene, ...]] = tuple(
         Scene(f"plane{degrees:.0f}", light=(np.sin(polar), 0.0, np.cos(polar)))
         for degrees in LIGHTS

@@ -18,6 +18,7 @@ from mxeon.conformance.probes.pictures import (
     PlaneProbe,
     scene_of,
 )
+from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
 from mxeon.conformance.samples.batch import RIM, SEED, Array, Batch, directions
 from mxeon.conformance.samples.edge_cases import outside_directions, special_directions
@@ -26,13 +27,12 @@ from mxeon.shaders.facets import facet_points
 from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions
 
 SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
-OWN_PAIRS = 1 << 13  # random ones: a renderer's own function is called for each
 
 
 class FacetProbe(ExactProbe):
     """A node of a renderer's own on a polyhedron, with noise under an environment."""
 
-    kind: ClassVar[str] = "facets"
+    shown: ClassVar[str] = "facets"
     size: ClassVar[int] = PICTURE_SIZE
 
     @cached_property
@@ -68,25 +68,26 @@ class FacetProbe(ExactProbe):
 class CoarseFacetProbe(FacetProbe):
     """A node on the polyhedron, by a renderer that keeps light in a few bits."""
 
-    kind: ClassVar[str] = "coarse facets"
+    shown: ClassVar[str] = "coarse facets"
 
 
 class FacetPairProbe(FacetProbe):
     """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
 
-    kind: ClassVar[str] = "facet pairs"
+    shown: ClassVar[str] = "facet pairs"
+    usual: ClassVar[Counts] = Counts(1 << 13)  # a renderer's own function is called for each
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
-        rng, subject = np.random.default_rng(SEED), self.subject
-        random = directions(rng, OWN_PAIRS), directions(rng, OWN_PAIRS)
+        rng, subject, count = np.random.default_rng(SEED), self.subject, self.counts.pairs
+        random = directions(rng, count), directions(rng, count)
         special = Batch(*special_directions(rng), {})
         half = np.linalg.norm(special.wo + special.wi, axis=1)
         special = special.where((special.wo[:, 2] > 0.0) & (half >= SHORTEST))
         outside = Batch(*outside_directions(rng), {})
         return (
-            Batch(*random, subject.random_inputs(rng, OWN_PAIRS)),
+            Batch(*random, subject.random_inputs(rng, count)),
             special.altered(**subject.special_inputs(rng, len(special.wo))),
             outside.altered(**subject.random_inputs(rng, len(outside.wo))),
         )

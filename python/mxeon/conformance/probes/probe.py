@@ -2,6 +2,7 @@
 """What a check may ask of a node on a host; the base class of all probes."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, NoReturn, TypeVar
 
@@ -10,8 +11,35 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import LobeSubject, Subject, ValuedSubject
 from mxeon.conformance.results import Claims
-from mxeon.conformance.samples.batch import FEW, Array, Batch, Candidate, Changes, Values
+from mxeon.conformance.samples.batch import FEW, PAIRS, Array, Batch, Candidate, Changes, Values
 from mxeon.hosts.base import Host
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many samples a probe draws.
+
+    Attributes
+    ----------
+    pairs, few : int
+        Random pairs, and those of them for what takes long.
+    diagnosed : int
+        Pairs of each batch that a diagnosis looks at.
+    albedos : int
+        Views whose albedo is asked.
+    materials, nodes : int
+        Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
+    mirrored : int
+        Views with lights near the mirror direction.
+    """
+
+    pairs: int = PAIRS
+    few: int = FEW
+    diagnosed: int = FEW
+    albedos: int = 1 << 7
+    materials: int = 64
+    nodes: int = 48
+    mirrored: int = 1 << 11
 
 
 class Probe:
@@ -23,27 +51,41 @@ class Probe:
 
     Attributes
     ----------
-    kind : str
-        By which checks have tolerances.
-    diagnosed : int
-        Pairs of each batch that a diagnosis looks at.
+    shown : str
+        Kind of all probes of a class whose host does not show all that a subject's kind stands for.
+    usual : Counts
+        Samples of a probe that is not told how many to draw.
     host : Host
     subject : Subject
     library : str
         The library that the host loads.
+    counts : Counts
     """
 
-    kind: ClassVar[str]
-    diagnosed: ClassVar[int] = FEW
+    shown: ClassVar[str] = ""
+    usual: ClassVar[Counts] = Counts()
 
     subject: Subject
 
-    def __init__(self, host: Host, subject: Subject, library: str) -> None:
+    def __init__(
+        self, host: Host, subject: Subject, library: str, counts: Counts | None = None
+    ) -> None:
         self.host, self.subject, self.library = host, subject, library
+        self.counts = counts or self.usual
+
+    @classmethod
+    def kind_of(cls, subject: Subject) -> str:
+        """Kind of the probe of a subject, by which checks have tolerances."""
+        return cls.shown or subject.kind
+
+    @property
+    def kind(self) -> str:
+        """Its own kind."""
+        return self.kind_of(self.subject)
 
     def of(self, subject: Subject) -> "Probe":
         """The same probe of another subject."""
-        return type(self)(self.host, subject, self.library)
+        return type(self)(self.host, subject, self.library, self.counts)
 
     @property
     def reflection(self) -> "Probe":

@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import ClassVar, cast
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.probes.pictures import PICTURE_SIZE, PictureProbe, picture_pairs, scene_of
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples.batch import Array, Batch, Values
-from mxeon.hosts.base import Host
 from mxeon.hosts.renderer import RendererHost
 from mxeon.models import table as reference
 from mxeon.shaders.scene import sphere
@@ -32,9 +31,6 @@ class NativeProbe(PictureProbe):
     host: RendererHost  # type: ignore[assignment]  # in place of a host of generated shaders
     subject: RendererNode
 
-    def __init__(self, host: RendererHost, subject: RendererNode, library: str) -> None:
-        super().__init__(cast(Host, host), subject, library)  # which keeps it, and asks it nothing
-
     @property
     def claims(self) -> Claims:
         """Titles of the model that the node claims, and of the form of it that is judged."""
@@ -52,7 +48,7 @@ class NativeProbe(PictureProbe):
 class ExactProbe(NativeProbe):
     """A node of a renderer's own, on a sphere whose points and light have no error but rounding."""
 
-    kind: ClassVar[str] = "exact"
+    shown: ClassVar[str] = "exact"
     size: ClassVar[int] = PICTURE_SIZE // 2
 
     @property
@@ -75,4 +71,6 @@ class ExactProbe(NativeProbe):
             form: float(np.abs(values - batch.expected(form)).max()) for form in self.subject.forms
         }
         nearest = min(errors, key=errors.__getitem__)
-        return type(self)(self.host, replace(self.subject, model=nearest), self.library)
+        return type(self)(
+            self.host, replace(self.subject, model=nearest), self.library, self.counts
+        )

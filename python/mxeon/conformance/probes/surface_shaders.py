@@ -8,18 +8,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.surface_shaders import WHOLE, SurfaceShader
+from mxeon.conformance.nodes.surface_shaders import SurfaceShader
 from mxeon.conformance.probes.bsdf import LEAST_VIEW, reflected
 from mxeon.conformance.probes.pairs import PairProbe
+from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.generation import Shader, generate
 
-PAIRS = 256  # of directions, each with a material of its own
-VIEWS = 64  # whose albedo is asked
-MATERIALS = 1 << 11  # whose energy is
 CHANGED = 8  # pairs that a change of an input has to show in
 SPREAD = 0.3  # alpha of the lobe in which half of the lights lie about the mirror direction
 STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too coarsely for them
@@ -28,20 +26,20 @@ STRETCHED = "anisotropy"  # in the names of inputs: an environment is summed too
 class SurfaceShaderProbe(PairProbe):
     """A surface shader on a host that evaluates any pairs."""
 
-    kind: ClassVar[str] = WHOLE
+    usual: ClassVar[Counts] = Counts(256, albedos=64, materials=1 << 11)  # a material a pair
 
     subject: SurfaceShader  # type: ignore[assignment]  # evaluated by the same verbs
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Random pairs, half of them near the mirror direction, with random materials."""
-        rng = np.random.default_rng(SEED)
-        wo, wi = self._views(rng, PAIRS), directions(rng, PAIRS)
-        alpha = np.full((PAIRS, 2), SPREAD)
-        near = reflected(wo, alpha, rng.random(PAIRS), rng.random(PAIRS))
-        kept = (np.arange(PAIRS) % 2 == 0) & (near[:, 2] > 0.0)
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
+        wo, wi = self._views(rng, count), directions(rng, count)
+        alpha = np.full((count, 2), SPREAD)
+        near = reflected(wo, alpha, rng.random(count), rng.random(count))
+        kept = (np.arange(count) % 2 == 0) & (near[:, 2] > 0.0)
         wi = np.where(kept[:, np.newaxis], near, wi)
-        return (Batch(wo, wi, self.subject.random_inputs(rng, PAIRS)),)
+        return (Batch(wo, wi, self.subject.random_inputs(rng, count)),)
 
     @property
     def few(self) -> tuple[Batch, ...]:
@@ -51,7 +49,7 @@ class SurfaceShaderProbe(PairProbe):
     def cosines(self) -> tuple[Batch, ...]:
         """Views of isotropic materials."""
         [batch] = self.batches
-        return (_isotropic(batch.first(VIEWS)),)
+        return (_isotropic(batch.first(self.counts.albedos)),)
 
     @cached_property
     def albedos(self) -> tuple[Array, ...]:
@@ -61,9 +59,9 @@ class SurfaceShaderProbe(PairProbe):
     @cached_property
     def materials(self) -> Batch:
         """Views of isotropic materials in which every lobe takes part."""
-        rng = np.random.default_rng(SEED)
-        wo = self._views(rng, MATERIALS)
-        return _isotropic(Batch(wo, wo, self.subject.every_input(rng, MATERIALS)))
+        rng, count = np.random.default_rng(SEED), self.counts.materials
+        wo = self._views(rng, count)
+        return _isotropic(Batch(wo, wo, self.subject.every_input(rng, count)))
 
     @cached_property
     def white(self) -> Batch:

@@ -8,17 +8,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import FILM_PAIRS
 from mxeon.conformance.nodes.thin_films import THICK
 from mxeon.conformance.probes.bsdf import MicrofacetProbe, simple
 from mxeon.conformance.probes.pictures import Mask
+from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.samples.batch import SEED, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import special_directions
 
-PAIRS = 1 << 8  # random ones, and special ones; each average over a film's curve takes long
-ALBEDOS = 24
-FEW = 1 << 6  # pairs of a control
-VIEWS = 16  # whose averages are judged by themselves
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
 STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `steep`
 MOST_COSINE = 0.9  # of other views of albedos: next to 1 the shader's nine facets are three
@@ -29,40 +25,40 @@ LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of 
 class FilmProbe(MicrofacetProbe):
     """A microfacet node under a thin film on a host that evaluates any pairs."""
 
-    kind: ClassVar[str] = FILM_PAIRS
-    diagnosed: ClassVar[int] = 1 << 5
+    # Each average over a film's curve takes long.
+    usual: ClassVar[Counts] = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
     least_cosine: ClassVar[float] = LEAST_FACET
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """PAIRS random pairs and special ones whose facets are not at grazing, and mirrored ones."""
-        rng = np.random.default_rng(SEED)
+        """Random pairs and special ones whose facets are not at grazing, and mirrored ones."""
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
         special = special_directions(rng)
-        picked = rng.permutation(len(special[0]))[:PAIRS]
+        picked = rng.permutation(len(special[0]))[:count]
+        random = directions(rng, count), directions(rng, count)
         pairs = (
-            self._batch(
-                rng, (directions(rng, PAIRS), directions(rng, PAIRS)), self.subject.random_inputs
-            ),
+            self._batch(rng, random, self.subject.random_inputs),
             self._batch(rng, (special[0][picked], special[1][picked]), self.subject.special_inputs),
-            self.mirrored[0].first(PAIRS),
+            self.mirrored[0].first(count),
         )
         return tuple(batch.where(_steep(batch)) for batch in pairs)
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of each."""
-        return tuple(batch.first(FEW) for batch in self.batches)
+        """Few of each."""
+        return tuple(batch.first(self.counts.few) for batch in self.batches)
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
-        """ALBEDOS views of the random pairs, and as many where few facets stand for all the least."""
+        """Views of the random pairs, and as many where few facets stand for all the least."""
         slanted = self.batches[0].where(self.batches[0].wo[:, 2] <= MOST_COSINE)
-        batch = slanted.where(slanted.wo[:, 2] >= self.least_cosine).first(ALBEDOS)
-        return replace(batch, inputs=simple(batch.inputs)), self._views(ALBEDOS, HARD)
+        batch = slanted.where(slanted.wo[:, 2] >= self.least_cosine).first(self.counts.albedos)
+        easy = replace(batch, inputs=simple(batch.inputs))
+        return easy, self._views(self.counts.albedos, HARD)
 
     @cached_property
     def steep(self) -> Batch:
-        return self._views(VIEWS, STEEP)
+        return self._views(self.counts.materials, STEEP)
 
     def _views(self, count: int, ranges: Mapping[str, tuple[float, float]]) -> Batch:
         """Views of films with a roughness, a cosine and a thickness in ranges, and mirrored lights."""
@@ -87,7 +83,7 @@ class FilmProbe(MicrofacetProbe):
         """Pairs and inputs at the edges of the domain, films next to vacuum and vast ones."""
         rng = np.random.default_rng(SEED)
         special = special_directions(rng)
-        picked = rng.permutation(len(special[0]))[: 2 * PAIRS]
+        picked = rng.permutation(len(special[0]))[: 2 * self.counts.pairs]
         wo, wi = (each[picked] for each in special)
         inputs = self.subject.special_inputs(rng, len(wo))
         inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))

@@ -8,24 +8,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES, UtilitySubject
-from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.pictures import PictureProbe
-from mxeon.conformance.probes.probe import Probe, ValueProbe
+from mxeon.conformance.nodes.utilities import OSL_VALUES, UtilitySubject
+from mxeon.conformance.probes.probe import Counts, ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch
 from mxeon.hosts.calls import GRAPH
 from mxeon.shaders.generation import Shader
-
-COUNT = 1 << 12
-FEW = 1 << 9
 
 
 class UtilityProbe(ValueProbe):
     """An output of a utility node on a host that evaluates a shader's graph."""
 
-    kind: ClassVar[str] = VALUES
-    diagnosed: ClassVar[int] = FEW
+    usual: ClassVar[Counts] = Counts(1 << 12, 1 << 9, 1 << 9)
 
     subject: UtilitySubject
 
@@ -35,23 +28,23 @@ class UtilityProbe(ValueProbe):
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
-        """COUNT random inputs, and as many of which half lie on edges."""
-        rng = np.random.default_rng(SEED)
+        """Random inputs, and as many of which half lie on edges."""
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
         return (
-            _batch(self.subject.random_inputs(rng, COUNT)),
-            _batch(self.subject.special_inputs(rng, COUNT)),
+            _batch(self.subject.random_inputs(rng, count)),
+            _batch(self.subject.special_inputs(rng, count)),
         )
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """FEW of both."""
-        return tuple(batch.first(FEW) for batch in self.batches)
+        """Few of both."""
+        return tuple(batch.first(self.counts.few) for batch in self.batches)
 
     @property
     def edges(self) -> Batch:
         """Inputs at the ends of their ranges and beyond."""
         rng = np.random.default_rng(SEED)
-        return _batch(self.subject.outside_inputs(rng, COUNT))
+        return _batch(self.subject.outside_inputs(rng, self.counts.pairs))
 
     def direct(self, batch: Batch) -> Array:
         """The output as a color, (N, 3)."""
@@ -59,13 +52,15 @@ class UtilityProbe(ValueProbe):
         return values.astype(np.float64)
 
     def other(self, output: str) -> "UtilityProbe":
-        return type(self)(self.host, replace(self.subject, output=output), self.library)
+        return type(self)(
+            self.host, replace(self.subject, output=output), self.library, self.counts
+        )
 
 
 class UtilityOslProbe(UtilityProbe):
     """An output of a utility node on a renderer with OSL, which has mathematics of its own."""
 
-    kind: ClassVar[str] = OSL_VALUES
+    shown: ClassVar[str] = OSL_VALUES
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -85,15 +80,3 @@ def _batch(inputs: Mapping[str, Array]) -> Batch:
     count = len(next(iter(inputs.values())))
     up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
     return Batch(up, up, inputs)
-
-
-# By the hosts' own probes.
-PROBES: dict[type[Probe], type[UtilityProbe]] = {
-    PairProbe: UtilityProbe,
-    PictureProbe: UtilityOslProbe,
-}
-
-
-def utility_probe_type(subject: Subject, probe: type[Probe]) -> type[UtilityProbe] | None:
-    """Class of a subject's probes on a host that has probes of a class; None if it has none."""
-    return PROBES.get(probe)

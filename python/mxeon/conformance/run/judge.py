@@ -11,14 +11,12 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.functions.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
 from mxeon.conformance.known_issues import with_page
-from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.pictures.documents import generate_document
 from mxeon.conformance.pictures.node_pictures import portraits
-from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
-from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.probes.families import ALL_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.polyhedron import PROBES
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
@@ -209,20 +207,9 @@ def _with_pages(findings: Findings) -> Findings:
 
 def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
     """The probe of a subject on a host."""
-    probe = PROBES[host_row(host.name).probe]
-    surfaces = {surface.title: surface for surface in SURFACES}
-    nodes = {subject.title: subject for subject in PBR_SUBJECTS}
-    # A node of pbrlib.
-    if title in nodes:
-        assert isinstance(host, Host)  # a renderer of its own materials has none
-        kind = probe_type_of(nodes[title], probe)
-        assert kind is not None  # or there were no task
-        return kind(host, nodes[title], library)
-    # The diffuse lobe of a surface shader.
-    if title in surfaces:
-        assert isinstance(host, Host)  # a renderer of its own materials has none
-        return SURFACE_PROBES[probe](host, surfaces[title], library)
-    # A diffuse node, of the library or of the renderer's own.
-    rows = renderer_nodes(host.name) or SUBJECTS
-    made = probe(cast(Host, host), next(row for row in rows if row.title == title), library)
+    subjects = renderer_nodes(host.name) or ALL_SUBJECTS
+    subject = next(each for each in subjects if each.title == title)
+    probe = probe_type_of(subject, PROBES[host_row(host.name).probe])
+    assert probe is not None  # or there were no task
+    made = probe(cast(Host, host), subject, library)
     return made.nearest_form() if isinstance(made, ExactProbe) else made

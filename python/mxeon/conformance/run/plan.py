@@ -24,10 +24,15 @@ from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.probes.diffuse_lobes import SURFACE_PROBES
-from mxeon.conformance.probes.families import COMMON_SUBJECTS, PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.probes.families import (
+    ALL_SUBJECTS,
+    COMMON_SUBJECTS,
+    PBR_SUBJECTS,
+    probe_type_of,
+)
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.polyhedron import probe_type
+from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import AlbedoCurve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
@@ -202,17 +207,12 @@ def make_plan(
 
 def node_names() -> tuple[str, ...]:
     """Categories of the nodes that are judged."""
-    return tuple(dict.fromkeys(row.node for row in _rows()))
+    return tuple(dict.fromkeys(row.node for row in ALL_SUBJECTS))
 
 
 def _titles(nodes: Sequence[str]) -> set[str]:
     """Titles of the subjects that are nodes of these categories."""
-    return {row.title for row in _rows() if row.node in nodes}
-
-
-def _rows() -> list[Subject]:
-    """The nodes that are judged."""
-    return [*SUBJECTS, *PBR_SUBJECTS, *SURFACES]
+    return {row.title for row in ALL_SUBJECTS if row.node in nodes}
 
 
 def subjects(library: str) -> list[DiffuseSubject]:
@@ -239,24 +239,23 @@ def _on_host(
         return
     # Functions and inversions.
     language = "osl" if row.target == "osl" else "glsl"
-    if probe.kind in functions.KINDS and has_functions(library, language):
+    if row.probe in functions.KINDS and has_functions(library, language):
         yield Task(FUNCTIONS, TWINS, host, library)
     if probe is PairProbe:
         yield from (Task(INVERSION, node, host, library) for node in inversions(library))
     # Diffuse nodes, the other nodes, and lobes of surface shaders.
     for subject in subjects(library):
-        yield from _checks_of(subject, probe.kind, host, library)
+        yield from _checks_of(subject, probe, host, library)
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
-        kind = probe_type_of(each, probe)
         closure = each.closure and _is_renderers(row.target, library)
-        if kind and not closure and _is_judged(each, library):
-            yield from _checks_of(each, kind.kind, host, library)
+        if not closure and _is_judged(each, library):
+            yield from _checks_of(each, probe, host, library)
     if row.surfaces:
         for surface in SURFACES:
             if (library if library in LIBRARIES else "eonlib") in (surface.libraries or LIBRARIES):
-                yield from _checks_of(surface, SURFACE_PROBES[probe].kind, host, library)
+                yield from _checks_of(surface, probe, host, library)
     if row.scenes:
         yield from (Task(PICTURE, str(file), host, library) for file in files)
 
@@ -279,13 +278,14 @@ def _native(host: str) -> Iterator[Task]:
     probe = probe_type(host)
     if probe is not None and issubclass(probe, NativeProbe):
         for subject in renderer_nodes(host):
-            yield from _checks_of(subject, probe.kind, host, RENDERER_NODES)
+            yield from _checks_of(subject, probe, host, RENDERER_NODES)
 
 
-def _checks_of(subject: Subject, kind: str, host: str, library: str) -> Iterator[Task]:
-    """Tasks of one subject: the checks that apply to it."""
+def _checks_of(subject: Subject, own: type[Probe], host: str, library: str) -> Iterator[Task]:
+    """Tasks of one subject on a host with probes of its own: the checks that apply to it."""
+    probe = probe_type_of(subject, own)
     for check in CHECKS:
-        if applies(check, subject, kind, host):
+        if probe and applies(check, subject, probe.kind_of(subject), host):
             yield Task(check.key, subject.title, host, library)
 
 
