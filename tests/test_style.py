@@ -4,9 +4,12 @@
 import ast
 import subprocess
 import sys
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
+
+from mxeon.hosts import HOSTS
 
 ROOT = Path(__file__).parents[1]
 TOOLS = {
@@ -60,6 +63,25 @@ def test_the_conformance_suite_says_why_a_type_is_any():
     lines = [line for path in files for line in anys(path.read_text())]
     assert [line for line in lines if "  # " not in line] == []
     assert anys("from typing import Any\n\nx: list[Any] = []\n") == ["x: list[Any] = []"]
+
+
+def class_names(package):
+    """Modules that define a class, by its name."""
+    names = defaultdict(list)
+    for path in sorted(package.rglob("*.py")):
+        module = ".".join(path.relative_to(package.parent).with_suffix("").parts)
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ClassDef):
+                names[node.name].append(module.removesuffix(".__init__"))
+    return names
+
+
+def test_no_class_name_stands_twice():
+    names = class_names(ROOT / "python" / "mxeon")
+    # A row of HOSTS names a module alone: its class is `Host` by convention; see docs/design.md.
+    modules = {row.module for row in HOSTS if row.module}
+    assert set(names.pop("Host")) == {"mxeon.hosts.base", "mxeon.conformance.reference", *modules}
+    assert {name: modules for name, modules in names.items() if len(modules) > 1} == {}
 
 
 @pytest.mark.parametrize("tool", TOOLS)

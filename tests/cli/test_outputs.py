@@ -5,7 +5,7 @@ import pytest
 
 from mxeon.cli import main
 from mxeon.doc.markdown import read_tables, table_text
-from mxeon.doc.ports import Port, Table
+from mxeon.doc.ports import PortRow, Table
 from mxeon.errors import MISUSE
 from mxeon.explorer.documents import document_sources
 from mxeon.kit.export import export_kit
@@ -59,7 +59,7 @@ def test_a_kit_is_not_written_through_a_link(name, tmp_path):
 
 def test_a_description_breaks_no_table_and_steers_no_terminal():
     text = "two\nlines | a bar \x1b[31m"
-    table = table_text(Table("node", (Port("in", text, ("float",)),)))
+    table = table_text(Table("node", (PortRow("in", text, ("float",)),)))
     assert len(table.splitlines()) == 3 and "\x1b" not in table
     [port] = read_tables(f"# node\n\n{table}\n")["node"].ports
     assert port.description == "two lines | a bar \ufffd[31m"

@@ -3,6 +3,6 @@
 
 from mxeon.doc.compare import Difference, compare
 from mxeon.doc.markdown import fill, read_tables
-from mxeon.doc.ports import Port, Table, library_tables
+from mxeon.doc.ports import PortRow, Table, library_tables
 
-__all__ = ["Difference", "Port", "Table", "compare", "fill", "library_tables", "read_tables"]
+__all__ = ["Difference", "PortRow", "Table", "compare", "fill", "library_tables", "read_tables"]

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from mxeon.doc.ports import Port, Table
+from mxeon.doc.ports import PortRow, Table
 
 NONE = ("", "__zero__", "__empty__")  # defaults that are no value
 
@@ -80,7 +80,7 @@ def _of_node(table: Table, defined: Table | None) -> Iterator[Difference]:
         yield Difference(table.node, name, "port", "", name)
 
 
-def _of_port(node: str, port: Port, defined: Port) -> Iterator[Difference]:
+def _of_port(node: str, port: PortRow, defined: PortRow) -> Iterator[Difference]:
     if set(port.types) != set(defined.types):
         types = (" or ".join(each.types) for each in (port, defined))
         yield Difference(node, port.name, "type", *types)

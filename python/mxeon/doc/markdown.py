@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
-from mxeon.doc.ports import Port, Table
+from mxeon.doc.ports import PortRow, Table
 from mxeon.errors import DocumentError, PackageError, printable
 
 MARKER = re.compile(r"@MX_TABLE_(\w+)@")
@@ -86,12 +86,12 @@ def read_tables(text: str) -> dict[str, Table]:
     return tables
 
 
-def _cells(port: Port, ports: Sequence[Port]) -> tuple[str, ...]:
+def _cells(port: PortRow, ports: Sequence[PortRow]) -> tuple[str, ...]:
     """A row of a table."""
     return (f"`{port.name}`", port.description, _types(port, ports), port.default, port.accepted)
 
 
-def _types(port: Port, ports: Sequence[Port]) -> str:
+def _types(port: PortRow, ports: Sequence[PortRow]) -> str:
     """Types of a port in words; of several ports with the same choice, all refer to the first."""
     first = next(other for other in ports if other.types == port.types)
     if len(port.types) == 1:
@@ -102,9 +102,9 @@ def _types(port: Port, ports: Sequence[Port]) -> str:
     return f"{', '.join(port.types[:-1])}{comma} or {port.types[-1]}"
 
 
-def _port(row: Mapping[str, str]) -> Port:
+def _port(row: Mapping[str, str]) -> PortRow:
     """A port from the cells of a row, by the name of their column."""
-    return Port(
+    return PortRow(
         row["port"].strip("` "),
         row.get("description", ""),
         (row.get("type", ""),),
@@ -113,7 +113,7 @@ def _port(row: Mapping[str, str]) -> Port:
     )
 
 
-def _resolved(ports: Sequence[Port]) -> tuple[Port, ...]:
+def _resolved(ports: Sequence[PortRow]) -> tuple[PortRow, ...]:
     """Ports whose types are names, in place of words such as "A or B" and "Same as `port`"."""
     types: dict[str, tuple[str, ...]] = {}
     for port in ports:
@@ -121,7 +121,7 @@ def _resolved(ports: Sequence[Port]) -> tuple[Port, ...]:
         names = re.split(r",\s*or\s+|\s+or\s+|,\s*", port.types[0])
         types[port.name] = types.get(same[1], ()) if same else tuple(names)
     return tuple(
-        Port(port.name, port.description, types[port.name], port.default, port.accepted)
+        PortRow(port.name, port.description, types[port.name], port.default, port.accepted)
         for port in ports
     )
 

@@ -13,7 +13,7 @@ FLOATS = ("float", "vector2", "vector3", "vector4", "color3", "color4")
 
 
 @dataclass(frozen=True)
-class Port:
+class PortRow:
     """An input or an output of a node.
 
     Attributes
@@ -43,11 +43,11 @@ class Table:
     ----------
     node : str
         Category.
-    ports : tuple of Port
+    ports : tuple of PortRow
     """
 
     node: str
-    ports: tuple[Port, ...]
+    ports: tuple[PortRow, ...]
 
 
 def library_tables(library: str = "stock") -> dict[str, Table]:
@@ -80,23 +80,25 @@ def _table(node: str, definitions: Iterable[mx.NodeDef]) -> Table:
     return Table(node, (*_merged(inputs), *_merged(outputs)))
 
 
-def _merged(ports: Iterable[Port]) -> tuple[Port, ...]:
+def _merged(ports: Iterable[PortRow]) -> tuple[PortRow, ...]:
     """One port for each name, with the types of all; the first has the other columns."""
-    merged: dict[str, Port] = {}
+    merged: dict[str, PortRow] = {}
     for port in ports:
         first = merged.get(port.name, port)
         types = tuple(dict.fromkeys(first.types + port.types))
-        merged[port.name] = Port(port.name, first.description, types, first.default, first.accepted)
+        merged[port.name] = PortRow(
+            port.name, first.description, types, first.default, first.accepted
+        )
     return tuple(merged.values())
 
 
-def _input(port: mx.Input) -> Port:
+def _input(port: mx.Input) -> PortRow:
     default = port.getDefaultGeomPropString() or _default(port)
-    return Port(port.getName(), port.getDocString(), (port.getType(),), default, _accepted(port))
+    return PortRow(port.getName(), port.getDocString(), (port.getType(),), default, _accepted(port))
 
 
-def _output(port: mx.Output) -> Port:
-    return Port(port.getName(), port.getDocString(), (port.getType(),))
+def _output(port: mx.Output) -> PortRow:
+    return PortRow(port.getName(), port.getDocString(), (port.getType(),))
 
 
 def _default(port: mx.Input) -> str:

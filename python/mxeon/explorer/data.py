@@ -60,7 +60,7 @@ class Texels:
 
 
 @dataclass(frozen=True)
-class Port:
+class ShaderInput:
     """A public input of a shader.
 
     Attributes
@@ -115,7 +115,7 @@ class ShaderSource:
         "eonlib" or "stock".
     pixel : str
         The text of its pixel stage.
-    inputs : tuple of Port
+    inputs : tuple of ShaderInput
     controls : Controls
     document : str
         The document, as MaterialX text.
@@ -129,7 +129,7 @@ class ShaderSource:
     note: str
     library: str
     pixel: str
-    inputs: tuple[Port, ...]
+    inputs: tuple[ShaderInput, ...]
     controls: Controls
     document: str
     meant: Models | None = None

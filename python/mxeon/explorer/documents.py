@@ -13,7 +13,7 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.errors import MxeonError, printable
-from mxeon.explorer.data import Controls, Models, Port, ShaderSource, Texels
+from mxeon.explorer.data import Controls, Models, ShaderInput, ShaderSource, Texels
 from mxeon.hosts.textures import read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
@@ -161,7 +161,7 @@ def _only_diffuse_node(shader: Shader) -> mx.Node | None:
     return diffuse[0] if len(diffuse) == 1 and not others else None
 
 
-def _ports(shader: Shader) -> Iterator[Port]:
+def _ports(shader: Shader) -> Iterator[ShaderInput]:
     """The inputs of a shader that are numbers or images; members of structures one by one."""
     for port in shader.inputs:
         if port.type == "filename":
@@ -184,7 +184,7 @@ def _numbers(
         yield name, kind, value
 
 
-def _port(shader: Shader, port: Input) -> Port:
+def _port(shader: Shader, port: Input) -> ShaderInput:
     """An input without a value, with its label and range."""
     words = partial(_attribute, _descriptions(shader.document, port.path))
     low, high = (next(filter(None, map(_least, map(words, names))), None) for names in RANGE)
@@ -193,7 +193,7 @@ def _port(shader: Shader, port: Input) -> Port:
     label = words("uiname") or port.path.rpartition("/")[2].replace("_", " ")
     # Words that choose from a list are numbers in the shader; frames of images do not move here.
     shown = not (words("enum") or port.type == "filename" or "frame" in port.path)
-    return Port(
+    return ShaderInput(
         port.name,
         port.type,
         None,

@@ -40,7 +40,7 @@ Arguments: TypeAlias = dict[str, tuple[str, ArrayLike]]  # type and values by na
 
 
 @dataclass(frozen=True)
-class Call:
+class BsdfCall:
     """How a generated shader calls its BSDFs.
 
     Attributes
@@ -66,7 +66,7 @@ def bsdf_call(
     inputs: Inputs,
     branch: str,
     output: str = OUTPUTS[0],
-) -> Call:
+) -> BsdfCall:
     """Call of a shader's BSDF, with the values of its arguments.
 
     Parameters
@@ -78,7 +78,7 @@ def bsdf_call(
 
     Returns
     -------
-    Call
+    BsdfCall
 
     Raises
     ------
@@ -110,7 +110,7 @@ def bsdf_call(
         arguments |= {name: _argument(name, ports, inputs) for name in names}
     # Choose what the statements leave behind.
     value = result if emitted else f"{ASKED} ? {result}.throughput : {result}.response"
-    return Call(statements.replace(called, closure), value, arguments)
+    return BsdfCall(statements.replace(called, closure), value, arguments)
 
 
 @lru_cache(maxsize=16)  # the checks of a node share its shader
@@ -149,7 +149,7 @@ def _surface_arguments(shader: Shader, before: Prelude, inputs: Inputs) -> Argum
     return arguments
 
 
-def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> Call:
+def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     """Call of a shader's graph: the statements before its surface, and the color of its uniform EDF."""
     # Find the uniform EDF.
     text = shader.stages["pixel"]
@@ -167,7 +167,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> Call:
     words = dict.fromkeys(re.findall(r"\w+", statements + color[1]))
     arguments: Arguments = {"V": ("vector3", wo)}  # of a graph that reads nothing
     arguments |= {name: _argument(name, ports, inputs) for name in words if name in ports}
-    return Call(statements, color[1], arguments)
+    return BsdfCall(statements, color[1], arguments)
 
 
 def _default(port: Input) -> ArrayLike:

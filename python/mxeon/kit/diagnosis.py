@@ -15,14 +15,14 @@ from mxeon.kit.noise import ratio, tiles
 from mxeon.models import table as reference
 
 if TYPE_CHECKING:
-    from mxeon.kit.questions import Case
+    from mxeon.kit.questions import JudgedPicture
 
 # Models nearer to another one than a renderer's noise: EON's quartic is off by 1e-3 at most.
 TOO_NEAR = ("eon_approx",)
 
 
 @dataclass(frozen=True)
-class Candidate:
+class ModelDistance:
     """Distance of a known model or defect from the pictures of one question.
 
     Attributes
@@ -39,18 +39,18 @@ class Candidate:
     ratio: float
 
 
-def candidates(pictures: Sequence[Case], depth: float) -> list[Candidate]:
+def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDistance]:
     """Every known model and defect, nearest first; models with the same values once.
 
     Parameters
     ----------
-    pictures : sequence of mxeon.kit.questions.Case
+    pictures : sequence of mxeon.kit.questions.JudgedPicture
     depth : float
         Of the mesh.
 
     Returns
     -------
-    list of Candidate
+    list of ModelDistance
     """
     rows = [row for row in reference.KNOWN_DEFECTS + reference.MODELS if row.name not in TOO_NEAR]
     if all(case.view.scene.light for case in pictures):
@@ -58,16 +58,18 @@ def candidates(pictures: Sequence[Case], depth: float) -> list[Candidate]:
     return sorted((_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance)
 
 
-def _candidate(row: reference.Model, pictures: Sequence[Case], depth: float) -> Candidate:
+def _candidate(
+    row: reference.Model, pictures: Sequence[JudgedPicture], depth: float
+) -> ModelDistance:
     errors = []
     for case in pictures:
         model = expected(row, case.view, depth)
         errors.append(tiles(case.values - model.value, model.slack, case.mask))
     means = np.concatenate([each.mean for each in errors])
-    return Candidate(row.title, float(np.sqrt(np.mean(means**2))), ratio(errors))
+    return ModelDistance(row.title, float(np.sqrt(np.mean(means**2))), ratio(errors))
 
 
-def ranking_sentence(ranking: Sequence[Candidate]) -> str:
+def ranking_sentence(ranking: Sequence[ModelDistance]) -> str:
     """The nearest model and the second best, in words.
 
     Names the models that the pictures cannot tell from the nearest one, at the confidence of

@@ -67,7 +67,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Case:
+class JudgedPicture:
     """A submitted picture at its judged pixels.
 
     Attributes
@@ -143,7 +143,8 @@ def answer(
     # Compare them with the model, and with its mistake.
     masks = [judged(view.scene) for view in chosen]
     cases = [
-        Case(view, mask, images[view.name][mask]) for view, mask in zip(chosen, masks, strict=True)
+        JudgedPicture(view, mask, images[view.name][mask])
+        for view, mask in zip(chosen, masks, strict=True)
     ]
     models = [expected(reference.model(view.material.model), view, depth) for view in chosen]
     errors = _tiles(cases, models)
@@ -176,7 +177,7 @@ def answer(
     ), words
 
 
-def _fault(case: Case, model: Expected, images: Mapping[str, NDArray[np.float64]]) -> str:
+def _fault(case: JudgedPicture, model: Expected, images: Mapping[str, NDArray[np.float64]]) -> str:
     """The fault of light, orientation or encoding, in words."""
     words = fault(images[case.view.name], model, case.mask)
     return f"{case.view.name} is {words}" if words else ""
@@ -187,7 +188,7 @@ def _ratio(errors: Sequence[Tiles]) -> float:
 
 
 def _tiles(
-    cases: Sequence[Case],
+    cases: Sequence[JudgedPicture],
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:

@@ -42,7 +42,7 @@ LOOKS = {
 
 
 @dataclass(frozen=True)
-class Check:
+class CheckResults:
     """Results of one check on one host with one library.
 
     Attributes
@@ -134,7 +134,7 @@ def vector(values: ArrayLike) -> str:
     return words[0] if len(words) == 1 else f"({', '.join(words)})"
 
 
-def checks_by_place(results: Iterable[Result]) -> dict[tuple[str, str], list[Check]]:
+def checks_by_place(results: Iterable[Result]) -> dict[tuple[str, str], list[CheckResults]]:
     """Checks by host and library, in order of appearance."""
     places: dict[tuple[str, str], dict[str, list[Result]]] = {}
     for result in results:
@@ -142,7 +142,7 @@ def checks_by_place(results: Iterable[Result]) -> dict[tuple[str, str], list[Che
         place.setdefault(result.check, []).append(result)
     return {
         location: [
-            Check(key, f"check-{column}-{row}", tuple(members))
+            CheckResults(key, f"check-{column}-{row}", tuple(members))
             for row, (key, members) in enumerate(rows.items())
         ]
         for column, (location, rows) in enumerate(places.items())
@@ -150,9 +150,9 @@ def checks_by_place(results: Iterable[Result]) -> dict[tuple[str, str], list[Che
 
 
 def matrix(
-    places: Mapping[tuple[str, str], Sequence[Check]],
-) -> list[tuple[str, list[Check | None]]]:
-    """Rows of the table of checks: the name, and the Check of each host and library, or None."""
+    places: Mapping[tuple[str, str], Sequence[CheckResults]],
+) -> list[tuple[str, list[CheckResults | None]]]:
+    """Rows of the table of checks: the name, and the CheckResults of each host and library, or None."""
     columns = [{check.key: check for check in checks} for checks in places.values()]
     keys = dict.fromkeys(key for column in columns for key in column)
     return [(key, [column.get(key) for column in columns]) for key in keys]

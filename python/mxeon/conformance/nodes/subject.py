@@ -46,7 +46,7 @@ class Subject(Protocol):
         ...
 
 
-class Row(Protocol):
+class NodeRow(Protocol):
     """A row of `mxeon.models.nodes`."""
 
     @property
@@ -58,7 +58,7 @@ class Row(Protocol):
 class RowSubject:
     """Base class of subjects that are a row of `mxeon.models.nodes`, with any library."""
 
-    row: Row
+    row: NodeRow
 
     libraries: ClassVar[tuple[str, ...]] = ()
 

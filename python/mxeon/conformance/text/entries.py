@@ -33,7 +33,7 @@ Inputs = Mapping[str, Array]
 
 
 @dataclass(frozen=True)
-class Entry:
+class EntryPoint:
     """An entry point, and the closure that it has to give.
 
     Attributes
@@ -101,7 +101,7 @@ def _subsurface(rng: np.random.Generator) -> dict[str, Array]:
 
 
 ENTRIES = tuple(
-    Entry(
+    EntryPoint(
         "conical_edf",
         file,
         case,
@@ -113,7 +113,7 @@ ENTRIES = tuple(
     for file, profile in (("conical_edf", None), ("conical_edf_cycles", "cycles"))
     for soft, case in ((True, "soft"), (False, "hard"))
 ) + (
-    Entry(
+    EntryPoint(
         "subsurface_bsdf",
         "subsurface_bsdf_cycles",
         "",
@@ -138,7 +138,7 @@ def check_entries(library: str) -> tuple[Result, ...]:
     )
 
 
-def _judge(entry: Entry, library: str) -> Result:
+def _judge(entry: EntryPoint, library: str) -> Result:
     inputs = entry.inputs(np.random.default_rng(SEED))
     wrong = {**inputs, "color": 0.5 * inputs["color"]}
     faults, control = (
@@ -149,7 +149,7 @@ def _judge(entry: Entry, library: str) -> Result:
     return counted(CLAIM, title, library, len(faults), len(control), "; ".join(faults))
 
 
-def _faults(entry: Entry, library: str, inputs: Inputs, expected: Inputs) -> list[str]:
+def _faults(entry: EntryPoint, library: str, inputs: Inputs, expected: Inputs) -> list[str]:
     """Faults of the closure for inputs, which has to be that of the expected ones."""
     try:
         closures = _closures(entry, _element(entry, library), inputs)
@@ -168,7 +168,7 @@ def _faults(entry: Entry, library: str, inputs: Inputs, expected: Inputs) -> lis
     ]
 
 
-def _element(entry: Entry, library: str) -> mx.Implementation:
+def _element(entry: EntryPoint, library: str) -> mx.Implementation:
     """The implementation that MaterialX chooses in OSL."""
     data = load_library(library, entry.profile)
     element = data.getNodeDef(f"ND_{entry.node}").getImplementation("genosl")
@@ -177,7 +177,7 @@ def _element(entry: Entry, library: str) -> mx.Implementation:
     return element
 
 
-def _closures(entry: Entry, element: mx.Implementation, inputs: Inputs) -> tuple[Closure, ...]:
+def _closures(entry: EntryPoint, element: mx.Implementation, inputs: Inputs) -> tuple[Closure, ...]:
     """The closures that an entry point gives for inputs."""
     path = Path(element.getActiveSourceUri()).parent / element.getAttribute("file")
     view = inputs.get("wo", np.ones((1, 3)))

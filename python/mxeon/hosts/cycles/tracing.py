@@ -23,7 +23,7 @@ INNER_SAMPLES = 64
 SURFACE_BOUNCES, REFRACTED_BOUNCES = 1, 8
 
 
-class Frame(TypedDict):
+class SceneParts(TypedDict):
     """Parts of a scene that the worker needs; see `request`."""
 
     size: int
@@ -38,7 +38,7 @@ class Frame(TypedDict):
 FEWEST_SAMPLES = 16  # below the surface, less is noise rather than a picture
 
 
-def request(scene: Scene, lobes: Sequence[str]) -> Frame:
+def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
     """Parts of a scene that the worker needs.
 
     Parameters

@@ -22,7 +22,7 @@ from mxeon.models.core.arguments import (
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.hair import formulas as formulas
-from mxeon.models.hair.formulas import LOBES, TEXT, Form
+from mxeon.models.hair.formulas import LOBES, TEXT, HairForm
 
 __all__ = [
     "LOBES",
@@ -50,7 +50,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     wi : array_like, shape (..., 3)
         Direction to the light, unit vector to 1e-6, on either side.
     **inputs : array_like
-        Values of the node's ports, which have its defaults; form is a `mxeon.models.hair.formulas.Form`:
+        Values of the node's ports, which have its defaults; form is a `mxeon.models.hair.formulas.HairForm`:
         `tint_R`, `tint_TT`, `tint_TRT`, shape (..., C), in [0, 1]; `ior`, shape (...), in [0, 1e50];
         `roughness_R`, `roughness_TT`, `roughness_TRT`, shape (..., 2), longitudinal variance in
         square radian and azimuthal scale in radian, in [1e-12, 1e12]; `cuticle_angle`, shape (...),
@@ -85,7 +85,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     array([0.137704, 0.137704, 0.137704])
     """
     # Check the inputs.
-    form: Form = inputs.pop("form", TEXT)
+    form: HairForm = inputs.pop("form", TEXT)
     values = _checked(inputs)
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
     numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
@@ -242,7 +242,7 @@ def _checked(inputs: dict[str, ArrayLike]) -> dict[str, Array]:
     return values
 
 
-def _lobes(wo: Array, wi: Array, inputs: dict[str, Array], form: Form) -> list[Array]:
+def _lobes(wo: Array, wi: Array, inputs: dict[str, Array], form: HairForm) -> list[Array]:
     """A_p M_p N_p of the four lobes, each (C, ...)."""
     ior, alpha = inputs["ior"], np.pi * (inputs["cuticle_angle"] - 0.5)
     view, effective = formulas.section(wo, ior)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.hair.formulas import TEXT, Form
+from mxeon.models.hair.formulas import TEXT, HairForm
 
 # The series of I_0 has so many terms, and above the limit a logarithm takes its place.
 TERMS, LIMIT, NARROW = 10, 12.0, 0.1
@@ -49,7 +49,7 @@ UNIFORM, BESSEL, CLAMPED, TILTED = (
     "every roughness in [0.001, 1]",
     "the viewer's inclination tilted in place of the light's",
 )
-FORMS: dict[str, Form] = {
+FORMS: dict[str, HairForm] = {
     UNIFORM: replace(TEXT, uniform=0.5 * np.pi),
     BESSEL: replace(TEXT, longitudinal=materialx_longitudinal),
     CLAMPED: replace(TEXT, limits=LIMITS),
@@ -60,7 +60,7 @@ FORMS: dict[str, Form] = {
 }
 
 # Readings that the text leaves open, or that its later versions have.
-READINGS: dict[str, Form] = {
+READINGS: dict[str, HairForm] = {
     "F of the effective index": replace(TEXT, effective=True),
     "no factor 1/pi, as in later versions of the text": replace(TEXT, factor=1.0),
 }

@@ -73,7 +73,7 @@ def attenuation(F: Array, T: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Form:
+class HairForm:
     """The model in the text's form, or in one that a shader may have in its place.
 
     Attributes
@@ -100,7 +100,7 @@ class Form:
     factor: float = 1.0 / np.pi
 
 
-TEXT = Form()
+TEXT = HairForm()
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
 
 
 def attenuations(
-    view: Section, effective: Array, ior: Array, absorption: Array, form: Form
+    view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
     """A_p of a view, (4, C, ...), of absorptions (C, ...)."""
     cos_gamma = np.cos(view.gamma_o)
@@ -158,7 +158,7 @@ def distribution(
     roughness: tuple[Array, Array],
     alpha: Array,
     lobe: int,
-    form: Form,
+    form: HairForm,
 ) -> Array:
     """M_p N_p of a lobe: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
     # Limit the roughness.

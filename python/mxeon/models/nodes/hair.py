@@ -16,12 +16,12 @@ from mxeon.models.hair import (
     chiang_hair_bcsdf,
 )
 from mxeon.models.hair.defects import FORMS, READINGS
-from mxeon.models.hair.formulas import TEXT, Form
+from mxeon.models.hair.formulas import TEXT, HairForm
 from mxeon.models.microfacet.albedo import dielectric_albedo_dir
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 
 
-def _value(form: Form = TEXT) -> Callable[[Array, Array, Inputs], Array]:
+def _value(form: HairForm = TEXT) -> Callable[[Array, Array, Inputs], Array]:
     """Values in a form of the model."""
 
     def value(wo: Array, wi: Array, inputs: Inputs) -> Array:

@@ -43,7 +43,7 @@ WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Lobe:
+class BareLobe:
     """Functions of a microfacet node by its inputs.
 
     Attributes
@@ -130,7 +130,7 @@ def _filmed_albedo(category: str, bare: Callable[..., Array]) -> Callable[..., A
     return albedo
 
 
-DIELECTRIC = Lobe(
+DIELECTRIC = BareLobe(
     "dielectric_bsdf",
     _filmed_value(
         "dielectric_bsdf",
@@ -142,7 +142,7 @@ DIELECTRIC = Lobe(
     ),
     lambda mu, i: fresnel_dielectric(mu, i["ior"])[:, np.newaxis],
 )
-CONDUCTOR = Lobe(
+CONDUCTOR = BareLobe(
     "conductor_bsdf",
     _filmed_value(
         "conductor_bsdf",
@@ -156,7 +156,7 @@ CONDUCTOR = Lobe(
     ),
     lambda mu, i: fresnel_conductor(mu, i["ior"], i["extinction"]),
 )
-SCHLICK = Lobe(
+SCHLICK = BareLobe(
     "generalized_schlick_bsdf",
     _filmed_value(
         "generalized_schlick_bsdf",
@@ -175,7 +175,7 @@ SCHLICK = Lobe(
 )
 
 
-def _variants(lobe: Lobe) -> tuple[Variant, ...]:
+def _variants(lobe: BareLobe) -> tuple[Variant, ...]:
     """Functions that a shader may have in place of a microfacet node's own."""
     values = (
         Variant(

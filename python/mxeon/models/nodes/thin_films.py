@@ -17,9 +17,9 @@ from mxeon.models.nodes.microfacets import (
     DIELECTRIC,
     MICROFACET_NODES,
     SCHLICK,
+    BareLobe,
     isotropic,
 )
-from mxeon.models.nodes.microfacets import Lobe as BareLobe
 from mxeon.models.nodes.node import Inputs, PbrNode, Variant
 from mxeon.models.thin_film import (
     CIE_RGB,
