@@ -125,20 +125,20 @@ def test_a_row_takes_any_input_and_returns_each_output(row):
     sizes = {"vector2": 2, "vector3": 3, "color3": 3}
     for value in (-1.0, 0.0, 0.5, 1.0, 3.0, 1e6):
         inputs = {name: np.full((4, *np.shape(each)), value) for name, each in row.inputs.items()}
-        outputs = row.values(inputs)
+        outputs = row.value(inputs)
         assert {name: each.shape for name, each in outputs.items()} == {
             name: (4, sizes[kind]) for name, kind in row.outputs.items()
         }
         assert all(np.isfinite(each).all() and each.min() >= 0.0 for each in outputs.values())
         for variant in row.variants:
-            assert {k: v.shape for k, v in variant.values(inputs).items()} == {
+            assert {k: v.shape for k, v in variant.value(inputs).items()} == {
                 name: each.shape for name, each in outputs.items()
             }
 
 
 def test_a_row_has_the_reflectivity_up_to_its_limit():
     inputs = {"reflectivity": np.array([[0.5, 0.99, 1.0]]), "edge_color": np.full((1, 3), 0.5)}
-    outputs = node("artistic_ior").values(inputs)
+    outputs = node("artistic_ior").value(inputs)
     reflectance = normal_reflectance(outputs["ior"], outputs["extinction"])
     assert reflectance == pytest.approx(np.array([[0.5, 0.99, 0.99]]))
 

@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: the other BSDF nodes of pbrlib, in each of their modes."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.ports import Port, changes, color, draw, draw_edges, materials
-from mxeon.conformance.nodes.subject import RowSubject
-from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
+from mxeon.conformance.nodes.ports import Port, color, materials
+from mxeon.conformance.nodes.rows import ZERO, RowSubject, broadcast_inputs
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models import nodes as pbrlib
-from mxeon.models.nodes.node import Inputs, PbrNode
+from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import input_types, material_text
 
 # Kinds of probes; see `mxeon.conformance.probes.bsdf`.
@@ -40,7 +39,6 @@ QUADRATURES = {  # largest error of a probe's integrals of the equations
     HAIR: 5e-6,
 }
 BLACK = ("color", "tint", "color0", "color90")  # inputs that are 0 where nothing is scattered
-NOTHING = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 LEAST_ALPHA = 1e-3  # of random pairs
 FILM = {"thinfilm_thickness": 400.0}
@@ -112,7 +110,7 @@ PORTS: dict[str, tuple[Port, ...]] = {
 
 
 @dataclass(frozen=True)
-class BsdfSubject(RowSubject):
+class BsdfSubject(RowSubject[Scattering]):
     """A mode of a node of `mxeon.models.nodes`.
 
     Attributes
@@ -122,8 +120,6 @@ class BsdfSubject(RowSubject):
 
     row: PbrNode
 
-    closure: ClassVar[bool] = True
-
     @property
     def title(self) -> str:
         words = [f"{name} {value}" for name, value in self.row.fixed.items()]
@@ -131,22 +127,15 @@ class BsdfSubject(RowSubject):
 
     @property
     def ports(self) -> tuple[Port, ...]:
-        """The node's inputs but those that select a mode."""
         return PORTS[self.node]
 
     @property
     def drawn(self) -> tuple[Port, ...]:
-        """The inputs that its functions read."""
         ports = {port.name: port for port in self.ports}
         return tuple(ports[name] for name in self.row.inputs)
 
     @property
-    def inputs(self) -> tuple[str, ...]:
-        return tuple(port.name for port in self.ports)
-
-    @property
     def materials(self) -> tuple[Values, ...]:
-        """Inputs of the two materials that stand for it in pictures."""
         return materials((WEIGHT, *self.drawn))
 
     @property
@@ -159,10 +148,6 @@ class BsdfSubject(RowSubject):
         return SHEEN if self.row.category == "sheen_bsdf" else CLOSED
 
     @property
-    def changes(self) -> Mapping[str, Changes]:
-        return changes(self.ports)
-
-    @property
     def black(self) -> Values:
         return {name: (0.0, 0.0, 0.0) for name in BLACK if name in self.row.inputs}
 
@@ -171,22 +156,18 @@ class BsdfSubject(RowSubject):
         """Whether the roughness has a direction."""
         return any(port.name == "roughness" and port.kind == "vector2" for port in self.ports)
 
-    def with_flag(self, inputs: Values) -> Values:
-        return inputs
-
     def document(self, inputs: Values | None = None) -> str:
         types = {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
         return material_text(self.node, {**(inputs or {}), **self.row.fixed}, self.node, types)
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw(rng, count, self.drawn)
-
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw_edges(rng, count, self.drawn)
-
-    def expected(self, batch: Batch) -> Array:
+    def values(self, function: Scattering, batch: Batch) -> Array:
         """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
-        return _expected(self.row, self.row.value, batch)
+        side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if self.row.transmits else 1.0)
+        wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
+        occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+        factor = batch.strength * (1.0 if self.row.transmits else occlusion)
+        lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
+        return np.asarray(np.pi * function(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
 
     def albedo(self, batch: Batch) -> Array:
         return _albedo(self.row.albedo, batch)
@@ -206,66 +187,35 @@ class BsdfSubject(RowSubject):
         return np.maximum(1.0 - self.albedo(batch), 0.0)
 
     @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        """The row's own function of directions, and its variants."""
-        own = Candidate(self.row.title, partial(_expected, self.row, self.row.value))
-        others = (
-            Candidate(each.title, partial(_expected, self.row, each.value), each.permitted)
-            for each in self.row.variants
-            if each.value
-        )
-        return (own, *others, *_wrong_side(self.row), NOTHING)
+    def others(self) -> tuple[Candidate, ...]:
+        """A lobe that transmits, taken for one that reflects; and zero."""
+        if not self.row.transmits:
+            return (ZERO,)
+        opaque = replace(self, row=replace(self.row, transmits=False))
+
+        def mirrored(wo: Array, wi: Array, inputs: Inputs) -> Array:
+            return self.row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
+
+        def reflection(batch: Batch) -> Array:
+            return opaque.values(mirrored, batch.altered(occlusion=1.0))  # light through the base
+
+        return Candidate("a reflection in its place", reflection), ZERO
 
     @property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
         """The row's own albedo, and its variants."""
-        own = Candidate(self.row.title, partial(_albedo, self.row.albedo))
-        others = (
+        own = Candidate(self.row.title, self.albedo)
+        variants = (
             Candidate(each.title, partial(_albedo, each.albedo), each.permitted)
             for each in self.row.variants
             if each.albedo
         )
-        return (own, *others, NOTHING)
-
-
-def _wrong_side(row: PbrNode) -> Iterator[Candidate]:
-    """A lobe that transmits, taken for one that reflects."""
-    if row.transmits:
-
-        def mirrored(wo: Array, wi: Array, inputs: Inputs) -> Array:
-            return row.value(wo, wi * [1.0, 1.0, -1.0], inputs)
-
-        def reflection(batch: Batch) -> Array:
-            broadcast_inputs = batch.altered(occlusion=1.0)  # as of light through the base
-            return _expected(replace(row, transmits=False), mirrored, broadcast_inputs)
-
-        yield Candidate("a reflection in its place", reflection)
+        return (own, *variants, ZERO)
 
 
 def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
     """A directional albedo with weight, (N, 3)."""
     return batch.strength * albedo(batch.wo, broadcast_inputs(batch))
-
-
-def _expected(row: PbrNode, value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:
-    """pi f |cos(theta_i)| of a function of `wo, wi, inputs` on the row's side of the horizon."""
-    side = np.where(batch.wi[:, 2:] < 0.0, -1.0, 1.0) * (-1.0 if row.transmits else 1.0)
-    wi = batch.wi * np.concatenate([np.ones((len(side), 2)), side], axis=1)
-    occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
-    factor = batch.strength * (1.0 if row.transmits else occlusion)
-    lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
-    return np.asarray(np.pi * value(batch.wo, wi, broadcast_inputs(batch)) * lit * factor)
-
-
-def broadcast_inputs(batch: Batch) -> dict[str, Array]:
-    """The inputs with a row for each pair."""
-    count = len(batch.wo)
-    return {
-        name: np.broadcast_to(values, (count, *np.shape(values)[-1:]))
-        if np.shape(values)[:1] != (count,)
-        else values
-        for name, values in batch.inputs.items()
-    }
 
 
 BSDFS = tuple(BsdfSubject(row) for row in pbrlib.NODES)

@@ -74,7 +74,7 @@ class CombinedSubject(BsdfSubject):
         """The inputs of the functions, by path: rows of `top` alone have those of both lobes."""
         rough = (Port(name, low=LEAST_SHEEN, change=0.4) for name in ROUGHNESS)
         shares = (Port(name, change=0.3) for name in (AMOUNT, AMOUNT_ABOVE))
-        factor = color(FACTOR, edges=()) if self._colored else Port(FACTOR, change=0.3)
+        factor = color(FACTOR, edges=()) if self.model in COLORED else Port(FACTOR, change=0.3)
         colors = (color(name, edges=()) for name in COLORS)
         ports = {port.name: port for port in (*rough, *shares, *colors, factor)}
         return tuple(ports[name] for name in self.row.inputs)
@@ -89,18 +89,9 @@ class CombinedSubject(BsdfSubject):
     def kind(self) -> str:
         return NESTED if self.model in combinations.NESTED else COMBINED
 
-    @property
-    def anisotropic(self) -> bool:
-        """Whether the roughness has a direction: never."""
-        return False
-
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this node over sheens."""
         return document_text(NODES[self.model] + SURFACE)
-
-    @property
-    def _colored(self) -> bool:
-        return self.model in COLORED
 
 
 COMBINED_NODES = tuple(CombinedSubject(row) for row in COMBINATIONS)

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: the EDF nodes of pbrlib, and those that combine EDFs."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.nodes.bsdf import broadcast_inputs
-from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw, materials
-from mxeon.conformance.nodes.subject import RowSubject
-from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
+from mxeon.conformance.nodes.ports import COMPONENTS, Port, color, draw
+from mxeon.conformance.nodes.rows import RowSubject, broadcast_inputs
+from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
 from mxeon.models.nodes.emissions import (
     AMOUNT,
     BASE,
@@ -61,11 +58,10 @@ FACTORS = {  # of an emission, by the last word of the row's name
     "float": Port(FACTOR, change=0.3, materials=(0.9, 0.5)),
     "color3": color(FACTOR, (0.9, 0.6, 0.3), (0.5, 0.5, 0.5), edges=()),
 }
-DARK = Candidate("zero", lambda batch: np.zeros((len(batch.wo), 3)))
 
 
 @dataclass(frozen=True)
-class EmissionSubject(RowSubject):
+class EmissionSubject(RowSubject[Value]):
     """A row of `mxeon.models.nodes.emissions`.
 
     Attributes
@@ -99,7 +95,6 @@ class EmissionSubject(RowSubject):
 
     @property
     def drawn(self) -> tuple[Port, ...]:
-        """The inputs that its functions read."""
         ports = PORTS | {FACTOR: FACTORS.get(self.row.name.rsplit("_", 1)[-1], FACTORS["float"])}
         return tuple(ports[name] for name in self.row.inputs)
 
@@ -109,21 +104,8 @@ class EmissionSubject(RowSubject):
         return (*self.drawn, *((PORTS["normal"],) if self.row.name == "conical" else ()))
 
     @property
-    def inputs(self) -> tuple[str, ...]:
-        return tuple(port.name for port in self.ports)
-
-    @property
-    def materials(self) -> tuple[Values, ...]:
-        """Inputs of the two materials that stand for it in pictures."""
-        return materials(self.drawn)
-
-    @property
     def kind(self) -> str:
         return {"conical": CONE, "schlick_emission": POWER}.get(self.row.name, CLOSED)
-
-    @property
-    def changes(self) -> Mapping[str, Changes]:
-        return changes(self.ports)
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that emits by this node alone, with these inputs."""
@@ -159,22 +141,13 @@ class EmissionSubject(RowSubject):
             inputs |= random_cones(rng, count)
         return inputs
 
-    def expected(self, batch: Batch) -> Array:
-        return _radiance(self.row.value, batch)
+    def values(self, function: Value, batch: Batch) -> Array:
+        """Radiance, (N, 3), of views whose cosines do not exceed 1 by a rounding."""
+        return function(np.clip(batch.wo, -1.0, 1.0), broadcast_inputs(batch))
 
     def exitance(self, batch: Batch) -> Array:
         """Radiant exitance with the inputs of each view, (N, 3)."""
         return self.row.exitance(broadcast_inputs(batch))
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        """The row's own radiance, and its variants."""
-        own = Candidate(self.row.title, self.expected)
-        others = (
-            Candidate(each.title, partial(_radiance, each.value), each.permitted)
-            for each in self.row.variants
-        )
-        return (own, *others, DARK)
 
 
 def _default(port: Port) -> ArrayLike:
@@ -227,21 +200,8 @@ def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
     inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
     more = LEAST_FALLOFF + (360.0 - LEAST_FALLOFF - inner) * rng.random(count)
     outer = np.where(wide, inner + more, inner * rng.random(count))
-    return {INNER: _float32(inner), OUTER: _float32(outer)}
-
-
-def _float32(values: Array) -> Array:
-    return values.astype(np.float32).astype(np.float64)
-
-
-def _radiance(value: Value, batch: Batch) -> Array:
-    """Radiance of a function of views and inputs, (N, 3)."""
-    return value(_unit(batch.wo), broadcast_inputs(batch))
-
-
-def _unit(wo: Array) -> Array:
-    """Directions whose cosines do not exceed 1 by a rounding."""
-    return np.clip(wo, -1.0, 1.0)
+    angles = rounded([inner, outer])
+    return {INNER: angles[:, 0], OUTER: angles[:, 1]}
 
 
 BOTH = ("first", "second")

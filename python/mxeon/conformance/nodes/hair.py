@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The subject `chiang_hair_bsdf`: its inputs, its values and what may stand in their place."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import HAIR, NOTHING, BsdfSubject, broadcast_inputs
+from mxeon.conformance.nodes.bsdf import HAIR, BsdfSubject
 from mxeon.conformance.nodes.ports import Port, color
-from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
+from mxeon.conformance.nodes.rows import broadcast_inputs
+from mxeon.conformance.samples.batch import Array, Batch, Values
 from mxeon.conformance.samples.uneven_environment import sky
 from mxeon.models.hair import ROUGHNESSES, TINTS, chiang_hair_attenuation
 from mxeon.models.nodes.hair import HAIR_NODE
-from mxeon.models.nodes.node import Inputs
+from mxeon.models.nodes.node import Scattering
 
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # of random pairs
 WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # least ones of values that are integrated
@@ -52,28 +51,17 @@ class HairSubject(BsdfSubject):
         return HAIR
 
     @property
-    def anisotropic(self) -> bool:
-        """Whether the roughness has a direction: its lobes have one of their own."""
-        return False
-
-    @property
     def ports(self) -> tuple[Port, ...]:
-        """The node's inputs."""
         return PORTS
 
     @property
     def black(self) -> Values:
         return dict.fromkeys(TINTS, (0.0, 0.0, 0.0))
 
-    def expected(self, batch: Batch) -> Array:
+    def values(self, function: Scattering, batch: Batch) -> Array:
         """pi f with occlusion, (N, 3)."""
-        return _expected(self.row.value, batch)
-
-    def albedo(self, batch: Batch) -> Array:
-        """Integral of f over all lights, of a cuticle without tilt, (N, 3)."""
-        return self.row.albedo(batch.wo, broadcast_inputs(batch))
-
-    integral = albedo
+        occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
+        return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
     def sky(self, batch: Batch) -> Array:
         """Mean of the uneven sky that it scatters, (N, 3).
@@ -86,27 +74,6 @@ class HairSubject(BsdfSubject):
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
         front = shares @ FRONT / shares.sum(axis=-1)
         return np.asarray(front * sky(batch.normal) + (1.0 - front) * sky(-batch.normal))
-
-    def passed(self, batch: Batch) -> Array:
-        """Throughput, (N, 3): the node cannot be layered."""
-        return np.zeros((len(batch.wo), 3))
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        """The model, and its variants."""
-        own = Candidate(self.row.title, partial(_expected, self.row.value))
-        others = (
-            Candidate(each.title, partial(_expected, each.value), each.permitted)
-            for each in self.row.variants
-            if each.value
-        )
-        return (own, *others, NOTHING)
-
-
-def _expected(value: Callable[[Array, Array, Inputs], Array], batch: Batch) -> Array:
-    """pi f of a function of `wo, wi, inputs`, with occlusion."""
-    occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
-    return np.asarray(np.pi * value(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
 
 HAIRS = (HairSubject(HAIR_NODE),)

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects and probes of the VDF nodes: a medium below a surface that lets light through."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import broadcast_inputs
 from mxeon.conformance.nodes.emission import MEDIUM
-from mxeon.conformance.nodes.ports import COMPONENTS, Port, changes, color, draw
-from mxeon.conformance.nodes.subject import RowSubject
-from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
-from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium
-from mxeon.models.nodes.node import Inputs
+from mxeon.conformance.nodes.ports import COMPONENTS, Port, color, draw
+from mxeon.conformance.nodes.rows import RowSubject, broadcast_inputs
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
+from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium, Value
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
 
 LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
@@ -36,7 +32,7 @@ PORTS = """    <input name="top" type="BSDF" nodename="top" />
 
 
 @dataclass(frozen=True)
-class MediumSubject(RowSubject):
+class MediumSubject(RowSubject[Value]):
     """A row of `mxeon.models.nodes.media`.
 
     Attributes
@@ -47,7 +43,6 @@ class MediumSubject(RowSubject):
     row: Medium
 
     kind: ClassVar[str] = MEDIUM
-    closure: ClassVar[bool] = True
 
     @property
     def title(self) -> str:
@@ -71,14 +66,6 @@ class MediumSubject(RowSubject):
         )
         others = {AMOUNT: Port(AMOUNT, change=0.3), FACTOR: factor}
         return tuple(others.get(name, _coefficient(name)) for name in self.row.inputs)
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return self.row.inputs
-
-    @property
-    def changes(self) -> Mapping[str, Changes]:
-        return changes(self.ports)
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that lets light into the medium."""
@@ -111,25 +98,19 @@ class MediumSubject(RowSubject):
             inputs |= draw(rng, count, [Port("anisotropy", low=-0.9, high=0.9)])
         return inputs
 
-    def expected(self, batch: Batch) -> Array:
+    def values(self, function: Value, batch: Batch) -> Array:
         """Transmittance, (N, 3)."""
-        return _transmittance(self.row.value, batch)
+        return np.asarray(function(broadcast_inputs(batch)))
 
     @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        """The row's own transmittance, and its variants."""
-        rows = ((self.row.title, self.row.value), *self.row.variants)
-        return tuple(Candidate(title, partial(_transmittance, value)) for title, value in rows)
+    def others(self) -> tuple[Candidate, ...]:
+        """None beside the row's variants."""
+        return ()
 
 
 def _coefficient(name: str) -> Port:
     """A coefficient of a medium, from one that hardly shows to one that hides nearly all."""
     return Port(name, "vector3", LEAST, LARGEST, change=(0.9, 0.1, 0.6), logarithmic=True)
-
-
-def _transmittance(value: Callable[[Inputs], Array], batch: Batch) -> Array:
-    """Transmittance of a function of coefficients, (N, 3)."""
-    return np.asarray(value(broadcast_inputs(batch)))
 
 
 MEDIUM_NODES = tuple(MediumSubject(row) for row in (*MEDIA, *COMBINED_MEDIA))

@@ -2,7 +2,7 @@
 """What is judged, as plans, probes and pages see it: a node in one mode, with its model."""
 
 from collections.abc import Mapping
-from typing import ClassVar, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -44,31 +44,6 @@ class Subject(Protocol):
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that shows this node alone, with these inputs."""
         ...
-
-
-class NodeRow(Protocol):
-    """A row of `mxeon.models.nodes`."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def category(self) -> str: ...
-
-
-class RowSubject:
-    """Base class of subjects that are a row of `mxeon.models.nodes`, with any library."""
-
-    row: NodeRow
-
-    libraries: ClassVar[tuple[str, ...]] = ()
-
-    @property
-    def node(self) -> str:
-        return self.row.category
-
-    @property
-    def model(self) -> str:
-        return self.row.name
 
 
 @runtime_checkable

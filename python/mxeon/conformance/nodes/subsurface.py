@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import SUBSURFACE, BsdfSubject, broadcast_inputs
+from mxeon.conformance.nodes.bsdf import SUBSURFACE, BsdfSubject
+from mxeon.conformance.nodes.rows import ZERO, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE, circle_blur
 
@@ -21,10 +22,9 @@ class SubsurfaceSubject(BsdfSubject):
         return SUBSURFACE
 
     @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        """Lambert, and what MaterialX has in its place."""
-        blurred = Candidate("MaterialX's blur along a circle of radius 100", _blurred)
-        return (*super().value_candidates, blurred)
+    def others(self) -> tuple[Candidate, ...]:
+        """Zero, and what MaterialX has in its place."""
+        return ZERO, Candidate("MaterialX's blur along a circle of radius 100", _blurred)
 
 
 def _blurred(batch: Batch) -> Array:

@@ -2,16 +2,16 @@
 """Subjects of the checks: each output of the utility nodes of pbrlib."""
 
 from dataclasses import dataclass
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.nodes.ports import COMPONENTS, Port, draw, draw_edges
+from mxeon.conformance.nodes.ports import COMPONENTS, Port
+from mxeon.conformance.nodes.rows import RowSubject
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.models.nodes.utilities import UTILITIES, UtilityNode
-from mxeon.models.nodes.utilities import Values as Function
+from mxeon.models.nodes.utilities import Values as Outputs
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
 VALUES, OSL_VALUES = "utility values", "utility values in OSL"  # kinds of probes
@@ -45,7 +45,7 @@ PORTS = {
 
 
 @dataclass(frozen=True)
-class UtilitySubject:
+class UtilitySubject(RowSubject[Outputs]):
     """An output of a node of `mxeon.models.nodes.utilities`.
 
     Attributes
@@ -58,8 +58,11 @@ class UtilitySubject:
     output: str
 
     kind: ClassVar[str] = VALUES
-    libraries: ClassVar[tuple[str, ...]] = ()
-    closure: ClassVar[bool] = False  # it computes a value, which no renderer's closure does
+
+    @property
+    def closure(self) -> bool:
+        """Whether it is a renderer's closure: it computes a value, which none does."""
+        return False
 
     @property
     def title(self) -> str:
@@ -68,16 +71,7 @@ class UtilitySubject:
         return f"{self.row.category}, {self.output}"
 
     @property
-    def node(self) -> str:
-        return self.row.category
-
-    @property
-    def model(self) -> str:
-        return self.row.category
-
-    @property
     def ports(self) -> tuple[Port, ...]:
-        """The inputs of the node."""
         return tuple(
             PORTS.get(name, Port(name, self._kind(name), edges=SHARES, change=0.25, default=0.5))
             for name in self.row.inputs
@@ -115,12 +109,6 @@ class UtilitySubject:
         surface = _connected("edf", "EDF", "lobe")
         return document_text(text + node_text("surface", "surfaceshader", "shading", surface))
 
-    def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw(rng, count, self.ports)
-
-    def special_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
-        return draw_edges(rng, count, self.ports)
-
     def outside_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Values at the ends of the ranges and beyond them."""
         return {
@@ -128,26 +116,17 @@ class UtilitySubject:
             for name in self.row.inputs
         }
 
-    def expected(self, batch: Batch) -> Array:
+    def values(self, function: Outputs, batch: Batch) -> Array:
         """The output as a color, whose missing channels are 0, (N, 3)."""
-        return self._of(self.row.values, batch)
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        """The row's own function, and its variants."""
-        own = Candidate(f"the equations of {self.row.category}", partial(self._of, self.row.values))
-        others = (
-            Candidate(each.title, partial(self._of, each.values), each.permitted)
-            for each in self.row.variants
-        )
-        return (own, *others)
-
-    def _of(self, values: Function, batch: Batch) -> Array:
-        """The output of a function, as a color."""
-        output = np.asarray(values(self._whole(batch))[self.output])
+        output = np.asarray(function(self._whole(batch))[self.output])
         color = np.zeros((len(batch.wo), 3))
         color[:, : output.shape[-1]] = output
         return color
+
+    @property
+    def others(self) -> tuple[Candidate, ...]:
+        """None beside the row's variants."""
+        return ()
 
     def _whole(self, batch: Batch) -> dict[str, Array]:
         """All inputs with a row for each element."""

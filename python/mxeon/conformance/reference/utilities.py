@@ -25,7 +25,7 @@ def _values(row: UtilityNode, *values: Values) -> Values | Mapping[str, Values]:
         for name, column in zip(row.inputs, columns, strict=True)
     }
     numbers = {name: each[:, 0] if each.shape[1] == 1 else each for name, each in inputs.items()}
-    outputs = row.values(numbers)
+    outputs = row.value(numbers)
     return outputs["out"] if set(outputs) == {"out"} else outputs
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from mxeon.models.core import layering
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.layering import Bsdf
-from mxeon.models.nodes.node import Inputs, PbrNode, Variant
+from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
 from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
 
 ROUGHNESS = ("top/roughness", "base/roughness")
@@ -67,7 +67,7 @@ def _combined(
     category: str,
     combine: Combine,
     inputs: tuple[str, ...] = (),
-    variants: tuple[Variant, ...] = (),
+    variants: tuple[Variant[Scattering], ...] = (),
 ) -> PbrNode:
     """Row of a node that combines both lobes."""
     value, albedo = _values(combine)
@@ -111,13 +111,13 @@ def _layer_mixed(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda 
     return layering.mix(layered, top, _column(inputs, AMOUNT))
 
 
-def _unscaled(combine: Combine) -> tuple[Variant, ...]:
+def _unscaled(combine: Combine) -> tuple[Variant[Scattering], ...]:
     """A scaled lobe that passes what it passes before it is scaled: the text is open on it."""
     title = "the throughput of the lobe before it is scaled"
     return (Variant(title, albedo=_values(combine)[1], permitted=True),)
 
 
-def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant, ...]:
+def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scattering], ...]:
     """A combination of a sum that has lost the excess of its albedo over 1, over a base or not."""
     value, albedo = _values(partial(combine, finish=_ended))
     return (Variant("a sum whose throughput ends at 0", value if layered else None, albedo),)

@@ -9,7 +9,7 @@ a graph whose emissions are evaluated already.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from mxeon.models.media.emission import (
     uniform_edf,
     uniform_exitance,
 )
-from mxeon.models.nodes.node import Inputs
+from mxeon.models.nodes.node import Inputs, Node, Variant
 
 BASE = "base/color"  # of the uniform emission below a Schlick curve
 FIRST, SECOND = "first/color", "second/color"  # of two uniform emissions
@@ -31,40 +31,18 @@ Value = Callable[[Array, Inputs], Array]
 
 
 @dataclass(frozen=True)
-class EmissionVariant:
-    """Another radiance that a shader may have in place of a node's own; see `Variant`."""
-
-    title: str
-    value: Value
-    permitted: bool = False
-
-
-@dataclass(frozen=True)
-class Emission:
+class Emission(Node[Value]):
     """An EDF node, or one that combines EDFs.
 
     Attributes
     ----------
-    name, title : str
-        One word, and the name in print.
-    category : str
-        Category of the node.
-    inputs : tuple of str
-        Names or paths of the inputs that the functions read.
     value : callable (wo, inputs) -> ndarray, shape (N, 3)
         Radiance towards `wo`, normal +z; below the horizon that of the back.
     exitance : callable (inputs) -> ndarray, shape (N, 3)
         Its integral over the hemisphere times the cosine.
-    variants : tuple of EmissionVariant
     """
 
-    name: str
-    title: str
-    category: str
-    inputs: tuple[str, ...]
-    value: Value
     exitance: Callable[[Inputs], Array]
-    variants: tuple[EmissionVariant, ...] = field(default=())
 
 
 def front_only(value: Value) -> Value:
@@ -142,11 +120,9 @@ EMISSIONS = (
         ("color",),
         _uniform,
         lambda inputs: uniform_exitance(inputs["color"]),
-        (
-            EmissionVariant(ONE_SIDE, front_only(_uniform), permitted=True),
-            EmissionVariant(
-                "the color as an exitance, over pi", lambda wo, i: _uniform(wo, i) / np.pi
-            ),
+        variants=(
+            Variant(ONE_SIDE, front_only(_uniform), permitted=True),
+            Variant("the color as an exitance, over pi", lambda wo, i: _uniform(wo, i) / np.pi),
         ),
     ),
     Emission(
@@ -158,9 +134,9 @@ EMISSIONS = (
         lambda inputs: conical_exitance(
             inputs["color"], inputs["inner_angle"], inputs["outer_angle"]
         ),
-        (
-            EmissionVariant("a cone whose angles count from its axis", _halves),
-            EmissionVariant("uniform emission from the front", _whole),
+        variants=(
+            Variant("a cone whose angles count from its axis", _halves),
+            Variant("uniform emission from the front", _whole),
         ),
     ),
     Emission(
@@ -172,10 +148,10 @@ EMISSIONS = (
         lambda inputs: generalized_schlick_exitance(
             _radiance(inputs), inputs["color0"], inputs["color90"], inputs["exponent"]
         ),
-        (
-            EmissionVariant(ONE_SIDE, front_only(_schlick), permitted=True),
-            EmissionVariant("the base without its curve", lambda wo, i: _radiance(i)),
-            EmissionVariant(
+        variants=(
+            Variant(ONE_SIDE, front_only(_schlick), permitted=True),
+            Variant("the base without its curve", lambda wo, i: _radiance(i)),
+            Variant(
                 "the curve with exponent 5",
                 lambda wo, i: _schlick(wo, {**i, "exponent": np.full(len(wo), 5.0)}),
             ),

@@ -9,44 +9,32 @@ transmittances would exceed 1.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.media.volume import transmittance
-from mxeon.models.nodes.node import Inputs
+from mxeon.models.nodes.node import Inputs, Node, Variant
 
 FIRST, SECOND = "first/absorption", "second/absorption"  # of two media that absorb
 AMOUNT, FACTOR = "medium/mix", "medium/in2"  # share of the first, and factor of it
 METER = 1.0  # a shader of a surface knows no thickness
+Value = Callable[[Inputs], Array]
 
 
 @dataclass(frozen=True)
-class Medium:
+class Medium(Node[Value]):
     """A VDF node, by its transmittance.
 
     Attributes
     ----------
-    name, title : str
-        One word, and the name in print.
-    category : str
-        Category of the node.
     inputs : tuple of str
         Names of the inputs that the transmittance depends on. The anisotropy enters the light that is
         scattered into a ray alone.
     value : callable (inputs) -> ndarray, shape (N, 3)
         Transmittance of METER.
-    variants : tuple of (str, callable)
-        Title and function of others that a shader may have in its place.
     """
-
-    name: str
-    title: str
-    category: str
-    inputs: tuple[str, ...]
-    value: Callable[[Inputs], Array]
-    variants: tuple[tuple[str, Callable[[Inputs], Array]], ...] = field(default=())
 
 
 def _absorbed(inputs: Inputs) -> Array:
@@ -57,20 +45,21 @@ def _extinguished(inputs: Inputs) -> Array:
     return transmittance(inputs["absorption"], inputs["scattering"], METER)
 
 
-CLEAR = ("no medium at all", lambda inputs: np.ones_like(inputs["absorption"]))
+CLEAR = Variant[Value]("no medium at all", lambda inputs: np.ones_like(inputs["absorption"]))
 MEDIA = (
-    Medium("absorption", "Beer's law", "absorption_vdf", ("absorption",), _absorbed, (CLEAR,)),
+    Medium(
+        "absorption", "Beer's law", "absorption_vdf", ("absorption",), _absorbed, variants=(CLEAR,)
+    ),
     Medium(
         "anisotropic",
         "extinction",
         "anisotropic_vdf",
         ("absorption", "scattering"),
         _extinguished,
-        (
-            ("absorption alone", _absorbed),
-            (
-                "scattering alone",
-                lambda inputs: transmittance(0.0, inputs["scattering"], METER),
+        variants=(
+            Variant("absorption alone", _absorbed),
+            Variant(
+                "scattering alone", lambda inputs: transmittance(0.0, inputs["scattering"], METER)
             ),
             CLEAR,
         ),
@@ -99,16 +88,16 @@ def _combined(
     title: str,
     category: str,
     inputs: tuple[str, ...],
-    coefficient: Callable[[Inputs], Array],
-    *others: tuple[str, Callable[[Inputs], Array]],
+    coefficient: Value,
+    *others: Variant[Value],
 ) -> Medium:
     """Row of a node that combines media, whose result absorbs with other coefficients."""
 
     def value(inputs: Inputs) -> Array:
         return transmittance(coefficient(inputs), 0.0, METER)
 
-    first = ("the first medium alone", _first)
-    return Medium(name, title, category, inputs, value, (*others, first))
+    first = Variant("the first medium alone", _first)
+    return Medium(name, title, category, inputs, value, variants=(*others, first))
 
 
 def _multiple(inputs: Inputs) -> Array:
@@ -124,7 +113,7 @@ COMBINED_MEDIA = (
         lambda i: np.asarray(
             _column(i, AMOUNT) * i[FIRST] + (1.0 - _column(i, AMOUNT)) * i[SECOND]
         ),
-        ("a mix of transmittances", _linear),
+        Variant("a mix of transmittances", _linear),
     ),
     _combined(
         "medium_add",

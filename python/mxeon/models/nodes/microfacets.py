@@ -27,7 +27,7 @@ from mxeon.models.microfacet.defects import (
 )
 from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectric, fresnel_schlick
 from mxeon.models.microfacet.materialx_fits import compensation, layer_albedo
-from mxeon.models.nodes.node import Inputs, PbrNode, Variant
+from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
 from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
 
 # Forms of the energy compensation, which the text leaves open.
@@ -175,7 +175,7 @@ SCHLICK = BareLobe(
 )
 
 
-def _variants(lobe: BareLobe) -> tuple[Variant, ...]:
+def _variants(lobe: BareLobe) -> tuple[Variant[Scattering], ...]:
     """Functions that a shader may have in place of a microfacet node's own."""
     values = (
         Variant(

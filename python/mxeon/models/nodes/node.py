@@ -9,38 +9,40 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Generic, TypeAlias, TypeVar
 
 from numpy.typing import ArrayLike
 
 from mxeon.models.core.arrays import Array
 
 Inputs: TypeAlias = Mapping[str, Array]
+Scattering: TypeAlias = Callable[[Array, Array, Inputs], Array]  # of wo, wi and inputs
+Function = TypeVar("Function", covariant=True)  # of a node: what its value is computed from
 
 
 @dataclass(frozen=True)
-class Variant:
+class Variant(Generic[Function]):
     """Another function that a shader may have in place of a node's own.
 
     Attributes
     ----------
     title : str
-    value : callable (wo, wi, inputs) -> ndarray, shape (N, 3), or None
-        As in PbrNode; None where its values are the node's.
+    value : callable or None
+        As the node's; None where its values are the node's.
     albedo : callable (wo, inputs) -> ndarray, shape (N, 3), or None
     permitted : bool
         Whether the specification leaves it open.
     """
 
     title: str
-    value: Callable[[Array, Array, Inputs], Array] | None = None
+    value: Function | None = None
     albedo: Callable[[Array, Inputs], Array] | None = None
     permitted: bool = False
 
 
 @dataclass(frozen=True)
-class PbrNode:
-    """A mode of a BSDF node, by [MaterialX2026].
+class Node(Generic[Function]):
+    """A node, or a mode of one, by [MaterialX2026].
 
     Attributes
     ----------
@@ -49,7 +51,26 @@ class PbrNode:
     category : str
         Category of the node.
     inputs : tuple of str
-        Names of the inputs that the functions read.
+        Names or paths of the inputs that the functions read.
+    value : callable
+        Its values from these inputs.
+    variants : tuple of Variant
+    """
+
+    name: str
+    title: str
+    category: str
+    inputs: tuple[str, ...]
+    value: Function
+    variants: tuple[Variant[Function], ...] = field(default=(), kw_only=True)
+
+
+@dataclass(frozen=True)
+class PbrNode(Node[Scattering]):
+    """A mode of a BSDF node.
+
+    Attributes
+    ----------
     value : callable (wo, wi, inputs) -> ndarray, shape (N, 3)
         BSDF in 1/sr without the cosine, for weight 1.
     albedo : callable (wo, inputs) -> ndarray, shape (N, 3)
@@ -69,14 +90,8 @@ class PbrNode:
         Whether exchanging the directions does not change the value.
     mirror : mapping of str to value
         Inputs with which it reflects all light; none if there are none.
-    variants : tuple of Variant
     """
 
-    name: str
-    title: str
-    category: str
-    inputs: tuple[str, ...]
-    value: Callable[[Array, Array, Inputs], Array]
     albedo: Callable[[Array, Inputs], Array]
     integral: Callable[[Array, Inputs], Array] | None = None
     fixed: Mapping[str, str] = field(default_factory=dict, hash=False)
@@ -85,4 +100,3 @@ class PbrNode:
     fitted: bool = False
     reciprocal: bool = True
     mirror: Mapping[str, ArrayLike] = field(default_factory=dict, hash=False)
-    variants: tuple[Variant, ...] = ()

@@ -20,7 +20,7 @@ from mxeon.models.nodes.microfacets import (
     BareLobe,
     isotropic,
 )
-from mxeon.models.nodes.node import Inputs, PbrNode, Variant
+from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
 from mxeon.models.thin_film import (
     CIE_RGB,
     MATERIALX,
@@ -92,7 +92,7 @@ def _fitted(lobe: BareLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
     return averaged_channels(albedo) if lobe.edge else albedo
 
 
-def _variants(row: PbrNode) -> tuple[Variant, ...]:
+def _variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
     """Other films that a shader may have, each with either compensation."""
     # Begin with the variants that every node has.
     variants = [

@@ -29,7 +29,7 @@ from mxeon.models.microfacet.roughness import (
     roughness_anisotropy,
     roughness_dual,
 )
-from mxeon.models.nodes.node import Inputs
+from mxeon.models.nodes.node import Inputs, Variant
 
 LARGEST_REFLECTIVITY = 0.99  # of artistic_ior; its n is infinite at 1
 LEAST_HAIR = 1e-3  # roughnesses and colors of hair: below, a lobe has no width
@@ -38,24 +38,6 @@ LEAST_PIGMENT = 1e-30  # color of a pigment, whose logarithm is finite
 TEMPERATURES = (800.0, 25000.0)  # K, from about where a body glows to the end of the fits in use
 
 Values = Callable[[Inputs], dict[str, Array]]
-
-
-@dataclass(frozen=True)
-class UtilityVariant:
-    """Another function that a shader may have in place of a node's own.
-
-    Attributes
-    ----------
-    title : str
-    values : callable (inputs) -> dict of str to ndarray, shape (N, components)
-        As in UtilityNode.
-    permitted : bool
-        Whether the specification leaves it open.
-    """
-
-    title: str
-    values: Values
-    permitted: bool = False
 
 
 @dataclass(frozen=True)
@@ -69,16 +51,26 @@ class UtilityNode:
         The default of each input, a number or a tuple, by name.
     outputs : mapping of str to str
         The type of each output, by name.
-    values : callable (inputs) -> dict of str to ndarray, shape (N, components)
+    value : callable (inputs) -> dict of str to ndarray, shape (N, components)
         Every output by name; needs all inputs.
-    variants : tuple of UtilityVariant
+    variants : tuple of Variant
     """
 
     category: str
     inputs: Mapping[str, float | tuple[float, ...]] = field(hash=False)
     outputs: Mapping[str, str] = field(hash=False)
-    values: Values
-    variants: tuple[UtilityVariant, ...] = ()
+    value: Values
+    variants: tuple[Variant[Values], ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Its category: it has one mode."""
+        return self.category
+
+    @property
+    def title(self) -> str:
+        """Its equations, in print."""
+        return f"the equations of {self.category}"
 
 
 def _share(inputs: Inputs, name: str, least: float = 0.0, largest: float = 1.0) -> Array:
@@ -208,21 +200,21 @@ def _hair_color(inputs: Inputs) -> dict[str, Array]:
     return {"absorption": chiang_hair_absorption_from_color(color, roughness)}
 
 
-def constant(category: str, value: float) -> UtilityVariant:
+def constant(category: str, value: float) -> Variant[Values]:
     """A variant whose outputs are all one number, whatever the inputs are."""
 
     def values(inputs: Inputs) -> dict[str, Array]:
         return {
-            name: np.full_like(each, value) for name, each in node(category).values(inputs).items()
+            name: np.full_like(each, value) for name, each in node(category).value(inputs).items()
         }
 
-    return UtilityVariant(f"{value:g}, whatever the inputs are", values)
+    return Variant(f"{value:g}, whatever the inputs are", values)
 
 
 ASPECTS = (
-    UtilityVariant("Burley's aspect of 2012", _burley_aspect, permitted=True),
-    UtilityVariant("OpenPBR's aspect", _openpbr_aspect, permitted=True),
-    UtilityVariant("a roughness that is not squared", _without_square),
+    Variant("Burley's aspect of 2012", _burley_aspect, permitted=True),
+    Variant("OpenPBR's aspect", _openpbr_aspect, permitted=True),
+    Variant("a roughness that is not squared", _without_square),
 )
 UTILITIES = (
     UtilityNode(
@@ -247,7 +239,7 @@ UTILITIES = (
         {"reflectivity": (0.944, 0.776, 0.373), "edge_color": (0.998, 0.981, 0.751)},
         {"ior": "color3", "extinction": "color3"},
         _artistic,
-        (UtilityVariant("the ends of n exchanged", _exchanged_edge),),
+        (Variant("the ends of n exchanged", _exchanged_edge),),
     ),
     UtilityNode(
         "blackbody",
@@ -255,8 +247,8 @@ UTILITIES = (
         {"out": "color3"},
         _blackbody,
         (
-            UtilityVariant("luminance 1 before negative channels are clipped", _clipped, True),
-            UtilityVariant("Kang's cubic, drawn on below 1667 K", _kang),
+            Variant("luminance 1 before negative channels are clipped", _clipped, permitted=True),
+            Variant("Kang's cubic, drawn on below 1667 K", _kang),
         ),
     ),
     UtilityNode(
@@ -266,8 +258,8 @@ UTILITIES = (
         _hair_roughness,
         (
             constant("chiang_hair_roughness", 0.0),
-            UtilityVariant("scales that are not squared", _unsquared_scales),
-            UtilityVariant("a deviation in place of the variance", _unsquared_variance),
+            Variant("scales that are not squared", _unsquared_scales),
+            Variant("a deviation in place of the variance", _unsquared_variance),
         ),
     ),
     UtilityNode(
@@ -282,7 +274,7 @@ UTILITIES = (
         _melanin,
         (
             constant("deon_hair_absorption_from_melanin", 1.0),
-            UtilityVariant("the shares of both melanins exchanged", _exchanged_melanins),
+            Variant("the shares of both melanins exchanged", _exchanged_melanins),
         ),
     ),
     UtilityNode(
@@ -305,7 +297,7 @@ def node(category: str) -> UtilityNode:
 
     Examples
     --------
-    >>> node("roughness_dual").values({"roughness": np.array([[0.5, 1.0]])})["out"]
+    >>> node("roughness_dual").value({"roughness": np.array([[0.5, 1.0]])})["out"]
     array([[0.25, 1.  ]])
     """
     rows = {row.category: row for row in UTILITIES}
