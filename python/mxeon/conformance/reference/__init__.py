@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,8 @@ from mxeon.hosts import base
 from mxeon.hosts.base import Identity
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
+
+SCENES = 4  # whose points are kept: the pictures of a run have as many
 
 # Any target will do: the document behind the shader is what is evaluated.
 ROW = hosts.Row("reference", target="glsl", module=__name__)
@@ -42,20 +45,9 @@ class Host(base.Host):
             If the scene asks for paths.
         """
         self.refuse_paths(scene)
-        # The points that the picture shows.
         points = sphere(scene.size)
-        normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
-        wo = np.broadcast_to(VIEW, normal.shape)
-        # The light at them, and the graph's value.
-        if scene.light is not None:
-            wi, strength = np.broadcast_to(scene.light, normal.shape), np.pi
-        elif isinstance(scene.environment, float):
-            wi, strength = None, scene.environment
-        else:
-            raise NotRun("reference: environment must be uniform; got an image")
-        lit = ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord)
         image = np.zeros(points.normal.shape)
-        image[points.mask] = Graph(shader.document, lit).element(shader.element)
+        image[points.mask] = Graph(shader.document, _shown(scene)).element(shader.element)
         return image
 
     def evaluate(
@@ -88,3 +80,24 @@ class Host(base.Host):
         points = ShadingPoints(wo, wi if branch == "direct" else None, 1.0, normal, tangent)
         values = Graph(shader.document, points, inputs, emits=False).element(shader.element)
         return np.array(np.broadcast_to(values, wo.shape), np.float64)
+
+
+@lru_cache(maxsize=SCENES)
+def _shown(scene: Scene) -> ShadingPoints:
+    """The points that a picture shows, and the light at them.
+
+    Raises
+    ------
+    NotRun
+        If the light is an image.
+    """
+    points = sphere(scene.size)
+    normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
+    if scene.light is not None:
+        wi, strength = np.broadcast_to(scene.light, normal.shape), np.pi
+    elif isinstance(scene.environment, float):
+        wi, strength = None, scene.environment
+    else:
+        raise NotRun("reference: environment must be uniform; got an image")
+    wo = np.broadcast_to(VIEW, normal.shape)
+    return ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord)

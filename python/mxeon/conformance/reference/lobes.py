@@ -27,6 +27,7 @@ Lobe: TypeAlias = Callable[[PbrNode, Inputs, bool], Bsdf]
 TAIL = 2e-7
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((32, 16), (48, 32))
+ROWS = 1 << 12  # arguments of a series at once
 FEW = 1000  # directions, whose albedos are as soon computed one by one
 
 
@@ -106,8 +107,8 @@ def _albedo(
     low = float(np.sqrt(wo[:, 2].min()))
     series = _series(albedo, material, low, ISOTROPIC if turns else ANISOTROPIC)
     if series is not None:
-        result = chebyshev.chebval2d(*_arguments(wo, low), series).T
-        return np.asarray(result, np.float64)
+        root, turn = _arguments(wo, low)
+        return _sums(series, root, np.zeros_like(turn) if turns else turn)
     if not turns:
         raise NotRun("reference: the albedo of so anisotropic a lobe takes too long over a picture")
     # The symmetric points of a sphere have cosines that differ by roundings.
@@ -135,6 +136,14 @@ def _arguments(wo: Values, low: float) -> tuple[Values, Values]:
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
     turn = (x - y) / np.maximum(x + y, 1e-300)
     return np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0), turn
+
+
+def _sums(series: Values, x: Values, y: Values) -> Values:
+    """Sums of a series (X, Y, 3) at arguments (N,), as those of a picture: many are alike, (N, 3)."""
+    each, indices = np.unique(np.round(x + 1j * y, 13), return_inverse=True)
+    parts = np.array_split(each, 1 + len(each) // ROWS)
+    sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
+    return np.asarray(np.concatenate(sums)[indices], np.float64)
 
 
 @lru_cache(maxsize=32)

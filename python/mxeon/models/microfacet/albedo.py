@@ -205,7 +205,7 @@ def lobe_albedo(
     wo, roughness = checked_directions("wo", wo), checked_pairs("roughness", roughness)
     checked_switch("compensate", compensate)
 
-    def value(wo: Array, roughness: Array, **material: Array) -> Array:
+    def value(wo: Array, roughness: Array, unseen: Array, **material: Array) -> Array:
         # Integrate the curve over the slopes.
         c, weight = slope_nodes(wo, roughness)
         spread = {
@@ -222,8 +222,22 @@ def lobe_albedo(
             E = np.where(squared > 0.0, lossless - lost, E)
         # Add what more scattering returns, and tint.
         if compensate:
-            E = E * (1.0 + curve.average(**material) * missing(wo[2], roughness))
+            E = E * (1.0 + curve.average(**material) * unseen)
         return E * material["tint"] if "tint" in material else E
 
+    # Light that is scattered more than once, for all elements before their many slopes.
+    unseen = _unseen(wo, roughness) if compensate else np.zeros(())
     arguments = {"wo": wo, "roughness": roughness, **vectors}
-    return evaluate_material(value, arguments, numbers, channel_count(vectors), BLOCK)
+    scalars = {"unseen": unseen, **numbers}
+    return evaluate_material(value, arguments, scalars, channel_count(vectors), BLOCK)
+
+
+def _unseen(wo: Numbers, roughness: Numbers) -> Array:
+    """(1 - E_ss) / E_ss of checked arguments, shape (...)."""
+    values = evaluate_material(
+        lambda mu, roughness: missing(mu, roughness)[np.newaxis],
+        {"roughness": roughness},
+        {"mu": wo[..., 2]},
+        1,
+    )
+    return values[..., 0]

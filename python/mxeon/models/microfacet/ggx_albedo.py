@@ -17,6 +17,8 @@ RULE = np.polynomial.legendre.leggauss(NODES)
 # Least scale of the nodes and least elevation of wo, in radian: nothing changes by more than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
 
+ALIKE = 2.0**44  # by this part of themselves, cosines that count as one may differ
+
 # Below this alpha, E_ss(mu, alpha) counts as E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
 LEAST_ALPHA = 1e-9
 
@@ -62,19 +64,29 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
     >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
     array([0.30685282, 0.99412395])
     """
-    numbers = {"mu": checked("mu", mu), "alpha": checked("alpha", alpha)}
-    return evaluate_material(
-        lambda mu, alpha: albedo(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
-    )[..., 0][()]
+    return _in_blocks(checked("mu", mu), checked("alpha", alpha))[()]
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss on valid float64 arrays; cosines that are alike, as those of pictures, count once."""
+    """E_ss on valid float64 arrays; cosines that are alike, as those of pictures, count once.
+
+    Those of a picture's symmetric points differ in their last bits, which E_ss changes by as little.
+    """
     if alpha.size == 1 < mu.size:
-        each, indices = np.unique(mu, return_inverse=True)
-        found: Array = _albedo(each, alpha.reshape(1))[indices]
+        mantissa, exponent = np.frexp(mu)
+        alike = np.ldexp(np.round(mantissa * ALIKE), exponent) / ALIKE
+        each, indices = np.unique(alike, return_inverse=True)
+        found: Array = _in_blocks(each, alpha.reshape(1))[indices]
         return found.reshape(np.broadcast_shapes(mu.shape, alpha.shape))
-    return _albedo(mu, alpha)
+    return _in_blocks(mu, alpha)
+
+
+def _in_blocks(mu: Array, alpha: Array) -> Array:
+    """E_ss on valid float64 arrays, block by block."""
+    numbers = {"mu": mu, "alpha": alpha}
+    return evaluate_material(
+        lambda mu, alpha: _albedo(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
+    )[..., 0]
 
 
 def _albedo(mu: Array, alpha: Array) -> Array:
