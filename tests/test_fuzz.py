@@ -17,31 +17,60 @@ from tests.fuzz.cases import OUT, Case, case
 from tests.fuzz.found import FOUND
 from tests.fuzz.trial import guarded, numbered, trial
 from tests.fuzz.words import CANARY, POISON
+from tests.support.sharing import shared
 
 LIMIT = 60.0  # seconds for one case
+IN_BROWSER = ("explorer documents", "explorer addresses", "unescaped")
 SLOW = ("signals", "kits", "results", "templates", "explorer documents")  # a second for each case
 
 
-def faults(work, items):
-    """What was found wrong, by item."""
-    outcomes = pool.run(work, items, 1, LIMIT)
-    said = {items[place]: each.failure or each.value for place, each in outcomes}
-    return {item: fault for item, fault in said.items() if fault}
+def unescaped(text):
+    """The outcome of a page in which text of a document stands as it is."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(explorer, "ESCAPES", {})
+        return pages.shown(text)
 
 
-def test_what_was_found_stays_fixed():
-    assert faults(guarded, FOUND) == {}
+def tried(row):
+    """The outcome of an item of a slice, by its function."""
+    work, item = row
+    return work(item)
 
 
-def test_a_slice_of_the_fuzz_run_ends_without_fault():
-    assert faults(numbered, [(2, number) for number in range(100)]) == {}
+@pytest.fixture(scope="module")
+def outcomes(tmp_path_factory):
+    """Items and outcomes by name: one process tries all pages, without a limit, and one all else."""
+    slices = {each: cases(each, 3 if each in SLOW else 12) for each in FAMILIES}
+    rows = [(name, FAMILIES[name].trial, item) for name, items in slices.items() for item in items]
+    rows += [("found", guarded, item) for item in FOUND]
+    rows += [("random", numbered, (2, number)) for number in range(100)]
+    rows += [("unescaped", unescaped, pages.to_document(None, ("uiname", pages.SCRIPTS[0])))]
+
+    def make():
+        found = {name: [] for name, *_ in rows}
+        for in_browser in (True, False):
+            some = [row for row in rows if (row[0] in IN_BROWSER) is in_browser]
+            for place, outcome in pool.run(tried, [each for _, *each in some], 1, LIMIT):
+                name, _, item = some[place]
+                found[name].append((item, outcome))
+        return found
+
+    return shared(tmp_path_factory, "fuzz", make)
+
+
+@pytest.mark.parametrize("name, count", [("found", len(FOUND)), ("random", 100)])
+def test_what_was_found_stays_fixed_and_a_slice_of_the_fuzz_run_has_no_fault(
+    outcomes, name, count
+):
+    assert len(outcomes[name]) == count
+    faults = [(item, each.failure or each.value) for item, each in outcomes[name]]
+    assert [(item, fault) for item, fault in faults if fault] == []
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_a_slice_of_each_family_of_the_attack_ends_without_fault(family):
-    count = 3 if family in SLOW else 12
-    outcomes = pool.run(FAMILIES[family].trial, cases(family, count), 1, LIMIT)
-    assert [said for _, each in outcomes if (said := each.failure or each.value[1])] == []
+def test_a_slice_of_each_family_of_the_attack_ends_without_fault(outcomes, family):
+    assert len(outcomes[family]) >= 3
+    assert [said for _, each in outcomes[family] if (said := each.failure or each.value[1])] == []
 
 
 def test_a_family_gives_the_same_cases_again():
@@ -94,7 +123,8 @@ def test_a_trial_notices(monkeypatch, does, fault):
 
 
 def test_a_trial_notices_that_the_process_died():
-    assert "SIGKILL" in faults(killed, ["control"])["control"]
+    [(_, outcome)] = pool.run(killed, ["control"], 1, LIMIT)
+    assert "SIGKILL" in outcome.failure
 
 
 def killed(_):
@@ -106,16 +136,8 @@ def test_a_case_is_the_same_again():
     assert case(1, 7) == case(1, 7) != case(1, 8)
 
 
-def unescaped(text):
-    """The outcome of a page in which text of a document stands as it is."""
-    explorer.ESCAPES = {}
-    return pages.shown(text)
-
-
-def test_a_script_that_a_page_lets_in_is_a_fault():
-    text = pages.to_document(None, ("uiname", pages.SCRIPTS[0]))
-    [(_, outcome)] = pool.run(unescaped, [text], 1, LIMIT)
-    status, fault = outcome.value
+def test_a_script_that_a_page_lets_in_is_a_fault(outcomes):
+    status, fault = outcomes["unescaped"][0][1].value
     if status == pages.NOT_RUN:
         pytest.skip("Chromium does not run here")
     assert fault

@@ -135,8 +135,8 @@ def _plain():
 
 
 @cache
-def _opened(address):
-    """A page of this process's browser, without WebGL, and what it says and asks for."""
+def _browser():
+    """The browser of this process."""
     from playwright.sync_api import sync_playwright
 
     from mxeon.hosts.webgl import FLAGS, program
@@ -147,7 +147,13 @@ def _opened(address):
         .chromium.launch(executable_path=program(), args=FLAGS, chromium_sandbox=False)
     )
     atexit.register(browser.close)
-    page, said = browser.new_page(), []
+    return browser
+
+
+@cache
+def _opened(address):
+    """A page of this process's browser, without WebGL, and what it says and asks for."""
+    page, said = _browser().new_page(), []
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.on("console", lambda message: said.append(f"said {message.text[:200]}"))
     page.on("pageerror", lambda error: said.append(f"error {str(error)[:200]}"))
