@@ -33,6 +33,7 @@ from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.hosts.base import Host, Identity
+from mxeon.jobs import dask
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
 from mxeon.shaders.library import examples_folder
@@ -453,7 +454,9 @@ def test_a_black_material_passes(tmp_path, monkeypatch):
     assert result.verdict == PASSED and result.control.caught and result.error == 0.0
 
 
-def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path):
+def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path, monkeypatch):
+    keep_checks(monkeypatch, plan.HOST)
+    monkeypatch.setattr(dask, "ANSWER", 1.0)
     check(EXAMPLES[:1], ["msl"], folder=tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     for wrong in ({"workers": -1}, {"timeout": 0.0}, {"scheduler": "tcp://127.0.0.1:9"}):

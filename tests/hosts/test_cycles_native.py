@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blender's own nodes, without OSL, judged as one more renderer."""
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from mxeon.hosts import open_engine
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.library import examples_folder
 from tests.support.availability import available
+from tests.support.plans import keep_host
 from tests.support.sharing import shared
 
 NATIVE = renderer_nodes("cycles-native")
@@ -30,8 +32,10 @@ def results(tmp_path_factory):
     with available("cycles-native"):
         open_engine("cycles-native").close()
     libraries = ["eonlib", "stock"]
-    run = shared(tmp_path_factory, "native", lambda: check([EXAMPLE], ["cycles-native"], libraries))
-    return [each for each in run.results if each.host == "cycles-native"]
+    with pytest.MonkeyPatch.context() as patch:
+        keep_host(patch, "cycles-native")
+        make = partial(check, [EXAMPLE], ["cycles-native"], libraries)
+        return shared(tmp_path_factory, "native", make).results
 
 
 def test_every_node_is_judged_once_whatever_the_libraries(results):

@@ -51,7 +51,7 @@ def test_an_error_with_words_for_the_user_is_no_bug(caplog):
 
 
 def test_processes_that_hang_before_they_begin_are_given_up(monkeypatch):
-    monkeypatch.setattr(pool, "START", 2.0)
+    monkeypatch.setattr(pool, "START", 0.5)
     (outcome,) = dict(pool.run(square, [Tar()], 1, 1.0)).values()
     assert outcome == Outcome(None, "timed out after 1 s; last output: none", ATTEMPTS)
 

@@ -9,11 +9,21 @@ from mxeon.conformance.probes.families import PBR_SUBJECTS
 
 def keep_checks(patch, *keys):
     """Let every run that this process plans consist of these checks of diffuse nodes alone."""
-    whole, others = run.make_plan, {subject.title for subject in PBR_SUBJECTS}
+    others = {subject.title for subject in PBR_SUBJECTS}
+    _keep(patch, lambda task: task.check in keys and task.subject not in others)
+
+
+def keep_host(patch, host):
+    """Let every run that this process plans consist of what a host is asked, without texts."""
+    _keep(patch, lambda task: task.host == host)
+
+
+def _keep(patch, kept):
+    """Let plans have the tasks that are kept alone."""
+    whole = run.make_plan
 
     def make_plan(*arguments, **options):
         plan = whole(*arguments, **options)
-        tasks = (each for each in plan.tasks if each.check in keys and each.subject not in others)
-        return replace(plan, tasks=tuple(tasks))
+        return replace(plan, tasks=tuple(filter(kept, plan.tasks)))
 
     patch.setattr(run, "make_plan", make_plan)
