@@ -15,22 +15,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance.text import tree
 from mxeon.conformance.text.syntax import Unreadable, expression, function_table, macros, statements
-from mxeon.conformance.text.tree import (
-    Assignment,
-    Call,
-    Choice,
-    Component,
-    Expression,
-    Function,
-    If,
-    Name,
-    Number,
-    Operation,
-    Return,
-    Statement,
-    Text,
-)
 from mxeon.errors import NotRun
 
 Array = NDArray[np.float64]
@@ -118,7 +104,7 @@ class Interpreter:
             raise Unreadable(f"{name} takes {len(function.parameters)} arguments")
         return self._run(function, arguments)
 
-    def _run(self, function: Function, arguments: list[Value]) -> Value:
+    def _run(self, function: tree.Function, arguments: list[Value]) -> Value:
         # Give the parameters their arguments.
         names = [name for _, name in function.parameters]
         outputs = [name for kind, name in function.parameters if kind.startswith("output ")]
@@ -133,47 +119,49 @@ class Interpreter:
             raise Unreadable(f"{function.name} gives nothing")
         return result
 
-    def _execute(self, body: tuple[Statement, ...], variables: dict[str, Value]) -> Value | None:
+    def _execute(
+        self, body: tuple[tree.Statement, ...], variables: dict[str, Value]
+    ) -> Value | None:
         """Value that the body returns; assignments change `variables`."""
         for statement in body:
             # A value ends the body.
-            if isinstance(statement, Return):
+            if isinstance(statement, tree.Return):
                 return self._evaluate(statement.value, variables)
-            if isinstance(statement, Assignment):
+            if isinstance(statement, tree.Assignment):
                 variables[statement.name] = self._evaluate(statement.value, variables)
             # A branch may end it.
-            if isinstance(statement, If):
+            if isinstance(statement, tree.If):
                 taken = statement.yes if self._holds(statement, variables) else statement.no
                 result = self._execute(taken, variables)
                 if result is not None:
                     return result
         return None
 
-    def _holds(self, statement: If, variables: Mapping[str, Value]) -> bool:
+    def _holds(self, statement: tree.If, variables: Mapping[str, Value]) -> bool:
         """Whether the condition holds, which must be the same for all rows."""
         truth = np.unique(_number(self._evaluate(statement.condition, variables)) != 0.0)
         if len(truth) != 1:
             raise NotRun("a condition differs among the materials")
         return bool(truth[0])
 
-    def _evaluate(self, tree: Expression, variables: Mapping[str, Value]) -> Value:
-        match tree:
-            case Number(value):
+    def _evaluate(self, node: tree.Expression, variables: Mapping[str, Value]) -> Value:
+        match node:
+            case tree.Number(value):
                 return np.array([[value]])
-            case Text(value):
+            case tree.Text(value):
                 return value
-            case Name(name):
+            case tree.Name(name):
                 return self._named(name, variables)
-            case Component(vector, name):
+            case tree.Component(vector, name):
                 return _number(self._evaluate(vector, variables))[:, ["xyz".index(name)]]
-            case Operation(sign, left, right):
+            case tree.Operation(sign, left, right):
                 return _operate(
                     sign, self._evaluate(left, variables), self._evaluate(right, variables)
                 )
-            case Choice(condition, yes, no):
+            case tree.Choice(condition, yes, no):
                 return _choose(*(self._evaluate(each, variables) for each in (condition, yes, no)))
-            case Call():
-                return self._called(tree, variables)
+            case tree.Call():
+                return self._called(node, variables)
 
     def _named(self, name: str, variables: Mapping[str, Value]) -> Value:
         if name in variables:
@@ -186,7 +174,7 @@ class Interpreter:
             return self.value(self._macros[name], {})
         raise Unreadable(f"{name} is not defined")
 
-    def _called(self, call: Call, variables: Mapping[str, Value]) -> Value:
+    def _called(self, call: tree.Call, variables: Mapping[str, Value]) -> Value:
         # Closures, functions of the text, and built-in ones.
         arguments = [(name, self._evaluate(each, variables)) for name, each in call.arguments]
         positional = [value for _, value in arguments]

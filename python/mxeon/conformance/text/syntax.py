@@ -9,21 +9,7 @@ loops and arrays are not read.
 import re
 from collections.abc import Mapping
 
-from mxeon.conformance.text.tree import (
-    Assignment,
-    Call,
-    Choice,
-    Component,
-    Expression,
-    Function,
-    If,
-    Name,
-    Number,
-    Operation,
-    Return,
-    Statement,
-    Text,
-)
+from mxeon.conformance.text import tree
 from mxeon.errors import NotRun, ShaderError
 
 TOKEN = re.compile(
@@ -70,17 +56,17 @@ def macros(text: str) -> Mapping[str, str]:
     return dict(MACRO.findall(without_comments(text)))
 
 
-def function_table(text: str) -> Mapping[str, Function]:
+def function_table(text: str) -> Mapping[str, tree.Function]:
     """Functions that a text defines, by name."""
     text = without_comments(text)
     functions = {}
     for match in FUNCTION.finditer(text):
         parameters = tuple(_parameter(each) for each in match[2].split(",") if each.strip())
-        functions[match[1]] = Function(match[1], parameters, braces(text, match.end()))
+        functions[match[1]] = tree.Function(match[1], parameters, braces(text, match.end()))
     return functions
 
 
-def expression(text: str) -> Expression:
+def expression(text: str) -> tree.Expression:
     """The expression that a text is, to its end."""
     parser = _Parser(tokens(text))
     result = parser.expression()
@@ -88,10 +74,10 @@ def expression(text: str) -> Expression:
     return result
 
 
-def statements(text: str) -> tuple[Statement, ...]:
+def statements(text: str) -> tuple[tree.Statement, ...]:
     """The statements of a function's body."""
     parser = _Parser(tokens(text))
-    result: list[Statement] = []
+    result: list[tree.Statement] = []
     while parser.more:
         result += parser.statement()
     return tuple(result)
@@ -128,11 +114,11 @@ class _Parser:
         if self.more:
             raise Unreadable(f"{self._peek()!r} is out of place")
 
-    def statement(self) -> list[Statement]:
+    def statement(self) -> list[tree.Statement]:
         """One statement, a block as several; an empty one or a mere declaration as none."""
         # A block.
         if self._take("{"):
-            block: list[Statement] = []
+            block: list[tree.Statement] = []
             while not self._take("}"):
                 block += self.statement()
             return block
@@ -140,25 +126,25 @@ class _Parser:
         if self._take("return"):
             value = self.expression()
             self._expect(";")
-            return [Return(value)]
+            return [tree.Return(value)]
         if self._take("if"):
             self._expect("(")
             condition = self.expression()
             self._expect(")")
             yes = tuple(self.statement())
-            return [If(condition, yes, tuple(self.statement()) if self._take("else") else ())]
+            return [tree.If(condition, yes, tuple(self.statement()) if self._take("else") else ())]
         return self._assignment()
 
-    def expression(self) -> Expression:
+    def expression(self) -> tree.Expression:
         """An expression, up to a token that cannot belong to it."""
         condition = self._binary(0)
         if not self._take("?"):
             return condition
         yes = self.expression()
         self._expect(":")
-        return Choice(condition, yes, self.expression())
+        return tree.Choice(condition, yes, self.expression())
 
-    def _assignment(self) -> list[Statement]:
+    def _assignment(self) -> list[tree.Statement]:
         # The words before the sign, of which the last is the name.
         words = []
         while self.more and self._peek() not in ("=", ";"):
@@ -172,30 +158,30 @@ class _Parser:
         self._expect("=")
         value = self.expression()
         self._expect(";")
-        return [Assignment(words[-1], value)]
+        return [tree.Assignment(words[-1], value)]
 
-    def _binary(self, level: int) -> Expression:
+    def _binary(self, level: int) -> tree.Expression:
         if level == len(PRECEDENCE):
             return self._unary()
         left = self._binary(level + 1)
         while self.more and self._peek() in PRECEDENCE[level]:
             sign = self._peek()
             self._next += 1
-            left = Operation(sign, left, self._binary(level + 1))
+            left = tree.Operation(sign, left, self._binary(level + 1))
         return left
 
-    def _unary(self) -> Expression:
+    def _unary(self) -> tree.Expression:
         if self._take("-"):
-            return Operation("-", Number(0.0), self._unary())
+            return tree.Operation("-", tree.Number(0.0), self._unary())
         if self._take("!"):
-            return Operation("==", self._unary(), Number(0.0))
+            return tree.Operation("==", self._unary(), tree.Number(0.0))
         value = self._primary()
         while self._take("."):
-            value = Component(value, self._peek())
+            value = tree.Component(value, self._peek())
             self._next += 1
         return value
 
-    def _primary(self) -> Expression:
+    def _primary(self) -> tree.Expression:
         # An expression in parentheses.
         if self._take("("):
             value = self.expression()
@@ -205,15 +191,15 @@ class _Parser:
         word = self._peek()
         self._next += 1
         if word[0].isdigit() or (word[0] == "." and len(word) > 1):
-            return Number(float(word.rstrip("f")))
+            return tree.Number(float(word.rstrip("f")))
         if word[0] == '"':
-            return Text(word[1:-1])
+            return tree.Text(word[1:-1])
         if not (word[0].isalpha() or word[0] in "_:"):
             raise Unreadable(f"{word!r} is out of place")
-        return Call(word, tuple(self._arguments())) if self._take("(") else Name(word)
+        return tree.Call(word, tuple(self._arguments())) if self._take("(") else tree.Name(word)
 
-    def _arguments(self) -> list[tuple[str, Expression]]:
-        arguments: list[tuple[str, Expression]] = []
+    def _arguments(self) -> list[tuple[str, tree.Expression]]:
+        arguments: list[tuple[str, tree.Expression]] = []
         while not self._take(")"):
             if arguments:
                 self._expect(",")
