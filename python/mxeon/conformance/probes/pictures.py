@@ -150,7 +150,11 @@ def picture_pairs(scene: Scene) -> Pairs:
         True where both cosines are at least RIM.
     """
     points = sphere(scene.size)
-    normal = points.normal[points.mask]
+    return lit_pairs(points.normal[points.mask], scene)
+
+
+def lit_pairs(normal: Array, scene: Scene) -> Pairs:
+    """Directions at points with normals in a picture, and the mask of the points to judge."""
     wo = local_directions(normal, VIEW)
     wi = wo if scene.light is None else local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)

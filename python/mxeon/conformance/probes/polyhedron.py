@@ -6,25 +6,25 @@ from functools import cached_property, lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mxeon.conformance.probes.cases import BLACK
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import (
     PICTURE_INPUTS,
     PICTURE_SIZE,
+    Mask,
     Pairs,
     PictureProbe,
     PlaneProbe,
-    scene_of,
+    lit_pairs,
 )
 from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
-from mxeon.conformance.samples.batch import RIM, SEED, Array, Batch, directions
+from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
 from mxeon.conformance.samples.edge_cases import outside_directions, special_directions
 from mxeon.hosts import host_row
 from mxeon.shaders.facets import facet_points
-from mxeon.shaders.scene import FURNACE, VIEW, Scene, local_directions
+from mxeon.shaders.scene import FURNACE, Scene
 
 SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its cosine, and round it
 
@@ -44,25 +44,18 @@ class FacetProbe(ExactProbe):
             self._batch(scene, {name: inputs[name] for name in names}) for inputs in PICTURE_INPUTS
         )
 
-    def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Pictures of an environment, (N, 3)."""
-        return self._picture(batch)
-
     def points(self, scene: Scene) -> Pairs:
         return facet_pairs(scene)
 
     def _picture(self, batch: Batch) -> Array:
         """Values at the points of a batch, without those of a black lobe where others lie beside it."""
-        values = self._node(batch)
+        values = super()._picture(batch)
         if self.subject.others:
-            values = values - self._node(batch.altered(color=BLACK))
+            values = values - super()._picture(batch.altered(color=BLACK))
         return values
 
-    def _node(self, batch: Batch) -> Array:
-        scene, inputs = scene_of(batch), batch.inputs
-        image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
-        values = image[facet_points(scene.size).mask]
-        return values[facet_pairs(scene)[2]].astype(np.float64)
+    def _seen(self, scene: Scene) -> Mask:
+        return facet_points(scene.size).mask
 
 
 class CoarseFacetProbe(FacetProbe):
@@ -132,17 +125,6 @@ def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
 
 @lru_cache(maxsize=8)
 def facet_pairs(scene: Scene) -> Pairs:
-    """Directions at the points of the polyhedron, and the mask of the points to judge.
-
-    Returns
-    -------
-    wo, wi : ndarray, shape (N, 3)
-        One row per pixel within a facet; wi is wo where there is no distant light.
-    mask : ndarray of bool, shape (N,)
-        True where both cosines are at least RIM.
-    """
+    """Those of `mxeon.conformance.probes.pictures.picture_pairs`, of the pixels within a facet."""
     points = facet_points(scene.size)
-    normal = points.normal[points.mask]
-    wo = local_directions(normal, VIEW)
-    wi = wo if scene.light is None else local_directions(normal, scene.light)
-    return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
+    return lit_pairs(points.normal[points.mask], scene)

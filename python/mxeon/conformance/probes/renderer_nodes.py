@@ -9,12 +9,12 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
-from mxeon.conformance.probes.pictures import PICTURE_SIZE, PictureProbe, picture_pairs, scene_of
+from mxeon.conformance.probes.pictures import PICTURE_SIZE, Mask, PictureProbe, scene_of
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples.batch import Array, Batch, Values
 from mxeon.hosts.renderer import RendererHost
 from mxeon.models import table as reference
-from mxeon.shaders.scene import sphere
+from mxeon.shaders.scene import Scene, sphere
 
 EXACT_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
@@ -41,8 +41,11 @@ class NativeProbe(PictureProbe):
     def _picture(self, batch: Batch) -> Array:
         scene, inputs = scene_of(batch), batch.inputs
         image = self.host.node(self.subject.node, inputs["color"], inputs["roughness"], scene)
-        values = image[sphere(scene.size).mask]
-        return values[picture_pairs(scene)[2]].astype(np.float64)
+        return image[self._seen(scene)][self.points(scene)[2]].astype(np.float64)
+
+    def _seen(self, scene: Scene) -> Mask:
+        """Mask of a picture's pixels that show the subject."""
+        return sphere(scene.size).mask
 
 
 class ExactProbe(NativeProbe):
