@@ -59,9 +59,7 @@ def outcomes(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name, count", [("found", len(FOUND)), ("random", 100)])
-def test_what_was_found_stays_fixed_and_a_slice_of_the_fuzz_run_has_no_fault(
-    outcomes, name, count
-):
+def test_what_was_found_stays_fixed_and_a_slice_of_the_fuzz_run_has_no_fault(outcomes, name, count):
     assert len(outcomes[name]) == count
     faults = [(item, each.failure or each.value) for item, each in outcomes[name]]
     assert [(item, fault) for item, fault in faults if fault] == []

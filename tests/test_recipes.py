@@ -118,7 +118,7 @@ class Host(RendererHost):
 ENERGY = "python/mxeon/conformance/checks/energy.py"
 CHECK = {
     ENERGY: {
-        "CHECKS = (\n": """def halved(probe: Probe) -> Iterator[Case]:
+        "LAYERS = tuple(": """def halved(probe: Probe) -> Iterator[Case]:
     batches = [batch for batch in probe.few if "color" in batch.inputs]
     half = [batch.altered(color=0.5 * batch.inputs["color"]) for batch in batches]
     values = zip(batches, map(probe.direct, half), map(probe.direct, batches), strict=True)

@@ -10,9 +10,9 @@ from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.checks.transmission_measures import through_sphere
 from mxeon.conformance.nodes.transmission import TRANSMITTING
+from mxeon.conformance.probes.bsdf import TransmissionProbe
 from mxeon.conformance.probes.families import probe_type_of
 from mxeon.conformance.probes.pictures import PictureProbe
-from mxeon.conformance.probes.transmission import TransmissionProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.hosts import raster
 from mxeon.models.transmission import refraction

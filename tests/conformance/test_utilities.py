@@ -9,7 +9,7 @@ import pytest
 from mxeon.conformance.accuracy.utilities import BLACKBODY, BLACKBODY_FIT
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.checks.utility_measures import UNITS
+from mxeon.conformance.checks.utilities import UNITS
 from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED

@@ -1,12 +1,52 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of the light that a lobe scatters in all."""
+"""Checks of energy: what a lobe scatters in all, what it lets through, and both of two lobes together."""
 
 from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import scale
-from mxeon.conformance.checks.names import OTHERS
+from mxeon.conformance.checks.controls import pass_all, scale, shifted
+from mxeon.conformance.checks.names import COMBINATION, OTHERS
+from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.probes.cases import (
+    albedo_cases,
+    layering_cases,
+    transmission_cases,
+    value_cases,
+)
+from mxeon.models.nodes import NODES
+
+LAYERS = tuple(row.name for row in NODES if row.layerable)
 
 CHECKS = (
+    Check(
+        "layering",
+        "The throughput of a layer is 1 - E for light from above, for every weight.",
+        LAYERS,
+        layering_cases,
+        "all light passes",
+        pass_all,
+        "throughput",
+        diagnose=diagnosis.diagnose_throughput,
+    ),
+    Check(
+        "transmission",
+        "The throughput of a layer is 1 - E for light through the base as well.",
+        LAYERS,
+        transmission_cases,
+        "all light passes",
+        pass_all,
+        "throughput",
+        diagnose=diagnosis.diagnose_transmission,
+    ),
+    Check(
+        "layer",
+        "A layer over a white base returns all light.",
+        LAYERS,
+        measures.layer,
+        "all light passes",
+        pass_all,
+        "light",
+        diagnose=diagnosis.diagnose_throughput,
+    ),
     Check(
         "integral",
         "Values integrate to the directional albedo of the equations.",
@@ -25,5 +65,40 @@ CHECKS = (
         "values are 100 times as large",
         scale(100.0),
         "integral",
+    ),
+)
+# Of the nodes that combine two lobes.
+COMBINED_CHECKS = (
+    Check(
+        "combination",
+        "The value of two lobes together is that of the node's equation.",
+        COMBINATION,
+        value_cases,
+        "each pair has the inputs of another",
+        shifted,
+        "value",
+        pairs=True,
+    ),
+    Check(
+        "combined_albedo",
+        "The environment branch of two lobes together gives their albedo.",
+        COMBINATION,
+        albedo_cases,
+        "each pair has the inputs of another",
+        shifted,
+        "albedo",
+        pairs=True,
+        diagnose=diagnosis.diagnose_albedo,
+    ),
+    Check(
+        "combined_throughput",
+        "Two lobes together pass what they do not scatter, as the layer equation asks.",
+        COMBINATION,
+        measures.passing,
+        "all light passes",
+        pass_all,
+        "throughput",
+        diagnose=diagnosis.diagnose_throughput,
+        open=True,
     ),
 )

@@ -1,19 +1,106 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of surface shaders as a whole."""
+"""Checks of surface shaders as a whole; a failure names the lobe without which it vanishes."""
+
+from collections.abc import Iterable
 
 import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.checks import surface_diagnosis as diagnosis
-from mxeon.conformance.checks import surface_measures
+from mxeon.conformance.accuracy.surface_shaders import VALUE
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, scale, shifted
-from mxeon.conformance.nodes.surface_shaders import SHADERS
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.surface_shaders import SHADERS, SurfaceShader
 from mxeon.conformance.probes.cases import albedo_cases, value_cases
-from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.samples.measurement import Case, Measurement, count_named, scaled
 
 MODELS = tuple(shader.model for shader in SHADERS)
+BRANCHES = ("direct", "environment", "transmission")
+WORST = 32  # pairs that are looked at
+# Inputs that take a lobe away, by its name.
+LOBES = {
+    "coat": ("coat", "coat_weight", "clearcoat"),
+    "sheen": ("sheen", "fuzz_weight", "sheen_color"),
+    "metal": ("metalness", "base_metalness", "metallic"),
+    "specular reflection": ("specular", "specular_weight"),
+}
+
+
+def energy(probe: Probe) -> Iterable[Case]:
+    """Albedos above 1 over random materials with every lobe."""
+    albedo = probe.albedo(probe.materials)
+    return [Case(probe.materials, np.maximum(albedo, 1.0), np.ones((1, 3)))]
+
+
+def furnace(probe: Probe) -> Iterable[Case]:
+    """Albedo against 1 of a material that loses no light."""
+    albedo = probe.albedo(probe.white)
+    return [Case(probe.white, albedo, np.ones((1, 3)))]
+
+
+def reach(probe: Probe) -> Measurement:
+    """Number of inputs that change something where the page says nothing, or the reverse."""
+    return count_named(misplaced(probe))
+
+
+def misplaced(probe: Probe) -> list[str]:
+    """The inputs of `reach`."""
+    table = subject_of(probe, SurfaceShader).table
+    wrong = set(table.without_effect).symmetric_difference(without_effect(probe))
+    return sorted(wrong.difference(table.curved))
+
+
+def without_effect(probe: Probe) -> list[str]:
+    """Inputs that change no value in any branch."""
+    names = subject_of(probe, SurfaceShader).inputs
+    effective = np.zeros(len(names), bool)
+    for branch in BRANCHES:
+        values = probe.response(probe.changed, branch).reshape(len(names), 2, -1)
+        effective |= (values[:, 0] != values[:, 1]).any(axis=1)
+    return [name for name, each in zip(names, effective, strict=True) if not each]
+
+
+def diagnose_lobes(probe: Probe) -> Diagnosis:
+    """The lobe whose absence leaves the smallest error of the worst pairs."""
+    # Pick the worst pairs.
+    [batch] = probe.batches
+    expected = probe.expected(batch)
+    worst = np.argsort(scaled(probe.direct(batch), expected))[-WORST:]
+    pairs = batch.where(worst)
+    # Find their error without each lobe.
+    errors = {}
+    for lobe, inputs in LOBES.items():
+        if names := tuple(name for name in inputs if name in batch.inputs):
+            errors[lobe] = _error(probe, pairs, names)
+    lobe = min(errors, key=errors.__getitem__)
+    if errors[lobe] <= VALUE.value:
+        return Diagnosis(f"the layer equation holds without the {lobe}")
+    least = " and ".join(sorted(errors, key=errors.__getitem__)[:2])
+    return Diagnosis(f"no lobe alone explains it; the error is least without {least}")
+
+
+def _error(probe: Probe, pairs: Batch, names: tuple[str, ...]) -> float:
+    """Largest error of pairs whose materials lack a lobe."""
+    plain = pairs.altered(**{name: np.zeros_like(pairs.inputs[name]) for name in names})
+    return float(scaled(probe.direct(plain), probe.expected(plain)).max())
+
+
+def diagnose_sum(probe: Probe) -> Diagnosis:
+    """Where the lobes are judged."""
+    return Diagnosis("the checks of each lobe and of `layer` say why")
+
+
+def diagnose_reach(probe: Probe) -> Diagnosis:
+    """The inputs."""
+    known = subject_of(probe, SurfaceShader).table.without_effect
+    groups = {
+        verb: [name for name in misplaced(probe) if (name in known) == effective]
+        for verb, effective in (("changes nothing", False), ("changes something", True))
+    }
+    texts = (f"{', '.join(names)} {verb}" for verb, names in groups.items() if names)
+    return Diagnosis("; ".join(texts))
 
 
 class IgnoreChanges(Altered):
@@ -36,7 +123,7 @@ CHECKS = (
         "each pair has the inputs of another",
         shifted,
         "value",
-        diagnose=diagnosis.diagnose_lobes,
+        diagnose=diagnose_lobes,
     ),
     Check(
         "lobes_albedo",
@@ -46,36 +133,36 @@ CHECKS = (
         "each view has the inputs of another",
         shifted,
         "albedo",
-        diagnose=diagnosis.diagnose_sum,
+        diagnose=diagnose_sum,
     ),
     Check(
         "lobes_furnace",
         "A white material of many lobes in a white environment cannot be seen.",
         MODELS,
-        surface_measures.furnace,
+        furnace,
         "every value is a tenth lower",
         scale(0.9),
         "albedo",
-        diagnose=diagnosis.diagnose_sum,
+        diagnose=diagnose_sum,
     ),
     Check(
         "lobes_energy",
         "No material of these lobes reflects and transmits more light than it gets.",
         MODELS,
-        surface_measures.energy,
+        energy,
         "every value is half as high again",
         scale(1.5),
         "albedo",
-        diagnose=diagnosis.diagnose_sum,
+        diagnose=diagnose_sum,
     ),
     Check(
         "reach",
         "An input changes a value, unless its page says that it does not.",
         MODELS,
-        surface_measures.reach,
+        reach,
         "every change is dropped",
         ignore_changes,
         count_of("inputs"),
-        diagnose=diagnosis.diagnose_reach,
+        diagnose=diagnose_reach,
     ),
 )

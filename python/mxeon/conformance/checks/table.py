@@ -6,11 +6,9 @@ host; the check has to fail on it. Every tolerance is the expression that its de
 """
 
 from mxeon.conformance.checks import (
-    combinations,
     emission,
     energy,
     hair,
-    layers,
     lobes,
     microfacets,
     thin_films,
@@ -24,10 +22,9 @@ __all__ = ["CHECKS", "Check"]
 
 CHECKS = (
     *lobes.CHECKS,
-    *layers.CHECKS,
     *energy.CHECKS,
     *microfacets.CHECKS,
-    *combinations.CHECKS,
+    *energy.COMBINED_CHECKS,
     *emission.CHECKS,
     *hair.CHECKS,
     *transmission.CHECKS,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects of the checks: the EDF nodes of pbrlib, and those that combine EDFs."""
+"""Subjects of the checks: the EDF nodes of pbrlib, those that combine EDFs, and surfaces that emit."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -35,6 +35,9 @@ EMITTER = """  <surface name="shading" type="surfaceshader">
   </surface>
 """
 PORT = '    <input name="{}" type="EDF" nodename="{}" />\n'
+SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
+BLACK = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
+EMITTED = '    <input name="edf" type="EDF" nodename="emission" />\n'
 LEAST_FALLOFF = 60.0  # degrees of full angle between the cones: what rounds is divided by it
 EXPONENTS = (1.0, 8.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
@@ -194,6 +197,38 @@ UNIMPLEMENTED = AbsentSubject(
 )
 
 
+@dataclass(frozen=True)
+class SurfaceSubject:
+    """The node `surface` with an emission, in the dark.
+
+    Attributes
+    ----------
+    title : str
+        Name in reports.
+    lit : bool
+        Whether it has a BSDF beside.
+    """
+
+    title: str
+    lit: bool
+
+    node: ClassVar[str] = "surface"
+    kind: ClassVar[str] = SURFACES
+    model: ClassVar[str] = SURFACES
+    closure: ClassVar[bool] = True
+    libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
+
+    def document(self, inputs: Values | None = None) -> str:
+        """MaterialX text of the surface, with this opacity."""
+        emission = node_text(
+            "uniform_edf", "EDF", "emission", input_text("color", "color3", SURFACE_COLOR)
+        )
+        lobe = '    <input name="bsdf" type="BSDF" nodename="lobe" />\n' if self.lit else ""
+        opacity = input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
+        surface = node_text("surface", "surfaceshader", "shading", lobe + EMITTED + opacity)
+        return document_text((BLACK if self.lit else "") + emission + surface)
+
+
 def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
     """Angles of cones: half of them with a falloff, of at least LEAST_FALLOFF degrees."""
     inner, wide = 360.0 * rng.random(count), rng.random(count) < 0.5
@@ -214,4 +249,13 @@ COMBINED_EDFS = (
     EmissionSubject(_MIX, PORT.format("fg", "first") + PORT.format("bg", "second"), BOTH),
     EmissionSubject(_ADD, PORT.format("in1", "first") + PORT.format("in2", "second"), BOTH),
     *(EmissionSubject(row, PORT.format("in1", "first"), BOTH[:1]) for row in _SCALED),
+)
+ABSENT_NODES = (
+    AbsentSubject(
+        "measured_edf", "measured_edf", node_text("measured_edf", "EDF", "emission") + EMITTER
+    ),
+)
+SURFACE_NODES = (
+    SurfaceSubject("surface, an EDF alone", lit=False),
+    SurfaceSubject("surface, a BSDF and an EDF", lit=True),
 )

@@ -7,8 +7,10 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.bsdf import BsdfSubject
+from mxeon.conformance.nodes.transmission import TransmissionSubject
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
@@ -242,3 +244,16 @@ class CombinedProbe(BsdfProbe):
             Batch(wo, wi, self.subject.random_inputs(rng, count)),
             Batch(*special, self.subject.random_inputs(rng, len(special[0]))),
         )
+
+
+class TransmissionProbe(MicrofacetProbe):
+    """A node that transmits, on a host that evaluates any pairs."""
+
+    subject: TransmissionSubject
+
+    def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
+        return self._evaluate(batch, "transmission", irradiance=radiance)
+
+    @cached_property
+    def reflection(self) -> MicrofacetProbe:
+        return MicrofacetProbe(self.host, self.subject.reflection, self.library, self.counts)

@@ -8,7 +8,7 @@ import numpy as np
 
 from mxeon.conformance.nodes.emission import EmissionSubject
 from mxeon.conformance.probes.probe import Counts, Probe, ValueProbe
-from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Values, directions, rounded
 from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts.base import Host
@@ -38,14 +38,18 @@ class NodeProbe(Probe):
 
     @cached_property
     def shader(self) -> Shader:
-        """Shader of the subject's document.
+        """Shader of the subject's document."""
+        return self.shader_of({})
+
+    def shader_of(self, inputs: Values) -> Shader:
+        """Shader of the subject's document with some inputs.
 
         Raises
         ------
         NotRun
             If the target has no implementation of the node.
         """
-        shader = implementation(self.host, self.subject.document(), self.library)
+        shader = implementation(self.host, self.subject.document(inputs), self.library)
         if shader is None:
             raise NotRun(f"{self.host.target}: no implementation of {self.subject.node}")
         return shader

@@ -6,19 +6,23 @@ from collections.abc import Mapping
 from mxeon.conformance.nodes import bsdf, emission, transmission, utilities
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
-from mxeon.conformance.nodes.emission_surfaces import ABSENT_NODES, SURFACE_NODES
 from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.media import MEDIUM_NODES
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.subsurface import SUBSURFACES
 from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
 from mxeon.conformance.nodes.thin_films import FILMS
-from mxeon.conformance.probes.bsdf import BsdfProbe, CombinedProbe, FittedProbe, MicrofacetProbe
+from mxeon.conformance.probes.bsdf import (
+    BsdfProbe,
+    CombinedProbe,
+    FittedProbe,
+    MicrofacetProbe,
+    TransmissionProbe,
+)
 from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe, BsdfPlaneProbe
 from mxeon.conformance.probes.diffuse_lobes import DiffuseLobePlaneProbe, DiffuseLobeProbe
 from mxeon.conformance.probes.emission import ConeProbe, EmissionProbe, NodeProbe
-from mxeon.conformance.probes.emission_pictures import EmissionPictureProbe
-from mxeon.conformance.probes.emission_surfaces import SurfaceEmissionProbe
+from mxeon.conformance.probes.emission_pictures import EmissionPictureProbe, SurfaceEmissionProbe
 from mxeon.conformance.probes.hair import HairProbe
 from mxeon.conformance.probes.media import MediumProbe
 from mxeon.conformance.probes.pairs import PairProbe
@@ -27,7 +31,6 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import SubsurfaceProbe
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.probes.thin_films import FilmProbe
-from mxeon.conformance.probes.transmission import TransmissionProbe
 from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
 
 # Every run judges the common ones; the others are judged where they are asked for by name.
@@ -36,8 +39,8 @@ EMISSION_SUBJECTS: tuple[Subject, ...] = (
     *emission.EDFS,
     *emission.COMBINED_EDFS,
     *MEDIUM_NODES,
-    *SURFACE_NODES,
-    *ABSENT_NODES,
+    *emission.SURFACE_NODES,
+    *emission.ABSENT_NODES,
 )
 PBR_SUBJECTS: tuple[Subject, ...] = (
     *COMMON_SUBJECTS,

@@ -18,7 +18,6 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.emissions import emissions
 from mxeon.conformance.reference.images import looked_up
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
@@ -30,8 +29,8 @@ from mxeon.conformance.reference.nodes import (
     plain,
 )
 from mxeon.conformance.reference.operations import OPERATIONS, Operation, Value, Values, fitted
+from mxeon.conformance.reference.pbr_operations import UTILITIES, emissions
 from mxeon.conformance.reference.points import ShadingPoints
-from mxeon.conformance.reference.utilities import UTILITIES
 from mxeon.conformance.reference.walk import evaluated
 from mxeon.errors import NotRun
 from mxeon.io.images import srgb_decoded
