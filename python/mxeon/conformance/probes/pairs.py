@@ -47,8 +47,8 @@ class PairProbe(LobeProbe):
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
         """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
-        rng = np.random.default_rng(SEED)
-        pairs = tuple(directions(rng, self.counts.pairs) for _ in range(2))
+        rng, count = np.random.default_rng(SEED), self.counts.pairs
+        pairs = directions(rng, count), directions(rng, count)
         return (
             self._batch(rng, pairs, self.subject.random_inputs),
             self._batch(rng, special_directions(rng), self.subject.special_inputs),

@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, NoReturn, TypeVar
+from typing import ClassVar, NoReturn, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +83,7 @@ class Probe:
         """Its own kind."""
         return self.kind_of(self.subject)
 
-    def of(self, subject: Subject) -> "Probe":
+    def of(self, subject: Subject) -> Self:
         """The same probe of another subject."""
         return type(self)(self.host, subject, self.library, self.counts)
 

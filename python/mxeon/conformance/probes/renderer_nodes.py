@@ -74,6 +74,4 @@ class ExactProbe(NativeProbe):
             form: float(np.abs(values - batch.expected(form)).max()) for form in self.subject.forms
         }
         nearest = min(errors, key=errors.__getitem__)
-        return type(self)(
-            self.host, replace(self.subject, model=nearest), self.library, self.counts
-        )
+        return self.of(replace(self.subject, model=nearest))

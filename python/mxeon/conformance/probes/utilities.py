@@ -52,9 +52,7 @@ class UtilityProbe(ValueProbe):
         return values.astype(np.float64)
 
     def other(self, output: str) -> "UtilityProbe":
-        return type(self)(
-            self.host, replace(self.subject, output=output), self.library, self.counts
-        )
+        return self.of(replace(self.subject, output=output))
 
 
 class UtilityOslProbe(UtilityProbe):
