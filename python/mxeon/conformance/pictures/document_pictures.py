@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 import mxeon
 from mxeon.conformance.accuracy import surface_shaders as surfaces
 from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, sum_of
-from mxeon.conformance.diagnosis.verdicts import not_measured
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result
-from mxeon.conformance.samples.measurement import absolute
+from mxeon.conformance.samples.measurement import Measurement, absolute
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
@@ -265,17 +266,14 @@ def _judge_match(
     first, image, expected = cases[0]
     brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
     control_error, _ = _worst_pixel((first, brighter, expected), front_lit, scaled)
-    caught = control_error > tolerance.value
-    return Result(
-        **place,
-        verdict=PASSED if error <= tolerance.value and caught else FAILED,
-        error=error,
-        unit=tolerance.unit,
-        tolerance=tolerance.value,
-        derivation=tolerance.derivation,
-        worst=worst,
-        diagnosis="" if error <= tolerance.value else f"most in the picture of the scene {scene}",
-        control=Control("the picture is brighter by three tolerances", control_error, caught),
+    words = "" if error <= tolerance.value else f"most in the picture of the scene {scene}"
+    return judge_measurements(
+        place,
+        tolerance,
+        Measurement(error, worst),
+        "the picture is brighter by three tolerances",
+        Measurement(control_error, {}),
+        Diagnosis(words),
     )
 
 

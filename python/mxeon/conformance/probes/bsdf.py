@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.transmission import TransmissionSubject
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.probe import Counts
-from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions, rounded
 from mxeon.conformance.samples.edge_cases import (
     LEAST_COLOR82,
     LEAST_TURNED,

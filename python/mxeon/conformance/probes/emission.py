@@ -7,8 +7,8 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes.emission import EmissionSubject
-from mxeon.conformance.probes.probe import Counts, Probe, ValueProbe
-from mxeon.conformance.samples.batch import SEED, Array, Batch, Values, directions, rounded
+from mxeon.conformance.probes.probe import Probe, ValueProbe
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, Values, directions, rounded
 from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts.base import Host

@@ -10,8 +10,7 @@ import numpy as np
 from mxeon.conformance.nodes.hair import WIDE_SCALE, WIDE_VARIANCE, HairSubject
 from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.probes.bsdf import BsdfProbe
-from mxeon.conformance.probes.probe import Counts
-from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED, special_directions
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.hair.formulas import SCALE, section

@@ -8,8 +8,8 @@ import numpy as np
 
 from mxeon.conformance.nodes.media import MediumSubject
 from mxeon.conformance.probes.emission import NodeProbe
-from mxeon.conformance.probes.probe import Counts, ValueProbe
-from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
+from mxeon.conformance.probes.probe import ValueProbe
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions
 
 
 class MediumProbe(NodeProbe, ValueProbe):

@@ -18,9 +18,8 @@ from mxeon.conformance.probes.pictures import (
     PlaneProbe,
     lit_pairs,
 )
-from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
-from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions
 from mxeon.conformance.samples.edge_cases import outside_directions, special_directions
 from mxeon.hosts import host_row
 from mxeon.shaders.facets import facet_points

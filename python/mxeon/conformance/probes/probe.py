@@ -2,7 +2,6 @@
 """What a check may ask of a node on a host; the base class of all probes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, NoReturn, Self, TypeVar
 
@@ -11,35 +10,8 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import LobeSubject, Subject, ValuedSubject
 from mxeon.conformance.results import Claims
-from mxeon.conformance.samples.batch import FEW, PAIRS, Array, Batch, Candidate, Changes, Values
+from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Counts, Values
 from mxeon.hosts.base import Host
-
-
-@dataclass(frozen=True)
-class Counts:
-    """How many samples a probe draws.
-
-    Attributes
-    ----------
-    pairs, few : int
-        Random pairs, and those of them for what takes long.
-    diagnosed : int
-        Pairs of each batch that a diagnosis looks at.
-    albedos : int
-        Views whose albedo is asked.
-    materials, nodes : int
-        Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
-    mirrored : int
-        Views with lights near the mirror direction.
-    """
-
-    pairs: int = PAIRS
-    few: int = FEW
-    diagnosed: int = FEW
-    albedos: int = 1 << 7
-    materials: int = 64
-    nodes: int = 48
-    mirrored: int = 1 << 11
 
 
 class Probe:

@@ -11,9 +11,8 @@ import numpy as np
 from mxeon.conformance.nodes.surface_shaders import SurfaceShader
 from mxeon.conformance.probes.bsdf import LEAST_VIEW, reflected
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.probe import Counts
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.samples.batch import SEED, Array, Batch, directions
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.generation import Shader, generate

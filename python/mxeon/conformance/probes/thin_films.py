@@ -11,8 +11,7 @@ import numpy as np
 from mxeon.conformance.nodes.thin_films import THICK
 from mxeon.conformance.probes.bsdf import MicrofacetProbe, simple
 from mxeon.conformance.probes.pictures import Mask
-from mxeon.conformance.probes.probe import Counts
-from mxeon.conformance.samples.batch import SEED, Batch, directions, rounded
+from mxeon.conformance.samples.batch import SEED, Batch, Counts, directions, rounded
 from mxeon.conformance.samples.edge_cases import special_directions
 
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`

@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes.utilities import OSL_VALUES, UtilitySubject
-from mxeon.conformance.probes.probe import Counts, ValueProbe
-from mxeon.conformance.samples.batch import SEED, Array, Batch
+from mxeon.conformance.probes.probe import ValueProbe
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts
 from mxeon.hosts.calls import GRAPH
 from mxeon.shaders.generation import Shader
 

@@ -25,6 +25,33 @@ Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change o
 
 
 @dataclass(frozen=True)
+class Counts:
+    """How many samples a probe draws.
+
+    Attributes
+    ----------
+    pairs, few : int
+        Random pairs, and those of them for what takes long.
+    diagnosed : int
+        Pairs of each batch that a diagnosis looks at.
+    albedos : int
+        Views whose albedo is asked.
+    materials, nodes : int
+        Materials whose values are integrated or averaged, and nodes of a quadrature on each axis.
+    mirrored : int
+        Views with lights near the mirror direction.
+    """
+
+    pairs: int = PAIRS
+    few: int = FEW
+    diagnosed: int = FEW
+    albedos: int = 1 << 7
+    materials: int = 64
+    nodes: int = 48
+    mirrored: int = 1 << 11
+
+
+@dataclass(frozen=True)
 class Batch:
     """Pairs of directions and the node's inputs for them.
 

@@ -94,14 +94,8 @@ def _without_square(inputs: Inputs) -> dict[str, Array]:
     roots = {name: np.sqrt(_share(inputs, name)) for name in names}
     if "glossiness" in roots:
         roots["glossiness"] = 1.0 - np.sqrt(1.0 - _share(inputs, "glossiness"))
-    own = (
-        _dual
-        if "anisotropy" not in inputs
-        else _glossiness
-        if "glossiness" in roots
-        else _anisotropy
-    )
-    return own({**inputs, **roots})
+    aspect = _glossiness if "glossiness" in roots else _anisotropy
+    return (aspect if "anisotropy" in inputs else _dual)({**inputs, **roots})
 
 
 def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
