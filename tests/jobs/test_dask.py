@@ -20,6 +20,7 @@ from mxeon.shaders.library import examples_folder
 from tests.support.faults import need, once, process, square
 from tests.support.plans import keep_checks
 
+ONE_THREAD = ["--nthreads", "1"]
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
 # Dask leaves the sockets open by which it looks for a free port.
 pytestmark = [
@@ -43,7 +44,7 @@ def farm(*workers):
         options = {"n_workers": 0, "dashboard_address": ":0", "protocol": "tcp"}
         started = stack.enter_context(LocalCluster(**options))
         for more in workers:
-            arguments = more.pop("arguments", ["--nthreads", "1"])
+            arguments = more.pop("arguments", ONE_THREAD)
             command = [
                 sys.executable,
                 "-m",
@@ -96,31 +97,30 @@ def test_an_item_that_hangs_ends_its_workers_and_is_given_up():
     assert outcome.value is None and outcome.failure.startswith("KilledWorker: ")
 
 
-@pytest.mark.parametrize(
-    "fault, words",
-    [
-        ("version", f"it must have mxeon {mxeon.__version__}; got 0.0.9"),
-        ("threads", "it must have one thread, --nthreads 1, as OpenGL needs; got 2"),
-    ],
-)
-def test_a_worker_that_does_not_fit_gets_no_work_and_is_named(tmp_path, fault, words):
+def test_workers_that_do_not_fit_get_no_work_and_are_named(tmp_path):
     preload = tmp_path / "preload.py"
     preload.write_text(OTHER_VERSION)
-    arguments = ["--preload", str(preload), "--nthreads", "1"]
-    unfit = {"arguments": arguments if fault == "version" else ["--nthreads", "2"]}
-    with farm({"FIT": "yes"}, unfit) as address, pytest.warns(UserWarning, match=words):
-        found = run(need, ["FIT"] * 8, address)
-    assert found == {place: Outcome("yes") for place in range(8)}
+    other = {"arguments": ["--no-nanny", "--preload", str(preload), *ONE_THREAD]}
+    threads = {"arguments": ["--no-nanny", "--nthreads", "2"]}
+    fit = {"FIT": "yes", "arguments": ["--no-nanny", *ONE_THREAD]}
+    with farm(fit, other, threads) as address, pytest.warns(UserWarning) as said:
+        found = run(need, ["FIT"] * 12, address)
+    assert found == {place: Outcome("yes") for place in range(12)}
+    words = " | ".join(str(each.message) for each in said)
+    assert f"it must have mxeon {mxeon.__version__}; got 0.0.9" in words
+    assert "it must have one thread, --nthreads 1, as OpenGL needs; got 2" in words
 
 
 def test_a_cluster_without_a_fitting_worker_is_one_line():
-    rule = f"must have a worker with mxeon {mxeon.__version__} "
-    with (
-        farm({"arguments": ["--nthreads", "2"]}) as address,
-        pytest.warns(UserWarning),
-        pytest.raises(ValueError, match=rule),
-    ):
-        run(square, [1], address)
+    rule = f"must have a worker with mxeon {mxeon.__version__} and --nthreads 1; got 1 others"
+    with pytest.warns(UserWarning), pytest.raises(InputError, match=rule):
+        cluster.Workers(Client(TWO_THREADS), 60.0)
+
+
+NOBODY, SOMEBODY, TWO_THREADS = (
+    {"workers": workers}
+    for workers in ({}, {"tcp://a": {"nthreads": 1}}, {"tcp://a": {"nthreads": 2}})
+)
 
 
 class Client:
@@ -134,9 +134,6 @@ class Client:
 
     def run(self, function, workers, on_error):
         return dict.fromkeys(workers, mxeon.__version__)
-
-
-NOBODY, SOMEBODY = {"workers": {}}, {"workers": {"tcp://a": {"nthreads": 1}}}
 
 
 def test_workers_that_all_restart_are_waited_for(monkeypatch):
