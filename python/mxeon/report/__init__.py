@@ -11,12 +11,15 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mxeon.conformance.records import make_converter
 from mxeon.conformance.results import Picture, Run, image_names
 from mxeon.errors import PackageError
 from mxeon.io.files import replacing, write_text
 from mxeon.io.images import difference, write_exr, write_png
 from mxeon.report.junit import to_junit
+from mxeon.report.threads import in_threads
 
 if TYPE_CHECKING:
     from mxeon.report.field import Entry
@@ -84,14 +87,11 @@ def to_json(run: Run) -> str:
 def _picture_fields(run: Run) -> list[dict[str, Any]]:
     keys = ("document", "element", "host", "library", "scene")
     fields: list[dict[str, Any]] = []
-    # Find the file of each reference picture.
+    # Find the file of each reference picture, and the largest difference from it.
     pictures = _with_references(run.pictures)
     stems = dict(zip(map(_place, pictures), image_names(pictures), strict=True))
-    for picture, stem in zip(run.pictures, run.image_names, strict=True):
-        # Measure the largest difference.
-        largest = None
-        if picture.reference is not None:
-            largest = float(difference(picture.image, picture.reference).max())
+    differences = in_threads(_largest_difference, run.pictures)
+    for picture, stem, largest in zip(run.pictures, run.image_names, differences, strict=True):
         # Name the files.
         files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
         named = {key: getattr(picture, key) for key in keys}
@@ -102,6 +102,13 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
         }
         fields.append(named | files | compared)
     return fields
+
+
+def _largest_difference(picture: Picture) -> float | None:
+    """Largest difference of a picture from its reference, if it has one."""
+    if picture.reference is None:
+        return None
+    return float(difference(picture.image, picture.reference).max())
 
 
 def write(run: Run, folder: str | PathLike[str]) -> Path:
@@ -135,15 +142,22 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     write_text(folder / "junit.xml", to_junit(run))
     # Write the pictures.
     pictures = _with_references(run.pictures)
-    for picture, stem in zip(pictures, image_names(pictures), strict=True):
-        path = folder / "pictures" / stem
-        write_exr(f"{path}.exr", picture.image, picture.metadata)
-        write_png(f"{path}.png", picture.image, picture.metadata)
+    stems = [folder / "pictures" / stem for stem in image_names(pictures)]
+    for _ in in_threads(_write_picture, zip(pictures, stems, strict=True)):
+        pass
     # Write the page, piece by piece.
     with replacing(folder / "report.html") as beside, open(beside, "w", encoding="utf-8") as page:
         for text in html(run):
             page.write(text)
     return folder / "report.html"
+
+
+def _write_picture(place: tuple[Picture, Path]) -> None:
+    """Write a picture as EXR and as PNG, under a path without an ending."""
+    picture, path = place
+    image = np.asarray(picture.image)
+    write_exr(f"{path}.exr", image, picture.metadata)
+    write_png(f"{path}.png", image, picture.metadata)
 
 
 def write_field(entries: Sequence[Entry], file: str | PathLike[str], pages: str = "") -> Path:

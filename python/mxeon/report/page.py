@@ -27,6 +27,7 @@ from mxeon.conformance.results import (
 )
 from mxeon.io.images import difference, difference_scale, srgb_encoded
 from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
+from mxeon.report.threads import in_threads
 
 # Markers of hosts in plots, in order: matplotlib's name, and the character that looks like it.
 MARKERS = (("o", "○"), ("s", "□"), ("^", "△"), ("D", "◇"))
@@ -246,6 +247,8 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
     """
     places = checks_by_place(run.results)
     rows = list(materials(run.pictures).items())
+    shown = rows[:SHOWN_MATERIALS]
+    drawn = in_threads(panels, (each for _, scenes in shown for each in scenes.values()))
     script = files("mxeon.report").joinpath("templates/report.js").read_text(encoding="utf-8")
     environment = Environment(
         loader=PackageLoader("mxeon.report"),
@@ -265,9 +268,9 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
         matrix=matrix(places),
         identities={identity.name: identity for identity in run.hosts},
         reasons=reasons(run.results),
-        shown=rows[:SHOWN_MATERIALS],
+        shown=shown,
         listed=rows[SHOWN_MATERIALS:],
-        panels=panels,
+        next_panels=drawn.__next__,
         file_of=file_of,
         gradient=Markup(difference_gradient()),
         plots=plots(run.curves),

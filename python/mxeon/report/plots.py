@@ -5,15 +5,14 @@ import base64
 import io
 import re
 from collections.abc import Sequence
-from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.image import imsave
 from numpy.typing import NDArray
+from PIL import Image
 
 from mxeon.conformance.results import AlbedoCurve
 from mxeon.io.images import NOT_FINITE
@@ -26,7 +25,7 @@ CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
 TEXT_COLOR = "#010203"
 # Without these, matplotlib adds a description of itself, with addresses, to each plot.
 NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
-NO_SOFTWARE: dict[str, Any] = {"Software": None}
+FAST = 1  # zlib's level: a third of the time, and a third more bytes
 STYLE = {
     "svg.fonttype": "none",
     "svg.hashsalt": "mxeon",
@@ -59,7 +58,8 @@ def picture_uri(pixels: NDArray[np.uint8]) -> str:
     """
     step = -(-len(pixels) // SHOWN_SIZE)
     buffer = io.BytesIO()
-    imsave(buffer, pixels[::step, ::step], format="png", metadata=NO_SOFTWARE)
+    shown = np.ascontiguousarray(pixels[::step, ::step])
+    Image.fromarray(shown).save(buffer, "png", compress_level=FAST)
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
