@@ -10,7 +10,7 @@ azimuths are the same, so that nine facets are three: the mean over them is wors
 
 import numpy as np
 
-from mxeon.conformance.probes.thin_films import LEAST_OIL, MOST_COSINE, STEEP
+from mxeon.conformance.probes.thin_films import LEAST_OIL, MOST_COSINE, SHARP, STEEP
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import film_curve
@@ -26,6 +26,8 @@ NUMBERS, LEAST = (
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 SLANTED = {**FILMS, "mu": (0.1, MOST_COSINE)}
 THIN = {**STEEP, "index": (LEAST_OIL, 2.5)}
+CLEAR = {**SHARP, "index": (LEAST_OIL, 2.5)}
+STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
 WHITE = {"color82": 1.0, "color90": 1.0}
 
 
@@ -82,14 +84,35 @@ def six_orders(r, phase, opd, _):
 
 def orders_errors(category, material, _, mu):
     """Errors of the sum, relative to the largest channel."""
+    short, exact = _both_sums(category, material, mu)
+    return (np.abs(short - exact) / exact.max(axis=0)).max(axis=0)
+
+
+def curve_errors(category, material, _, mu):
+    """Errors of the sum."""
+    short, exact = _both_sums(category, material, mu)
+    return np.abs(short - exact).max(axis=0)
+
+
+def _both_sums(category, material, mu):
+    """A curve by the shader's sum of orders, and by all orders."""
     curve = film_curve(category)
     exact = curve.at(mu, **material)
     all_orders, film._all_orders = film._all_orders, six_orders
     try:
-        short = curve.at(mu, **material)
+        return curve.at(mu, **material), exact
     finally:
         film._all_orders = all_orders
-    return (np.abs(short - exact) / exact.max(axis=0)).max(axis=0)
+
+
+def slopes(category, material, _, mu):
+    """Slopes of a curve in the logarithm of the thickness, as which a path difference rounds."""
+    curve, thickness = film_curve(category), material["thinfilm_thickness"]
+    up, down = (
+        curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
+        for step in (STEP, -STEP)
+    )
+    return np.abs(up - down).max(axis=0) / (2.0 * STEP)
 
 
 def average_errors(category, material, *_):
@@ -156,6 +179,8 @@ def _facets(wo, alpha):
 # What is measured, by name: errors, and the ranges of films.
 MEASURED = {
     "orders": (orders_errors, FILMS),
+    "orders of curves": (curve_errors, CLEAR),
+    "slope of curves": (slopes, CLEAR),
     "F_ss": (average_errors, FILMS),
     "F_ss of thin films": (average_errors, THIN),
     "visible facets": (visible_errors, SLANTED),

@@ -173,6 +173,8 @@ FILM_AVERAGE = 7.9e-3  # F_ss in six cosines
 FILM_THIN_AVERAGE = 1.4e-3  # the same of films of 50 to 100 nm
 FILM_VISIBLE = 4.4e-2  # mean over the visible facets in nine of them, for cosines of up to 0.9
 FILM_THIN_VISIBLE = 1.1e-2  # the same for films of 50 to 100 nm, alpha and cosine from 0.6 on
+FILM_SHARP_ORDERS = 6.2e-6  # six orders of films from 200 nm and cosines from 0.3 on
+FILM_SLOPE = 9.1  # slope of their curves in the logarithm of the path difference
 FILM_HEIGHTS = 1.3e-3  # sum of the sensitivities' heights, of five digits, over 1
 FILM_VALUE = Tolerance(
     rounded_up(ESS_FIT * SEEN_ESS + FILM_AVERAGE * (SEEN_ESS - 1.0) + FILM_ORDERS),
@@ -201,6 +203,14 @@ FILM_STEEP = Tolerance(
     "reflectance",
     absolute,
     "the mean over nine visible facets of rough lobes under films of 50 to 100 nm, 1.1e-2",
+)
+FILM_CURVE = Tolerance(
+    rounded_up(FILM_SHARP_ORDERS + (10 * FILM_SLOPE + 16) * ROUNDING),
+    "reflectance",
+    absolute,
+    "the sum of six orders under films from 200 nm and cosines from 0.3 on, 6.2e-6; ten roundings of "
+    "float32, 2^-24 each, in a phase, times the slope of the curve in its logarithm, 9.1; and 16 "
+    "beside them; rounded up",
 )
 FILM_LIMIT = Tolerance(
     rounded_up(FILM_HEIGHTS + FRESNEL_FIT * (SEEN_ESS - 1.0)),

@@ -35,6 +35,18 @@ def film_limit(probe: Probe) -> Iterable[Case]:
     return cases
 
 
+def film_curve(probe: Probe) -> Iterable[Case]:
+    """A film's curve at one cosine: values in mirrored lights over those of a mirror.
+
+    The lobes are so smooth that their compensation is 1, whatever average it has.
+    """
+    batch: Batch = probe.sharp
+    (measured, mirror), (expected, white) = (
+        (direct(batch), direct(_mirror(probe, batch))) for direct in _sides(probe)
+    )
+    return [Case(batch, measured / mirror, expected / white)]
+
+
 def film_average(probe: Probe) -> Iterable[Case]:
     """F_ss of a film, from values at two roughnesses, against that of the equations."""
     return [average_case(probe)]

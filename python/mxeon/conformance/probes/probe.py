@@ -116,6 +116,11 @@ class Probe:
         self._lacks("steep")
 
     @property
+    def sharp(self) -> Batch:
+        """Views of smooth lobes under films, in which their curve is seen at one cosine."""
+        self._lacks("sharp")
+
+    @property
     def spheres(self) -> tuple[Batch, ...]:
         """Points of a sphere under each light, for some materials."""
         self._lacks("spheres")

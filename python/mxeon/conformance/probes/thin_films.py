@@ -16,6 +16,7 @@ from mxeon.conformance.samples.edge_cases import special_directions
 
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
 STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `steep`
+SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `sharp`
 MOST_COSINE = 0.9  # of other views of albedos: next to 1 the shader's nine facets are three
 LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
@@ -58,6 +59,11 @@ class FilmProbe(MicrofacetProbe):
     @cached_property
     def steep(self) -> Batch:
         return self._views(self.counts.materials, STEEP)
+
+    @cached_property
+    def sharp(self) -> Batch:
+        """Views of lobes that lose nothing, under films whose first orders count alone."""
+        return self._views(4 * self.counts.materials, SHARP)
 
     def _views(self, count: int, ranges: Mapping[str, tuple[float, float]]) -> Batch:
         """Views of films with a roughness, a cosine and a thickness in ranges, and mirrored lights."""
