@@ -87,11 +87,12 @@ def test_the_density_of_refracted_directions_is_normalized(ior, alpha):
         squared > 0.0, 1.0 / (np.pi * area * np.where(squared > 0.0, squared, 1.0) ** 2), 0.0
     )
     pdf = smith_g1(wo, alpha) * D * facet.cosine_o * facet.jacobian / wo[2]
-    total = np.sum(pdf.T * weight / np.abs(wi[..., 2]))
-    seen = dielectric_transmittance_dir(wo, 1.0, alpha, ior, shadow=False)[0]
+    pdf = pdf.T * weight / np.abs(wi[..., 2])
     if ior > 1.0:
-        assert total == pytest.approx(1.0, abs=tolerances.REFRACTED_GRID)
-    assert seen <= total + tolerances.TRANSMITTANCE_CRITICAL
+        assert np.sum(pdf) == pytest.approx(1.0, abs=tolerances.REFRACTED_GRID)
+    passed = np.sum(pdf * (1.0 - fresnel_dielectric(facet.cosine_o.T, ior)))
+    seen = dielectric_transmittance_dir(wo, 1.0, alpha, ior, shadow=False)[0]
+    assert seen == pytest.approx(passed, abs=tolerances.REFRACTED_GRID)
 
 
 @pytest.mark.parametrize("ior", INDICES)
@@ -103,6 +104,42 @@ def test_the_transmittance_is_the_integral_of_the_btdf(ior, alpha, mu):
     values = dielectric_btdf(wo, wi, 1.0, alpha, ior, radiance=False)[..., 0]
     expected = dielectric_transmittance_dir(wo, 1.0, alpha, ior)[0]
     assert np.sum(values * weight) == pytest.approx(expected, abs=tolerances.REFRACTED_GRID)
+
+
+def around(wo, cosine, count):
+    """Unit vectors at cosines from a direction, at even azimuths, (N, count, 3)."""
+    across = np.cross(wo, [0.0, 1.0, 0.0])
+    across /= np.linalg.norm(across)
+    phi = 2.0 * np.pi * np.arange(count) / count
+    ring = np.cos(phi)[:, np.newaxis] * across + np.sin(phi)[:, np.newaxis] * np.cross(wo, across)
+    sine = np.sqrt(1.0 - cosine**2)
+    return cosine[:, np.newaxis, np.newaxis] * wo + sine[:, np.newaxis, np.newaxis] * ring
+
+
+@pytest.mark.parametrize("shadow", [False, True])
+@pytest.mark.parametrize("alpha", [(0.5, 0.5), (1.0, 1.0), (0.3, 0.6)])
+@pytest.mark.parametrize("mu", [1.0, 0.9])
+def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alpha, shadow):
+    # Facets that transmit lie within 30 degrees of the view, and send all light down.
+    ior, wo = 0.5, np.array(view(mu, 0.4))
+    least = np.sqrt(1.0 - ior**2)
+    x, w = np.polynomial.legendre.leggauss(64)
+    t = 0.5 * (1.0 + x)
+    cosine, weight = least + (1.0 - least) * t * t, w * t * (1.0 - least)  # 1 - F begins as a root
+    wh = around(wo, cosine, 128)
+    wi = refraction_direction(wo, wh, ior)
+    stretched = np.sum((wh / [*alpha, 1.0]) ** 2, axis=-1)
+    seen = 1.0 / (np.pi * alpha[0] * alpha[1] * stretched**2) / wo[2]
+    seen *= (
+        smith_g2(wo[2], -wi[..., 2], np.sqrt(alpha[0] * alpha[1]))
+        if shadow
+        else smith_g1(wo, alpha)
+    )
+    passed = (1.0 - fresnel_dielectric(cosine, ior)) * cosine * weight
+    expected = np.sum(passed[:, np.newaxis] * seen) * 2.0 * np.pi / 128
+    found = dielectric_transmittance_dir(wo, 1.0, alpha, ior, shadow=shadow)[0]
+    assert wh[..., 2].min() > 0.1 and wi[..., 2].max() < 0.0
+    assert found == pytest.approx(expected, abs=tolerances.TRANSMITTANCE_CRITICAL)
 
 
 @pytest.mark.parametrize("ior", INDICES)
@@ -139,8 +176,10 @@ def test_light_is_totally_reflected_inside_beyond_the_critical_angle():
     critical = np.sqrt(1.0 - 1.0 / 1.5**2)
     wo = np.stack([view(critical - 1e-3), view(critical + 1e-3)])
     T = dielectric_transmittance_dir(wo, 1.0, [0.0, 0.0], 1.0 / 1.5)[:, 0]
+    R = dielectric_albedo_dir(wo, 1.0, [0.0, 0.0], 1.0 / 1.5)[:, 0]
     assert T[0] == 0.0
     assert T[1] > 0.2
+    np.testing.assert_allclose(R + T, 1.0, rtol=1e-12)
     assert not refraction_direction(wo[0], [0.0, 0.0, 1.0], 1.0 / 1.5).any()
 
 

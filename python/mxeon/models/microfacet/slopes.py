@@ -27,6 +27,9 @@ SPLIT_NODES, SPLIT_PART = 28, 32
 
 # Least cosine of wo, and largest r: beyond, less than 1e-12 of the light is left.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
+FARTHEST_R = (
+    1e12  # of facets that refract: where those at the horizon do, 1 / r of the light is left
+)
 
 
 @dataclass(frozen=True)
@@ -95,8 +98,13 @@ class Slopes:
         mu_i = np.clip(2.0 * lean / stretch - self.mu_o, 0.0, 1.0)
         smith = smith_lambda(self.mu_o, self.alpha) * mu_i
         smith = smith + smith_lambda(mu_i, self.alpha) * self.mu_o
-        density = r / (np.pi * (1.0 + r * r) ** 2)
-        return np.minimum(lean / np.sqrt(stretch), 1.0), density * 2.0 * mu_i * lean / smith
+        cosine = np.minimum(lean / np.sqrt(stretch), 1.0)
+        return cosine, _density(r) * 2.0 * mu_i * lean / smith
+
+
+def _density(r: Array) -> Array:
+    """Density of slopes in r and omega."""
+    return r / (np.pi * (1.0 + r * r) ** 2)
 
 
 def slope_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
@@ -121,13 +129,42 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
         Square of the cosine of the critical angle, at least 0.
     """
     slopes = Slopes.seen(wo, roughness)
-    omega, weight_omega = _split_azimuths(slopes, wo, squared)
+    meeting = _horizon_azimuth(slopes.mu_o, squared)
+    omega, weight_omega = _split_azimuths(slopes, wo, squared, meeting)
     B, g, limit = slopes.rays(omega)
     low, high = _transmitting(slopes.mu_o, B, g, squared)
     high = np.minimum(high, limit)
     r, weight = _between(slopes.scale, np.minimum(low, high), high)
     cosine, values = slopes.facets(r, B, g)
     return cosine, weight * weight_omega * values
+
+
+def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array, Array, Array]:
+    """Cosines wo . h, cosines of the refracted wi, and weights of the facets that wo sees.
+
+    Parameters as those of `transmitting_nodes`. wi has the cosine (mu_o - h_z L) / n, n^2 = 1 - squared and
+    L = |wo + n wi|. It is above the horizon below the r of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
+    """
+    # Split the azimuths where h on the critical cone lies at the horizon itself.
+    slopes = Slopes.seen(wo, roughness)
+    mu_o = slopes.mu_o
+    omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
+    B, g, _ = slopes.rays(omega)
+    # Begin where wi leaves the horizon, end where light is reflected totally.
+    low, high = _transmitting(mu_o, B, g, squared)
+    high = np.minimum(high, FARTHEST_R)
+    beyond = squared - mu_o * mu_o
+    ahead = mu_o * (B + np.sqrt(np.maximum(B * B - g * beyond, 0.0)))
+    horizon = beyond / np.where(ahead > 0.0, ahead, 1.0)
+    low = np.where((beyond > 0.0) & (B > 0.0), np.maximum(low, horizon), low)
+    r, weight = _between(slopes.scale, np.minimum(low, high), high)
+    # Weigh the facets that are seen, and refract.
+    lean, stretch = np.maximum(B * r + mu_o, 0.0), 1.0 + g * r * r
+    cosine = np.minimum(lean / np.sqrt(stretch), 1.0)
+    length = squared / (cosine + np.sqrt(np.maximum(cosine * cosine - squared, 0.0)))
+    mu_i = np.clip((mu_o - length / np.sqrt(stretch)) / np.sqrt(1.0 - squared), 0.0, 1.0)
+    seen = 2.0 * lean / (mu_o + np.hypot(mu_o, slopes.steepness))
+    return cosine, mu_i, weight * weight_omega * _density(r) * seen
 
 
 def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:
@@ -138,15 +175,17 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
     none = ~inside & (~ahead | (b * b < a * d))
     low = np.where(inside, 0.0, -d / np.where(ahead, b + root, 1.0))
     falling = np.where(a < 0.0, (b + root) / np.where(a < 0.0, -a, 1.0), np.inf)
-    behind = d / np.where(root > b, root - b, 1.0)
+    behind = np.where(root > b, d / np.where(root > b, root - b, 1.0), np.inf)  # at alpha 0
     high = np.where(ahead, falling, behind)
     return np.where(none, 0.0, low), np.where(none, 0.0, high)
 
 
-def _split_azimuths(slopes: Slopes, wo: Array, squared: Array) -> tuple[Array, Array]:
-    """Nodes and weights of omega, split where the critical cone meets the horizon of wi or ends."""
-    # Find where the critical cone meets the hemisphere.
-    meeting, last = _critical_azimuths(slopes.mu_o, squared)
+def _split_azimuths(
+    slopes: Slopes, wo: Array, squared: Array, meeting: Array
+) -> tuple[Array, Array]:
+    """Nodes and weights of omega, split at an azimuth from that of wo, and where the critical cone ends."""
+    # Find where the critical cone ends.
+    last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
     for center in (0.0, np.pi):  # in front of the view, where lean grows with r, and behind
@@ -169,14 +208,20 @@ def _split_azimuths(slopes: Slopes, wo: Array, squared: Array) -> tuple[Array, A
     return omega[np.newaxis], weight[np.newaxis]
 
 
-def _critical_azimuths(mu_o: Array, squared: Array) -> tuple[Array, Array]:
-    """Azimuths from wo of h on the critical cone around wo: wi at the horizon; and the last one."""
+def _horizon_azimuth(mu_o: Array, squared: Array) -> Array:
+    """Azimuth from wo of h on the critical cone around wo whose wi, reflected, is at the horizon."""
     sine = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
     slope = np.sqrt(np.maximum(4.0 * squared / mu_o**2 - 1.0, 0.0))
     length = np.where(sine * slope > 0.0, sine * slope, 1.0)
     meeting = np.where(sine * slope > 0.0, (2.0 * squared / mu_o - mu_o) / length, 0.0)
-    last = np.sqrt(np.maximum(squared - mu_o**2, 0.0)) / np.where(sine > 0.0, sine, 1.0)
-    return np.arccos(np.clip(meeting, -1.0, 1.0)), np.arccos(np.minimum(last, 1.0))
+    return np.arccos(np.clip(meeting, -1.0, 1.0))
+
+
+def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
+    """Azimuth from wo whose cosine is the root of `squared` over the sine of wo."""
+    sine = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
+    cosine = np.sqrt(np.maximum(squared, 0.0)) / np.where(sine > 0.0, sine, 1.0)
+    return np.arccos(np.minimum(cosine, 1.0))
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:

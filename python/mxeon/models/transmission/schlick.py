@@ -239,7 +239,7 @@ def generalized_schlick_transmittance_dir(
 
     Notes
     -----
-    Accuracy: absolute error below 2e-4 from outside for exponents >= 1, and below 5e-3 from inside.
+    Accuracy: absolute error below 2e-4 from outside for exponents >= 1, and below 1e-8 from inside.
 
     References
     ----------
