@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of `genglsl/thin_film.glsl` against all orders and whole averages: python -m fits.thin_film.
+"""Errors of `eonlib/genglsl/thin_film.glsl` against all orders and whole averages: python -m fits.thin_film.
 
 The shader sums six orders and a geometric series after them, averages over the hemisphere in six
 cosines and over the visible facets in nine. Nothing is fitted; this measures what each costs, over films

@@ -26,7 +26,7 @@ from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import eon as shipped
 from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders import functions as twins
-from mxeon.shaders.library import data_folder
+from mxeon.shaders.library import eonlib_folder
 from tests.support import tolerances
 
 by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
@@ -106,7 +106,7 @@ def test_the_script_gives_the_arc_tangent_of_the_compiled_models():
 def shipped_in(stem, prefix):
     """Coefficients of a rational fit in a GLSL file, numerator first."""
     pattern = rf"#define {prefix}_([ND])\d+ (\S+)"
-    found = re.findall(pattern, (data_folder() / "genglsl" / f"{stem}.glsl").read_text())
+    found = re.findall(pattern, (eonlib_folder() / "genglsl" / f"{stem}.glsl").read_text())
     assert [letter for letter, _ in found] == sorted((each for each, _ in found), reverse=True)
     return tuple(float(number) for _, number in found)
 
@@ -156,7 +156,7 @@ def test_the_average_of_a_dielectric_has_the_error_that_stands_beside_it():
 
 
 def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
-    text = (data_folder() / "genglsl" / "blackbody.glsl").read_text(encoding="utf-8")
+    text = (eonlib_folder() / "genglsl" / "blackbody.glsl").read_text(encoding="utf-8")
     stated = re.findall(r"Largest absolute errors: (\S+) and (\S+)\.", text)
     rows = {
         name: [float(each) for each in re.findall(rf"#define BLACKBODY_{name}_\w\d (\S+)", text)]

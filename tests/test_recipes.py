@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-DATA = ("libraries", "genglsl", "genosl", "profiles", "examples", "renderers")
+DATA = ("eonlib", "profiles", "examples", "renderers")
 
 # By the file that a recipe changes: texts, each before the one at which it is put in.
 

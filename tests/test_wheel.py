@@ -16,7 +16,7 @@ from mxeon.shaders.nodes import EON
 from tests.support.documents import lobe, material
 
 CHECKOUT = Path(__file__).parents[1]
-DATA = ("eonlib", "genglsl", "genosl", "profiles", "examples")
+DATA = ("eonlib", "profiles", "examples")
 SUFFIXES = (".mtlx", ".glsl", ".osl", ".png")
 SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
@@ -80,7 +80,7 @@ def test_the_wheel_holds_the_data_of_the_checkout(wheel):
     files = {name for name in contents(wheel) if name.startswith("mxeon/data/")}
     assert {name.split("/")[2] for name in files} == {*DATA, "renderers"}
     for folder in DATA:
-        source = CHECKOUT / ("libraries" if folder == "eonlib" else folder)
+        source = CHECKOUT / folder
         sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
         names = {f"mxeon/data/{folder}/{path.relative_to(source).as_posix()}" for path in sources}
         assert names and names <= files

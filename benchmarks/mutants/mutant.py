@@ -12,7 +12,7 @@ from mxeon.shaders.functions import STEMS
 TABLE = Path(__file__).with_name("table")
 ROOT = Path(__file__).resolve().parents[2]
 TWINS = (*STEMS, "hair_parameters")  # files whose functions have one text in two languages
-FOLDERS = ("libraries", "genglsl", "genosl", "profiles")  # that hold eonlib
+FOLDERS = ("eonlib", "profiles")  # that hold eonlib
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ class Mutant:
             If the old text does not occur once.
         """
         texts = {self.file: self._replaced(self.file, re.escape(self.old), self.new)}
-        twin = Path("genosl", Path(self.file).with_suffix(".osl").name).as_posix()
-        if self.file.startswith("genglsl/") and Path(self.file).stem in TWINS:
+        twin = Path("eonlib/genosl", Path(self.file).with_suffix(".osl").name).as_posix()
+        if self.file.startswith("eonlib/genglsl/") and Path(self.file).stem in TWINS:
             old = re.sub(r"\bvec3\b", "(?:color|vector)", re.escape(self.old))
             texts[twin] = self._replaced(twin, old, re.sub(r"\bvec3\b", "color", self.new))
         return texts

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes of pbrlib that a mutant changes, and the tasks that judge them alone."""
 
+import os
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -16,9 +17,9 @@ from mxeon.conformance.run.plan import EVERY_NODE, SOURCE, Task, make_plan
 from mxeon.shaders.library import load_library
 
 DOCUMENTS = (
-    "libraries/eonlib_genglsl_impl.mtlx",
-    "profiles/pbrlib/eonlib_pbrlib_genglsl_impl.mtlx",
-    "profiles/pbrlib/eonlib_pbrlib_genosl_impl.mtlx",
+    "eonlib/diffuse/eonlib_genglsl_impl.mtlx",
+    "eonlib/pbrlib/eonlib_pbrlib_genglsl_impl.mtlx",
+    "eonlib/pbrlib/eonlib_pbrlib_genosl_impl.mtlx",
     "profiles/cycles/eonlib_genosl_impl.mtlx",
 )
 INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
@@ -33,8 +34,8 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
     texts = mutant.texts()
     entries: set[tuple[str, ...]] = set()
     for document in DOCUMENTS:
-        before = _entries((ROOT / document).read_text(encoding="utf-8"))
-        after = _entries(texts.get(document, "")) if document in texts else before
+        before = _entries(document, (ROOT / document).read_text(encoding="utf-8"))
+        after = _entries(document, texts[document]) if document in texts else before
         entries |= before ^ after
         entries |= {entry for entry in before if not texts.keys().isdisjoint(_sources(entry[2]))}
     return {(target, title) for nodedef, target, *_ in entries for title in _titles(nodedef)}
@@ -101,14 +102,19 @@ def _sources(file: str) -> frozenset[str]:
     return frozenset({file}.union(*(_sources((folder / name).as_posix()) for name in included)))
 
 
-def _entries(document: str) -> set[tuple[str, ...]]:
+def _entries(document: str, text: str) -> set[tuple[str, ...]]:
     """Definition, target, file, function and name of each implementation; none where unreadable."""
     try:
-        elements = ElementTree.fromstring(document).iter("implementation")
+        elements = ElementTree.fromstring(text).iter("implementation")
     except ElementTree.ParseError:
         return set()
-    names = ("nodedef", "target", "file", "function", "name")
     return {
-        tuple(each.get(name, "").removeprefix("../").removeprefix("../") for name in names)
+        (
+            each.get("nodedef", ""),
+            each.get("target", ""),
+            os.path.normpath(Path(document).parent / each.get("file", "")),
+            each.get("function", ""),
+            each.get("name", ""),
+        )
         for each in elements
     }

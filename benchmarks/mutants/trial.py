@@ -27,20 +27,20 @@ KILLED, SURVIVED = "killed", "survived"
 CRASHED = "crashed"  # a traceback in place of a verdict
 TEXT = "text"
 
-PBRLIB = "profiles/pbrlib"
 NOISY = ("environment", "furnace")  # checks that take Cycles longest
 # Files that no shader for gl holds: there the gl host has nothing to see.
-NOT_ON_GL = ("genosl/", "profiles/", "libraries/eonlib_genosl", "libraries/eonlib_genmdl")
-TEXT_FIRST = ("libraries/eonlib_defs.mtlx",)  # other checks fail for what its check names
+ON_CYCLES = ("eonlib/genosl/", "profiles/")
+NOT_ON_GL = (*ON_CYCLES, "eonlib/diffuse/eonlib_genosl", "eonlib/diffuse/eonlib_genmdl")
+TEXT_FIRST = ("eonlib/diffuse/eonlib_defs.mtlx",)  # other checks fail for what its check names
 # Files of the implementations, and the target whose text has to differ.
 CHANGED = {
-    "genglsl/oren_nayar_lobe.glsl": "glsl",
-    "genglsl/oren_nayar_diffuse_bsdf.glsl": "glsl",
-    "genglsl/eon_diffuse_bsdf.glsl": "glsl",
-    "genglsl/eon.glsl": "glsl",
-    "libraries/eonlib_genglsl_impl.mtlx": "glsl",
-    "libraries/eonlib_genosl_impl.mtlx": "osl",
-    "libraries/eonlib_genmdl_impl.mtlx": "mdl",
+    "eonlib/genglsl/oren_nayar_lobe.glsl": "glsl",
+    "eonlib/genglsl/oren_nayar_diffuse_bsdf.glsl": "glsl",
+    "eonlib/genglsl/eon_diffuse_bsdf.glsl": "glsl",
+    "eonlib/genglsl/eon.glsl": "glsl",
+    "eonlib/diffuse/eonlib_genglsl_impl.mtlx": "glsl",
+    "eonlib/diffuse/eonlib_genosl_impl.mtlx": "osl",
+    "eonlib/diffuse/eonlib_genmdl_impl.mtlx": "mdl",
 }
 
 
@@ -104,7 +104,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         _copy(base, mutant.texts())
         try:
-            yield str(Path(base, "libraries"))
+            yield str(Path(base, "eonlib"))
         finally:
             library.load_library.cache_clear()
             generators._library_generator.cache_clear()
@@ -117,7 +117,7 @@ def wrong_sources(mutant: Mutant) -> Iterator[str]:
     for file, text in mutant.texts().items():
         Path(base, file).write_text(text, encoding="utf-8")
     try:
-        yield str(Path(base, "libraries"))
+        yield str(Path(base, "eonlib"))
     finally:
         for file in mutant.texts():
             shutil.copyfile(ROOT / file, Path(base, file))
@@ -129,8 +129,6 @@ def _copy(base: str, texts: Mapping[str, str]) -> None:
         shutil.copytree(ROOT / name, Path(base, name))
     for file, text in texts.items():
         Path(base, file).write_text(text, encoding="utf-8")
-    # A folder is loaded with all below it, as eonlib is with its nodes of pbrlib.
-    shutil.copytree(Path(base, PBRLIB), Path(base, "libraries", "pbrlib"))
 
 
 @cache
@@ -161,7 +159,7 @@ def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
         yield "gl", sorted(nodes, key=lambda task: (task.host == SOURCE) != text_first)
         yield "gl", [task for task in tasks if task.check == "lobe"]
         yield from (("gl", [task]) for task in tasks if task.check == PICTURE)
-    if mutant.file.startswith(("genosl/", "profiles/")):
+    if mutant.file.startswith(ON_CYCLES):
         yield from _on_cycles(path)
 
 

@@ -12,7 +12,7 @@ from mxeon.conformance.probes.bsdf import MicrofacetProbe
 from mxeon.conformance.samples.batch import Batch
 from mxeon.hosts import open_host
 from mxeon.models.media.subsurface import diffusion_blur
-from mxeon.shaders.library import data_folder
+from mxeon.shaders.library import eonlib_folder
 
 REACHES = (0.1, 0.2, 0.6)  # of the profile; between them and beyond errors are smaller
 COSINES = np.linspace(-1.0, 1.0, 401).astype(np.float32).astype(np.float64)
@@ -22,7 +22,7 @@ CHANGES = {"color82": 0.3, "exponent": 1.0}  # of the default node, color82 1 an
 @cache
 def blur_error():
     """Largest error of eonlib's blur of subsurface scattering against that of the profile."""
-    source = Path(data_folder(), "genglsl", "subsurface_blur.glsl").read_text(encoding="utf-8")
+    source = Path(eonlib_folder(), "genglsl", "subsurface_blur.glsl").read_text(encoding="utf-8")
     with closing(open_host("gl")) as host:
         errors = [
             host.execute(source, "subsurface_blur", COSINES, np.full_like(COSINES, reach))[:, 0]

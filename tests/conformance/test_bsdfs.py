@@ -229,7 +229,7 @@ def test_a_wrong_line_of_a_bsdf_fails_a_check_and_is_named(gl, tmp_path, name):
 
 
 # Wrong lines of `microfacet_lobe` in GLSL: text, the text in its place, and key of the check.
-LOBE = "genglsl/microfacet_lobe.glsl"
+LOBE = "eonlib/genglsl/microfacet_lobe.glsl"
 WRONG_LOBE = {
     "no retroreflection": ("mirrored ? reflect(-closureData.V, N) :", "", "retroreflection"),
     "normal not turned": ("mx_forward_facing_normal(N, lobe.wo)", "N", "frame"),
@@ -245,7 +245,7 @@ WRONG_LOBE = {
 @pytest.mark.parametrize("name", WRONG_LOBE)
 def test_a_wrong_line_of_eonlibs_microfacet_lobe_is_seen(gl, tmp_path, name):
     text, other, key = WRONG_LOBE[name]
-    library = wrong_copy(tmp_path, text, other, LOBE, library="profiles/pbrlib")
+    library = wrong_copy(tmp_path, text, other, LOBE)
     (result,) = judged(gl, "dielectric", library, key)
     assert result.verdict == FAILED and result.control.caught
 

@@ -88,10 +88,9 @@ def test_a_combination_of_stock_is_off_where_its_page_says(gl, subject):
 def test_a_wrong_line_of_a_combination_is_seen(gl, tmp_path, wrong):
     name, old, new, model, check = wrong
     [subject] = [each for each in COMBINED_NODES if each.model == model]
-    copy_of_eonlib(tmp_path)
-    library = str(tmp_path / "profiles" / "pbrlib")
+    library = str(copy_of_eonlib(tmp_path))
     assert combined_results(gl, subject, library)[check].verdict == PASSED
-    replace_text(tmp_path, old, new, f"genglsl/{name}.glsl")
+    replace_text(tmp_path, old, new, f"eonlib/genglsl/{name}.glsl")
     assert combined_results(gl, subject, library)[check].verdict in (DIFFERS, FAILED)
 
 

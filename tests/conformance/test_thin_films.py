@@ -62,7 +62,7 @@ STATED = {
     "visible facets": bsdf_tolerances.FILM_VISIBLE,
     "visible facets under thin films": bsdf_tolerances.FILM_THIN_VISIBLE,
 }
-FILMS_IN = ("genglsl/thin_film.glsl", "genglsl/microfacet_lobe.glsl")
+FILMS_IN = ("eonlib/genglsl/thin_film.glsl", "eonlib/genglsl/microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
 WRONG = {
     "phase": ("conductor_bsdf", "dot(is_s ? im_s : im_p, channel)", "-dot(is_s ? im_s : im_p, channel)", "film"),
@@ -113,7 +113,7 @@ def test_the_films_of_eonlib_pass(gl, node):
 def test_a_wrong_line_of_a_film_fails_a_check(gl, tmp_path, name):
     node, text, other, key = WRONG[name]
     row = replace(ROWS[key], diagnose=lambda probe: Diagnosis("wrong"))  # which takes long
-    library = wrong_copy(tmp_path, text, other, *FILMS_IN, library="profiles/pbrlib")
+    library = wrong_copy(tmp_path, text, other, *FILMS_IN)
     probe = FilmProbe(gl, SUBJECTS[node], library, FEWER)
     result = judge_check(row, probe)
     assert result.verdict == FAILED and result.control.caught

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of the library with one fault each: the check that finds it, and the words that name it."""
 
-import shutil
 from contextlib import closing
 from pathlib import Path
 
@@ -33,9 +32,9 @@ from tests.support.plans import keep_checks
 from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
 ON, OFF, NODE = SUBJECTS
-MDL, OSL = "libraries/eonlib_genmdl_impl.mtlx", "libraries/eonlib_genosl_impl.mtlx"
-DEFINITIONS, GRAPHS = "libraries/eonlib_defs.mtlx", "libraries/eonlib_ng.mtlx"
-CYCLES = "genosl/cycles_closures.osl"
+MDL, OSL = "eonlib/diffuse/eonlib_genmdl_impl.mtlx", "eonlib/diffuse/eonlib_genosl_impl.mtlx"
+DEFINITIONS, GRAPHS = "eonlib/diffuse/eonlib_defs.mtlx", "eonlib/diffuse/eonlib_ng.mtlx"
+CYCLES = "eonlib/genosl/cycles_closures.osl"
 FLAG = "{{energy_compensation}}"
 KEYWORD = "&quot;energy_compensation&quot;"
 MDL_NORMAL = "normal: {{normal}}, "
@@ -147,9 +146,9 @@ def test_a_range_that_pbrlib_does_not_state_may_be_missing_in_its_node_alone(cop
         (OSL, "{{weight}} * ", "{{weight}} * {{weight}} * ", "osl", "weight is not the node's"),
         (CYCLES, "rho * rho *", "rho * rho * rho *", "osl, cycles", "the sum of closures is not EON"),
         (CYCLES, "EON_C2 * r", "EON_C1 * r", "osl, cycles", "the sum of closures is not EON"),
-        ("genosl/oren_nayar_diffuse_bsdf_cycles.osl", "weight * eon", "eon", "osl, cycles",
+        ("eonlib/genosl/oren_nayar_diffuse_bsdf_cycles.osl", "weight * eon", "eon", "osl, cycles",
          "the sum of closures is not EON"),
-        ("genosl/oren_nayar_diffuse_bsdf_cycles.osl", "(energy", "(!energy", "osl, cycles",
+        ("eonlib/genosl/oren_nayar_diffuse_bsdf_cycles.osl", "(energy", "(!energy", "osl, cycles",
          "the sum of closures is not EON"),
     ],
 )  # fmt: skip
@@ -168,7 +167,7 @@ def test_a_wrong_closure_is_told_by_its_argument(copy, file, old, new, title, wo
         (NODE, OSL, KEYWORD + ", 1", KEYWORD + ", 0", "osl"),
         (NODE, MDL, "28.0", "27.0", "mdl"),
         (OFF, CYCLES, "(A - B)", "(A + B)", "osl, cycles"),
-        (OFF, "genosl/eon.osl", "0.33)", "0.57)", "osl, cycles"),
+        (OFF, "eonlib/genosl/eon.osl", "0.33)", "0.57)", "osl, cycles"),
     ],
 )
 def test_the_closures_of_every_subject_are_read(copy, subject, file, old, new, title):
@@ -193,7 +192,7 @@ def test_a_closure_that_is_defined_elsewhere_is_not_run(copy):
     ],
 )
 def test_statements_that_the_reader_lacks_are_not_run(copy, body, words):
-    file = "genosl/eon_diffuse_bsdf_cycles.osl"
+    file = "eonlib/genosl/eon_diffuse_bsdf_cycles.osl"
     library = copy(file, "    bsdf = weight", f"    {body}\n    bsdf = weight")
     verdicts = {each.subject: each for each in check_closures([NODE], library)}
     result = verdicts[f"{NODE.title}, osl, cycles"]
@@ -232,14 +231,14 @@ def test_no_shader_function_is_left_unjudged():
     ],
 )  # fmt: skip
 def test_a_wrong_shader_function_is_named_by_its_cause(gl, copy, file, old, new, words):
-    library = copy(f"genglsl/{file}.glsl", old, new)
+    library = copy(f"eonlib/genglsl/{file}.glsl", old, new)
     found = failed(judge_functions(FunctionProbe(gl, library)))
     assert set(found) == set(words)
     assert all(words[key] in found[key] for key in words)
 
 
 def test_shader_functions_that_do_not_compile_fail_with_the_words_of_the_compiler(gl, copy):
-    library = copy("genglsl/eon.glsl", "float m = 1.0 - mu;", "float m = 1.0 - nu;")
+    library = copy("eonlib/genglsl/eon.glsl", "float m = 1.0 - mu;", "float m = 1.0 - nu;")
     found = failed(judge_functions(FunctionProbe(gl, library)))
     assert len(found) == len(FUNCTION_CHECKS) and all("nu" in words for words in found.values())
 
@@ -253,12 +252,12 @@ def test_shader_functions_that_do_not_compile_fail_with_the_words_of_the_compile
     ],
 )
 def test_functions_that_differ_in_osl_are_named(copy, file, old, new, words):
-    (result,) = check_languages(copy(f"genosl/{file}.osl", old, new))
+    (result,) = check_languages(copy(f"eonlib/genosl/{file}.osl", old, new))
     assert result.verdict == FAILED and result.diagnosis == f"another text in OSL: {words}"
 
 
 def test_a_comment_may_differ_between_the_languages(copy):
-    (result,) = check_languages(copy("genosl/eon.osl", "// A_F of", "// Albedo's A of"))
+    (result,) = check_languages(copy("eonlib/genosl/eon.osl", "// A_F of", "// Albedo's A of"))
     assert result.verdict == PASSED
 
 
@@ -323,7 +322,7 @@ def test_shaders_are_generated_where_no_picture_is_made():
 
 def test_a_source_that_is_no_text_is_refused_in_one_line(copy):
     library = Path(copy())
-    (library.parent / "genglsl" / "eon.glsl").write_bytes(b"\xff\xfe")
+    (library / "genglsl" / "eon.glsl").write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match="eon.glsl: must be text in UTF-8"):
         make_plan([], ["gl"], [library])
 
@@ -331,7 +330,7 @@ def test_a_source_that_is_no_text_is_refused_in_one_line(copy):
 def test_a_bundled_document_that_a_library_refuses_is_a_failed_check(copy, monkeypatch):
     keep_checks(monkeypatch, "picture")
     library = Path(copy())
-    (library.parent / "genglsl" / "eon.glsl").write_text("")
+    (library / "genglsl" / "eon.glsl").write_text("")
     run = check([examples_folder() / "plaster.mtlx"], ["gl"], [library])
     assert not run.errors
     assert any(row.check == "picture" and row.verdict == FAILED for row in run.results)
@@ -353,30 +352,30 @@ def test_a_definition_that_the_documents_do_not_fit_is_named_before_they_are_ref
 
 # --- entry points in OSL ------------------------------------------------------------------------
 
-PBRLIB = "profiles/pbrlib/eonlib_pbrlib_genosl_impl.mtlx"
+PBRLIB = "eonlib/pbrlib/eonlib_pbrlib_genosl_impl.mtlx"
 CONE, CYCLES_CONE = "conical_edf, {}, osl", "conical_edf, {}, osl, cycles"
 
 
 @pytest.mark.parametrize(
     "file, old, new, title, words",
     [
-        ("genosl/conical_edf.osl", "-I", "I", CONE.format("soft"), "weight is off"),
+        ("eonlib/genosl/conical_edf.osl", "-I", "I", CONE.format("soft"), "weight is off"),
         (
-            "genosl/conical_falloff.osl",
+            "eonlib/genosl/conical_falloff.osl",
             ">= inner",
             "<= inner",
             CONE.format("hard"),
             "weight is off",
         ),
         (
-            "genosl/conical_edf_cycles.osl",
+            "eonlib/genosl/conical_edf_cycles.osl",
             "uniform_edf(c)",
             "uniform_edf(c) + uniform_edf(c)",
             CYCLES_CONE.format("soft"),
             "the closure is not uniform_edf",
         ),
         (
-            "genosl/subsurface_bsdf_cycles.osl",
+            "eonlib/genosl/subsurface_bsdf_cycles.osl",
             "rho, radius, anisotropy)",
             "radius, rho, anisotropy)",
             "subsurface_bsdf, osl, cycles",
@@ -399,10 +398,9 @@ CONE, CYCLES_CONE = "conical_edf, {}, osl", "conical_edf, {}, osl, cycles"
     ],
 )
 def test_an_entry_point_in_osl_that_gives_another_closure_is_named(
-    copy, tmp_path, file, old, new, title, words
+    copy, file, old, new, title, words
 ):
     library = copy(file, old, new)
-    shutil.copytree(tmp_path / "profiles" / "pbrlib", tmp_path / "libraries" / "pbrlib")
     diagnoses = {each.subject: each.diagnosis for each in check_entries(library)}
     assert diagnoses[title] == words
 

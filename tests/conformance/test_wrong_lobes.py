@@ -12,7 +12,7 @@ from mxeon.conformance.results import FAILED, PASSED
 from tests.support.wrong_libraries import wrong_copy
 
 EON, QON, NODE = SUBJECTS
-LOBE = "genglsl/oren_nayar_lobe.glsl"
+LOBE = "eonlib/genglsl/oren_nayar_lobe.glsl"
 DIRECT = "brdf * mu_i * weight * closureData.occlusion"
 ENVIRONMENT = "mx_environment_irradiance(N) * weight"
 FACING = "N = mx_forward_facing_normal(N, wo);"
@@ -203,7 +203,6 @@ def test_the_other_hosts_see_what_is_around_the_model(hosts, tmp_path, host, nam
 
 
 # Of nodes beside the rough diffuse ones, by name: node, file, text, the other text, key, words.
-PROFILES = {"conical_edf": "profiles/pbrlib"}  # of nodes that are not in `libraries`
 BLUR = "curvature * max(radius, vec3(0.0))"
 BESIDE = {
     "light from the viewer's side": (
@@ -246,10 +245,9 @@ def test_a_wrong_line_of_another_node_fails_the_check_meant_for_it(gl, tmp_path,
     title, file, text, other, key, words = BESIDE[name]
     [subject] = [each for each in PBR_SUBJECTS if each.title == title]
     probe = probe_type_of(subject, PairProbe)
-    profile = PROFILES.get(title, "libraries")
     for library, verdict in (
         ("eonlib", PASSED),
-        (wrong_copy(tmp_path, text, other, f"genglsl/{file}", library=profile), FAILED),
+        (wrong_copy(tmp_path, text, other, f"eonlib/genglsl/{file}"), FAILED),
     ):
         [result] = judge_subject(
             probe(gl, subject, library), [row for row in CHECKS if row.key == key]

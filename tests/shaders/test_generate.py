@@ -15,7 +15,7 @@ from mxeon.errors import DocumentError
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, Input, generate
-from mxeon.shaders.library import data_folder, examples_folder, load_library
+from mxeon.shaders.library import eonlib_folder, examples_folder, load_library
 from mxeon.shaders.nodes import EON, OREN_NAYAR
 from tests.support.availability import available
 from tests.support.documents import COMPENSATED, lobe, material
@@ -155,7 +155,7 @@ COMBINING = ("add_bsdf", "layer_bsdf")  # entry points that take what other node
 @pytest.mark.parametrize(
     "path",
     sorted(
-        [*data_folder().glob("genglsl/*_bsdf.glsl"), *data_folder().glob("genosl/*_bsdf_*.osl")]
+        [*eonlib_folder().glob("genglsl/*_bsdf.glsl"), *eonlib_folder().glob("genosl/*_bsdf_*.osl")]
     ),
     ids=lambda path: path.name,
 )

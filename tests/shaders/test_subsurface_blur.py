@@ -12,7 +12,7 @@ from docs.upstream.update import FOLDER
 from mxeon.hosts import open_host
 from mxeon.models.media.subsurface import diffusion_blur
 from mxeon.models.nodes.subsurface import circle_blur
-from mxeon.shaders.library import data_folder
+from mxeon.shaders.library import eonlib_folder
 from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import SIDE, sphere
 from tests.support.availability import available
@@ -40,7 +40,7 @@ def gl():
 
 
 def blurred(host, mu, reach):
-    source = Path(data_folder(), "genglsl", "subsurface_blur.glsl").read_text()
+    source = Path(eonlib_folder(), "genglsl", "subsurface_blur.glsl").read_text()
     return host.execute(source, "subsurface_blur", mu, np.full_like(mu, reach))[:, 0]
 
 

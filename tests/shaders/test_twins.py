@@ -11,7 +11,7 @@ from mxeon.models.diffuse import albedo, formulas
 from mxeon.models.diffuse import brdf as models
 from mxeon.models.sampling import cltc, eon, ltc
 from mxeon.shaders import functions as twins
-from mxeon.shaders.library import data_folder
+from mxeon.shaders.library import eonlib_folder
 from tests.support.cases import directions_32
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
 
@@ -45,7 +45,7 @@ by_language = pytest.mark.parametrize("language", twins.LANGUAGES)
 
 
 def text(language, stem):
-    return (data_folder() / f"gen{language}" / f"{stem}.{language}").read_text(encoding="utf-8")
+    return (eonlib_folder() / f"gen{language}" / f"{stem}.{language}").read_text(encoding="utf-8")
 
 
 def code(stem):

@@ -44,9 +44,9 @@ def fresh():
 @pytest.fixture
 def other_interface(fresh, monkeypatch, tmp_path):
     """A checkout whose oren_nayar_diffuse_bsdf takes one argument more than MaterialX passes."""
-    for name in ("libraries", "genglsl", "genosl", "profiles"):
+    for name in ("eonlib", "profiles"):
         shutil.copytree(library.data_folder() / name, tmp_path / name)
-    source = tmp_path / "genglsl" / "oren_nayar_diffuse_bsdf.glsl"
+    source = tmp_path / "eonlib" / "genglsl" / "oren_nayar_diffuse_bsdf.glsl"
     text = source.read_text().replace(
         "float weight, vec3 color", "float gain, float weight, vec3 color"
     )
@@ -185,7 +185,7 @@ def test_a_generator_with_calls_of_another_form_is_refused(fresh, monkeypatch, c
     text = f"void eon_diffuse_bsdf(ClosureData closureData) {{}}\nvoid main() {{ {call}; }}"
     monkeypatch.setattr(closure_calls, "generator_of", lambda *_: Generator(text))
     monkeypatch.setattr(closure_calls, "context_of", lambda *_: None)
-    file = str(library.data_folder() / "genglsl" / "eon_diffuse_bsdf.glsl")
+    file = str(library.eonlib_folder() / "genglsl" / "eon_diffuse_bsdf.glsl")
     with pytest.raises(
         InterfaceError, match="eon_diffuse_bsdf.ClosureData closureData, float weight"
     ):

@@ -6,17 +6,14 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.shaders.library import data_folder, eonlib_folder, pbrlib_folder, standard_folders
-
-FOLDERS = ("genglsl", "genosl", "profiles")  # of eonlib, beside that of its documents
+from mxeon.shaders.library import data_folder, eonlib_folder, standard_folders
 
 
 def copy_of_eonlib(folder):
-    """Folder of a copy of eonlib in a folder, with all that its sources need beside it."""
-    shutil.copytree(eonlib_folder(), folder / "libraries")
-    for name in FOLDERS:
+    """Folder of a copy of eonlib in a folder, with its profiles beside it."""
+    for name in ("eonlib", "profiles"):
         shutil.copytree(data_folder() / name, folder / name)
-    return folder / "libraries"
+    return folder / "eonlib"
 
 
 def replace_text(folder, old, new, *files):
@@ -27,11 +24,11 @@ def replace_text(folder, old, new, *files):
         path.write_text(text.replace(old, new), encoding="utf-8")
 
 
-def wrong_copy(folder, old, new, *files, library="libraries"):
-    """Path of a library in a copy of eonlib that has one text in place of another in these files."""
-    copy_of_eonlib(folder)
+def wrong_copy(folder, old, new, *files):
+    """Path of a copy of eonlib that has one text in place of another in these files."""
+    library = copy_of_eonlib(folder)
     replace_text(folder, old, new, *files)
-    return str(folder / library)
+    return str(library)
 
 
 def wrong_stock_node(folder, name, old, new):
@@ -51,8 +48,8 @@ def wrong_stock_node(folder, name, old, new):
 
 def wrong_eonlib_node(folder, name, old, new):
     """Path of a library of one of eonlib's other nodes of pbrlib in GLSL, with another text."""
-    rows = pbrlib_folder() / "eonlib_pbrlib_genglsl_impl.mtlx"
-    library = _node_alone(folder, f"{name}.glsl", rows, data_folder() / "genglsl")
+    rows = eonlib_folder() / "pbrlib" / "eonlib_pbrlib_genglsl_impl.mtlx"
+    library = _node_alone(folder, f"{name}.glsl", rows, eonlib_folder() / "genglsl")
     replace_text(folder, old, new, f"{name}.glsl")
     return library
 

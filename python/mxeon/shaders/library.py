@@ -22,6 +22,7 @@ from mxeon.errors import InputError, LibraryError, PackageError
 from mxeon.shaders.library_files import check_files, check_sources, read_options
 
 TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
+SOURCE_FOLDERS = ("genglsl", "genosl")
 SOURCES = (".mtlx", ".glsl", ".osl")  # endings of the files that a library is made of
 REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
 
@@ -70,33 +71,28 @@ def data_folder() -> Path:
 
 
 def eonlib_folder() -> Path:
-    """Folder of eonlib's MaterialX documents: what a C++ host, USD or generateshader loads first.
-
-    It is called `eonlib` in an installed package and `libraries` in a checkout.
-    """
-    installed = data_folder() / "eonlib"
-    return installed if installed.is_dir() else data_folder() / "libraries"
+    """Folder of eonlib, with its shader sources: what a C++ host, USD or generateshader loads first."""
+    return data_folder() / "eonlib"
 
 
 def source_folder(library: str) -> Path:
-    """Folder that holds a library, its profiles and its shader functions: for a folder, its parent."""
-    return data_folder() if library in LIBRARIES else Path(library).parent
+    """Folder that holds the shader functions of a library: its own, or of a part, the whole's."""
+    folder = eonlib_folder() if library in LIBRARIES else Path(library)
+    own = any((folder / name).is_dir() for name in SOURCE_FOLDERS)
+    return folder if own else folder.parent
 
 
 def library_folders(library: str) -> list[Path]:
-    """A folder that is loaded as a library, and those beside it that it may take sources from."""
-    beside = (source_folder(library) / name for name in ("genglsl", "genosl", "profiles"))
+    """A folder that is loaded as a library, and those that it may take sources from."""
+    sources = (source_folder(library) / name for name in SOURCE_FOLDERS)
+    beside = (*sources, Path(library).parent / "profiles")
     return [Path(library), *(folder for folder in beside if folder.is_dir())]
 
 
 def profile_folder(profile: str, library: str = "eonlib") -> Path:
     """Folder of a profile's MaterialX documents, to be loaded before the library's."""
-    return source_folder(library) / "profiles" / profile
-
-
-def pbrlib_folder() -> Path:
-    """Folder of eonlib's other nodes of pbrlib, to be loaded with that of the rough diffuse ones."""
-    return data_folder() / "profiles" / "pbrlib"
+    home = data_folder() if library in LIBRARIES else Path(library).parent
+    return home / "profiles" / profile
 
 
 def has_profile(library: str, profile: str) -> bool:
@@ -121,8 +117,8 @@ def _folders(library: str, profile: str | None) -> list[str]:
     if profile is not None and profile not in PROFILES:
         raise InputError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
     folders = {
-        "eonlib": [eonlib_folder(), pbrlib_folder()],
-        "diffuse": [eonlib_folder()],
+        "eonlib": [eonlib_folder()],
+        "diffuse": [eonlib_folder() / "diffuse"],
         "stock": [],
     }.get(library, [Path(library)])
     if profile is not None and has_profile(library, profile):
@@ -155,7 +151,7 @@ def library_name(library: str | os.PathLike[str]) -> str:
 
 
 def _sources(library: str) -> list[Path]:
-    """Source files beside a folder that is loaded as a library."""
+    """Files of the folders that a library may take sources from."""
     return [
         path
         for folder in library_folders(library)[1:]

@@ -130,9 +130,7 @@ def _paths(name: str, folders: Iterable[Path]) -> Iterator[str]:
 def _installed() -> dict[str, str]:
     """Digests of mxeon's code and of the data libraries, by names that hold on any machine."""
     folders = [("mxeon", Path(mxeon.__file__).parent), ("eonlib", eonlib_folder())]
-    folders += [
-        (f"eonlib/{each}", data_folder() / each) for each in ("genglsl", "genosl", "profiles")
-    ]
+    folders += [("eonlib/profiles", data_folder() / "profiles")]
     folders += [("MaterialX/libraries", folder) for folder in standard_folders()]
     return {
         f"{name}/{path.relative_to(folder)}": _digest(path)

@@ -123,5 +123,5 @@ def library_path(path: AnyPath) -> str:
 def _libraries() -> dict[Path, str]:
     """Folders whose files any document may use: MaterialX's own and eonlib's, as MaterialX has them."""
     standard = mx.getDefaultDataSearchPath().asString().split(mx.PATH_LIST_SEPARATOR)
-    ours = (eonlib_folder(), *(data_folder() / name for name in ("profiles", "genglsl", "genosl")))
+    ours = (eonlib_folder(), data_folder() / "profiles")
     return {Path(each).resolve(): str(each) for each in (*standard, *ours)}
