@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import cast
 
-from mxeon.errors import InputError, NotRun, Unsupported
+from mxeon.errors import NotRun, Unsupported, assert_known
 from mxeon.hosts.base import Host
 from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.scene import BACK, FURNACE, SIDE, Scene
@@ -206,8 +206,7 @@ def host_row(name: str, *others: Row) -> Row:
         If there is no such host; lists the known ones.
     """
     rows = {row.name: row for row in (*HOSTS, *others)}
-    if name not in rows:
-        raise InputError(f"host must be one of {', '.join(rows)}; got {name!r}")
+    assert_known("host", name, rows)
     return rows[name]
 
 

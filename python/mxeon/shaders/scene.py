@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import InputError
+from mxeon.errors import InputError, assert_known
 from mxeon.io.images import Floats
 
 LARGEST = 8192  # the width that every OpenGL 4 device draws; an image of it takes some gigabytes
@@ -119,8 +119,7 @@ def scene(name: str) -> Scene:
     1.0
     """
     scenes = {each.name: each for each in SCENES}
-    if name not in scenes:
-        raise InputError(f"scene must be one of {', '.join(scenes)}; got {name!r}")
+    assert_known("scene", name, scenes)
     return scenes[name]
 
 
