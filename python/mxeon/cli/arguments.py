@@ -46,6 +46,11 @@ def add_report(command: argparse.ArgumentParser) -> None:
     )
 
 
+def add_full(command: argparse.ArgumentParser) -> None:
+    """Add --full."""
+    command.add_argument("--full", action="store_true", help="print every check, not ten lines")
+
+
 def add_library(command: argparse.ArgumentParser) -> None:
     """Add --library, of which there may be one."""
     command.add_argument("--library", default="eonlib", metavar="NAME", help=LIBRARY)
@@ -103,6 +108,7 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
         help="search it for the files that documents name, after their own folders and before "
         f"those of {SEARCH_PATH}; may be repeated",
     )
+    add_definitions(command)
     group = command.add_argument_group("documents that are not trusted")
     group.add_argument(
         "--allowOutside",
@@ -126,6 +132,19 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
         )
 
 
+def add_definitions(command: argparse.ArgumentParser) -> None:
+    """Add --definitions."""
+    command.add_argument(
+        "--definitions",
+        action="append",
+        type=_folder,
+        default=[],
+        metavar="FOLDER",
+        help="load the MaterialX definitions in it beside the library, which are trusted as that is; "
+        "may be repeated",
+    )
+
+
 def _folder(name: str) -> str:
     """The name of a folder that exists."""
     if not os.path.isdir(name):
@@ -137,4 +156,6 @@ def policy(options: argparse.Namespace) -> Policy:
     """The policy for documents that the options describe."""
     limits = {name: getattr(options, f"max{name.capitalize()}") for name in LIMITS}
     path = (*map(os.path.abspath, options.path), *environment_path())
-    return Policy(options.allowOutside, getattr(options, "allowCode", True), path, **limits)
+    definitions = tuple(map(os.path.abspath, options.definitions))
+    code = getattr(options, "allowCode", True)
+    return Policy(options.allowOutside, code, path, definitions, **limits)

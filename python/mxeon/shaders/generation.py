@@ -11,7 +11,7 @@ from types import MappingProxyType
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.errors import DocumentError, InputError
+from mxeon.errors import DocumentError, assert_known
 from mxeon.io.files import AnyPath
 from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.document.labels import label
@@ -179,12 +179,11 @@ def generate(
     ['look']
     """
     # Read and check the document.
-    if target not in GENERATORS:
-        raise InputError(f"target must be one of {', '.join(TARGETS)}; got {target!r}")
+    assert_known("target", target, TARGETS)
     checked = read_document(document, library, profile, policy)
     content, names = checked.content, shader_names(checked.renderables)
     # Generate each shader.
-    generator = generator_of(content, target, library, profile)
+    generator = generator_of(content, target, library, profile, policy.definitions)
     context = context_of(content, target, generator, lights, policy.path)
     elements = _select(checked.renderables, element)
     tokens = partial(tokens_of, target, library, profile)
@@ -208,8 +207,7 @@ def _select(elements: Sequence[mx.TypedElement], name: str | None) -> Sequence[m
         return elements
     selection = [each for each in elements if name in (each.getName(), each.getNamePath())]
     if not selection:
-        paths = ", ".join(each.getNamePath() for each in elements)
-        raise InputError(f"element must be one of {paths}; got {name!r}")
+        assert_known("element", name, [each.getNamePath() for each in elements])
     return selection
 
 
@@ -226,6 +224,8 @@ def _generate(
         return generator.generate(name, element, context)
     except (mx.Exception, LookupError) as error:
         reason = sources.in_words(str(error).strip().splitlines()[0])
+        if "nodedef" in reason:
+            reason += ": load further definitions by --definitions FOLDER"
         raise DocumentError(
             f'{label(document)}: element "{path}" must give {target}; {reason}'
         ) from None

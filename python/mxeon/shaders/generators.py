@@ -20,7 +20,11 @@ TARGETS = tuple(GENERATORS)
 
 
 def generator_of(
-    document: mx.Document, target: str, library: str, profile: str | None
+    document: mx.Document,
+    target: str,
+    library: str,
+    profile: str | None,
+    definitions: tuple[str, ...] = (),
 ) -> mx_gen.ShaderGenerator:
     """A generator that knows a document's types, shared by all documents without their own.
 
@@ -29,20 +33,22 @@ def generator_of(
     document : MaterialX.Document
     target : str
         One of TARGETS.
-    library, profile : str
+    library, profile, definitions
         See `mxeon.shaders.library.load_library`.
     """
     if not any(each.isA(mx.TypeDef) for each in document.getChildren()):
-        return _library_generator(target, library, profile)
-    generator = _new_generator(target, library, profile)
+        return _library_generator(target, library, profile, definitions)
+    generator = _new_generator(target, library, profile, definitions)
     generator.registerTypeDefs(document)
     return generator
 
 
-def _new_generator(target: str, library: str, profile: str | None) -> mx_gen.ShaderGenerator:
+def _new_generator(
+    target: str, library: str, profile: str | None, definitions: tuple[str, ...]
+) -> mx_gen.ShaderGenerator:
     """A generator with the types, the color system and the unit system of a data library."""
     # Register the types.
-    data, generator = load_library(library, profile), GENERATORS[target].create()
+    data, generator = load_library(library, profile, definitions), GENERATORS[target].create()
     generator.registerTypeDefs(data)
     # Add the color system.
     colors = mx_gen.DefaultColorManagementSystem.create(generator.getTarget())

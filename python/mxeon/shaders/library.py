@@ -10,6 +10,7 @@ and generated code is checked against the closure interface of eonlib's sources.
 
 import os
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -18,7 +19,8 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 import mxeon
-from mxeon.errors import InputError, LibraryError, PackageError
+from mxeon.errors import InputError, LibraryError, PackageError, assert_known, meant
+from mxeon.io.files import AnyPath
 from mxeon.shaders.library_files import check_files, check_sources, read_options
 
 TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
@@ -114,8 +116,8 @@ def standard_folders() -> list[Path]:
 def _folders(library: str, profile: str | None) -> list[str]:
     """Library folders in load order: the profile's, the library's, MaterialX's own."""
     library = library_name(library)
-    if profile is not None and profile not in PROFILES:
-        raise InputError(f"profile must be one of {', '.join(PROFILES)}; got {profile!r}")
+    if profile is not None:
+        assert_known("profile", profile, PROFILES)
     folders = {
         "eonlib": [eonlib_folder()],
         "diffuse": [eonlib_folder() / "diffuse"],
@@ -139,12 +141,10 @@ def library_name(library: str | os.PathLike[str]) -> str:
     """
     if library in LIBRARIES:
         return str(library)
-    documents = sorted(Path(library).rglob("*.mtlx")) if str(library) else []
-    if not documents:
-        raise InputError(
-            f"library must be one of {', '.join(LIBRARIES)}, or a folder that holds MaterialX "
-            f"documents; got {str(library)!r}"
-        )
+    rule = (
+        f"library must be one of {', '.join(LIBRARIES)}, or a folder that holds MaterialX documents"
+    )
+    documents = _documents(library, rule, meant(library, LIBRARIES))
     library = os.path.abspath(library)
     check_files([*documents, *_sources(library)])
     return library
@@ -161,7 +161,9 @@ def _sources(library: str) -> list[Path]:
 
 
 @cache
-def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Document:
+def load_library(
+    library: str = "eonlib", profile: str | None = None, definitions: tuple[str, ...] = ()
+) -> mx.Document:
     """A MaterialX document holding the standard libraries, with eonlib in front.
 
     Loaded once per argument pair and shared: attach it with `Document.setDataLibrary`.
@@ -173,6 +175,8 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
         loaded before the standard libraries.
     profile : str or None
         "cycles" for the OSL implementations that eonlib has for Blender's Cycles.
+    definitions : tuple of str
+        Folders of further definitions, as absolute paths, which replace none of the library's.
 
     Returns
     -------
@@ -181,7 +185,8 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
     Raises
     ------
     ValueError
-        If the library or the profile is unknown; lists the known ones.
+        If the library or the profile is unknown; lists the known ones. If a folder holds no definitions
+        or replaces some of the library's.
     ImportError
         If this MaterialX is too old; see `check_version`.
     LibraryError
@@ -197,21 +202,55 @@ def load_library(library: str = "eonlib", profile: str | None = None) -> mx.Docu
         warnings.warn(UntestedVersionWarning(note), stacklevel=2)
     # Load the folders.
     document = mx.createDocument()
+    for folder in definitions:
+        check_files(_documents(folder, f"definitions {folder}: must hold MaterialX documents"))
     try:
         mx.loadLibraries(
-            _folders(library, profile),
+            [*definitions, *_folders(library, profile)],
             mx.getDefaultDataSearchPath(),
             document,
             readOptions=read_options(),
         )
     except (mx.Exception, mx.ExceptionParseError, LookupError) as error:
-        raise InputError(f"library {library}: {error}") from None
+        raise InputError(f"{' '.join(('library', library, *definitions))}: {error}") from None
     # Check what is not MaterialX's own.
     if library not in LIBRARIES:
         check_sources(document, library_name(library))
+    if definitions:
+        _check_definitions(document, load_library(library, profile), definitions)
     if library in ("eonlib", "diffuse"):
         assert_ours(document, library, profile)
     return document
+
+
+def _documents(folder: AnyPath, rule: str, remedy: str = "") -> list[Path]:
+    """MaterialX documents of a folder; none breaks the rule."""
+    documents = sorted(Path(folder).rglob("*.mtlx")) if str(folder) else []
+    if not documents:
+        raise InputError(f"{rule}; got {str(folder)!r}{remedy}")
+    return documents
+
+
+def _check_definitions(document: mx.Document, base: mx.Document, folders: Iterable[str]) -> None:
+    """Raise InputError if folders of definitions replace names or implementations of a library."""
+    for folder in folders:
+        check_sources(document, folder)
+        for each in document.getChildren():
+            file = each.getActiveSourceUri()
+            if Path(folder) in Path(file).parents and _replaces(each, base):
+                raise InputError(
+                    f"{file}: {each.getName()} must replace nothing of the library, which has it: "
+                    "give it another name, or load the folder by --library"
+                )
+
+
+def _replaces(element: mx.Element, base: mx.Document) -> bool:
+    """Whether a library has an element of that name, or an implementation of that node and target."""
+    if base.getChild(element.getName()):
+        return True
+    implements = element.isA(mx.Implementation) or element.isA(mx.NodeGraph)
+    definition = base.getNodeDef(element.getNodeDefString()) if implements else None
+    return bool(definition and definition.getImplementation(element.getTarget()))
 
 
 def check_version() -> None:

@@ -42,6 +42,9 @@ class Policy:
         Whether it may name files outside its own folder and the libraries.
     code : bool
         Whether it may bring shader code of its own, in text or in files.
+    definitions : tuple of str
+        Folders of definitions that it may use beside those of its library, as absolute paths. They are
+        trusted as the library is.
     path : tuple of str
         Folders, searched after its own, in which it may name files too; by default those of the
         environment variable MATERIALX_SEARCH_PATH.
@@ -102,6 +105,7 @@ class Policy:
     outside: bool = False
     code: bool = False
     path: tuple[str, ...] = field(default_factory=environment_path)
+    definitions: tuple[str, ...] = ()
     size: int = 16 * 2**20
     length: int = 65_536
     depth: int = 64

@@ -91,7 +91,7 @@ def read_document(
         If it brings shader code of its own.
     """
     # Read the source, with all that it includes.
-    data = load_library(library, profile)
+    data = load_library(library, profile, policy.definitions)
     content = mx.createDocument()
     if isinstance(source, mx.Document):
         content.copyContentFrom(source)
