@@ -32,7 +32,7 @@ def main(folder: str = "") -> None:
     with TemporaryDirectory(prefix="mxeon-field-") as new:
         for row in HOSTS:
             if row.module:
-                nodes = () if row.nodes else DIFFUSE
+                nodes = ("common",) if row.nodes else DIFFUSE
                 run = check(
                     [EXAMPLE], [row.name], LIBRARIES, workers=1, timeout=TIMEOUT, nodes=nodes
                 )

@@ -80,7 +80,7 @@ def local(normal, direction):
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    return shared(tmp_path_factory, "eonlib", lambda: check(EXAMPLES, ["gl"]))
+    return shared(tmp_path_factory, "eonlib", lambda: check(EXAMPLES, ["gl"], nodes=["common"]))
 
 
 def judged(host, subject=EON):
@@ -315,7 +315,7 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
         raise NotRun(f"{name}: nowhere")
 
     monkeypatch.setattr(judge, "open_engine", missing)
-    run = check(EXAMPLES[:1], ["gl"])
+    run = check(EXAMPLES[:1], ["gl"], nodes=["common"])
     results = [each for each in run.results if each.host == "gl"]
     assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), plan.TWINS}
     assert {(each.verdict, each.reason) for each in results} == {(NOT_RUN, "gl: nowhere")}
@@ -323,7 +323,7 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
 
 @pytest.mark.parametrize("host", [row.name for row in HOSTS if not row.module])
 def test_a_target_of_which_only_the_text_can_be_checked_is_not_run(host):
-    run = check(EXAMPLES[:1], [host])
+    run = check(EXAMPLES[:1], [host], nodes=["common"])
     (result,) = [each for each in run.results if (each.host, each.check) == (host, "host")]
     assert result.verdict == NOT_RUN and result.reason.startswith(f"{host}: running it needs ")
     texts = [each for each in run.results if each.subject.endswith(f", {host}")]
@@ -350,7 +350,9 @@ def test_the_shader_functions_are_checked_once_and_belong_to_eonlib():
 
 @pytest.fixture(scope="module")
 def stock(tmp_path_factory):
-    return shared(tmp_path_factory, "stock", lambda: check(EXAMPLES[:1], ["gl"], ["stock"]))
+    return shared(
+        tmp_path_factory, "stock", lambda: check(EXAMPLES[:1], ["gl"], ["stock"], nodes=["common"])
+    )
 
 
 @pytest.mark.parametrize(

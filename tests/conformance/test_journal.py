@@ -113,11 +113,11 @@ def test_one_folder_has_one_writer(tmp_path):
         journal(tmp_path).__enter__()
 
 
-@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 3}\n'])
+@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 4}\n'])
 def test_what_is_no_journal_is_one_line(tmp_path, text):
     (tmp_path / NAME).parent.mkdir()
     (tmp_path / NAME).write_text(text)
-    with pytest.raises(ValueError, match=f"{NAME}: must be a journal of format 3; ") as error:
+    with pytest.raises(ValueError, match=f"{NAME}: must be a journal of format 4; ") as error:
         read_journal(tmp_path)
     assert "\n" not in str(error.value)
 

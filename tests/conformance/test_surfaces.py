@@ -12,7 +12,8 @@ from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
 from mxeon.conformance.probes.families import COMMON_SUBJECTS
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.conformance.run.plan import make_plan, node_names
+from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.run.selection import node_names
 from mxeon.shaders.library import load_library
 
 ROWS = {check.key: check for check in CHECKS if SHADERS[0].model in check.models}

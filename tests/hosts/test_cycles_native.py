@@ -34,7 +34,7 @@ def results(tmp_path_factory):
     libraries = ["eonlib", "stock"]
     with pytest.MonkeyPatch.context() as patch:
         keep_host(patch, "cycles-native")
-        make = partial(check, [EXAMPLE], ["cycles-native"], libraries)
+        make = partial(check, [EXAMPLE], ["cycles-native"], libraries, nodes=["common"])
         return shared(tmp_path_factory, "native", make).results
 
 

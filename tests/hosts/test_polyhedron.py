@@ -175,7 +175,7 @@ def test_a_hang_is_not_run(tmp_path):
 
 def test_checks_of_a_missing_renderer_are_not_run(monkeypatch):
     monkeypatch.setenv("MXEON_LUXCORE_PYTHON", "/nowhere/python")
-    run = check([EXAMPLE], ["luxcore"], ["eonlib"], workers=0)
+    run = check([EXAMPLE], ["luxcore"], ["eonlib"], nodes=["common"])
     results = [each for each in run.results if each.host == "luxcore" and each.check != "document"]
     assert {each.verdict for each in results} == {NOT_RUN}
     assert all("pip install 'mxeon[luxcore]'" in each.reason for each in results)

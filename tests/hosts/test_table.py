@@ -67,8 +67,8 @@ def test_a_new_host_is_one_module_and_one_row(toy, monkeypatch):
     items = import_module("mxeon.conformance.run.plan")
     monkeypatch.setattr(items, "CHECKS", checks)
     monkeypatch.setattr(items, "subjects", lambda library: SUBJECTS[2:])
-    monkeypatch.setattr(items, "COMMON_SUBJECTS", ())
-    run = check([examples_folder() / "clay.mtlx"], ["toy"], workers=0)
+    monkeypatch.setattr(items, "PBR_SUBJECTS", ())
+    run = check([examples_folder() / "clay.mtlx"], ["toy"], workers=0, nodes=["common"])
     assert [each.device for each in run.hosts] == ["paper"]
     results = {each.check: each for each in run.results if each.host == "toy"}
     assert results["value"].verdict == "passed"

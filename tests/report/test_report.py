@@ -231,7 +231,7 @@ def test_page_shows_what_a_classification_was_nearest_to(run):
 def test_an_unfinished_run_says_what_is_missing(run):
     started = replace(run, results=(made_result(PASSED),), missing=("gl, value, clay, eonlib",))
     text = Page(page_of(started)).text
-    assert "The run is not finished: 1 items are missing." in text
+    assert "The run is not finished: 1 item is missing." in text
     assert "gl, value, clay, eonlib" in text
     assert json.loads(to_json(started))["missing"] == ["gl, value, clay, eonlib"]
     assert json.loads(to_json(started))["verdict"] == NOT_RUN
@@ -241,7 +241,7 @@ def test_a_run_with_refused_documents_says_so_everywhere(run):
     refused = replace(run, results=(made_result(PASSED),), errors=(f"a.mtlx: {HOSTILE}",))
     found = json.loads(to_json(refused))
     assert found["verdict"] == NOT_RUN and found["errors"] == [f"a.mtlx: {HOSTILE}"]
-    assert found["sentence"].endswith("Refused: 1 documents.")
+    assert found["sentence"].endswith("Refused: 1 document.")
     page = page_of(refused)
     assert "Refused: a.mtlx: &lt;script&gt;" in page and HOSTILE not in page
     suite = ElementTree.fromstring(to_junit(refused)).find("testsuite[@name='documents']")

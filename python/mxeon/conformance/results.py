@@ -139,6 +139,8 @@ class Result:
         """The error that is too large, or the control that passed; "" for neither."""
         control = self.control
         if self.error is not None and not self.error <= (self.tolerance or 0.0):
+            if self.unit.startswith("times "):
+                return f"the error is {in_words(self.error)} {self.unit}"
             return f"{self.error:.3g} > {self.tolerance:.3g} {self.unit}".rstrip()
         if control and not control.caught:
             return f"the negative control is not caught: {control.variant}, {control.error:.3g}"
@@ -170,6 +172,28 @@ class Summary:
     sentence: str
 
 
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    Examples
+    --------
+    >>> counted(1, "check"), counted(2, "check")
+    ('1 check', '2 checks')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def in_words(number: float) -> str:
+    """A number of two digits, without a power of ten.
+
+    Examples
+    --------
+    >>> in_words(1.234), in_words(1234.5)
+    ('1.2', '1,200')
+    """
+    return f"{float(f'{number:.2g}'):,.10g}"
+
+
 def summarize(
     results: Sequence[Result], missing: Sequence[str] = (), errors: Sequence[str] = ()
 ) -> Summary:
@@ -194,9 +218,10 @@ def summarize(
     verdict = FAILED if summary.verdict == FAILED else NOT_RUN
     sentence = summary.sentence
     if missing:
-        sentence += f" The run is not finished: {len(missing)} items are missing."
+        verb = "is" if len(missing) == 1 else "are"
+        sentence += f" The run is not finished: {counted(len(missing), 'item')} {verb} missing."
     if errors:
-        sentence += f" Refused: {len(errors)} documents."
+        sentence += f" Refused: {counted(len(errors), 'document')}."
     return replace(summary, verdict=verdict, sentence=sentence)
 
 
@@ -208,22 +233,27 @@ def _summarize_results(results: Sequence[Result]) -> Summary:
     if counts[FAILED]:
         failed = Counter(result.location for result in results if result.verdict == FAILED)
         listed = "; ".join(f"{count} on {location}" for location, count in failed.items())
-        return Summary(FAILED, counts, f"{counts[FAILED]} of {total} checks failed: {listed}.")
+        return Summary(
+            FAILED, counts, f"{counts[FAILED]} of {counted(total, 'check')} failed: {listed}."
+        )
     # Then what did not run.
     if not counts[PASSED] + counts[DIFFERS]:
         return Summary(NOT_RUN, counts, "No check ran.")
     if counts[NOT_RUN]:
-        sentence = f"Nothing failed, but {counts[NOT_RUN]} of {total} checks did not run."
+        sentence = (
+            f"Nothing failed, but {counts[NOT_RUN]} of {counted(total, 'check')} did not run."
+        )
         return Summary(NOT_RUN, counts, sentence)
     # All ran: they passed, or differ where they may.
     hosts = " and ".join(dict.fromkeys(result.location for result in results))
     if counts[DIFFERS]:
         sentence = (
-            f"{counts[PASSED]} of {total} checks passed on {hosts}; {counts[DIFFERS]} differ where "
-            "the specification leaves it open."
+            f"{counts[PASSED]} of {counted(total, 'check')} passed on {hosts}; {counts[DIFFERS]} "
+            f"{'differs' if counts[DIFFERS] == 1 else 'differ'} where the specification leaves it open."
         )
         return Summary(PASSED, counts, sentence)
-    return Summary(PASSED, counts, f"All {total} checks passed on {hosts}.")
+    passed = "The check" if total == 1 else f"All {total} checks"
+    return Summary(PASSED, counts, f"{passed} passed on {hosts}.")
 
 
 @dataclass(frozen=True)
@@ -307,6 +337,8 @@ class Run:
     errors : tuple of str
         One line for each document that could not be judged.
     documents : tuple of Path
+    contents : dict of str to tuple of str
+        Titles of the nodes of each document that the user gave, by its path.
     missing : tuple of str
         Tasks that are not done yet, where the run was interrupted.
     """
@@ -320,6 +352,7 @@ class Run:
     notes: tuple[str, ...] = ()
     errors: tuple[str, ...] = ()
     documents: tuple[Path, ...] = ()
+    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: tuple[str, ...] = ()
 
     @cached_property

@@ -7,7 +7,7 @@ has no effect is left out, and so is a lobe of weight 0; a weight that is comput
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
 import MaterialX as mx
@@ -49,19 +49,39 @@ def inner_lobes(shader: Shader) -> tuple[str, ...]:
     >>> inner_lobes(generate(text, "glsl")[0])
     ('subsurface',)
     """
-    element = shader.document.getDescendant(shader.element)
-    root = element.getConnectedNode() if element.isA(mx.Output) else element
-    walk = _Walk()
-    reachable([walk.path((), root)], walk.parts)
+    walk = Walk([shader.document.getDescendant(shader.element)])
     return tuple(kind for kind in (SUBSURFACE, TRANSMISSION, VOLUME) if kind in walk.kinds)
 
 
-class _Walk:
-    """The nodes of a graph by their paths, and the kinds of lobes among those that were seen."""
+class Walk:
+    """The nodes whose light a material shows, by their paths, and the kinds of lobes among them.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    elements : iterable of MaterialX.TypedElement
+        Renderable elements.
+    values : bool
+        Whether to walk the nodes that compute inputs too.
+
+    Attributes
+    ----------
+    kinds : set of str
+    shown : tuple of Path
+        Paths of the nodes, those of constant weight 0 left out, each after the nodes that use it.
+    """
+
+    def __init__(self, elements: Iterable[mx.TypedElement], values: bool = False) -> None:
+        self._values = values
         self._nodes: dict[Path, mx.InterfaceElement] = {}
+        self._dark: set[Path] = set()
         self.kinds: set[str] = set()
+        roots = (each.getConnectedNode() if each.isA(mx.Output) else each for each in elements)
+        graph = reachable([self.path((), root) for root in roots if root], self.parts)
+        self.shown = tuple(path for path in graph if path not in self._dark)
+
+    def node(self, path: Path) -> mx.InterfaceElement:
+        """The node at a path."""
+        return self._nodes[path]
 
     def path(self, around: Path, node: mx.InterfaceElement) -> Path:
         """Path of a node within another one."""
@@ -72,11 +92,14 @@ class _Walk:
     def parts(self, path: Path) -> tuple[Path, ...]:
         """Paths of the nodes from which a node's light comes."""
         node = self._nodes[path]
-        # Note the kind of lobe.
+        # Note the kind of lobe, unless it has no weight.
+        if self._constant(path, "weight") == 0.0:
+            self._dark.add(path)
+            return ()
         kind = KINDS.get(node.getCategory())
         if _text(node, "scatter_mode") in ("T", "RT"):
             kind = TRANSMISSION
-        if kind and self._constant(path, "weight") != 0.0:
+        if kind:
             self.kinds.add(kind)
         # Go on inside of a node that is a graph.
         inside = node.getImplementation()
@@ -84,18 +107,20 @@ class _Walk:
             outputs = (output.getConnectedNode() for output in inside.getOutputs())
             return tuple(self.path(path, output) for output in outputs if output)
         # Go on to the nodes before it.
-        sources = (self._source(path, name) for name in self._effective(path, node))
+        sources = (self.source(path, name) for name in self._effective(path, node))
         return tuple(source for source in sources if source)
 
     def _effective(self, path: Path, node: mx.InterfaceElement) -> tuple[str, ...]:
         """Names of the inputs that hand on light."""
         category = node.getCategory()
         if category == "mix":
-            weight = self._constant(path, "mix")
-            return {0.0: ("bg",), 1.0: ("fg",)}.get(weight, ("bg", "fg"))  # type: ignore[arg-type]
+            weight, value = self._constant(path, "mix"), ("mix",) * self._values
+            sides = {0.0: ("bg",), 1.0: ("fg",)}.get(weight, ("bg", "fg"))  # type: ignore[arg-type]
+            return (*sides, *value)
         if category == "multiply" and self._constant(path, "in2") == 0.0:
             return ()
-        return tuple(port.getName() for port in node.getInputs() if port.getType() in CLOSURES)
+        ports = node.getInputs()
+        return tuple(p.getName() for p in ports if self._values or p.getType() in CLOSURES)
 
     def _resolved(self, path: Path, name: str) -> tuple[Path, mx.Input | None]:
         """The input that a node's input stands for, and the path of its node."""
@@ -105,7 +130,7 @@ class _Walk:
             path, name = path[:-1], port.getInterfaceName()
         return path, port
 
-    def _source(self, path: Path, name: str) -> Path | None:
+    def source(self, path: Path, name: str) -> Path | None:
         """Path of the node connected to an input, or None."""
         path, port = self._resolved(path, name)
         node = port.getConnectedNode() if port else None
@@ -116,9 +141,14 @@ class _Walk:
             return self.path(path[:-1], node)
         return self.path(self.path((), graph), node)
 
+    def value(self, path: Path, name: str) -> str | None:
+        """Text of the value that an input has; None where it is computed or there is no input."""
+        _, port = self._resolved(path, name)
+        return None if port is None or self.source(path, name) else str(port.getValueString())
+
     def _constant(self, path: Path, name: str) -> float | None:
         """Number that an input has; None where there is none, or one that cannot be told here."""
-        if source := self._source(path, name):
+        if source := self.source(path, name):
             ports, function = ARITHMETIC.get(self._nodes[source].getCategory(), ((), None))
             numbers = [self._constant(source, port) for port in ports]
             return function(*numbers) if function and None not in numbers else None

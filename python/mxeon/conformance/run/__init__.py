@@ -12,12 +12,14 @@ from mxeon.conformance.results import Run
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run
 from mxeon.conformance.run.plan import Findings, Plan, Task, make_plan
+from mxeon.conformance.run.selection import assert_known_names
+from mxeon.conformance.run.survey import survey_documents
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool
 from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.library import untested
+from mxeon.shaders.library import library_name, untested
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
@@ -41,6 +43,7 @@ def check(
     progress: Callable[
         [Iterable[tuple[int, Findings]], int], Iterable[tuple[int, Findings]]
     ] = lambda tasks, total: tasks,
+    refuse: Callable[[str], None] = lambda error: None,
 ) -> Run:
     """Run every check on every host, and compare pictures of documents with the reference's.
 
@@ -69,9 +72,12 @@ def check(
     policy : Policy
         Permissions and limits of documents.
     nodes : sequence of str
-        Categories of the nodes to judge, ALL for all; none for the common ones.
+        Categories of the nodes to judge; "all" for all, "common" for those that an audit of a library
+        has. None for the nodes of `files`, or the common ones if there are no files.
     progress : callable (iterable, int) -> iterable
         Wraps the iteration over the tasks, whose number it takes; a progress bar, for example.
+    refuse : callable (str)
+        Called with one line for each document that cannot be read, before any other work.
 
     Returns
     -------
@@ -87,8 +93,16 @@ def check(
     NotRun
         If no process can start, or the cluster has no workers for too long.
     """
-    planned = make_plan(files, hosts, libraries, policy, resumable=folder is not None, nodes=nodes)
-    # An executor that cannot work must not touch the folder.
+    # Read the documents before any other work.
+    assert_known_names(hosts, nodes)
+    libraries = tuple(dict.fromkeys(map(library_name, libraries)))
+    _check_work(workers, timeout)
+    survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)
+    for error in survey.errors:
+        refuse(error)
+    resumable = folder is not None
+    planned = make_plan(files, hosts, libraries, policy, resumable, nodes, survey)
+    # Work; an executor that cannot work leaves the folder as it is.
     with (
         _executor(policy, workers, timeout, scheduler, wait) as executor,
         _open_journal(folder, planned, resume) as journal,
@@ -144,7 +158,10 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         pictures=tuple(picture for part in done for picture in part.pictures),
         curves=tuple(curve for part in done for curve in part.curves),
         notes=_grouped(notes),
-        errors=tuple(dict.fromkeys(error for part in done for error in part.errors)),
+        errors=tuple(
+            dict.fromkeys((*planned.refused, *(error for part in done for error in part.errors)))
+        ),
+        contents=planned.contents,
         documents=tuple(map(Path, planned.documents)),
         missing=tuple(
             str(task) for number, task in enumerate(planned.tasks) if number not in findings
@@ -187,14 +204,18 @@ def _open_journal(
     return nullcontext(InMemoryJournal()) if folder is None else Journal(folder, planned, resume)
 
 
+def _check_work(workers: int, timeout: float) -> None:
+    """Raise InputError if the number of workers or the timeout is out of range."""
+    if workers < 0:
+        raise InputError(f"workers must be at least 0; got {workers}")
+    check_timeout(timeout)
+
+
 @contextmanager
 def _executor(
     policy: Policy, workers: int, timeout: float, scheduler: str | None, wait: float
 ) -> Iterator[Executor]:
     """The executor: maps tasks to their outcomes."""
-    if workers < 0:
-        raise InputError(f"workers must be at least 0; got {workers}")
-    check_timeout(timeout)
     if scheduler is not None:
         with cluster.connect(scheduler, wait) as remote:
             job = partial(work, policy)

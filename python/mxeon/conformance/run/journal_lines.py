@@ -18,7 +18,7 @@ from mxeon.conformance.run.plan import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import regular
 
-FORMAT = 3
+FORMAT = 4
 NAME = "journal/items.jsonl"
 HALF = b"\\ud"  # begins the escape of half of a character
 PLAN = -1  # number of the plan among the lines

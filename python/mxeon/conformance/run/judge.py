@@ -145,6 +145,8 @@ class Judge:
         if task.check == DOCUMENT:
             return self._generate(task)
         host = self._host(task.host)
+        if task.check == HOST:
+            raise NotRun(f"{task.host}: nothing that was asked for is judged on this host")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: Host | RendererHost) -> Findings:

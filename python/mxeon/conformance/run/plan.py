@@ -24,26 +24,27 @@ from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.probes.families import (
-    ALL_SUBJECTS,
-    COMMON_SUBJECTS,
-    PBR_SUBJECTS,
-    probe_type_of,
-)
+from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.polyhedron import probe_type
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import AlbedoCurve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
-from mxeon.errors import InputError
-from mxeon.hosts import host_names, host_row
+from mxeon.conformance.run.selection import (
+    ALL,
+    COMMON,
+    assert_known_names,
+    selected,
+    unmeasured,
+)
+from mxeon.conformance.run.survey import Survey
+from mxeon.hosts import host_row
 from mxeon.hosts.base import Identity
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import (
     LIBRARIES,
-    check_version,
     examples_folder,
     library_name,
     load_library,
@@ -53,7 +54,7 @@ from mxeon.shaders.nodes import INVERSIONS
 HOST, DEFINITION, SOURCE = "host", "definition", "source"
 CURVE, PICTURE = "curve", "picture"
 FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
-ALL = "all"  # in place of the nodes' names
+EMPTY = Survey()
 TWINS, EVERY_NODE = functions.SUBJECT, "every node"
 
 
@@ -98,6 +99,10 @@ class Plan:
     files : dict of str to str
         SHA-256 of each file that the findings depend on, by path; "" where it cannot be read.
         Empty where the run is not kept.
+    contents : dict of str to tuple of str
+        Titles of the nodes of each document, by its path.
+    refused : tuple of str
+        One line for each document that cannot be read.
     """
 
     version: str
@@ -106,6 +111,8 @@ class Plan:
     documents: tuple[str, ...]
     options: dict[str, str] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)
+    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    refused: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -139,6 +146,7 @@ def make_plan(
     policy: Policy = DEFAULT,
     resumable: bool = False,
     nodes: Sequence[str] = (),
+    survey: Survey = EMPTY,
 ) -> Plan:
     """The tasks of a run, those of one host and library beside each other.
 
@@ -152,7 +160,10 @@ def make_plan(
         Whether to list the files that the run depends on.
     nodes : sequence of str
         Categories of the nodes to judge, and nothing else is judged but `files`; ALL for every
-        check. Without any, nodes are left out whose family is not common.
+        check, COMMON for those of the common families. Without any, the nodes of `files`, or the
+        common ones if there are none.
+    survey : Survey
+        What `files` contain.
 
     Returns
     -------
@@ -167,52 +178,44 @@ def make_plan(
         If this MaterialX is too old.
     """
     # Refuse what is unknown, and drop repeats.
-    check_version()
-    _assert_known("host", hosts, host_names())
-    _assert_known("node", nodes, (*node_names(), ALL))
+    assert_known_names(hosts, nodes)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
     # Tasks of every library on every host, then of renderers' own nodes.
     tasks: list[Task] = []
     documents: list[str] = []
     for library in libraries:
-        paths = [Path(file) for file in files] or _examples(library)
+        readable = [str(file) for file in files if (str(file), library) not in survey.unread]
+        paths = list(map(Path, readable)) if files else _examples(library)
         documents += map(str, paths)
         tasks.append(Task(DEFINITION, EVERY_NODE, SOURCE, library))
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
         for host in hosts:
-            if files and not host_row(host).scenes:
-                tasks += [Task(DOCUMENT, str(file), host, library) for file in files]
-            tasks += _on_host(host, library, paths, PBR_SUBJECTS if nodes else COMMON_SUBJECTS)
+            if not host_row(host).scenes:
+                tasks += [Task(DOCUMENT, file, host, library) for file in readable]
+            tasks += _on_host(host, library, paths, PBR_SUBJECTS)
     for host in hosts:
         tasks += _native(host)
-    # Keep those of the nodes that are asked for.
-    if nodes and ALL not in nodes:
-        chosen = {*_titles(nodes), *map(str, files)}
-        tasks = [task for task in tasks if task.subject in chosen]
-        if not tasks:
-            raise InputError(
-                f"node must be judged on one of the hosts {', '.join(hosts)}; got {', '.join(nodes)}"
-            )
-        documents = documents if files else []
+    # Keep those that are asked for, and say where nothing would be measured.
+    tasks = selected(tasks, list(map(str, files)), nodes, survey)
+    tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in unmeasured(tasks, hosts)]
+    if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
+        documents = []
     return Plan(
         version=mxeon.__version__,
         software=_software(),
         tasks=tuple(tasks),
         documents=tuple(dict.fromkeys(documents)),
+        contents={file: survey.nodes.get(file, ()) for file in documents} if files else {},
+        refused=survey.errors,
         options=_options(policy),
-        files=digests(dict.fromkeys(documents), policy, libraries) if resumable else {},
+        files=_files(documents, policy, libraries) if resumable else {},
     )
 
 
-def node_names() -> tuple[str, ...]:
-    """Categories of the nodes that are judged."""
-    return tuple(dict.fromkeys(row.node for row in ALL_SUBJECTS))
-
-
-def _titles(nodes: Sequence[str]) -> set[str]:
-    """Titles of the subjects that are nodes of these categories."""
-    return {row.title for row in ALL_SUBJECTS if row.node in nodes}
+def _files(documents: Iterable[str], policy: Policy, libraries: Iterable[str]) -> dict[str, str]:
+    """Digests of the files that a run depends on."""
+    return digests(dict.fromkeys(documents), policy, (*libraries, *policy.definitions))
 
 
 def subjects(library: str) -> list[DiffuseSubject]:
@@ -310,15 +313,11 @@ def _examples(library: str) -> list[Path]:
 def _options(policy: Policy) -> dict[str, str]:
     """Policy by the options of the command that change them."""
     prefixes = dict.fromkeys(LIMITS, "max") | {"outside": "allow", "code": "allow"}
-    values = vars(policy) | {"path": os.pathsep.join(policy.path) or "none"}
+    folders = {"path": policy.path, "definitions": policy.definitions}
+    values = vars(policy) | {
+        name: os.pathsep.join(each) or "none" for name, each in folders.items()
+    }
     return {
         f"--{prefixes[name]}{name.capitalize()}" if name in prefixes else f"--{name}": str(value)
         for name, value in values.items()
     }
-
-
-def _assert_known(rule: str, names: Iterable[str], known: Iterable[str]) -> None:
-    """Raise InputError if a name is unknown; list the known ones."""
-    for name in names:
-        if name not in known:
-            raise InputError(f"{rule} must be one of {', '.join(known)}; got {name!r}")

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The documents of a run, read before any other work: their nodes, and those that cannot be read."""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cache, partial
+from pathlib import Path
+
+from mxeon.conformance.nodes.subject import Subject, ValuedSubject
+from mxeon.conformance.nodes.thin_films import FilmSubject
+from mxeon.conformance.probes.families import ALL_SUBJECTS
+from mxeon.errors import DocumentError, MxeonError
+from mxeon.jobs import pool
+from mxeon.shaders.contents import ShownNode, document_nodes, node_of
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.library import examples_folder
+
+LETTERS = re.compile(r"\(([A-Z]+)\)$")  # of a model, behind its name
+Source = tuple[str, str]  # a file, and the library that it is read with
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What the documents of a run contain.
+
+    Attributes
+    ----------
+    nodes : dict of str to tuple of str
+        Titles of the nodes of each document, by its path.
+    unread : frozenset of Source
+        Documents that cannot be read, each with the library that it is read with.
+    errors : tuple of str
+        One line for each of them.
+    """
+
+    nodes: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    unread: frozenset[Source] = frozenset()
+    errors: tuple[str, ...] = ()
+
+
+def survey_documents(
+    files: Sequence[str], libraries: Sequence[str], policy: Policy, workers: int, timeout: float
+) -> Survey:
+    """Read documents with each library, in worker processes unless there are none.
+
+    A document that ends its worker has no nodes; the task that draws it says why.
+
+    Raises
+    ------
+    MxeonError
+        If a library cannot be used.
+    """
+    sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
+    titles: dict[str, dict[str, None]] = {file: {} for file in files}
+    refused: dict[Source, str] = {}
+    answers = _answers(sources, policy, workers, timeout)
+    for (file, library), answer in zip(sources, answers, strict=True):
+        if isinstance(answer, DocumentError):
+            if (
+                not Path(file).resolve().is_relative_to(examples_folder())
+            ):  # else the library's fault
+                refused[file, library] = str(answer)
+        elif isinstance(answer, MxeonError):
+            raise answer
+        else:
+            titles[file] |= dict.fromkeys(_titles(answer or ()))
+    return Survey(
+        {file: tuple(each) for file, each in titles.items()},
+        frozenset(refused),
+        tuple(dict.fromkeys(_sentence(source, refused, libraries) for source in refused)),
+    )
+
+
+def _sentence(source: Source, refused: dict[Source, str], libraries: Sequence[str]) -> str:
+    """The error of a document; it names the library if another one can read the document."""
+    file, library = source
+    everywhere = all((file, each) in refused for each in libraries)
+    return refused[source] if everywhere else f"{refused[source]} (with {library})"
+
+
+def _answers(
+    sources: Sequence[Source], policy: Policy, workers: int, timeout: float
+) -> Iterator[tuple[ShownNode, ...] | MxeonError | None]:
+    """The nodes of each document, or its error; None where reading it ended the process."""
+    work = partial(document_nodes, policy)
+    if not workers:
+        yield from map(work, sources)
+    elif sources:
+        for outcome in pool.in_order(pool.run(work, sources, workers, timeout)):
+            yield outcome.value
+
+
+def _titles(nodes: Iterable[ShownNode]) -> list[str]:
+    """Titles of the subjects that nodes of a document are."""
+    return [
+        subject.title
+        for subject, mode in _modes()
+        if any(_is(node, subject, mode) for node in nodes)
+    ]
+
+
+def _is(node: ShownNode, subject: Subject, mode: ShownNode) -> bool:
+    return node.has(mode) and (node.film or not isinstance(subject, FilmSubject))
+
+
+@cache
+def _modes() -> tuple[tuple[Subject, ShownNode], ...]:
+    """Every node that is judged, in the mode in which it is judged."""
+    return tuple((row, node_of(row.document(), row.node)) for row in ALL_SUBJECTS)
+
+
+def model_of(title: str) -> str:
+    """Name of the model that a node has to be, by its title; its letters where it has some."""
+    subject = next(row for row, _ in _modes() if row.title == title)
+    if not isinstance(subject, ValuedSubject):
+        return "as specified"
+    own = subject.value_candidates
+    name = own[0].title if own else "as specified"
+    letters = LETTERS.search(name)
+    return letters[1] if letters else name

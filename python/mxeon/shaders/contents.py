@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes that a document's materials show, in nodegraphs and inside surface shaders too."""
+
+import warnings
+from dataclasses import dataclass
+
+import MaterialX as mx
+
+from mxeon.errors import DocumentError, MxeonError
+from mxeon.shaders.document.policy import Policy
+from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.inner_lobes import Path, Walk
+
+CLOSURES = ("BSDF", "EDF", "VDF", "surfaceshader")
+COMBINING = ("layer", "mix", "add", "multiply")
+MODES = ("string", "boolean")  # types of inputs that select a mode of a node
+FILM = "thinfilm_thickness"
+
+
+@dataclass(frozen=True, order=True)
+class ShownNode:
+    """A node in the mode that a material shows.
+
+    Attributes
+    ----------
+    category, type : str
+    inputs : tuple of (str, str)
+        Name and type of each input of its definition; for one that takes a lobe, if it has one, also
+        the category of the node that combines the lobe of others.
+    modes : tuple of (str, str)
+        Name and value of the inputs that select a mode, where the value is constant.
+    film : bool
+        Whether it may have a thin film.
+    """
+
+    category: str
+    type: str
+    inputs: tuple[tuple[str, str], ...] = ()
+    modes: tuple[tuple[str, str], ...] = ()
+    film: bool = False
+
+    def has(self, other: "ShownNode") -> bool:
+        """Whether it may be in the mode of another node, whose inputs are those that are set."""
+        return (
+            (self.category, self.type) == (other.category, other.type)
+            and set(other.inputs) <= set(self.inputs)
+            and all(dict(self.modes).get(name, value) == value for name, value in other.modes)
+        )
+
+
+def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, ...] | MxeonError:
+    """The nodes that the materials of a document show, or the error that it cannot be read.
+
+    Parameters
+    ----------
+    policy : Policy
+    source : tuple of (str, str)
+        A file and the name of a library.
+    """
+    file, library = source
+    try:
+        with warnings.catch_warnings(action="ignore"):  # its checks tell them
+            document = read_document(file, library, policy=policy)
+    except (MxeonError, OSError) as error:
+        return (
+            error if isinstance(error, MxeonError) else DocumentError(f"{file}: {error.strerror}")
+        )
+    walk = Walk(document.renderables, values=True)
+    for path in walk.shown:
+        node = walk.node(path)
+        if node.isA(mx.Node) and not node.getNodeDef():
+            return _undefined(file, node)
+    return tuple(sorted({_shown(walk, path) for path in walk.shown}))
+
+
+def _undefined(file: str, node: mx.Node) -> DocumentError:
+    """The error that no node of that category, with inputs of these types, is defined."""
+    return DocumentError(
+        f'{file}: node "{node.getNamePath()}" must have a definition; got {node.getCategory()} of type '
+        f"{node.getType()}: load further definitions by --definitions FOLDER"
+    )
+
+
+def node_of(text: str, category: str) -> ShownNode:
+    """The first node of a category in a document, with the inputs that it sets alone."""
+    document = mx.createDocument()
+    mx.readFromXmlString(document, text)
+    node = next(each for each in document.traverseTree() if each.getCategory() == category)
+    ports = [
+        (each.getName(), _kind(each.getConnectedNode()) or each.getType())
+        for each in node.getInputs()
+    ]
+    modes = [(name, node.getInput(name).getValueString()) for name, kind in ports if kind in MODES]
+    return ShownNode(category, node.getType(), tuple(ports), tuple(modes))
+
+
+def _kind(source: mx.InterfaceElement | None) -> str:
+    """Category of a node that combines lobes; "" for others."""
+    return source.getCategory() if source and source.getCategory() in COMBINING else ""
+
+
+def _shown(walk: Walk, path: Path) -> ShownNode:
+    """A node of a walk."""
+    node = walk.node(path)
+    inputs = definition.getActiveInputs() if (definition := node.getNodeDef()) else ()
+    ports = [(port.getName(), port.getType()) for port in inputs]
+    # Inputs that take a lobe count where there is one.
+    sources = {name: walk.source(path, name) for name, kind in ports if kind in CLOSURES}
+    ports = [port for port in ports if sources.get(port[0], path)]
+    ports += [(name, _kind(walk.node(each))) for name, each in sources.items() if each]
+    values = ((name, walk.value(path, name)) for name, kind in ports if kind in MODES)
+    known = tuple((name, value) for name, value in values if value is not None)
+    thickness = walk.value(path, FILM) if (FILM, "float") in ports else "0"
+    film = thickness is None or float(thickness or 0.0) > 0.0
+    return ShownNode(node.getCategory(), node.getType(), tuple(ports), known, film)

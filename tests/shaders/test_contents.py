@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes that documents show: in nodegraphs, inside surface shaders, and in their modes."""
+
+import pytest
+
+from mxeon.conformance.run.survey import survey_documents
+from mxeon.errors import InputError
+from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.nodes import document_text, node_text
+from tests.support.documents import lobe, material
+
+SHEEN = '<sheen_bsdf name="lobe" type="BSDF">{}</sheen_bsdf>'
+EON, QON = (f"oren_nayar_diffuse_bsdf, energy_compensation {flag}" for flag in ("true", "false"))
+GRAPH = """<nodegraph name="graph">
+    <eon_diffuse_bsdf name="inner" type="BSDF"/>
+    <output name="out" type="BSDF" nodename="inner"/>
+  </nodegraph>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodegraph="graph" output="out"/>
+  </surface>
+"""
+
+
+def port(name, kind, value):
+    return f'<input name="{name}" type="{kind}" value="{value}"/>'
+
+
+def titles(text, tmp_path, library="eonlib"):
+    file = tmp_path / "look.mtlx"
+    file.write_text(text)
+    return survey_documents([str(file)], [library], DEFAULT, 0, 1.0).nodes[str(file)]
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        (material(lobe(energy_compensation=True)), (EON,)),
+        (material(lobe()), (QON,)),
+        (material(lobe(weight=0.0)), ()),
+        (material(SHEEN.format("")), ("sheen_bsdf, mode conty_kulla",)),
+        (material(SHEEN.format(port("mode", "string", "zeltner"))), ("sheen_bsdf, mode zeltner",)),
+        (document_text(GRAPH), ("eon_diffuse_bsdf",)),
+    ],
+    ids=["flag", "no flag", "no weight", "default mode", "mode", "nodegraph"],
+)
+def test_a_document_has_its_nodes_in_their_modes(text, expected, tmp_path):
+    assert titles(text, tmp_path) == expected
+
+
+@pytest.mark.parametrize(("thickness", "film"), [(0.0, False), (500.0, True)])
+def test_a_film_is_judged_where_there_is_one(thickness, film, tmp_path):
+    metal = (
+        f'<conductor_bsdf name="lobe" type="BSDF">{port("thinfilm_thickness", "float", thickness)}'
+    )
+    found = titles(material(f"{metal}</conductor_bsdf>"), tmp_path)
+    assert ("conductor_bsdf, thin film" in found) == film and "conductor_bsdf" in found
+
+
+def test_lobes_inside_a_surface_shader_count_where_they_have_weight(tmp_path):
+    for weight in (0.0, 0.5):
+        sheen = port("sheen", "float", weight)
+        shader = node_text("standard_surface", "surfaceshader", "shading", sheen)
+        found = titles(document_text(shader), tmp_path)
+        assert {"standard_surface", QON, "dielectric_bsdf, scatter_mode R"} <= set(found)
+        assert ("sheen_bsdf, mode conty_kulla" in found) == (weight > 0.0)
+
+
+def test_combinations_are_judged_in_the_structure_that_they_have(tmp_path):
+    text = (examples_folder() / "mixed_lobes.mtlx").read_text()
+    found = titles(text, tmp_path)
+    assert {"mix", "add"} <= set(found) and "mix, of a layer under a sum" not in found
+
+
+def test_what_one_library_lacks_is_told_with_its_name(tmp_path):
+    file = tmp_path / "eon.mtlx"
+    file.write_text(material('<eon_diffuse_bsdf name="lobe" type="BSDF"/>'))
+    files = [str(file), str(tmp_path / "nosuch.mtlx")]
+    found = survey_documents(files, ["eonlib", "stock"], DEFAULT, 0, 1.0)
+    assert found.nodes[files[0]] == ("eon_diffuse_bsdf",)
+    assert found.unread == {(files[0], "stock"), (files[1], "eonlib"), (files[1], "stock")}
+    undefined, missing = found.errors
+    assert undefined.startswith(
+        f'{files[0]}: node "lobe" must have a definition; got eon_diffuse_bsdf'
+    )
+    assert undefined.endswith("by --definitions FOLDER (with stock)")
+    assert missing == f"document must be a readable file; got {files[1]!r}"
+
+
+def test_a_library_that_cannot_be_used_is_no_matter_of_the_document(tmp_path):
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "broken.mtlx").write_text("<materialx")
+    file = str(examples_folder() / "clay.mtlx")
+    with pytest.raises(InputError, match="^library "):
+        survey_documents([file], [str(tmp_path / "lib")], DEFAULT, 0, 1.0)
