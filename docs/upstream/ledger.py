@@ -88,6 +88,7 @@ def _row(path):
     if "host" in table:
         issue = {
             "page": path.stem,
+            "title": title,
             "host": table["host"],
             "rows": _pairs(table.get("rows", {})),
             "also": table.get("also", []),

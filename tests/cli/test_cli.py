@@ -44,6 +44,9 @@ def test_check_passes_and_writes_a_report(tmp_path, capsys, monkeypatch):
 def test_check_of_stock_fails_and_names_the_defects(capsys, monkeypatch):
     keep_checks(monkeypatch, "value")
     assert main(["check", PLASTER, "--library", "stock"]) == FAILED
+    short = capsys.readouterr().out
+    assert "EON in GLSL is wrong for back-lit pairs: docs/upstream/genglsl_clamped_dot.md" in short
+    assert main(["check", PLASTER, "--library", "stock", "--full"]) == FAILED
     assert "EON with clamped dot(wo, wi)" in capsys.readouterr().out
 
 

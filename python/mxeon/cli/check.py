@@ -2,11 +2,12 @@
 """`mxeon check`: run the checks on hosts, and compare pictures of documents."""
 
 import argparse
+from typing import Any
 
 from mxeon.cli import arguments
-from mxeon.cli.output import progress_bar
+from mxeon.cli.output import Progress, fail
 from mxeon.cli.verdict import show_run
-from mxeon.errors import InputError
+from mxeon.errors import MISUSE, InputError
 from mxeon.hosts import host_names
 from mxeon.jobs.timeouts import WAIT
 
@@ -18,7 +19,10 @@ def add_parser(commands: arguments.Commands) -> None:
     command = arguments.add_command(commands, "check", summary, run)
     # Choose documents, hosts, libraries and nodes.
     command.add_argument(
-        "files", nargs="*", metavar="FILE", help="MaterialX documents; none: the examples"
+        "files",
+        nargs="*",
+        metavar="FILE",
+        help="MaterialX documents, whose nodes are judged; none: the library, with the examples",
     )
     command.add_argument(
         "--host",
@@ -36,7 +40,8 @@ def add_parser(commands: arguments.Commands) -> None:
         "--node",
         action="append",
         metavar="NAME",
-        help="judge the nodes of this category alone (sheen_bsdf), or all; may be repeated",
+        help="judge the nodes of this category (sheen_bsdf), or all, or the common ones of a library, "
+        "whichever nodes the documents have; may be repeated",
     )
     # Choose the report, and how the run is done.
     arguments.add_report(command)
@@ -55,16 +60,25 @@ def add_parser(commands: arguments.Commands) -> None:
     )
     arguments.add_workers(command)
     arguments.add_policy(command, runs_code=True)
+    arguments.add_full(command)
     arguments.add_json(command)
 
 
 def run(options: argparse.Namespace) -> int:
     """Check hosts and libraries; return the exit status."""
+    progress = Progress("mxeon check", _label)
+    progress.show("reads the documents" if options.files else "reads the library")
     from mxeon.conformance.run import check
 
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
     hosts, nodes = options.host or ("gl",), options.node or ()
+    refused: list[str] = []
+
+    def refuse(error: str) -> None:
+        refused.append(error)
+        fail(MISUSE, error)
+
     result = check(
         options.files,
         host_names() if "all" in hosts else hosts,
@@ -77,6 +91,15 @@ def run(options: argparse.Namespace) -> int:
         wait=options.waitForWorkers,
         policy=arguments.policy(options),
         nodes=nodes,
-        progress=progress_bar("mxeon check"),
+        progress=progress,
+        refuse=refuse,
     )
-    return show_run(result, options)
+    return show_run(result, options, refused)
+
+
+def _label(outcome: Any) -> str:
+    """What a finished task was about, by its findings."""
+    _, findings = outcome
+    for each in findings.results:
+        return f"{each.check}, {each.subject}, {each.host}"
+    return ", ".join(f"albedo, {each.subject}, {each.host}" for each in findings.curves[:1])

@@ -11,10 +11,12 @@ from mxeon.errors import PASSED, InputError
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its options."""
-    summary = "compute rho, the color input of EON, from a target albedo"
+    summary = "compute rho, the linear color input of EON, from a target albedo"
     command = arguments.add_command(commands, "invert", summary, run)
     for channel in "RGB":
-        command.add_argument(channel, type=float, help="target albedo, in [0, 1]")
+        command.add_argument(
+            channel, type=float, help="target albedo, linear (not sRGB), in [0, 1]"
+        )
     command.add_argument("--roughness", type=float, required=True, help="in [0, 1]")
     command.add_argument(
         "--average",

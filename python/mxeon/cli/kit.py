@@ -4,7 +4,7 @@
 import argparse
 
 from mxeon.cli import arguments
-from mxeon.cli.output import progress_bar
+from mxeon.cli.output import Progress
 from mxeon.cli.verdict import show_run
 from mxeon.errors import PASSED
 
@@ -31,7 +31,14 @@ def add_parser(commands: arguments.Commands) -> None:
         metavar="NAME",
         help="name of the renderer, for the report",
     )
+    check.add_argument(
+        "--claims",
+        default="",
+        metavar="MODEL",
+        help="eon, qon or fon: the renderer has this model alone, and no switch between EON and QON",
+    )
     arguments.add_report(check)
+    arguments.add_full(check)
     arguments.add_json(check)
 
 
@@ -47,5 +54,6 @@ def run_check(options: argparse.Namespace) -> int:
     """Check images of the kit; return the exit status."""
     from mxeon.kit.check import check_kit
 
-    result = check_kit(options.folder, options.renderer, progress_bar("mxeon kit check"))
+    progress = Progress("mxeon kit check", lambda question: str(question.title))
+    result = check_kit(options.folder, options.renderer, progress, options.claims)
     return show_run(result, options)

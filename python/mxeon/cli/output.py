@@ -2,8 +2,10 @@
 """Messages on standard error, progress, and streams that take no more."""
 
 import os
+import shutil
 import sys
-from collections.abc import Callable, Iterable
+import time
+from collections.abc import Callable, Iterable, Iterator, Sized
 from typing import IO, Any
 
 from mxeon.errors import MISUSE, one_line
@@ -69,19 +71,53 @@ def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 def _print_line(line: str) -> None:
     """Print a line on standard error, unless that takes none."""
     try:
-        print(f"mxeon: {line}", file=sys.stderr, flush=True)
+        print(f"{Progress.take()}mxeon: {line}", file=sys.stderr, flush=True)
     except OSError:
         discard(sys.stderr)
 
 
-def progress_bar(title: str, unit: str = "step") -> Callable[..., Iterable[Any]]:
-    """A function that shows a bar while an iterable is consumed, if stderr is a terminal."""
-    from tqdm import tqdm
+class Progress:
+    """One line on standard error that says what runs and how much is left, on a terminal alone.
 
-    def progress(steps: Iterable[Any], total: int | None = None) -> Iterable[Any]:
-        bar: Iterable[Any] = tqdm(
-            steps, desc=title, total=total, unit=unit, disable=None, leave=False
-        )
-        return bar
+    Parameters
+    ----------
+    title : str
+        Of the command.
+    label : callable (step) -> str
+        What a step is about, in words.
+    """
 
-    return progress
+    visible = ""  # the line that stands there
+
+    def __init__(self, title: str, label: Callable[[Any], str] = str) -> None:
+        self._title, self._label = title, label
+        self._open = bool(sys.stderr) and sys.stderr.isatty()
+
+    def show(self, text: str) -> None:
+        """Put a text in the line's place."""
+        if self._open:
+            columns = shutil.get_terminal_size().columns - 1
+            line = one_line(f"{self._title}: {text}")[:columns]
+            print(f"{self.take()}{line}", end="", file=sys.stderr, flush=True)
+            Progress.visible = line
+
+    @classmethod
+    def take(cls) -> str:
+        """What erases the line, which is gone then."""
+        erase = "\r\033[K" if cls.visible else ""
+        cls.visible = ""
+        return erase
+
+    def __call__(self, steps: Iterable[Any], total: int | None = None) -> Iterator[Any]:
+        """The steps, each of which is shown when it is handed on."""
+        total = len(steps) if total is None and isinstance(steps, Sized) else total
+        begin = 0.0
+        self.show(f"0 of {total}")
+        for done, step in enumerate(steps, 1):
+            begin = begin or time.monotonic()  # the first step takes what all need
+            spent = (time.monotonic() - begin) / max(done - 1, 1)
+            left = f", about {spent * ((total or done) - done):.0f} s left" if done > 2 else ""
+            self.show(": ".join(filter(None, (f"{done} of {total}{left}", self._label(step)))))
+            yield step
+        if self._open:
+            print(self.take(), end="", file=sys.stderr, flush=True)

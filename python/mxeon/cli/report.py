@@ -19,6 +19,7 @@ def add_parser(commands: arguments.Commands) -> None:
     summary = "write the report of a run, finished or not"
     make = arguments.add_command(actions, "make", summary, run_make)
     make.add_argument("report", metavar="DIR", help="the folder of the run")
+    arguments.add_full(make)
     arguments.add_json(make)
     # Add the action that compares two.
     diff = arguments.add_command(actions, "diff", "compare two reports", run_diff)

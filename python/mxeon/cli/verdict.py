@@ -4,19 +4,29 @@
 from __future__ import annotations
 
 import argparse
-from collections import Counter
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from mxeon.cli.output import fail
 from mxeon.errors import FAILED, MISUSE, NOT_RUN, PASSED, one_line, printable
 
 if TYPE_CHECKING:
-    from mxeon.conformance.results import Run
+    from mxeon.conformance.results import Result, Run
 
 
-def show_run(run: Run, options: argparse.Namespace) -> int:
-    """Write the report of a run and print its verdict; return the exit status."""
+def show_run(run: Run, options: argparse.Namespace, said: Collection[str] = ()) -> int:
+    """Write the report of a run and print its verdict; return the exit status.
+
+    Parameters
+    ----------
+    run : Run
+    options : argparse.Namespace
+        Those of `mxeon.cli.arguments.add_report`, `add_full` and `add_json`.
+    said : collection of str
+        Errors of documents that were printed already.
+    """
     from mxeon import report
+    from mxeon.cli.answer import answer
 
     # Write the report.
     page = report.write(run, options.report) if options.report else None
@@ -25,34 +35,37 @@ def show_run(run: Run, options: argparse.Namespace) -> int:
     if options.json:
         print(report.to_json(run))
     else:
-        _print_not_run(run)
-        _print_failed(run)
-        for note in run.notes:
-            print(printable(" ".join(f"note: {note}".split())))
-        print(printable(summary.sentence))
+        if options.full:
+            _print_all(run)
+        else:
+            print(printable("\n".join(answer(run))))
         if page:
             print(f"report: {page}")
-    # Print the documents that were refused.
+    # Print the documents that were refused, unless that was done first.
     for error in run.errors:
-        fail(MISUSE, error)
+        if error not in said:
+            fail(MISUSE, error)
     # Turn the verdict into a status.
     if run.errors:
         return MISUSE
     return {"passed": PASSED, "failed": FAILED, "not run": NOT_RUN}[summary.verdict]
 
 
-def _print_not_run(run: Run) -> None:
-    """Print each reason that kept checks from running, with their number."""
-    reasons = Counter(
-        (result.location, result.reason) for result in run.results if result.verdict == "not run"
-    )
-    for (where, reason), count in reasons.items():
-        print(one_line(f"not run: {where}, {count} checks: {reason}"))
+def _print_all(run: Run) -> None:
+    """Print every check, those of the user's documents first, notes, and the verdict."""
+    from mxeon.cli.answer import new_notes
 
-
-def _print_failed(run: Run) -> None:
-    """Print the checks that failed, and those that differ where they may."""
     for result in run.results:
-        if result.verdict in ("failed", "differs"):
-            where = f"{result.location}, {result.check}, {result.subject}"
-            print(one_line(f"{result.verdict}: {where}: {result.explanation}"))
+        where = f"{result.location}, {result.check}, {result.subject}"
+        print(one_line(f"{result.verdict}: {where}: {_numbers(result)}"))
+    for note in new_notes(run):
+        print(printable(" ".join(f"note: {note}".split())))
+    print(printable(run.summary.sentence))
+
+
+def _numbers(result: Result) -> str:
+    """The error and the bound of a check that passed; else why it did not."""
+    if result.verdict == "passed":
+        error, bound = result.error or 0.0, result.tolerance or 0.0
+        return f"{error:.3g} <= {bound:.3g} {result.unit}".rstrip()
+    return result.reason or result.explanation

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Known issues of stock MaterialX and of renderers: the page of `docs/upstream/` on each failing check."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
+from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
 from mxeon.conformance.known_issues.issue import Issue, read_issues
@@ -17,6 +20,32 @@ RENDERERS = {
 }
 # Written by `python -m docs.upstream.update` from the rows of the pages.
 ISSUES = read_issues(Path(__file__).with_name("issues.json").read_text(encoding="utf-8"))
+
+
+PAGE = re.compile(r"(?:; )?see docs/upstream/(\w+)\.md")
+
+
+def pages_of(diagnosis: str) -> tuple[Issue, ...]:
+    """The known issues whose pages a diagnosis names."""
+    names = PAGE.findall(diagnosis)
+    return tuple({issue.page: issue for issue in ISSUES if issue.page in names}.values())
+
+
+def link(issue: Issue) -> str:
+    """Address of the page of an issue on the project's site; its file where the site has no address."""
+    site = _site()
+    return f"{site}/upstream/{issue.page}.html" if site else f"docs/upstream/{issue.page}.md"
+
+
+@cache
+def _site() -> str:
+    """Address of the documentation, from the metadata of the package (`project.urls`); "" for none."""
+    try:
+        urls = metadata("mxeon").get_all("Project-URL") or []
+    except PackageNotFoundError:  # imported from a folder
+        return ""
+    named = dict(each.split(", ", 1) for each in urls)
+    return str(named.get("Documentation", "")).rstrip("/")
 
 
 def with_page(result: Result) -> Result:

@@ -18,6 +18,8 @@ class Issue:
     ----------
     page : str
         Its name without suffix.
+    title : str
+        Its heading, which says what is wrong.
     host : str
         The host that shows it; "source" for generated text.
     rows : tuple of (str, str)
@@ -31,6 +33,7 @@ class Issue:
     """
 
     page: str
+    title: str
     host: str
     rows: tuple[tuple[str, str], ...]
     also: tuple[str, ...] = ()
@@ -42,6 +45,7 @@ class _Row(TypedDict):
     """An issue in issues.json."""
 
     page: str
+    title: str
     host: str
     rows: list[tuple[str, str]]
     also: list[str]
@@ -55,6 +59,7 @@ def read_issues(text: str) -> tuple[Issue, ...]:
     return tuple(
         Issue(
             row["page"],
+            row["title"],
             row["host"],
             _pairs(row["rows"]),
             tuple(row["also"]),

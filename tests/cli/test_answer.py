@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The short answer of a run, and what is said while it works."""
+
+import io
+import sys
+from dataclasses import replace
+
+import pytest
+
+from mxeon.cli import main
+from mxeon.cli.answer import LINES, answer
+from mxeon.cli.output import Progress, warn
+from mxeon.conformance import known_issues
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
+from mxeon.conformance.run import check
+from mxeon.errors import MISUSE, InputError, assert_known
+from mxeon.errors import NOT_RUN as DID_NOT_RUN
+from mxeon.hosts.base import Identity
+from tests.support.command import CLAY, PLASTER
+from tests.support.plans import keep_checks
+
+EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
+PAGE = "docs/upstream/genglsl_clamped_dot.md"
+
+
+def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", **fields):
+    error = {PASSED: 1e-7, FAILED: 0.37}.get(verdict)
+    numbers = {"error": error, "tolerance": 2e-6} if error else {}
+    return Result(key, "claim", subject, host, library, verdict, **numbers, **fields)
+
+
+def made_run(*results, documents=("a/clay.mtlx",), **fields):
+    contents = dict.fromkeys(documents, (EON,))
+    return Run("1", {}, (Identity("gl", "4.5", "cpu"),), results, contents=contents, **fields)
+
+
+PICTURE = made(key="picture", subject="clay.mtlx: terracotta")
+
+
+# --- the answer -----------------------------------------------------------------------------------
+
+
+def test_an_answer_has_the_verdict_then_each_node_with_model_error_and_bound():
+    lines = answer(made_run(made(), PICTURE))
+    assert lines[0] == "All 2 checks passed on gl with eonlib."
+    assert lines[1].split() == ["a/clay.mtlx", "on", "gl", "eonlib"]
+    assert lines[2] == f"  {EON}  EON, error 1e-07, bound 2e-06"
+    assert lines[3].endswith("1 as the reference's, error 1e-07, bound 2e-06")
+
+
+def test_two_libraries_stand_beside_each_other_and_failures_have_a_sentence_and_a_link():
+    wrong = [
+        made(FAILED, key, library="stock", diagnosis=f"nearest known model: X; see {PAGE}")
+        for key in ("value", "albedo")
+    ]
+    picture = replace(PICTURE, library="stock", verdict=FAILED, error=0.1)
+    lines = answer(made_run(made(), PICTURE, *wrong, picture))
+    assert lines[1].split()[3:] == ["eonlib", "stock"]
+    assert "EON, error 1e-07" in lines[2] and lines[2].endswith("failed, error 0.37, bound 2e-06")
+    assert lines[4:] == [
+        f"failed: gl with stock: {EON} (value, albedo): EON in GLSL is wrong for back-lit pairs: {PAGE}"
+    ]
+
+
+def test_the_link_is_that_of_the_site_where_the_package_has_its_address(monkeypatch):
+    urls = {"Documentation": "https://example.org/mxeon/"}
+    known_issues._site.cache_clear()
+    monkeypatch.setattr(known_issues, "metadata", lambda _: Metadata(urls))
+    (issue,) = known_issues.pages_of(f"see {PAGE}")
+    try:
+        assert known_issues.link(issue) == (
+            "https://example.org/mxeon/upstream/genglsl_clamped_dot.html"
+        )
+    finally:
+        known_issues._site.cache_clear()
+
+
+class Metadata:
+    def __init__(self, urls):
+        self.urls = urls
+
+    def get_all(self, name):
+        return [f"{title}, {url}" for title, url in self.urls.items()]
+
+
+def test_a_failure_without_a_page_is_explained_by_its_diagnosis():
+    (*_, line) = answer(made_run(made(FAILED, diagnosis="nearest known model: Lambert")))
+    assert line == (
+        f"failed: gl with eonlib: {EON} (value): 0.37 > 2e-06; nearest known model: Lambert"
+    )
+
+
+def test_many_documents_are_a_line_each_those_with_failures_first():
+    documents = [f"{number}.mtlx" for number in range(20)]
+    pictures = [replace(PICTURE, subject=f"{each}: look") for each in documents]
+    pictures[7] = replace(pictures[7], verdict=FAILED, error=0.1)
+    lines = answer(made_run(made(), *pictures, documents=documents))
+    assert len(lines) <= LINES + 1 and "7.mtlx on gl" in lines[1]
+    assert (
+        "0.mtlx on gl: passed" in lines and lines[-1] == "there is more: --full prints everything"
+    )
+
+
+def test_what_did_not_run_is_said_with_its_number():
+    lines = answer(made_run(made(NOT_RUN, reason="gl: nowhere")))
+    assert lines == ["No check ran.", "not run: gl with eonlib, 1 check: gl: nowhere"]
+
+
+def test_a_note_that_a_diagnosis_repeats_is_left_out():
+    wrong = made(FAILED, diagnosis="nearest known model: Lambert")
+    notes = (f"{EON}: nearest known model: Lambert", "another")
+    assert [each for each in answer(made_run(wrong, notes=notes)) if "note" in each] == [
+        "note: another"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("results", "sentence"),
+    [
+        ([made()], "The check passed on gl with eonlib."),
+        ([made(FAILED)], "1 of 1 check failed: 1 on gl with eonlib."),
+        ([made(), made(NOT_RUN)], "Nothing failed, but 1 of 2 checks did not run."),
+        (
+            [made(), made(DIFFERS)],
+            "1 of 2 checks passed on gl with eonlib; 1 differs where the specification leaves it open.",
+        ),
+    ],
+)
+def test_one_check_is_no_checks(results, sentence):
+    assert made_run(*results).summary.sentence == sentence
+
+
+# --- what is judged -------------------------------------------------------------------------------
+
+
+def test_a_document_alone_has_its_nodes_judged_and_no_others(monkeypatch):
+    keep_checks(monkeypatch, "value", "source", "definition", "twins", "picture")
+    run = check([PLASTER])
+    nodes = [each.subject for each in run.results if each.check != "picture"]
+    assert nodes == [EON] and run.contents == {PLASTER: (EON,)}
+    assert [each.check for each in run.results] == ["picture", "value"]
+
+
+def test_unreadable_documents_are_said_before_any_other_work(monkeypatch, capsys):
+    keep_checks(monkeypatch, "value")
+    seen = []
+    monkeypatch.setattr(
+        Progress, "__call__", lambda self, steps, total: seen.append(said()) or steps
+    )
+
+    def said():
+        return capsys.readouterr().err
+
+    assert main(["check", "nosuch.mtlx", PLASTER, "--workers", "0"]) == MISUSE
+    assert seen == ["mxeon: document must be a readable file; got 'nosuch.mtlx'\n"]
+    printed = capsys.readouterr()
+    assert printed.err == "" and "Refused: 1 document." in printed.out
+
+
+@pytest.mark.parametrize("host", ["three", "mitsuba"])
+def test_a_host_on_which_nothing_is_measured_did_not_run(host, capsys):
+    node = ["--node", "oren_nayar_diffuse_bsdf"]
+    for options in ([], node):
+        status = main(["check", CLAY, "--host", host, *options, "--workers", "0"])
+        assert status == DID_NOT_RUN
+        assert "passed" not in capsys.readouterr().out
+
+
+def test_a_host_of_which_the_text_alone_is_made_did_not_run(capsys):
+    assert main(["check", PLASTER, "--host", "msl", "--workers", "0"]) == DID_NOT_RUN
+    assert "not run: msl with eonlib, 1 check: msl: running it needs" in capsys.readouterr().out
+
+
+def test_a_host_that_judges_none_of_the_nodes_did_not_run(monkeypatch, capsys):
+    keep_checks(monkeypatch, "value", "host")
+    options = ["--host", "gl", "--host", "msl", "--node", "oren_nayar_diffuse_bsdf"]
+    assert main(["check", *options, "--workers", "0"]) == DID_NOT_RUN
+    printed = capsys.readouterr().out
+    assert printed.startswith("Nothing failed, but 1 of 3 checks did not run.")
+
+
+# --- progress and names ---------------------------------------------------------------------------
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_a_terminal_shows_one_line_that_messages_replace(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    progress = Progress("mxeon check", str)
+    progress.show("reads the documents")
+    for step in progress(["one", "two", "three"], 3):
+        if step == "two":
+            warn("something")
+    lines = sys.stderr.getvalue().split("\r\033[K")
+    assert lines[:2] == ["mxeon check: reads the documents", "mxeon check: 0 of 3"]
+    warning, last = lines[-2].split("\n")
+    assert warning == "mxeon: warning: something" and lines[-1] == ""
+    assert last == "mxeon check: 3 of 3, about 0 s left: three"
+
+
+def test_nothing_is_shown_where_there_is_no_terminal(capsys):
+    progress = Progress("mxeon check", str)
+    progress.show("reads the documents")
+    assert list(progress(["one"], 1)) == ["one"] and capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["check", CLAY, "--host", "cycels"], "got 'cycels': did you mean cycles?"),
+        (
+            ["check", CLAY, "--node", "shen_bsdf"],
+            "names; got 'shen_bsdf': did you mean sheen_bsdf?",
+        ),
+        (["check", CLAY, "--library", "eonlb"], "got 'eonlb': did you mean eonlib?"),
+        (
+            ["generate", CLAY, "--target", "glls", "--outputPath", "x", "--workers", "0"],
+            "got 'glls': did you mean glsl?",
+        ),
+    ],
+)
+def test_a_name_that_is_nearly_right_is_answered_with_the_right_one(arguments, words, capsys):
+    assert main(arguments) == MISUSE
+    printed = capsys.readouterr()
+    assert printed.out == "" and words in printed.err
+
+
+def test_an_unknown_name_of_many_lists_them_only_if_none_is_near():
+    known = [f"name_{number}" for number in range(30)]
+    with pytest.raises(InputError, match=r"^node must be one of name_0, .*; got 'x'$"):
+        assert_known("node", "x", known)
+    with pytest.raises(InputError, match="must be one of 30 names; got 'name_3x': did you mean"):
+        assert_known("node", "name_3x", known)
