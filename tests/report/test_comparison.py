@@ -62,6 +62,16 @@ def test_a_check_that_went_is_worse_and_one_that_came_is_not():
     assert (found[0].after, found[1].before) == ("none", "none")
 
 
+def test_a_new_check_that_fails_is_worse(tmp_path, capsys):
+    passed, failed = made_run(), made_run(FAILED, subject="slate")
+    both = replace(passed, results=passed.results + failed.results)
+    (change,) = changes(passed, both)
+    assert (change.kind, change.before, change.after) == (WORSE, "none", "failed at 1e-07")
+    for name, run in (("a", passed), ("b", both)):
+        write(run, tmp_path / name)
+    assert main(["report", "diff", str(tmp_path / "a"), str(tmp_path / "b")]) == 1
+
+
 def test_records_of_one_name_are_told_apart():
     before, after = made_run(), made_run(FAILED)
     passed = replace(before, results=before.results * 2)

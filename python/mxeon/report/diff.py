@@ -31,7 +31,8 @@ class Change:
     Attributes
     ----------
     kind : str
-        WORSE, BETTER or OTHER. A worse verdict or a missing check is WORSE, a figure alone OTHER.
+        WORSE, BETTER or OTHER. A worse verdict, a missing check or a new one that fails is WORSE, a
+        figure alone OTHER.
     place : str
         Host, library, check and subject, or the name of a version.
     before, after : str
@@ -170,7 +171,8 @@ def _results(
         if new is None:
             yield Change(WORSE, place, before[key].verdict, "none")
         elif old is None:
-            yield Change(OTHER, place, "none", new.verdict)
+            kind = WORSE if new.verdict == FAILED else OTHER
+            yield Change(kind, place, "none", _with_error(new))
         elif old.verdict != new.verdict:
             # Compare the verdicts, then the errors.
             worse = ORDER.index(new.verdict) > ORDER.index(old.verdict)
