@@ -60,6 +60,24 @@ def test_a_control_that_is_not_caught_is_said_to_be():
         test(check)
 
 
+def test_values_that_a_check_cannot_tell_from_wrong_ones_are_said_to_be():
+    run = mxeon.check_brdf(lambda wo, wi, rho, roughness: rho / np.pi, "eon")
+    (result,) = [each for each in run.results if each.check == "lambert"]
+    assert result.verdict == "failed" and result.error <= result.tolerance
+    assert "cannot tell them from wrong ones: they are the same where roughness is 0.1" in (
+        result.diagnosis
+    )
+    assert all(each.diagnosis for each in run.results if each.verdict == "failed")
+
+
+@pytest.mark.parametrize("row", reference.PARAMETRIZATIONS, ids=lambda row: row.name)
+def test_another_parametrization_is_recognized_by_name(row):
+    run = mxeon.check_brdf(row.brdf, "eon")
+    for result in run.results:
+        if result.check in ("value", "albedo"):
+            assert result.diagnosis.startswith(f"nearest known model: {row.title} (rms ")
+
+
 def test_a_failing_test_says_figure_and_nearest_model():
     test = mxeon.brdf_test(reference.model("eon_rho_cubed").brdf)
     (value,) = [each for each in test.pytestmark[0].args[1] if each.key == "value"]

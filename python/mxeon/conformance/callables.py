@@ -30,7 +30,7 @@ from mxeon.conformance.samples.batch import (
     random_inputs,
 )
 from mxeon.conformance.samples.edge_cases import diffuse_edges, special_directions, special_inputs
-from mxeon.errors import InputError
+from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
 
@@ -75,6 +75,11 @@ class ClaimedModel(ModelSubject):
     kind: ClassVar[str] = "pairs"
     inputs: ClassVar[tuple[str, ...]] = ("color", "roughness")
     libraries: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def _others(self) -> tuple[reference.Model, ...]:
+        """Models whose parameter follows from another roughness."""
+        return reference.PARAMETRIZATIONS
 
     def document(self, inputs: Values | None = None) -> str:
         """None: a function needs no document."""
@@ -134,7 +139,8 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     brdf : callable
         `brdf(wo, wi, rho, roughness) -> values`, with wo, wi and rho (N, 3), roughness (N,) and
         values (N, 3) in 1/sr, without the cosine. The directions leave the surface, in the local
-        frame with the normal +z; roughness is sigma in radian for models that have one.
+        frame with the normal +z; roughness lies in [0, 1], or is sigma, in radian, in [0, pi/2] for
+        models that have one: `mxeon.models.table`.
     model : str
         The model that it has to be: a row of `mxeon.models.table.MODELS` with a parameter.
     name : str or None
@@ -215,8 +221,7 @@ def _checks(model: str) -> tuple[Check, ...]:
     """Rows of the table for values of a model, whichever models they are made for."""
     row = reference.model(model)
     if not row.parameter:
-        names = ", ".join(row.name for row in reference.MODELS if row.parameter)
-        raise InputError(f"model must be one of {names}; got {model!r}")
+        assert_known("model", model, (row.name for row in reference.MODELS if row.parameter))
     return tuple(
         check for check in CHECKS if check.key in KEYS and (check.key != "albedo" or row.albedo_dir)
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 import numpy as np
 
@@ -68,7 +69,7 @@ class Model:
 
 
 def model(name: str) -> Model:
-    """The row of `MODELS`, `KNOWN_DEFECTS` or `OTHERS` with this name.
+    """The row of `MODELS`, `KNOWN_DEFECTS`, `OTHERS` or `PARAMETRIZATIONS` with this name.
 
     Raises
     ------
@@ -80,12 +81,13 @@ def model(name: str) -> Model:
     >>> model("eon").parameter
     'roughness'
     """
-    rows = MODELS + KNOWN_DEFECTS + OTHERS
+    rows = MODELS + KNOWN_DEFECTS + OTHERS + PARAMETRIZATIONS
     for row in rows:
         if row.name == name:
             return row
-    names = ", ".join(row.name for row in rows)
-    raise ValueError(f"model must be one of {names}; got {name!r}")
+    names = [row.name for row in rows]
+    near = "".join(f": did you mean {each}?" for each in get_close_matches(str(name), names, 1))
+    raise ValueError(f"model must be one of {', '.join(names)}; got {name!r}{near}")
 
 
 def _lambert_albedo_dir(mu: ArrayLike, rho: ArrayLike) -> Array:
@@ -221,4 +223,47 @@ OTHERS = (
         "sigma",
         known_defect_albedos.qon_degrees_albedo_dir,
     ),
+)
+
+
+def _reparametrized(
+    name: str, title: str, base: str, parameter: Callable[[ArrayLike], Array]
+) -> Model:
+    """A model as a function of another roughness, from which its own parameter follows."""
+    row = next(each for each in MODELS if each.name == base)
+
+    def brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+        return row.brdf(wo, wi, rho, parameter(roughness))
+
+    def albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
+        return row.closed_albedo_dir(mu, rho, parameter(roughness))
+
+    return Model(name, title, brdf, "roughness", albedo_dir if row.albedo_dir else None)
+
+
+def _half_pi(roughness: ArrayLike) -> Array:
+    return np.multiply(0.5 * np.pi, roughness)
+
+
+def _slope(roughness: ArrayLike) -> Array:
+    return np.multiply(np.sqrt(0.5), roughness)
+
+
+def _square(roughness: ArrayLike) -> Array:
+    return np.multiply(roughness, roughness)
+
+
+# The models with other meanings of a roughness in [0, 1], which renderers have in place of sigma.
+PARAMETRIZATIONS = (
+    *(
+        _reparametrized(f"{base}_{word}", f"{short} with {meaning}", base, parameter)
+        for base, short in (("qon", "QON"), ("oren_nayar", "full Oren-Nayar"))
+        for word, meaning, parameter in (
+            ("half_pi", "sigma = roughness pi/2", _half_pi),
+            ("slope", "sigma = roughness / sqrt(2)", _slope),
+            ("squared", "sigma = roughness^2", _square),
+        )
+    ),
+    _reparametrized("fon_squared", "FON with squared roughness", "fon", _square),
+    _reparametrized("eon_squared", "EON with squared roughness", "eon", _square),
 )

@@ -12,6 +12,10 @@ from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import RendererWarning
 
+CANNOT_TELL = (
+    "the values are right, but the check cannot tell them from wrong ones: they are the same where"
+)
+
 
 def judge_measurements(
     place: Place,
@@ -40,6 +44,7 @@ def judge_measurements(
     """
     caught = wrong.error > tolerance.value
     verdict = DIFFERS if diagnosis.permitted else FAILED
+    right_too = right.error <= tolerance.value and not caught
     return Result(
         **place,
         verdict=PASSED if right.error <= tolerance.value and caught else verdict,
@@ -48,7 +53,7 @@ def judge_measurements(
         tolerance=tolerance.value,
         derivation=tolerance.derivation,
         worst=right.worst,
-        diagnosis=diagnosis.text,
+        diagnosis=f"{CANNOT_TELL} {variant}" if right_too else diagnosis.text,
         distances=diagnosis.distances,
         control=Control(variant, wrong.error, caught),
     )
