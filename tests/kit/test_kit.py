@@ -217,6 +217,50 @@ def test_a_model_that_noise_hides_is_mentioned(tmp_path):
     assert "cannot be told from QON with MaterialX's fit" in note
 
 
+@pytest.mark.parametrize(
+    "claims, others", [("eon", "false"), ("fon", "false"), ("qon", "true half white")]
+)
+def test_a_renderer_that_has_one_model_passes_with_its_claim(tmp_path, claims, others):
+    write_pictures(tmp_path, true=claims, false=claims)
+    for name in VIEWS:
+        if name.split("_")[0] in others:
+            render(tmp_path, name).unlink()
+    run = check_kit(tmp_path, claims=claims)
+    assert {each.verdict for each in run.results} == {"passed"} and len(run.results) >= 4
+    assert result_of(run, "model", f"{claims.upper()}, distant light").control.caught
+
+
+def test_a_claim_that_does_not_hold_fails(tmp_path):
+    write_pictures(tmp_path, true="fon", false="fon")
+    run = check_kit(tmp_path, claims="eon")
+    assert result_of(run, "model", "EON, distant light").verdict == "failed"
+    with pytest.raises(ValueError, match="claims must be one of eon, qon, fon; got 'oen': did you"):
+        check_kit(tmp_path, claims="oen")
+
+
+def test_sigma_of_a_roughness_times_half_pi_is_recognized(tmp_path):
+    write_pictures(tmp_path, true="qon_half_pi", false="qon_half_pi")
+    found = names(check_kit(tmp_path))
+    assert set(found.values()) == {reference.model("qon_half_pi").title}
+
+
+def test_an_error_is_told_in_words_and_each_diagnosis_once(tmp_path, capsys):
+    write_pictures(tmp_path, true="eon_rho_cubed")
+    assert main(["kit", "check", str(tmp_path), "--claims", "eon"]) == 1
+    printed = capsys.readouterr().out
+    assert re.search("the error is [0-9,]+ times what noise, pixels and the mesh allow", printed)
+    assert printed.count(f"EON, distant light: nearest known model: {CUBED}") == 0
+    assert printed.count(f"nearest known model: {CUBED}") == 2  # distant light, environment
+
+
+def test_a_kit_without_pictures_is_one_line(tmp_path, capsys):
+    write_kit(tmp_path)
+    assert main(["kit", "check", str(tmp_path)]) == 3
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.count("\n") == 1
+    assert "none of the 12 pictures is there" in printed.err
+
+
 def test_a_missing_picture_is_not_run(kit):
     render(kit, "true_back").unlink()
     run = check_kit(kit)

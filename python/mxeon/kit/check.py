@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.results import FAILED, NOT_RUN, Picture, Result, Run
-from mxeon.errors import InputError
+from mxeon.errors import InputError, NotRun
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
 from mxeon.kit.expected import judged, pixel_means
 from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
 from mxeon.kit.mesh import unit_sphere
-from mxeon.kit.questions import QUESTIONS, Question, answer
+from mxeon.kit.questions import Question, answer, questions
 from mxeon.kit.submitted import Missing, Unusable, read_render
 from mxeon.kit.views import MATERIALS, View, views
 from mxeon.models import table as reference
@@ -38,6 +38,7 @@ def check_kit(
     folder: str | PathLike[str],
     renderer: str = RENDERER,
     progress: Callable[[Sequence[Question]], Iterable[Question]] = list,
+    claims: str = "",
 ) -> Run:
     """Results of the checks of a kit's pictures, which lie in its folder `renders/`.
 
@@ -49,6 +50,9 @@ def check_kit(
         Name of the renderer in the report.
     progress : callable (sequence) -> iterable
         Iterates over the questions, such as a progress bar.
+    claims : str
+        "eon", "qon" or "fon" for a renderer that has this model alone, for which pictures of the
+        other one are not needed; "" for one that has both EON and QON.
 
     Returns
     -------
@@ -58,7 +62,10 @@ def check_kit(
     Raises
     ------
     ValueError
-        If `folder` is not a kit of this format, or `renderer` is not a printable name.
+        If `folder` is not a kit of this format, `renderer` is not a printable name, or there is no
+        such claim.
+    NotRun
+        If the kit holds none of the pictures.
     ImportError
         If scipy, of the `kit` extra, is not installed.
     """
@@ -66,12 +73,18 @@ def check_kit(
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
-    pictures, depth = views(_size(folder)), unit_sphere().depth
+    asked, depth = questions(claims), unit_sphere().depth
+    pictures = [view for view in views(_size(folder)) if any(each.includes(view) for each in asked)]
     place: dict[str, Any] = {"host": renderer, "library": LIBRARY}
     images, results = _read(folder / RENDERS, pictures, place)
+    if all(each.verdict == NOT_RUN for each in results) and not images:
+        raise NotRun(
+            f"{folder / RENDERS}: none of the {len(pictures)} pictures is there: make them as "
+            f"{folder / 'README.md'} describes"
+        )
     # Answer the questions, in an order in which each needs the one before.
     notes, obstacle = [], ""
-    for question in progress(QUESTIONS):
+    for question in progress(asked):
         # If light or encoding are wrong, no model can be told.
         result, words = answer(question, pictures, images, depth, place, obstacle)
         results.append(result)
@@ -85,7 +98,7 @@ def check_kit(
         software={"Python": platform.python_version()} | {name: version(name) for name in SOFTWARE},
         hosts=(Identity(renderer, "version not given", "device not given"),),
         results=tuple(results),
-        pictures=tuple(_pictures(pictures, images, place)),
+        pictures=tuple(_pictures(pictures, images, place, claims)),
         notes=tuple(notes),
         documents=tuple(folder / "materials" / f"{each.name}.mtlx" for each in MATERIALS),
     )
@@ -146,7 +159,10 @@ def _read(
 
 
 def _pictures(
-    pictures: Sequence[View], images: dict[str, NDArray[np.float64]], place: dict[str, Any]
+    pictures: Sequence[View],
+    images: dict[str, NDArray[np.float64]],
+    place: dict[str, Any],
+    claims: str,
 ) -> Iterator[Picture]:
     """Pictures that could be read, each with the model's as its reference."""
     for view in pictures:
@@ -158,13 +174,13 @@ def _pictures(
                 **place,
                 scene=view.scene.name,
                 image=images[view.name].astype(np.float32) * judged(view.scene)[..., None],
-                reference=_model_picture(view),
+                reference=_model_picture(view, claims or view.material.model),
                 metadata=metadata | place,
             )
 
 
-def _model_picture(view: View) -> NDArray[np.float64]:
+def _model_picture(view: View, model: str) -> NDArray[np.float64]:
     """Values of the model at the judged pixels, 0 elsewhere."""
     image = np.zeros((*sphere(view.scene.size).mask.shape, 3))
-    image[judged(view.scene)] = pixel_means(reference.model(view.material.model), view)
+    image[judged(view.scene)] = pixel_means(reference.model(model), view)
     return image

@@ -52,9 +52,10 @@ def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDis
     -------
     list of ModelDistance
     """
-    rows = [row for row in reference.KNOWN_DEFECTS + reference.MODELS if row.name not in TOO_NEAR]
+    rows = reference.PARAMETRIZATIONS + reference.KNOWN_DEFECTS + reference.MODELS
+    rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(case.view.scene.light for case in pictures):
-        rows = list({row.brdf: row for row in rows}.values())  # some differ in their albedo alone
+        rows = tuple({row.brdf: row for row in rows}.values())  # some differ in their albedo alone
     return sorted((_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance)
 
 

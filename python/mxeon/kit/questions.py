@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Control, Result
+from mxeon.errors import assert_known
 from mxeon.kit.diagnosis import candidates, ranking_sentence
 from mxeon.kit.encoding import fault
 from mxeon.kit.expected import Expected, expected, judged, pixel_means
@@ -21,7 +22,7 @@ from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE, Material, 
 from mxeon.models import table as reference
 
 FLAG = "energy_compensation"
-UNIT = "of what noise, pixel and mesh allow"
+UNIT = "times what noise, pixels and the mesh allow"
 DERIVATION = (
     "Student's t of each tile's mean error over its noise, Bonferroni over all tiles, channels and "
     f"questions: a kit of correct pictures fails with probability {1.0 - CONFIDENCE:.1g}; added are "
@@ -44,6 +45,8 @@ class Question:
         Description of the negative control.
     wrong : callable (View) -> ndarray, shape (N, 3)
         Values of the negative control at the judged pixels.
+    model : str
+        Name of the model of every material; "" for that of each material's node.
     """
 
     key: str
@@ -52,14 +55,19 @@ class Question:
     lit: bool
     variant: str
     wrong: Callable[[View], NDArray[np.float64]]
+    model: str = ""
 
     @property
     def title(self) -> str:
         """Subject of the result."""
         material = self.materials[0]
-        flagged = f"{FLAG} {str(material.energy_compensation).lower()}"
+        flagged = self.model.upper() or f"{FLAG} {str(material.energy_compensation).lower()}"
         name = flagged if self.key == "model" else material.name
         return f"{name}, {'distant light' if self.lit else 'environment'}"
+
+    def row(self, view: View) -> reference.Model:
+        """The model that a view of the question has to show."""
+        return reference.model(self.model or view.material.model)
 
     def includes(self, view: View) -> bool:
         """Whether a view belongs to the question."""
@@ -101,6 +109,37 @@ QUESTIONS = (
     Question("black", BLACK_IS, (BLACK,), True, "a white lobe is added", _of("fon_white_lobe")),
     Question("white", WHITE_IS, (WHITE,), False, "the second lobe is dropped", _of("fon")),
 )
+
+CLAIMS = ("eon", "qon", "fon")  # models of renderers that have one
+
+
+def questions(claim: str = "") -> tuple[Question, ...]:
+    """The questions to a renderer.
+
+    Parameters
+    ----------
+    claim : str
+        One of CLAIMS for a renderer that has this model alone; "" for one that has the flag.
+
+    Raises
+    ------
+    ValueError
+        If there is no such claim; lists the known ones.
+    """
+    if not claim:
+        return QUESTIONS
+    assert_known("claims", claim, CLAIMS)
+    # The materials whose roughness the model takes.
+    rough = (FALSE,) if claim == "qon" else (TRUE, HALF)
+    control = ("roughness is dropped", _of("lambert"), claim)
+    setup, *_, black, white = QUESTIONS
+    return (
+        setup,
+        Question("model", IS_MODEL, rough, True, *control),
+        Question("model", IS_MODEL, rough[:1], False, *control),
+        black,
+        *([white] if claim == "eon" else []),
+    )
 
 
 def answer(
@@ -146,7 +185,7 @@ def answer(
         JudgedPicture(view, mask, images[view.name][mask])
         for view, mask in zip(chosen, masks, strict=True)
     ]
-    models = [expected(reference.model(view.material.model), view, depth) for view in chosen]
+    models = [expected(question.row(view), view, depth) for view in chosen]
     errors = _tiles(cases, models)
     error = _ratio(errors)
     wrong = _ratio(_tiles(cases, models, [question.wrong(view) for view in chosen]))
