@@ -39,7 +39,7 @@ LAYER = (
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
 WIDTH = 1024  # most pixels in a row of an evaluation
 
-Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values by name
+Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers, by name
 
 
 @dataclass(frozen=True)
@@ -174,18 +174,18 @@ def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
 
     Width and height are even: a change from pixel to pixel is that within a square of 2 x 2.
     """
-    count = max(map(len, arguments.values()))
+    count = max(each.shape[-2] for each in arguments.values())
     height = 2 * -(-count // (2 * WIDTH))
     return count, (2 * -(-count // (2 * height)), height)
 
 
 def texels(values: Array, size: tuple[int, int]) -> NDArray[np.float32]:
-    """Values, a row or layers of them per element or one for all, laid out over a frame of `size`."""
+    """Values, a row per element or one for all, or layers of them, laid out over a frame of `size`."""
     width, height = size
-    layers = values[:, np.newaxis] if values.ndim == 2 else values  # one above the other
-    count, number, components = layers.shape
+    layers = values[np.newaxis] if values.ndim == 2 else values  # one above the other
+    number, count, components = layers.shape
     rows = np.zeros((number, width * height, components), dtype=np.float32)
-    rows[:, : count if count > 1 else None] = np.moveaxis(layers, 1, 0)
+    rows[:, : count if count > 1 else None] = layers
     return rows.reshape(number * height, width, components)
 
 
@@ -230,9 +230,9 @@ def _main(
 
 
 def _stacked(rows: Columns) -> NDArray[np.float32]:
-    """Columns of three values each as layers, (N, layers, 3)."""
+    """Columns of three values each as layers, (layers, N, 3)."""
     count = max(map(len, rows.values()))
-    layers = np.zeros((count, len(rows), 3), np.float32)
-    for index, each in enumerate(rows.values()):
-        layers[:, index, : each.shape[1]] = each
+    layers = np.zeros((len(rows), count, 3), np.float32)
+    for layer, each in zip(layers, rows.values(), strict=True):
+        layer[:, : each.shape[1]] = each
     return layers

@@ -19,6 +19,7 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
 PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
+CONSTANTS = 64  # textures of one value that are kept: most inputs are the same for all pixels
 POINTS = 4  # textures of points that are kept: most materials have the same vertex stage
 
 P = ParamSpec("P")
@@ -69,6 +70,7 @@ class Host(FragmentHost):
             ) from None
         self._context.gc_mode = "context_gc"
         self._program = lru_cache(maxsize=PROGRAMS)(partial(_program, self._context))
+        self._constant = lru_cache(maxsize=CONSTANTS)(self._filled)
         self._points = lru_cache(maxsize=POINTS)(partial(_points, self._context))
 
     @_current
@@ -141,6 +143,7 @@ class Host(FragmentHost):
     def close(self) -> None:
         """Release the context, and all that is in it."""
         self._program.cache_clear()
+        self._constant.cache_clear()
         self._points.cache_clear()
         self._context.release()
 
@@ -154,12 +157,15 @@ class Host(FragmentHost):
     ) -> Array:
         """Values, one pixel per element, as many as the longest argument has."""
         count, size = fragment.frame(arguments)
-        textures = {name: fragment.texels(rows, size) for name, rows in arguments.items()}
-        textures |= raster.environment(irradiance)
         program = self._program(vertex, pixel)
         _set(program, raster.EVALUATION)
-        frame = self._draw(program, self._textures(program, textures), size)
-        return frame.reshape(-1, 3)[:count]
+        textures = {
+            name: self._argument(rows, size)
+            for name, rows in arguments.items()
+            if program.get(name, None)
+        }
+        textures |= self._textures(program, raster.environment(irradiance))
+        return self._draw(program, textures, size).reshape(-1, 3)[:count]
 
     def _draw(
         self,
@@ -188,6 +194,17 @@ class Host(FragmentHost):
             for name, values in texels.items()
             if program.get(name, None)
         }
+
+    def _argument(self, rows: Array, size: tuple[int, int]) -> moderngl.Texture:
+        """Texture of an argument's values."""
+        if rows.ndim == 2 and len(rows) == 1:
+            return self._constant(rows.tobytes(), size)
+        return self._texture(fragment.texels(rows, size), mipmaps=False)
+
+    def _filled(self, value: bytes, size: tuple[int, int]) -> moderngl.Texture:
+        """Texture of one value, as float32."""
+        row = np.frombuffer(value, np.float32)[np.newaxis]
+        return self._texture(fragment.texels(row, size), mipmaps=False)
 
     def _texture(self, texels: Array, mipmaps: bool) -> moderngl.Texture:
         height, width, components = texels.shape

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 # A function that fills in a surface shader, and its statements before those of the lights. Slang
 # hands the vertex data on as the first parameter.
@@ -40,6 +41,7 @@ class Prelude:
     inputs: dict[str, str]
 
 
+@lru_cache(maxsize=16)  # the checks of a node share its shader
 def prelude(text: str, end: int) -> Prelude | None:
     """What is computed before a place in a text; None if that is in no surface shader's function.
 
