@@ -2,7 +2,7 @@
 """The diagnosis of a failure: the known model, defect or fault that explains it, or its place."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -169,6 +169,7 @@ def _explained(
     # Rank the candidates by their distance.
     few = probe.counts.diagnosed
     short = [Case(batch.first(few), *(each[:few] for each in rest)) for batch, *rest in cases]
+    candidates = [_remembered(each, short) for each in candidates]
     own = candidates[0]
     models = {each.title: _distance(short, each, Fault(""), tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])
@@ -181,6 +182,18 @@ def _explained(
             return Diagnosis(text, models)
     text = _model(probe, cases, ranking, own.title, tolerance)
     return Diagnosis(text, models, _permitted(cases, candidates, ranking[0][0], tolerance))
+
+
+def _remembered(candidate: Candidate, cases: Sequence[Case]) -> Candidate:
+    """A candidate that computes its values of each case once: many a fault leaves its inputs alone."""
+    known = [(case.batch, candidate.values(case.batch)) for case in cases]
+
+    def values(batch: Batch) -> Array:
+        same = (values for each, values in known if each is batch)
+        found = next(same, None)
+        return candidate.values(batch) if found is None else found
+
+    return replace(candidate, values=values)
 
 
 def _permitted(

@@ -115,7 +115,7 @@ def second_phases(
     c = film_ior * mu_t
     P, Q, N = ior**2 - extinction**2, ior * extinction, ior**2 + extinction**2
     A = P - film_ior**2 * (1.0 - mu_t) * (1.0 + mu_t)
-    B = np.hypot(A, 2.0 * Q)
+    B = fresnel.modulus(A, 2.0 * Q)
     larger = np.sqrt(0.5 * (B + np.abs(A)))
     smaller = Q / np.where(larger > 0.0, larger, 1.0)
     U, V = np.where(A >= 0.0, larger, smaller), np.where(A >= 0.0, smaller, larger)
