@@ -180,6 +180,8 @@ def _picture(
 ) -> Picture:
     """The record of a picture, with its origin."""
     scene, image, reference = case
+    if reference is not None:  # shown, no longer judged
+        reference = np.asarray(reference, np.float32)
     identity = host.identity()
     metadata = {
         "version": mxeon.__version__,
