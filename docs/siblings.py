@@ -3,7 +3,7 @@
 
 A function refers to others in two ways. Both name a function of its module, or by the whole path.
 
-- A paragraph: "Parameters and errors as those of `eon_brdf`."
+- A paragraph: "Parameters and errors as those of `eon_brdf`. Result as that of `qon_brdf`."
 - An entry of its parameters: names, and below them "As those of `eon_brdf`."
 """
 
@@ -13,13 +13,10 @@ from collections.abc import Iterator
 import griffe
 
 SECTION = re.compile(r"^(\w[\w ]*)\n-+\n", re.MULTILINE)
-SENTENCE = re.compile(r"(Parameters and errors|Parameters|Errors) as those of `([\w.]+)`\.\s*")
+WORDS = r"(?:Parameters|Result|Errors)(?:(?:, | and )(?:parameters|result|errors))*"
+SENTENCE = re.compile(rf"({WORDS}) as (?:those|that) of `([\w.]+)`\.\s*")
 ENTRY = re.compile(r"^(\S.*)\n +As (?:those|that) of `([\w.]+)`\.$", re.MULTILINE)
-TITLES = {
-    "Parameters and errors": ("Parameters", "Raises"),
-    "Parameters": ("Parameters",),
-    "Errors": ("Raises",),
-}
+TITLES = {"parameters": "Parameters", "result": "Returns", "errors": "Raises"}
 ORDER = ("", "Parameters", "Attributes", "Returns", "Yields", "Raises")  # then as they come
 
 
@@ -47,7 +44,8 @@ def complete(function: griffe.Object) -> str:
     parts = sections(function.docstring.value if function.docstring else "")
     for words, name in SENTENCE.findall(parts[""]):
         theirs = sections(complete(sibling(function, name)))
-        parts |= {title: theirs[title] for title in TITLES[words] if title in theirs}
+        titles = [TITLES[word] for word in re.findall(r"[a-z]{3,}", words.lower()) if word in TITLES]
+        parts |= {title: theirs[title] for title in titles if title in theirs}
     parts[""] = SENTENCE.sub("", parts[""]).rstrip()
     if "Parameters" in parts:
         parts["Parameters"] = ENTRY.sub(lambda match: entries(function, match), parts["Parameters"])

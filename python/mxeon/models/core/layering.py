@@ -170,16 +170,14 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
+    Result as that of `add`.
+
     Parameters
     ----------
     in1 : Bsdf
         The lobe.
     weight : array_like
         Factor s, one or per channel, dimensionless, at least 0.
-
-    Returns
-    -------
-    Bsdf
 
     Raises
     ------

@@ -122,17 +122,12 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = 1 - roughness A H(mu),  A = 1 / (1 + c1 roughness)
 
-    Errors as those of `eon_albedo_dir`.
+    Errors as those of `eon_albedo_dir`. Result as that of `qon_albedo_avg`.
 
     Parameters
     ----------
     mu, roughness
         As those of `eon_albedo_dir`.
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        Dimensionless, in (0, 1].
 
     Notes
     -----
@@ -185,17 +180,12 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
 
         <E> = (1 + c2 roughness) / (1 + c1 roughness),  c2 = 2/3 - 28 / (15 pi)
 
-    Errors as those of `eon_albedo_dir`.
+    Errors as those of `eon_albedo_dir`. Result as that of `qon_albedo_avg`.
 
     Parameters
     ----------
     roughness : array_like, shape (...)
         Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        Dimensionless, in (0, 1].
 
     References
     ----------

@@ -86,7 +86,7 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
 
         f = rho / pi (A + B s / t),  1/t = 0 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Errors as those of `eon_brdf`.
+    Result and errors as those of `eon_brdf`.
 
     Parameters
     ----------
@@ -94,11 +94,6 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
         As those of `eon_brdf`.
     sigma : array_like, shape (...)
         Deviation of the facets' slope angle, in radian, in [0, pi/2].
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing.
 
     Notes
     -----
@@ -122,12 +117,7 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
 
         f = rho / pi (A + B s / t),  A = 1 - 0.5 sigma^2 / (sigma^2 + 0.57)
 
-    Parameters as those of `qon_brdf`. Errors as those of `eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing.
+    Parameters as those of `qon_brdf`. Result and errors as those of `eon_brdf`.
 
     Notes
     -----
@@ -152,12 +142,7 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
         f = rho / pi (A + 0.17 rho sigma^2 / (sigma^2 + 0.13) + B s / t),
         1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Parameters as those of `qon_brdf`. Errors as those of `eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing.
+    Parameters as those of `qon_brdf`. Result and errors as those of `eon_brdf`.
 
     Notes
     -----
@@ -181,12 +166,7 @@ def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
 
         f = rho / pi A (1 + roughness s / t),  1/t = 1 where s <= 0, else 1 / max(mu_o, mu_i)
 
-    Parameters and errors as those of `eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing.
+    Parameters, result and errors as those of `eon_brdf`.
 
     Notes
     -----
@@ -254,12 +234,7 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
 
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
-    Parameters and errors as those of `eon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing.
+    Parameters, result and errors as those of `eon_brdf`.
 
     Notes
     -----

@@ -71,18 +71,13 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
 
         rho = C d / (C d + (1 + c2 r)(1 - C)),  d = 1 + c1 r
 
-    Errors as those of `eon_rho_from_albedo_normal`.
+    Result and errors as those of `eon_rho_from_albedo_normal`.
 
     Parameters
     ----------
     color : array_like, shape (..., C)
         Wanted average albedo, dimensionless, in [0, 1].
     roughness : array_like, shape (...)
-        Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
         Dimensionless, in [0, 1].
 
     Notes
@@ -107,11 +102,7 @@ def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) ->
     """`eon_rho_from_albedo_normal` by the paper's polynomial.
 
     Parameters and errors as those of `eon_rho_from_albedo_normal`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
+    Result as that of `eon_rho_from_albedo_normal`.
 
     Notes
     -----
@@ -134,11 +125,7 @@ def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLi
     """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
 
     Parameters and errors as those of `eon_rho_from_albedo_normal`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
+    Result as that of `eon_rho_from_albedo_normal`.
 
     Notes
     -----
@@ -161,11 +148,7 @@ def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Ar
     """`eon_rho_from_albedo_avg` by the paper's polynomial.
 
     Parameters as those of `eon_rho_from_albedo_avg`. Errors as those of `eon_rho_from_albedo_normal`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
+    Result as that of `eon_rho_from_albedo_normal`.
 
     Notes
     -----
@@ -187,11 +170,7 @@ def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike)
     """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
 
     Parameters as those of `eon_rho_from_albedo_avg`. Errors as those of `eon_rho_from_albedo_normal`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
+    Result as that of `eon_rho_from_albedo_normal`.
 
     Notes
     -----

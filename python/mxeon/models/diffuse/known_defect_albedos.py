@@ -46,16 +46,12 @@ def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> A
     """Directional albedo of `qon_degrees_brdf`.
 
     Errors as those of `qon_tinted_twice_albedo_dir`.
+    Result as that of `qon_tinted_twice_albedo_dir`.
 
     Parameters
     ----------
     mu, rho, sigma
         As those of `qon_tinted_twice_albedo_dir`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
 
     Examples
     --------
@@ -75,16 +71,12 @@ def eon_rho_cubed_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike
         E = rho (E_EON + (1 - rho) E_FON)
 
     Errors as those of `qon_tinted_twice_albedo_dir`.
+    Result as that of `qon_tinted_twice_albedo_dir`.
 
     Parameters
     ----------
     mu, rho, roughness
         As those of `mxeon.albedo.eon_albedo_dir`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
 
     Examples
     --------

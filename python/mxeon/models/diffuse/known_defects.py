@@ -198,17 +198,12 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
 def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON that is multiplied by its own color once more.
 
-    Errors as those of `eon_clamped_brdf`.
+    Errors as those of `eon_clamped_brdf`. Result as that of `eon_rho_cubed_brdf`.
 
     Parameters
     ----------
     wo, wi, rho, sigma
         As those of `mxeon.models.qon_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        In 1/sr; too dark, and correct where rho is 0 or 1.
 
     Notes
     -----

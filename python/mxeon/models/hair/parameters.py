@@ -134,6 +134,7 @@ def chiang_hair_absorption_from_color(
         sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
 
     Errors as those of `chiang_hair_roughness`.
+    Result as that of `deon_hair_absorption_from_melanin`.
 
     Parameters
     ----------
@@ -141,11 +142,6 @@ def chiang_hair_absorption_from_color(
         Scattering color, in (0, 1].
     azimuthal_roughness : array_like, shape (...)
         b, dimensionless, in [0, 1].
-
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Per radius of the fiber, in [0, inf).
 
     References
     ----------

@@ -138,11 +138,7 @@ def blackbody(temperature: ArrayLike) -> Array:
 def kang_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body by cubic fits, with Y = 1.
 
-    Parameters and errors as those of `blackbody_xyz`.
-
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
+    Parameters, result and errors as those of `blackbody_xyz`.
 
     Notes
     -----

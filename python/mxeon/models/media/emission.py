@@ -239,18 +239,13 @@ def generalized_schlick_exitance(
 
         M = pi c (r_0 + (r_90 - r_0) 2 / ((q + 1) (q + 2)))
 
-    Errors as those of `uniform_edf`.
+    Errors as those of `uniform_edf`. Result as that of `conical_exitance`.
 
     Parameters
     ----------
     radiance, color0, color90 : array_like, shape (..., C)
     exponent : array_like, shape (...)
         As in `generalized_schlick_edf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        pi times the unit of `radiance`.
 
     References
     ----------

@@ -98,7 +98,7 @@ def conductor_brdf(
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
-    Errors as those of `dielectric_brdf`.
+    Result and errors as those of `dielectric_brdf`.
 
     Parameters
     ----------
@@ -112,11 +112,6 @@ def conductor_brdf(
         Whether light returns towards where it comes from.
     compensate : bool
         Whether the energy compensation enters; without it the value is reciprocal.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        BRDF in 1/sr, at least 0, unbounded at grazing and as alpha vanishes.
 
     References
     ----------

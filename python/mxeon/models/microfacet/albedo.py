@@ -77,17 +77,12 @@ def conductor_albedo_dir(
 ) -> Array:
     """Directional albedo of `conductor_brdf`, by quadrature.
 
-    Errors as those of `dielectric_albedo_dir`.
+    Result and errors as those of `dielectric_albedo_dir`.
 
     Parameters
     ----------
     wo, roughness, ior, extinction, compensate
         As those of `mxeon.models.conductor_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless.
 
     Notes
     -----
@@ -121,17 +116,12 @@ def generalized_schlick_albedo_dir(
 ) -> Array:
     """Directional albedo of `generalized_schlick_brdf`, by quadrature.
 
-    Errors as those of `dielectric_albedo_dir`.
+    Result and errors as those of `dielectric_albedo_dir`.
 
     Parameters
     ----------
     wo, color0, color82, color90, roughness, exponent, compensate
         As those of `mxeon.models.generalized_schlick_brdf`.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless.
 
     Notes
     -----

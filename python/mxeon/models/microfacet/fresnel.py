@@ -131,17 +131,12 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
 def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Average Fresnel reflectance F_ss of a conductor, by quadrature.
 
-    Errors as those of `fresnel_dielectric`.
+    Errors as those of `fresnel_dielectric`. Result as that of `fresnel_conductor`.
 
     Parameters
     ----------
     ior, extinction : array_like, shape (..., C)
         Complex index of refraction per channel, in [0, 1e50]; a number is one channel.
-
-    Returns
-    -------
-    ndarray, shape (..., C), float64
-        Dimensionless, in [0, 1].
 
     Notes
     -----

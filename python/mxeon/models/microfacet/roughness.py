@@ -90,17 +90,12 @@ def roughness_dual(roughness: ArrayLike) -> Array:
 def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array:
     """Pair of alphas of the roughness 1 - glossiness; see `roughness_anisotropy`.
 
-    Errors as those of `roughness_anisotropy`.
+    Errors as those of `roughness_anisotropy`. Result as that of `roughness_dual`.
 
     Parameters
     ----------
     glossiness, anisotropy : array_like, shape (...)
         Dimensionless, in [0, 1].
-
-    Returns
-    -------
-    ndarray, shape (..., 2), float64
-        In [0, 1].
 
     References
     ----------

@@ -92,7 +92,7 @@ def film_conductor(
 ) -> Array:
     """Reflectance of a conductor under a thin film for unpolarized light.
 
-    Errors as those of `film_dielectric`.
+    Result and errors as those of `film_dielectric`.
 
     Parameters
     ----------
@@ -100,11 +100,6 @@ def film_conductor(
         As those of `film_dielectric`.
     ior, extinction : array_like, shape (..., 3)
         Complex index of refraction per channel, in [0, 1e50].
-
-    Returns
-    -------
-    ndarray, shape (..., 3), float64
-        Linear RGB, in [0, 1].
 
     Notes
     -----
