@@ -44,7 +44,9 @@ def complete(function: griffe.Object) -> str:
     parts = sections(function.docstring.value if function.docstring else "")
     for words, name in SENTENCE.findall(parts[""]):
         theirs = sections(complete(sibling(function, name)))
-        titles = [TITLES[word] for word in re.findall(r"[a-z]{3,}", words.lower()) if word in TITLES]
+        titles = [
+            TITLES[word] for word in re.findall(r"[a-z]{3,}", words.lower()) if word in TITLES
+        ]
         parts |= {title: theirs[title] for title in titles if title in theirs}
     parts[""] = SENTENCE.sub("", parts[""]).rstrip()
     if "Parameters" in parts:

@@ -23,7 +23,10 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
     [
         ([*OSL, "--element", "loam", CLAY], "element must be one of"),
         ([*OSL, "nowhere.mtlx"], "must be a readable file"),
-        (["generate", "--target", "hlsl", "--outputPath", "out", CLAY], "target must be one of glsl"),
+        (
+            ["generate", "--target", "hlsl", "--outputPath", "out", CLAY],
+            "target must be one of glsl",
+        ),
         ([*OSL, "--library", "mine", CLAY], "library must be one of"),
         ([*OSL, "--profile", "arnold", CLAY], "profile must be one of"),
         (["generate", CLAY, "--outputPath", "out"], "required: --target"),

@@ -3,8 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-
-from numpy.typing import ArrayLike
+from functools import cached_property
 
 from mxeon.conformance.nodes.ports import CHANGED_COLOR, Port, color
 from mxeon.conformance.samples.batch import Values
@@ -32,12 +31,6 @@ def _ports(**names: str) -> tuple[Port, ...]:
     )
 
 
-def _changed(*ports: Port, **others: ArrayLike) -> dict[str, ArrayLike]:
-    """A change for each port, and for other inputs."""
-    changes = {each.name: each.change for each in ports if each.name not in FREE_PATHS}
-    return {name: change for name, change in (changes | others).items() if change is not None}
-
-
 @dataclass(frozen=True, eq=False)
 class Inputs:
     """Inputs of a surface shader that its lobes may depend on.
@@ -50,8 +43,8 @@ class Inputs:
         Those of other lobes and of thin films, which are asked for energy.
     seen : mapping of str to value
         A material in which every lobe takes part.
-    changed : mapping of str to value
-        For each input but FREE_PATHS a value that this material does not have.
+    more : mapping of str to value
+        Further inputs, with values that this material does not have.
     without_effect : tuple of str
         Inputs of `changed` that change no value of rasterized targets; docs/upstream/
         surface_inputs.md says why.
@@ -66,31 +59,34 @@ class Inputs:
     judged: tuple[Port, ...]
     others: tuple[Port, ...]
     seen: Values
-    changed: Values
+    more: Values
     without_effect: tuple[str, ...]
     white: Values
     needs: Mapping[str, Values] = field(default_factory=dict)
     curved: tuple[str, ...] = ()
 
+    @cached_property
+    def changed(self) -> Values:
+        """For each input but FREE_PATHS a value that the material with every lobe does not have."""
+        ports = (port for port in (*self.judged, *self.others) if port.name not in FREE_PATHS)
+        changes = {port.name: port.change for port in ports if port.change is not None}
+        return {**changes, **self.more}
 
-_STANDARD = _ports(
-    share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
-    color="base_color specular_color sheen_color coat_color",
-    rough="specular_roughness coat_roughness",
-    index="specular_IOR coat_IOR",
-    sheen_rough="sheen_roughness",
-)
-_STANDARD_OTHERS = _ports(
-    share="transmission transmission_extra_roughness subsurface subsurface_scale",
-    color="transmission_color subsurface_color subsurface_radius",
-)
-_STANDARD_FILM = _ports(
-    thickness="thin_film_thickness",
-    index="thin_film_IOR",
-)
+
 STANDARD = Inputs(
-    _STANDARD,
-    (*_STANDARD_OTHERS, *_STANDARD_FILM),
+    _ports(
+        share="base diffuse_roughness metalness specular specular_anisotropy specular_rotation sheen coat coat_anisotropy coat_rotation coat_affect_color coat_affect_roughness",
+        color="base_color specular_color sheen_color coat_color",
+        rough="specular_roughness coat_roughness",
+        index="specular_IOR coat_IOR",
+        sheen_rough="sheen_roughness",
+    ),
+    _ports(
+        share="transmission transmission_extra_roughness subsurface subsurface_scale",
+        color="transmission_color subsurface_color subsurface_radius",
+        thickness="thin_film_thickness",
+        index="thin_film_IOR",
+    ),
     seen={
         "metalness": 0.4,
         "specular_anisotropy": 0.5,
@@ -103,10 +99,7 @@ STANDARD = Inputs(
         "subsurface": 0.4,
         "thin_film_thickness": 400.0,
     },
-    changed=_changed(
-        *_STANDARD,
-        *_STANDARD_OTHERS,
-        *_STANDARD_FILM,
+    more=dict(
         transmission_depth=2.0,
         transmission_scatter=CHANGED_COLOR,
         transmission_scatter_anisotropy=0.5,
@@ -133,24 +126,24 @@ STANDARD = Inputs(
     },
 )
 
-_OPEN = _ports(
-    share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
-    color="base_color specular_color coat_color fuzz_color",
-    rough="specular_roughness coat_roughness",
-    index="specular_ior coat_ior",
-    sheen_rough="fuzz_roughness",
-)
-_OPEN_OTHERS = _ports(
-    share="transmission_weight subsurface_weight subsurface_radius",
-    color="transmission_color subsurface_color subsurface_radius_scale",
-)
-_OPEN_FILM = _ports(
-    share="thin_film_weight thin_film_thickness",
-    index="thin_film_ior",
-)
 OPEN_PBR = Inputs(
-    _OPEN,
-    (*_OPEN_OTHERS, *_OPEN_FILM),
+    _ports(
+        share="base_weight base_diffuse_roughness base_metalness specular_weight specular_roughness_anisotropy coat_weight coat_roughness_anisotropy coat_darkening fuzz_weight",
+        color="base_color specular_color coat_color fuzz_color",
+        rough="specular_roughness coat_roughness",
+        index="specular_ior coat_ior",
+        sheen_rough="fuzz_roughness",
+    ),
+    (
+        *_ports(
+            share="transmission_weight subsurface_weight subsurface_radius",
+            color="transmission_color subsurface_color subsurface_radius_scale",
+        ),
+        *_ports(
+            share="thin_film_weight thin_film_thickness",
+            index="thin_film_ior",
+        ),
+    ),
     seen={
         "base_metalness": 0.4,
         "specular_roughness_anisotropy": 0.5,
@@ -163,10 +156,7 @@ OPEN_PBR = Inputs(
         "subsurface_weight": 0.4,
         "thin_film_weight": 0.5,
     },
-    changed=_changed(
-        *_OPEN,
-        *_OPEN_OTHERS,
-        *_OPEN_FILM,
+    more=dict(
         transmission_depth=2.0,
         transmission_scatter=CHANGED_COLOR,
         transmission_scatter_anisotropy=0.5,
@@ -199,24 +189,19 @@ OPEN_PBR = Inputs(
     },
 )
 
-_GLTF = _ports(
-    color="base_color specular_color sheen_color",
-    share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
-    rough="roughness clearcoat_roughness",
-    index="ior",
-    fuzz_rough="sheen_roughness",
-)
-_GLTF_OTHERS = _ports(
-    share="transmission",
-)
-_GLTF_FILM = _ports(
-    share="iridescence",
-    index="iridescence_ior",
-    film="iridescence_thickness",
-)
 GLTF = Inputs(
-    _GLTF,
-    (*_GLTF_OTHERS, *_GLTF_FILM),
+    _ports(
+        color="base_color specular_color sheen_color",
+        share="metallic specular anisotropy_strength anisotropy_rotation clearcoat",
+        rough="roughness clearcoat_roughness",
+        index="ior",
+        fuzz_rough="sheen_roughness",
+    ),
+    _ports(
+        share="transmission iridescence",
+        index="iridescence_ior",
+        film="iridescence_thickness",
+    ),
     seen={
         "metallic": 0.4,
         "roughness": 0.5,
@@ -228,10 +213,7 @@ GLTF = Inputs(
         "iridescence": 0.5,
         "iridescence_thickness": 400.0,
     },
-    changed=_changed(
-        *_GLTF,
-        *_GLTF_OTHERS,
-        *_GLTF_FILM,
+    more=dict(
         thickness=0.5,
         attenuation_distance=2.0,
         attenuation_color=CHANGED_COLOR,
@@ -251,21 +233,18 @@ GLTF = Inputs(
     },
 )
 
-_PREVIEW = _ports(
-    color="diffuseColor specularColor",
-    share="metallic clearcoat",
-    rough="roughness clearcoatRoughness",
-    index="ior",
-)
-_PREVIEW_OTHERS = _ports(
-    share="opacity",
-)
 PREVIEW = Inputs(
-    _PREVIEW,
-    _PREVIEW_OTHERS,
+    _ports(
+        color="diffuseColor specularColor",
+        share="metallic clearcoat",
+        rough="roughness clearcoatRoughness",
+        index="ior",
+    ),
+    _ports(
+        share="opacity",
+    ),
     seen={"metallic": 0.4, "clearcoat": 0.5, "opacity": 0.6},
-    changed=_changed(
-        *(*_PREVIEW, *_PREVIEW_OTHERS),
+    more=dict(
         useSpecularWorkflow=1,
         opacityMode=1,
         opacityThreshold=0.5,

@@ -21,13 +21,13 @@ SIZE = 96
 SCENES = tuple(replace(scene, size=SIZE) for scene in (SIDE, BACK))
 
 
-def portraits(probe: Probe) -> tuple[Picture, ...]:
+def comparison_pictures(probe: Probe) -> tuple[Picture, ...]:
     """Pictures of a rough node in light from the side and from behind, each beside its model's.
 
     Parameters
     ----------
     probe : PairProbe or PictureProbe
-        Of a surface shader's lobe or of a plane it has no portraits.
+        Of a surface shader's lobe or of a plane there are none.
 
     Returns
     -------
@@ -37,10 +37,10 @@ def portraits(probe: Probe) -> tuple[Picture, ...]:
     if not isinstance(probe.subject, DiffuseSubject) or isinstance(probe, PlaneProbe):
         return ()
     points = ((scene, *_points(probe, scene)) for scene in SCENES)
-    return tuple(_portrait(probe, *each) for each in points if len(each[1].wo))
+    return tuple(_comparison(probe, *each) for each in points if len(each[1].wo))
 
 
-def _portrait(probe: Probe, scene: Scene, batch: Batch, where: Mask) -> Picture:
+def _comparison(probe: Probe, scene: Scene, batch: Batch, where: Mask) -> Picture:
     subject, host = probe.subject, probe.host
     names = (PORTRAIT, subject.title, host.name, probe.library, scene.name)
     keys = ("document", "element", "host", "library", "scene")
@@ -57,7 +57,7 @@ def _picture(values: Array, where: Mask) -> NDArray[np.float32]:
 
 
 def _points(probe: Probe, scene: Scene) -> tuple[Batch, Mask]:
-    """The pairs of a portrait, and the pixels where they are, (size, size)."""
+    """The pairs of a picture, and the pixels where they are, (size, size)."""
     if isinstance(probe, PictureProbe) and not isinstance(probe, FacetPairProbe):
         wo, wi, judged = probe.points(scene)
     else:

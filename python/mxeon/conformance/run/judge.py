@@ -15,7 +15,7 @@ from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.pictures.documents import generate_document
-from mxeon.conformance.pictures.node_pictures import portraits
+from mxeon.conformance.pictures.node_pictures import comparison_pictures
 from mxeon.conformance.probes.families import ALL_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.polyhedron import PROBES
 from mxeon.conformance.probes.probe import Probe
@@ -164,7 +164,7 @@ class Judge:
         if task.check == CURVE:
             return Findings(curves=judge_curve(probe))
         results = judge_subject(probe, (ROWS[task.check],))
-        return Findings(results, _portraits(task, probe))
+        return Findings(results, _comparison_pictures(task, probe))
 
     def _generate(self, task: Task) -> Findings:
         path = Path(task.subject)
@@ -185,12 +185,12 @@ class Judge:
         return Findings(results, pictures, notes=notes)
 
 
-def _portraits(task: Task, probe: Probe) -> tuple[Picture, ...]:
-    """Portraits of a node, with the check that asks for its value in direct light."""
+def _comparison_pictures(task: Task, probe: Probe) -> tuple[Picture, ...]:
+    """Pictures of a node for comparison, with the check that asks for its value in direct light."""
     if task.check not in DIRECT:
         return ()
     try:
-        return portraits(probe)
+        return comparison_pictures(probe)
     except (NotRun, ShaderError):  # the check's result says so
         return ()
 
