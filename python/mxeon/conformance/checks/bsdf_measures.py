@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.probes.cases import layering_cases, stretched_case
+from mxeon.conformance.probes.cases import layering_cases
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
@@ -88,11 +88,6 @@ def retroreflection(probe: Probe) -> Iterable[Case]:
         measured = probe.direct(batch.altered(retroreflective=True))
         cases.append(Case(batch, measured, probe.direct(mirrored.altered(retroreflective=False))))
     return cases
-
-
-def stretched(probe: Probe) -> Iterable[Case]:
-    """The environment branch of anisotropic materials against the integrals of their values."""
-    return [stretched_case(probe)]
 
 
 def anisotropy(probe: Probe) -> Iterable[Case]:

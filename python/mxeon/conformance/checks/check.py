@@ -25,7 +25,7 @@ class Check:
         One word, and a sentence.
     models : tuple of str
         The models that it holds for.
-    measure : callable (probe) -> iterable of Case or Measurement
+    measure : callable (probe) -> Case, iterable of Case, or Measurement
         What is compared, of which the worst row counts; or a number of its own.
     variant : str
         The error that the control makes.
@@ -48,7 +48,7 @@ class Check:
     key: str
     claim: str
     models: tuple[str, ...]
-    measure: Callable[[Probe], Iterable[Case] | Measurement]
+    measure: Callable[[Probe], Case | Iterable[Case] | Measurement]
     variant: str
     control: Control
     allowed: Quantity | Tolerance
@@ -61,7 +61,9 @@ class Check:
     def measured(self, probe: Probe, metric: Metric) -> Measurement:
         """The worst error of a probe."""
         found = self.measure(probe)
-        return found if isinstance(found, Measurement) else worst_of(metric, found)
+        if isinstance(found, Measurement):
+            return found
+        return worst_of(metric, [found] if isinstance(found, Case) else found)
 
     def tolerance(self, kind: str) -> Tolerance | None:
         """The tolerance for a kind of probe, or None where it cannot be asked."""

@@ -24,7 +24,13 @@ from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.subsurface import SUBSURFACES
-from mxeon.conformance.probes.cases import albedo_cases, frame_cases, value_cases
+from mxeon.conformance.probes.cases import (
+    albedo_cases,
+    dead_inputs,
+    frame_cases,
+    surroundings_case,
+    value_cases,
+)
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import ON_SPHERES, sphere_cases
 from mxeon.hosts import front_lit_only
@@ -183,7 +189,7 @@ CHECKS = (
         "surroundings",
         "An uneven environment is looked up at the normal, which is turned to the viewer, or behind it.",
         (*ANY, *LOOKED_UP),
-        measures.surroundings,
+        surroundings_case,
         "the node's normal is dropped",
         with_inputs(normal=(0.0, 0.0, 1.0)),
         tolerances.SURROUNDINGS,
@@ -254,7 +260,7 @@ CHECKS = (
         "inputs",
         "Every input of the node changes the value.",
         (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION, *EMITTER, *MEDIUM_NAMES),
-        measures.inputs,
+        measures.counted(dead_inputs),
         "every change is dropped",
         drop_changes,
         tolerances.count_of("inputs"),
@@ -265,7 +271,7 @@ CHECKS = (
         "finite",
         "No value at the edges of the domain is infinite or not a number.",
         (*ANY, *OTHERS),
-        measures.finite,
+        measures.finite(),
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
         tolerances.count_of("values"),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of the checks: the worst error of a probe, and its point."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import product
 
@@ -11,9 +11,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.probes.cases import (
     BRANCHES,
     WHITE,
-    dead_inputs,
     edge_case,
-    surroundings_case,
     throughput_cases,
 )
 from mxeon.conformance.probes.probe import Probe
@@ -32,11 +30,6 @@ from mxeon.shaders.nodes import FLAG
 
 COLORS = ((0.2, 0.2, 0.2), (0.5, 0.5, 0.5), (0.8, 0.8, 0.8), (0.8, 0.4, 0.1))
 QUADRATURE_NODES = 16  # reaches 1e-9 on the models judged, far below float32
-
-
-def surroundings(probe: Probe) -> Iterable[Case]:
-    """The environment branch under an uneven sky, over that in a uniform one, against the sky."""
-    return [surroundings_case(probe)]
 
 
 def quadrature(probe: Probe) -> Iterable[Case]:
@@ -123,12 +116,16 @@ def flag(probe: Probe) -> Measurement:
     return Measurement(float(error / largest), {"expected": [float(largest)]})
 
 
-def inputs(probe: Probe) -> Measurement:
-    """Number of inputs of the node that change nothing."""
-    return count_named(dead_inputs(probe))
+def counted(names: Callable[[Probe], list[str]]) -> Callable[[Probe], Measurement]:
+    """The number of inputs that are wrong, by a function that names them."""
+    return lambda probe: count_named(names(probe))
 
 
-def finite(probe: Probe) -> Measurement:
-    """Number of values at the edges of the domain that are not finite."""
-    case = edge_case(probe)
-    return count_not_finite(case.batch, case.measured)
+def finite(case_of: Callable[[Probe], Case] = edge_case) -> Callable[[Probe], Measurement]:
+    """The number of values of a case that are not finite, by default at the edges of the domain."""
+
+    def measure(probe: Probe) -> Measurement:
+        batch, values, _ = case_of(probe)
+        return count_not_finite(batch, values)
+
+    return measure

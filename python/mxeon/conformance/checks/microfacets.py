@@ -6,6 +6,7 @@ from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
+from mxeon.conformance.probes.cases import stretched_case
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 
 MICROFACETS = tuple(row.name for row in MICROFACET_NODES)
@@ -56,7 +57,7 @@ CHECKS = (
         "anisotropic_albedo",
         "The environment branch of an anisotropic lobe gives the integral of its values.",
         MICROFACETS,
-        measures.stretched,
+        stretched_case,
         "the roughness is the same in both directions",
         isotropic,
         tolerances.ANISOTROPIC_ALBEDO,

@@ -9,12 +9,13 @@ from mxeon.conformance.accuracy.diffuse import count_of
 from mxeon.conformance.accuracy.surface_shaders import VALUE
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, scale, shifted
+from mxeon.conformance.checks.measures import counted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.surface_shaders import SHADERS, SurfaceShader
 from mxeon.conformance.probes.cases import albedo_cases, value_cases
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.conformance.samples.measurement import Case, Measurement, count_named, scaled
+from mxeon.conformance.samples.measurement import Case, scaled
 
 MODELS = tuple(shader.model for shader in SHADERS)
 BRANCHES = ("direct", "environment", "transmission")
@@ -40,13 +41,8 @@ def furnace(probe: Probe) -> Iterable[Case]:
     return [Case(probe.white, albedo, np.ones((1, 3)))]
 
 
-def reach(probe: Probe) -> Measurement:
-    """Number of inputs that change something where the page says nothing, or the reverse."""
-    return count_named(misplaced(probe))
-
-
 def misplaced(probe: Probe) -> list[str]:
-    """The inputs of `reach`."""
+    """Inputs that change something where the page says nothing, or the reverse."""
     table = subject_of(probe, SurfaceShader).table
     wrong = set(table.without_effect).symmetric_difference(without_effect(probe))
     return sorted(wrong.difference(table.curved))
@@ -159,7 +155,7 @@ CHECKS = (
         "reach",
         "An input changes a value, unless its page says that it does not.",
         MODELS,
-        reach,
+        counted(misplaced),
         "every change is dropped",
         ignore_changes,
         count_of("inputs"),

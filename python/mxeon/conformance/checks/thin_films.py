@@ -109,7 +109,7 @@ CHECKS = (
         "film_finite",
         "No value of a film at the edges of the domain is infinite or not a number.",
         FILM_MODELS,
-        measures.finite,
+        measures.finite(),
         "the value is divided by cos(theta_o)",
         scale_cosine(-1),
         tolerances.count_of("values"),

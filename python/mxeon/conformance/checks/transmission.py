@@ -8,6 +8,7 @@ from mxeon.conformance.accuracy.diffuse import SURROUNDINGS, count_of
 from mxeon.conformance.checks import transmission_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
+from mxeon.conformance.checks.measures import counted, finite
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
 from mxeon.conformance.nodes.transmission import (
@@ -115,7 +116,7 @@ CHECKS = (
         "refraction",
         "An uneven environment is looked up where a solid sphere refracts the view.",
         MODELS,
-        measures.refraction,
+        measures.refraction_case,
         "the index is another",
         with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
         SURROUNDINGS,
@@ -125,7 +126,7 @@ CHECKS = (
         "transmitted_finite",
         "No light through the surface is infinite or not a number, at the edges of the domain.",
         MODELS,
-        measures.finite,
+        finite(measures.finite_case),
         "values are divided by 0",
         infinite,
         count_of("values"),
@@ -135,7 +136,7 @@ CHECKS = (
         "transmitted_inputs",
         "Every input of the node but retroreflective changes the light through the surface.",
         MODELS,
-        measures.inputs,
+        counted(measures.wrong_inputs),
         "every change is dropped",
         drop_changes,
         count_of("inputs"),

@@ -10,9 +10,6 @@ from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import (
     Case,
-    Measurement,
-    count_named,
-    count_not_finite,
 )
 from mxeon.conformance.samples.uneven_environment import sky, sky_map
 from mxeon.models.microfacet.ggx import smith_g1
@@ -115,13 +112,8 @@ def critical(probe: Probe) -> Iterable[Case]:
     return [Case(batch, probe.transmitted(batch), batch.strength * passed)]
 
 
-def refraction(probe: Probe) -> Iterable[Case]:
-    """An uneven environment through smooth surfaces, over a uniform one, against its place."""
-    return [refraction_case(probe)]
-
-
 def refraction_case(probe: Probe) -> Case:
-    """The case of `refraction`."""
+    """An uneven environment through smooth surfaces, over a uniform one, against its place."""
     batch = _smooth(probe)
     level = probe.transmitted(batch)
     bright = level.min(axis=1) > LEAST_PASSED
@@ -152,27 +144,19 @@ def _smooth(probe: Probe) -> Batch:
     return batch.altered(roughness=(0.0, 0.0))
 
 
-def finite(probe: Probe) -> Measurement:
-    """Number of values at the edges of the domain that are not finite."""
-    case = finite_case(probe)
-    return count_not_finite(case.batch, case.measured)
-
-
 def finite_case(probe: Probe) -> Case:
-    """The case of `finite`, of every fifth pair: each costs a sum over directions."""
+    """Light at the edges of the domain, of every fifth pair: each costs a sum over directions."""
     batch: Batch = probe.edges
     batch = batch.where(np.arange(len(batch.wo)) % 5 == 0)
     values = probe.transmitted(batch)
     return Case(batch, values, np.zeros_like(values))
 
 
-def inputs(probe: Probe) -> Measurement:
-    """Number of inputs that change no light through the surface, and of those that must not."""
-    return count_named(wrong_inputs(probe))
-
-
 def wrong_inputs(probe: Probe) -> list[str]:
-    """The inputs of `inputs`: the retroreflective mode is of the reflection alone."""
+    """Inputs that change no light through the surface, and those that must not.
+
+    The retroreflective mode is of the reflection alone.
+    """
     batch, wrong = probe.few[0].first(FEW), []
     plain = probe.transmitted(batch, sky_map())
     for name, (without, change) in probe.changes.items():

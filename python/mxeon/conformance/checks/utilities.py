@@ -19,6 +19,7 @@ from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.probes.cases import dead_inputs
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import (
@@ -147,7 +148,7 @@ CHECKS = (
         "output_inputs",
         "Every input of the utility node changes the output that depends on it.",
         NAMES,
-        measures.inputs,
+        measures.counted(dead_inputs),
         "every change is dropped",
         drop_changes,
         count_of("inputs"),

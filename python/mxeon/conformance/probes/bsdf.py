@@ -16,7 +16,6 @@ from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directio
 from mxeon.conformance.samples.edge_cases import (
     LEAST_COLOR82,
     LEAST_TURNED,
-    outside_directions,
     special_directions,
 )
 from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
@@ -33,23 +32,6 @@ class BsdfProbe(PairProbe):
     least_cosine: ClassVar[float] = 0.0  # of a view whose albedo is asked
 
     subject: BsdfSubject
-
-    @cached_property
-    def batches(self) -> tuple[Batch, ...]:
-        """Random pairs, a quarter of each direction grazing; special ones; and outside ones."""
-        rng = np.random.default_rng(SEED)
-        pairs = directions(rng, self.counts.pairs), directions(rng, self.counts.pairs)
-        return (
-            self._batch(rng, self._lit(pairs), self.subject.random_inputs),
-            self._batch(rng, self._lit(special_directions(rng)), self.subject.special_inputs),
-            self._batch(rng, self._lit(outside_directions(rng)), self.subject.random_inputs),
-        )
-
-    @cached_property
-    def few(self) -> tuple[Batch, ...]:
-        """Few of the random pairs, and the special ones."""
-        pairs, special, *_ = self.batches
-        return pairs.first(self.counts.few), special
 
     @property
     def cosines(self) -> tuple[Batch, ...]:
@@ -98,7 +80,6 @@ class BsdfProbe(PairProbe):
         return self.subject.integral(batch.where(np.arange(len(weights)) * weights.shape[1]))
 
     def _lit(self, pairs: tuple[Array, Array]) -> tuple[Array, Array]:
-        """Pairs with the light on the side from which the node scatters it."""
         wo, wi = pairs
         return wo, wi * [1.0, 1.0, self._side]
 

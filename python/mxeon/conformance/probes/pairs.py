@@ -50,14 +50,14 @@ class PairProbe(LobeProbe):
         rng, count = np.random.default_rng(SEED), self.counts.pairs
         pairs = directions(rng, count), directions(rng, count)
         return (
-            self._batch(rng, pairs, self.subject.random_inputs),
-            self._batch(rng, special_directions(rng), self.subject.special_inputs),
-            self._batch(rng, outside_directions(rng), self.subject.random_inputs),
+            self._batch(rng, self._lit(pairs), self.subject.random_inputs),
+            self._batch(rng, self._lit(special_directions(rng)), self.subject.special_inputs),
+            self._batch(rng, self._lit(outside_directions(rng)), self.subject.random_inputs),
         )
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Few of the random pairs and the special ones; both directions are above the horizon."""
+        """Few of the random pairs, and the special ones; none of them is outside."""
         pairs, special, *_ = self.batches
         return pairs.first(self.counts.few), special
 
@@ -99,6 +99,10 @@ class PairProbe(LobeProbe):
 
     def throughput(self, batch: Batch, branch: str) -> Array:
         return self._evaluate(batch, branch, output="throughput")
+
+    def _lit(self, pairs: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Pairs with the light on the side from which the node scatters it."""
+        return pairs
 
     def _batch(self, rng: np.random.Generator, pairs: tuple[Array, Array], inputs: Draw) -> Batch:
         """Pairs with random inputs, weights and occlusions."""

@@ -5,73 +5,42 @@ import numpy as np
 
 _LARGEST = float(np.finfo(np.float64).max)
 
-# Closed ranges of the quantities, by name: least, largest, as printed.
+# Ends of closed ranges, and as they are printed.
+_BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
+_SHARE = (0.0, 1.0, "[0, 1]")
+_POSITIVE = (0.0, 1e50, "[0, 1e50]")  # where a fourth power still fits
+_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # where exponents and squares still fit
+_LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # whose products and quotients fit
+
+
+def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, float, str]]:
+    """The range of each of these names."""
+    return dict.fromkeys(names.split(), ends)
+
+
+# Ranges of the quantities, by name.
 RANGES = {
-    "mu": (0.0, 1.0, "[0, 1]"),
-    "rho": (0.0, 1.0, "[0, 1]"),
-    "roughness": (0.0, 1.0, "[0, 1]"),
-    "sigma": (0.0, 0.5 * np.pi, "[0, pi/2]"),
-    "color": (0.0, 1.0, "[0, 1]"),
-    "amount": (0.0, 1.0, "[0, 1]"),
-    "weight": (0.0, _LARGEST, "[0, inf)"),
-    "albedo": (-_LARGEST, _LARGEST, "(-inf, inf)"),
-    "mu_o": (0.0, 1.0, "[0, 1]"),
-    "mu_i": (0.0, 1.0, "[0, 1]"),
-    "alpha": (0.0, 1.0, "[0, 1]"),
-    "tint": (0.0, 1.0, "[0, 1]"),
-    "color0": (0.0, 1.0, "[0, 1]"),
-    "color82": (0.0, 1.0, "[0, 1]"),
-    "color90": (0.0, 1.0, "[0, 1]"),
-    "exponent": (0.0, 1e50, "[0, 1e50]"),  # these three end where a fourth power still fits
-    "ior": (0.0, 1e50, "[0, 1e50]"),
-    "extinction": (0.0, 1e50, "[0, 1e50]"),
-    **dict.fromkeys(
-        ("radiance", "base", "emission", "scattered", "behind", "light"), (0.0, 1e50, "[0, 1e50]")
-    ),
-    "intensity": (0.0, 1e50, "[0, 1e50]"),
-    "exposure": (-1000.0, 1000.0, "[-1000, 1000]"),
-    "opacity": (0.0, 1.0, "[0, 1]"),
-    "inner_angle": (0.0, 360.0, "[0, 360]"),
-    "outer_angle": (0.0, 360.0, "[0, 360]"),
-    "absorption": (0.0, 1e50, "[0, 1e50]"),
-    "scattering": (0.0, 1e50, "[0, 1e50]"),
-    "distance": (0.0, 1e50, "[0, 1e50]"),
-    "cos_theta": (-1.0, 1.0, "[-1, 1]"),
-    "g": (-float(np.nextafter(1.0, 0.0)), float(np.nextafter(1.0, 0.0)), "(-1, 1)"),
-    "anisotropy": (0.0, 1.0, "[0, 1]"),
-    "glossiness": (0.0, 1.0, "[0, 1]"),
-    "reflectivity": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
-    "edge_color": (0.0, 1.0, "[0, 1]"),
-    "temperature": (1.0, 1e9, "[1, 1e9]"),
-    "wavelength": (1.0, 1e9, "[1, 1e9]"),
-    "longitudinal": (0.0, 1.0, "[0, 1]"),
-    "azimuthal": (0.0, 1.0, "[0, 1]"),
-    "scale_tt": (0.0, 1e50, "[0, 1e50]"),
-    "scale_trt": (0.0, 1e50, "[0, 1e50]"),
-    "melanin_concentration": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
-    "melanin_redness": (0.0, 1.0, "[0, 1]"),
-    "eumelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
-    "pheomelanin_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
-    "hair_color": (float(np.nextafter(0.0, 1.0)), 1.0, "(0, 1]"),
-    "azimuthal_roughness": (0.0, 1.0, "[0, 1]"),
-    **dict.fromkeys(("thinfilm_thickness", "thickness"), (0.0, 1e9, "[0, 1e9]")),  # nm
-    **dict.fromkeys(("thinfilm_ior", "film_ior"), (1.0, 1e50, "[1, 1e50]")),
-    **dict.fromkeys(("tint_R", "tint_TT", "tint_TRT"), (0.0, 1.0, "[0, 1]")),
-    "variance": (1e-12, 1e12, "[1e-12, 1e12]"),  # where exponents and squares still fit
-    "scale": (1e-12, 1e12, "[1e-12, 1e12]"),
-    **dict.fromkeys(
-        ("roughness_R", "roughness_TT", "roughness_TRT"), (1e-12, 1e12, "[1e-12, 1e12]")
-    ),
-    "cuticle_angle": (0.0, 1.0, "[0, 1]"),
-    "absorption_coefficient": (0.0, 1e50, "[0, 1e50]"),
-    "x": (0.0, _LARGEST, "[0, inf)"),
-    **dict.fromkeys(("theta_i", "theta_o"), (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]")),
-    "phi": (-_LARGEST, _LARGEST, "(-inf, inf)"),
-    "reflectance": (0.0, 1.0, "[0, 1]"),
-    "transmittance": (0.0, 1.0, "[0, 1]"),
-    "single_scatter": (0.0, 1.0, "[0, 1]"),
-    "scatter_anisotropy": (-1.0, 1.0, "[-1, 1]"),
-    # lengths whose products and quotients fit
-    **dict.fromkeys(("separation", "radius", "reach"), (1e-150, 1e150, "[1e-150, 1e150]")),
-    "u": (0.0, float(np.nextafter(1.0, 0.0)), "[0, 1)"),
+    **_each("mu mu_o mu_i", _SHARE),
+    **_each("rho color color0 color82 color90 tint tint_R tint_TT tint_TRT edge_color", _SHARE),
+    **_each("roughness alpha anisotropy glossiness longitudinal azimuthal", _SHARE),
+    **_each("azimuthal_roughness cuticle_angle amount opacity melanin_redness", _SHARE),
+    **_each("reflectance transmittance single_scatter", _SHARE),
+    **_each("u reflectivity melanin_concentration", (0.0, _BELOW_ONE, "[0, 1)")),
+    **_each("eumelanin_color pheomelanin_color hair_color", (_ABOVE_ZERO, 1.0, "(0, 1]")),
+    **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
+    **_each("radiance base emission scattered behind light intensity distance", _POSITIVE),
+    **_each("scale_tt scale_trt", _POSITIVE),
+    **_each("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
+    **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
+    **_each("temperature wavelength", (1.0, 1e9, "[1, 1e9]")),
+    **_each("variance scale roughness_R roughness_TT roughness_TRT", _WIDTH),
+    **_each("separation radius reach", _LENGTH),
+    **_each("weight x", (0.0, _LARGEST, "[0, inf)")),
+    **_each("albedo phi", (-_LARGEST, _LARGEST, "(-inf, inf)")),
+    **_each("cos_theta scatter_anisotropy", (-1.0, 1.0, "[-1, 1]")),
+    **_each("g", (-_BELOW_ONE, _BELOW_ONE, "(-1, 1)")),
+    **_each("inner_angle outer_angle", (0.0, 360.0, "[0, 360]")),
+    **_each("theta_i theta_o", (-0.5 * np.pi, 0.5 * np.pi, "[-pi/2, pi/2]")),
+    **_each("sigma", (0.0, 0.5 * np.pi, "[0, pi/2]")),
+    **_each("exposure", (-1000.0, 1000.0, "[-1000, 1000]")),
 }
