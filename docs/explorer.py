@@ -13,12 +13,13 @@ from mxeon.io.files import write_text
 FOLDER = Path(__file__).resolve().parent
 PAGE = FOLDER / "explore.html"
 PICTURE = FOLDER / "images" / "explorer.png"
+PAGES = "upstream/{}.html"  # beside the page in the built site
 SIZE = {"width": 1280, "height": 900}
 
 
 def main() -> None:
     """Write both files."""
-    write_text(PAGE, page(page_data()))
+    write_text(PAGE, page(page_data(pages=PAGES)))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=program(), args=FLAGS, chromium_sandbox=os.geteuid() != 0

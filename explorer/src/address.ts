@@ -20,9 +20,15 @@ interface Codec<T> {
   readonly read: (text: string, first: T) => T | undefined;
 }
 
+const DIGITS = 5; // of a number in an address: finer than what a picture shows
+
+function short(value: number): string {
+  return String(Number(value.toPrecision(DIGITS)));
+}
+
 function number(low: number, high: number): Codec<number> {
   return {
-    write: String,
+    write: short,
     read: (text) => {
       const value = Number(text);
       return text.trim() === "" || Number.isNaN(value)
@@ -135,7 +141,7 @@ export function from_address(address: string, data: PageData): State {
 
 function write_value(value: Value): string {
   if (typeof value === "boolean") return value ? "true" : "false";
-  return typeof value === "number" ? String(value) : value.join(",");
+  return typeof value === "number" ? short(value) : value.map(short).join(",");
 }
 
 /** Values of inputs that the page has, each of the type and the length of its own. */

@@ -5,22 +5,21 @@ import { useCallback, useEffect, useLayoutEffect, useMemo, useState } from "prea
 import { from_address, to_address } from "./address";
 import { copy } from "./copies";
 import type { PageData } from "./data";
+import { useEvidence, useMeasured, useRest } from "./measuring";
 import { model } from "./models/table";
-import { type Pair, type Point, unit_pair, worst_point } from "./probe";
+import { facing_point, type Point, unit_pair, worst_point } from "./probe";
 import type { Stage } from "./stage";
 import type { State } from "./state";
+import { Dropped } from "./ui/dropped";
 import { Inputs } from "./ui/inputs";
 import { Scene } from "./ui/lighting";
 import { Material, Wanted } from "./ui/material";
-import { type Measured, Probe } from "./ui/probe_panel";
-import { Sides, type ViewProps } from "./ui/sides";
+import { Probe } from "./ui/probe_panel";
+import { Materials, Sides, type ViewProps } from "./ui/sides";
 import { StageView } from "./ui/stage_view";
 import { actual_model, consistent, meant_model, source_of, sources_of, type Sources } from "./view";
 
 const ADDRESS_DELAY = 300; // milliseconds; browsers refuse an address that changes all the time
-
-const MEASURE_DELAY = 60; // milliseconds
-const RETRY_DELAY = 200;
 
 interface AppProps {
   readonly data: PageData;
@@ -35,33 +34,60 @@ export function App({ data, tell }: AppProps) {
     (patch: Partial<State>) => setState((old) => consistent({ ...old, ...patch }, sources)),
     [],
   );
-  const [stage, setStage] = useState<Stage | null>(null);
+  // Undefined before the browser was asked, null if it cannot draw.
+  const [stage, setStage] = useState<Stage | null | undefined>(undefined);
   const [dragging, setDragging] = useState(false);
   useAddress(state, setState, data);
   useKeys(state, change);
-  useLayoutEffect(() => tell(stage, state, setState), [stage, state]);
+  useLayoutEffect(() => tell(stage ?? null, state, setState), [stage, state]);
 
-  const worst = useWorst(state, sources);
-  const probed = stage && state.probe ? stage.pick(...state.probe, state) : null;
-  const pair = probed && probed.wi[2] > 0 && probed.wo[2] > 0 ? unit_pair(probed) : worst;
-  const measured = useMeasured(stage, pair, state, dragging);
-  const mark = state.probe ?? (stage && state.shape === "sphere" ? on_sphere(stage, worst) : null);
+  // What takes long to compute follows the view when it rests.
+  const rest = useRest(stage, state, dragging);
+  const calm = rest ?? state;
+  const worst = useWorst(rest, sources) ?? facing_point(state);
+  const pair = useMemo(() => {
+    const probed = stage && rest?.probe ? stage.pick(...rest.probe, rest) : null;
+    return probed && probed.wi[2] > 0 && probed.wo[2] > 0 ? unit_pair(probed) : worst;
+  }, [stage, rest]);
+  const measured = useMeasured(stage, pair, state, dragging || rest !== state);
+  const evidence = useEvidence(stage, sources, calm, pair, measured);
+  const differ = rest && stage && state.shape === "sphere" ? on_sphere(stage, worst) : null;
   const view: ViewProps = { data, sources, state, change };
+  const probe = useMemo(
+    () => (
+      <Probe
+        {...view}
+        state={calm}
+        pair={pair}
+        measured={measured}
+        able={stage !== null}
+        drawn={rest !== null}
+      />
+    ),
+    [rest, pair, measured, stage],
+  );
   return (
     <>
       <Header data={data} />
+      <Dropped {...view} />
+      <Materials {...view} />
       <div class="columns">
         <div class="main">
-          <Sides {...view} />
-          <StageView {...view} mark={mark} onStage={setStage} onDrag={setDragging} />
-          <Probe {...view} pair={pair} measured={measured} />
+          <Sides {...view} rest={rest} evidence={evidence} />
+          <StageView
+            {...view}
+            mark={state.probe ?? differ}
+            onStage={setStage}
+            onDrag={setDragging}
+          />
         </div>
         <aside class="controls" aria-label="Controls">
-          <Material {...view} />
-          <Wanted {...view} />
+          <Material {...view} drawn={rest !== null} />
           <Inputs {...view} />
           <Scene {...view} />
+          <Wanted {...view} />
         </aside>
+        {probe}
       </div>
     </>
   );
@@ -72,7 +98,7 @@ function Header({ data }: { readonly data: PageData }) {
   return (
     <header>
       <h1>mxeon explorer</h1>
-      <p>Rough diffuse materials, two at a time: see where they differ, and by how much.</p>
+      <p>Two materials at a time: where they differ, by how much, and which one is right.</p>
       <button
         type="button"
         onClick={() =>
@@ -131,41 +157,17 @@ function useKeys(state: State, change: (patch: Partial<State>) => void): void {
 }
 
 /** The point at which the sides differ most; of one model, at which it differs from Lambert. */
-function useWorst(state: State, sources: Sources): Point {
-  const { left, right, azimuth, elevation, color, roughness, inputs } = state;
+function useWorst(state: State | null, sources: Sources): Point | null {
   return useMemo(() => {
-    const [first, second] = [left, right].map((side) => {
+    if (!state) return null;
+    const [first, second] = [state.left, state.right].map((side) => {
       const source = source_of(sources, side);
       return (
         actual_model(source, side, state) ?? meant_model(source, side, state) ?? model("lambert")
       );
     });
     return worst_point(first!, second!, state);
-  }, [left, right, azimuth, elevation, color, roughness, inputs]);
-}
-
-/** Values of the shaders for a pair, asked when the picture is done, not to hold it up. */
-function useMeasured(
-  stage: Stage | null,
-  pair: Pair,
-  state: State,
-  dragging: boolean,
-): Measured | null {
-  const [measured, setMeasured] = useState<Measured | null>(null);
-  useEffect(() => {
-    setMeasured(null);
-    if (!stage || dragging) return;
-    let timer = 0;
-    const ask = (): void => {
-      const free = state.paths || stage.isSettled(state); // paths take long
-      const values = free ? stage.evaluate({ wo: [...pair.wo], wi: [...pair.wi] }, state) : null;
-      setMeasured(values);
-      if (!values?.left || !values.right) timer = window.setTimeout(ask, RETRY_DELAY);
-    };
-    timer = window.setTimeout(ask, MEASURE_DELAY);
-    return () => clearTimeout(timer);
-  }, [stage, pair.wo.join(), pair.wi.join(), state, dragging]);
-  return measured;
+  }, [state]);
 }
 
 /** Where a point of the sphere is in the picture. */

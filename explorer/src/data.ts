@@ -35,6 +35,7 @@ export interface ModelSource {
   readonly model: ModelName;
   readonly meant: ModelName; // what it should be: `model` itself, but for a renderer's variant
   readonly note: string; // one sentence: what it is, or who implements it; "" for none
+  readonly pages: readonly string[]; // names of the pages on its defects
 }
 
 /** A public input of a generated shader. */
@@ -72,6 +73,24 @@ export interface ShaderSource {
   readonly meant: Models | null; // what the node has to be; null if it is not one diffuse node
   readonly actual: Models | null; // what this library's code is, as the diagnosis names it
   readonly document: string; // its MaterialX text, for the copy button
+  readonly pages: readonly string[]; // as those of a ModelSource
+  readonly reference: ReferenceTable | null; // null where no model covers all of its lobes
+}
+
+/** What the models make of a material with its own inputs, in float64. */
+export interface ReferenceTable {
+  readonly direct: readonly number[]; // pi f cos(theta_i) for PageData.pairs, 3 each
+  readonly white: readonly number[]; // light returned of white surroundings, for PageData.views, 3 each
+  readonly bounds: { readonly direct: number; readonly white: number }; // errors that a shader may have
+  readonly forms: readonly ShaderForm[]; // what shaders have in its place
+}
+
+/** Another function that a shader may have; its values as those of a ReferenceTable, or none. */
+export interface ShaderForm {
+  readonly title: string;
+  readonly permitted: boolean; // the specification leaves it open
+  readonly direct: readonly number[];
+  readonly white: readonly number[];
 }
 
 export type Source = ModelSource | ShaderSource;
@@ -88,5 +107,10 @@ export interface PageData {
   /** eonlib's GLSL functions of the whole family and its samplers, includes expanded, no #version. */
   readonly functions: string;
   readonly sources: readonly Source[];
+  /** Pairs of directions, wo and wi of each, and views, in the local frame, of every reference. */
+  readonly pairs: readonly (readonly [Vec3, Vec3])[];
+  readonly views: readonly Vec3[];
+  /** Address of a page on a defect, {} for its name; "" where there is none. */
+  readonly pages: string;
   readonly stills: readonly Still[];
 }

@@ -56,6 +56,14 @@ export function apart(a: Vec3, b: Vec3): number {
   return each.reduce((most, one) => (Math.abs(one) > Math.abs(most) ? one : most));
 }
 
+/** Errors below it are roundings of float32, of which the shaders make some tens. */
+const ROUNDING = 64 * 2 ** -24;
+
+/** Whether two values differ by more than roundings. */
+export function is_other(value: Vec3, other: Vec3): boolean {
+  return !(Math.abs(apart(value, other)) < ROUNDING);
+}
+
 /** A point of the sphere, seen along -z. */
 export interface Point extends Pair {
   readonly normal: Triple;
@@ -87,8 +95,12 @@ export function worst_point(first: Model, second: Model, state: State): Point {
       }
     }
   }
-  if (worst && Math.abs(worst.apart) > 1e-12) return worst;
-  // Two equal models: a point that faces the viewer and the light alike.
+  return worst && Math.abs(worst.apart) > 1e-12 ? worst : facing_point(state);
+}
+
+/** A point that faces the viewer and the light alike. */
+export function facing_point(state: State): Point {
+  const light = light_of(state);
   const half = unit([light[0], light[1], light[2] + 1.0 + 1e-9]);
   return { ...pair_of(half, [0, 0, 1], light), normal: half, apart: 0 };
 }

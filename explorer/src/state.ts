@@ -3,7 +3,7 @@
 
 import type { Triple } from "./data";
 
-export const SHAPES = ["sphere", "plane", "cloth", "ball"] as const; // plane: a sphere on it
+export const SHAPES = ["sphere", "plane", "cloth", "ball", "fiber"] as const; // plane: a sphere on it
 export const SURROUNDINGS = ["none", "uniform", "studio", "sky", "window"] as const;
 export const COMPARISONS = ["wipe", "difference", "flicker"] as const;
 export const SAMPLERS = ["exact", "cltc", "cosine"] as const;
@@ -57,9 +57,9 @@ export const INITIAL: State = {
   wipe: 0.5,
   scale: 0.1,
   shown: "left",
-  shape: "sphere",
-  azimuth: 180, // from behind and above: where implementations part
-  elevation: 50,
+  shape: "ball",
+  azimuth: 155, // from behind and above: where implementations part
+  elevation: 35,
   light: 1.5,
   surroundings: "studio",
   exposure: 0,

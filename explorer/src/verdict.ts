@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a side is, whether it is what it should be, and by how much it is not.
+//
+// No side is called correct before its shader's values were read back in this browser.
 
+import type { ShaderForm, ShaderSource } from "./data";
 import { show } from "./format";
 import { albedo_dir, type Model } from "./models/table";
 import { largest_apart, worst_point } from "./probe";
 import type { Side, State } from "./state";
 import { actual_model, meant_model, type Sources, source_of } from "./view";
 
-export type Kind = "correct" | "wrong" | "model" | "unknown";
+/** "differs": from the reference, as the specification leaves open. */
+export type Kind = "correct" | "wrong" | "differs" | "model" | "unknown" | "measuring";
 
 export interface Verdict {
   readonly kind: Kind;
@@ -15,24 +19,94 @@ export interface Verdict {
   readonly text: string;
 }
 
+/** Largest difference between a shader's values and those of its reference, for its own inputs. */
+export interface ErrorOf {
+  readonly error: number;
+  readonly form: ShaderForm | null; // which explains the values where the reference does not
+}
+
+export interface Errors {
+  readonly direct: ErrorOf; // pi f cos of all pairs of directions
+  readonly white: ErrorOf; // what it returns of white surroundings
+}
+
+/** What this browser read back of a side's shader. */
+export interface Evidence {
+  readonly able: boolean; // whether it can draw at all
+  /** Whether the shader has the values of the model that it is said to be; null before it is known. */
+  readonly confirmed: boolean | null;
+  readonly errors: Errors | null; // null before they are known, and without a reference
+  readonly failure: string; // what the compiler says of a shader that does not compile
+}
+
+const MEASURING = "Its values are being read back.";
+const UNREAD = "Nothing is measured: this browser draws no shader.";
+
 /** The verdict on a side, for the colors, the roughness and the light of a view. */
-export function verdict_on(state: State, sources: Sources, side: Side): Verdict {
+export function verdict_on(
+  state: State,
+  sources: Sources,
+  side: Side,
+  evidence: Evidence,
+): Verdict {
   const source = source_of(sources, side);
+  if (evidence.failure) return { kind: "wrong", badge: "not drawn", text: evidence.failure };
   const [actual, meant] = [actual_model(source, side, state), meant_model(source, side, state)];
   if (!actual || !meant) {
+    if (source.kind === "shader" && source.reference) return by_reference(source, evidence);
     return {
       kind: "unknown",
       badge: "material",
-      text: "No single model: compare it with the other side.",
+      text: "No reference: compare it with the other side.",
     };
   }
-  if (actual === meant) {
-    if (source.kind === "model") {
-      return { kind: "model", badge: actual.short, text: `The model itself: ${actual.title}.` };
-    }
-    return { kind: "correct", badge: actual.short, text: `Correct: ${actual.title}.` };
+  if (actual !== meant) {
+    return { kind: "wrong", badge: `not ${meant.short}`, text: wrong(actual, meant, state) };
   }
-  return { kind: "wrong", badge: `not ${meant.short}`, text: wrong(actual, meant, state) };
+  if (source.kind === "model") {
+    return { kind: "model", badge: actual.short, text: `The model itself: ${actual.title}.` };
+  }
+  return by_model(actual, evidence);
+}
+
+/** The verdict on a shader that is said to be the model that is meant. */
+function by_model({ short, title }: Model, { able, confirmed }: Evidence): Verdict {
+  if (!able) return { kind: "model", badge: short, text: UNREAD };
+  if (confirmed === null) return { kind: "measuring", badge: "measuring", text: MEASURING };
+  if (!confirmed)
+    return { kind: "wrong", badge: `not ${short}`, text: "The probe shows by how much." };
+  return { kind: "correct", badge: short, text: `Correct: ${title}.` };
+}
+
+/** The verdict on a shader by the table of its reference. */
+function by_reference(source: ShaderSource, { able, errors }: Evidence): Verdict {
+  const { bounds, forms } = source.reference!;
+  if (!able) return { kind: "unknown", badge: "material", text: UNREAD };
+  if (!errors) return { kind: "measuring", badge: "measuring", text: MEASURING };
+  const { direct, white } = errors;
+  const places = [
+    { ...direct, bound: bounds.direct, light: "direct light" },
+    { ...white, bound: bounds.white, light: "white surroundings" },
+  ].filter(({ error, bound }) => !(error <= bound));
+  if (places.length === 0) {
+    const [first, second] = [show(direct.error, 2), show(white.error, 2)];
+    const text = `Within ${first} of float64 in direct light, and ${second} in white surroundings.`;
+    return { kind: "correct", badge: "correct", text };
+  }
+  const parts = places.map(({ error, light }) => `${show(error, 2)} in ${light}`);
+  const title = places.find(({ form }) => form)?.form?.title;
+  const off = `Off by up to ${parts.join(", ")}`;
+  const named = title ? `: ${title}` : "";
+  // Of layers no form is known, but that of each lobe may be left open.
+  if (forms.length === 0) {
+    const hint = "Its lobes, one by one, say which of it the specification leaves open.";
+    return { kind: "differs", badge: "differs", text: `${off}. ${hint}` };
+  }
+  if (places.every(({ form }) => form?.permitted)) {
+    const text = `${off}${named}. The specification leaves this open.`;
+    return { kind: "differs", badge: "differs", text };
+  }
+  return { kind: "wrong", badge: "wrong", text: `${off}${named}.` };
 }
 
 /** A sentence on a model that is not the one that is meant. */
@@ -45,10 +119,7 @@ function wrong(actual: Model, meant: Model, state: State): string {
   if (actual.wrong && actual.meant === meant.name) parts.push(actual.wrong);
   const amount = [];
   if (anywhere > 1e-9) {
-    amount.push(
-      `Off by up to ${show(here, 2)} in this light and ${show(anywhere, 2)} in any, ` +
-        "in units of \u03c0 f cos\u03b8.",
-    );
+    amount.push(`Off by up to ${show(here, 2)} in this light and ${show(anywhere, 2)} in any.`);
   }
   if (albedo > 1e-9) amount.push(`In surroundings its albedo is off by up to ${show(albedo, 2)}.`);
   if (amount.length === 0) amount.push("At this color and roughness both are the same.");

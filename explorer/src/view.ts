@@ -52,9 +52,7 @@ export function has_flag(source: Source): boolean {
 /** A name for a side where there is little room. */
 export function short_title(source: Source, side: Side): string {
   if (source.kind === "model") return source.title.split(":")[0]!.replace(/.*\((.*)\)$/, "$1");
-  if (source.id.startsWith("shader/")) {
-    return `${source.library}, flag ${side.flag ? "on" : "off"}`;
-  }
+  if (has_flag(source)) return `${source.library}, flag ${side.flag ? "on" : "off"}`;
   return source.title;
 }
 
@@ -103,6 +101,18 @@ export function with_source(
   };
 }
 
+/** A view of a shader with its own inputs. */
+export function own_view(source: ShaderSource): State {
+  const value = (name: string) => source.inputs.find((port) => port.name === name)?.value;
+  const { color, roughness, flag } = source.controls;
+  return {
+    ...INITIAL,
+    left: { ...INITIAL.left, source: source.id, flag: Boolean(value(flag)) },
+    color: (value(color) as Triple | undefined) ?? INITIAL.color,
+    roughness: (value(roughness) as number | undefined) ?? INITIAL.roughness,
+  };
+}
+
 /** Values of a shader's inputs as they are drawn, by name of the uniform. */
 export function values_of(source: ShaderSource, state: State, side: Side): Map<string, Value> {
   const values = new Map<string, Value>();
@@ -119,15 +129,48 @@ export function values_of(source: ShaderSource, state: State, side: Side): Map<s
   return values;
 }
 
+/** What the ids of a material have in common, whatever the library. */
+export function stem_of(id: string): string {
+  return id.replace(/[^/]*$/, "");
+}
+
+/** Titles of the materials that the page has as shaders, by what their ids have in common. */
+export function materials_of(data: PageData): ReadonlyMap<string, string> {
+  const shaders = data.sources.filter((source) => source.kind === "shader");
+  const own = shaders.filter(({ id }) => id.startsWith("document/"));
+  return new Map(
+    [...own, ...shaders].map(({ id, title }) => [stem_of(id), title.replace(/, [^,]*$/, "")]),
+  );
+}
+
+/** A view of a material with both libraries, or of the one that has it. */
+export function with_material(state: State, sources: Sources, stem: string): Partial<State> {
+  const ids = [...sources.keys()].filter((id) => stem_of(id) === stem);
+  const [first, second = first] = ids;
+  const change = with_source(state, sources, "left", first!);
+  const shape = stem.includes("hair") ? "fiber" : state.shape === "fiber" ? "ball" : state.shape;
+  const right = { ...state.right, ...change.left, source: second! };
+  return { ...change, right, shape, ...light_for(state, stem) };
+}
+
+const FRONT = { azimuth: 40, elevation: 45 }; // shows highlights
+
+/** The light of a material, unless a reader has moved it: diffuse ones part where it is behind. */
+function light_for(state: State, stem: string): Partial<State> {
+  const first = { azimuth: INITIAL.azimuth, elevation: INITIAL.elevation };
+  const is_at = (light: typeof FRONT): boolean =>
+    state.azimuth === light.azimuth && state.elevation === light.elevation;
+  if (!is_at(first) && !is_at(FRONT)) return {};
+  return stem.startsWith("lobe/") ? FRONT : first;
+}
+
 /** The first view of a page: its first document if it has one. */
 export function first_view(data: PageData): State {
   const sources = sources_of(data);
   const documents = data.sources.filter((source) => source.id.startsWith("document/"));
   const [first] = documents;
   if (!first) return INITIAL;
-  const stem = first.id.replace(/[^/]*$/, "");
-  const twin = documents.find((source) => source !== first && source.id.startsWith(stem));
+  const twin = documents.find((each) => each !== first && stem_of(each.id) === stem_of(first.id));
   const left = { ...INITIAL, ...with_source(INITIAL, sources, "left", first.id) };
-  if (!twin) return left;
-  return { ...left, right: { ...left.left, source: twin.id } };
+  return twin ? { ...left, right: { ...left.left, source: twin.id } } : left;
 }

@@ -19,8 +19,8 @@ CHANGED = {
     "light": 2.5,
     "surroundings": "sky",
     "exposure": -1.7,
-    "color": [0.1, 1 / 3, 1],
-    "roughness": 0.30000000000000004,
+    "color": [0.1, 0.3333, 1],
+    "roughness": 0.30001,
     "wanted": [0, 0.25, 0.5],
     "average": True,
     "keep": False,
@@ -53,6 +53,16 @@ def test_each_field_is_in_the_address(page, name):
     )
     assert page.evaluate("address => mxeon.from_address(address)", address)[name] == CHANGED[name]
     assert address
+
+
+def test_numbers_of_an_address_are_short(page):
+    address = page.evaluate(
+        "mxeon.to_address({...mxeon.from_address(''), wipe: 1 / 3, color: [1 / 3, 2 / 3, 1e-9 / 7],"
+        " inputs: {'lobe/sheen/eonlib': {lobe_roughness: 0.1 + 0.2}}})"
+    )
+    assert address == (
+        "wipe=0.33333&color=0.33333,0.66667,1.4286e-10&input:lobe/sheen/eonlib:lobe_roughness=0.3"
+    )
 
 
 def test_a_color_that_is_kept_follows_from_the_one_that_is_wanted(page):

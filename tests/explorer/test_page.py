@@ -38,8 +38,8 @@ def recolored(page):
 
 def test_the_first_picture_waits_for_no_program_or_pixel_that_it_does_not_need(page):
     counts = page.evaluate("counts")
-    # The shape, its surroundings, two materials, and the screen.
-    assert 0 < counts["linkProgram"] <= 5 and 0 < counts["drawArrays"] <= 5
+    # The shape, its shadow, its surroundings, two materials, and the screen.
+    assert 0 < counts["linkProgram"] <= 6 and 0 < counts["drawArrays"] <= 6
     assert counts["drawElements"] == counts["readPixels"] == 0
 
 
@@ -77,7 +77,8 @@ def test_a_slider_changes_the_view_and_the_picture(page, label, field, value, ef
     [
         ("Shape", "on a plane", "shape", "plane"),
         ("Shape", "cloth", "shape", "cloth"),
-        ("Shape", "shader ball", "shape", "ball"),
+        ("Shape", "sphere", "shape", "sphere"),
+        ("Shape", "hair", "shape", "fiber"),
         ("Surroundings", "white", "surroundings", "uniform"),
         ("Surroundings", "black", "surroundings", "none"),
         ("Surroundings", "sky", "surroundings", "sky"),

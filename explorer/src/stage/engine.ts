@@ -3,13 +3,15 @@
 //
 // What a pass reads decides whether it is drawn again: a wipe that moves draws no material anew.
 
-import type { PageData, Source, Triple, Vec3 } from "../data";
+import type { PageData, ReferenceTable, ShaderSource, Source, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
+import type { ErrorOf, Errors } from "../verdict";
+import { own_view } from "../view";
 import { DIFFERENCE_COLORS, linear } from "./colors";
 import * as gpu from "./gpu";
 import { modelOf, shaderUniforms, wanted } from "./materials";
 import { jitter, Paths, type Size } from "./paths";
-import { camera, lightVector, toView } from "./scenes";
+import { bend, camera, isUnshadowed, lightVector, toView } from "./scenes";
 import { hasTable, samplerRoughness, type Text, Texts } from "./texts";
 import { deleteTargets, layer, makeTargets, type Targets } from "./targets";
 import { Textures } from "./textures";
@@ -18,10 +20,45 @@ export const SIDES = ["left", "right"] as const satisfies readonly SideName[];
 
 const ALBEDO_ANGLES = 256; // of the table of a model without a closed form
 const FAR = 1e8;
+const FINE_SAMPLES = 1024; // of white surroundings, by glossy lobes whose values are checked
 
 /** Diameter of the sphere in pixels: even, so that its pixels are those of the gl host's picture. */
 export function diameterOf(size: Size): number {
   return 2 * Math.round(Math.min(...size) / 2 / camera("sphere").span);
+}
+
+/** Largest difference of values; of large ones it is relative, as the checks of values have it. */
+function farthest(
+  values: readonly (Triple | null)[],
+  expected: readonly number[],
+  relative: boolean,
+): number {
+  let most = 0;
+  values.forEach((value, row) => {
+    const own = expected.slice(3 * row, 3 * row + 3);
+    const scale = relative ? Math.max(1, ...own.map(Math.abs)) : 1;
+    own.forEach((each, k) => {
+      const error = Math.abs((value?.[k] ?? NaN) - each) / scale;
+      if (!Number.isNaN(most) && !(error <= most)) most = error; // the first NaN stays
+    });
+  });
+  return most;
+}
+
+/** The error against the reference, and the form that explains the values if it does not. */
+function nearest(
+  kind: "direct" | "white",
+  reference: ReferenceTable,
+  values: readonly (Triple | null)[],
+): ErrorOf {
+  const of = (expected: readonly number[]): number =>
+    expected.length > 0 ? farthest(values, expected, kind === "direct") : Infinity;
+  const error = of(reference[kind]);
+  if (error <= reference.bounds[kind]) return { error, form: null };
+  const errors = reference.forms.map((form) => of(form[kind]));
+  const least = errors.indexOf(Math.min(...errors));
+  const explained = (errors[least] ?? Infinity) <= reference.bounds[kind];
+  return { error, form: explained ? reference.forms[least]! : null };
 }
 
 export class Engine {
@@ -44,7 +81,7 @@ export class Engine {
 
   constructor(
     private readonly gl: WebGL2RenderingContext,
-    data: PageData,
+    private readonly data: PageData,
   ) {
     this.texts = new Texts(data);
     this.textures = new Textures(gl);
@@ -61,10 +98,14 @@ export class Engine {
     gl.disable(gl.DITHER);
   }
 
-  /** Draw frame `index` of the average onto the canvas; false while programs are compiled. */
-  frame(state: State, size: Size, canvas: Size, index: number): boolean {
+  /**
+   * Draw frame `index` of the average onto the canvas; false while programs are compiled.
+   *
+   * `size` is what is drawn, `full` what a picture at rest has, `canvas` that of the canvas.
+   */
+  frame(state: State, size: Size, full: Size, canvas: Size, index: number): boolean {
     if (!this.ready(state)) return false;
-    this.allocate(canvas);
+    this.allocate(full);
     const averaged = state.paths ? 0 : index;
     this.prepare(state, size, averaged);
     for (const side of SIDES) {
@@ -75,7 +116,7 @@ export class Engine {
     const screen = this.programs.get(this.texts.screen());
     const uniforms = {
       stage_picture: layer(this.targets.average[averaged % 2 ? 1 : 0]),
-      stage_canvas: [...canvas, size[0] / canvas[0], size[1] / canvas[1]],
+      stage_canvas: [...canvas, size[0] / full[0], size[1] / full[1]],
     };
     if (screen) gpu.drawPass(this.gl, screen, null, canvas, uniforms);
     return true;
@@ -109,23 +150,55 @@ export class Engine {
   /** pi f cos(theta_i) of a side's own shader for one pair; null while compiling or if it fails. */
   value(state: State, side: SideName, wo: Vec3, wi: Vec3): Triple | null {
     const alone: State = { ...state, shape: "sphere", light: 1, surroundings: "none" };
+    return this.isValued(alone, side) ? this.single(alone, side, wo, wi, {}) : null;
+  }
+
+  /** Largest errors of a shader with its own inputs; null while compiling or if it fails. */
+  check(source: ShaderSource): Errors | null {
+    const { pairs, views } = this.data;
+    const view = own_view(source);
+    const lamp: State = { ...view, shape: "sphere", light: 1, surroundings: "none" };
+    const white: State = { ...lamp, light: 0, surroundings: "uniform" };
+    if (!source.reference || !this.isValued(lamp, "left")) return null;
+    const direct = pairs.map(([wo, wi]) => this.single(lamp, "left", wo, wi, {}));
+    const fine = { u_envRadianceSamples: FINE_SAMPLES };
+    const round = views.map((wo) => this.single(white, "left", wo, wo, fine));
+    return {
+      direct: nearest("direct", source.reference, direct),
+      white: nearest("white", source.reference, round),
+    };
+  }
+
+  /** Whether a side's programs are there for `single`. */
+  private isValued(state: State, side: SideName): boolean {
     const source = this.sources.get(state[side].source);
-    if (!source) return null;
+    if (!source) return false;
+    const texts = wanted(this.texts, source, state[side], { ...state, paths: false });
+    const pending = texts.filter(({ text }) => this.isPending(source.id, text));
+    return pending.length === 0 && !this.errors.has(source.id);
+  }
+
+  /** Radiance of a side's shader at one point, with some uniforms of their own. */
+  private single(
+    state: State,
+    side: SideName,
+    wo: Vec3,
+    wi: Vec3,
+    own: gpu.Uniforms,
+  ): Triple | null {
     const eye: Triple = [FAR * wo[0], FAR * wo[1], FAR * wo[2]];
     this.uniforms = {
-      ...this.uniformsOf(alone, [1, 1], 0),
+      ...this.uniformsOf(state, [1, 1], 0),
       stage_surface: this.upright,
       stage_place: this.textures.white,
       stage_light_view: wi,
       stage_eye_view: eye,
     };
-    const texts = wanted(this.texts, source, state[side], { ...alone, paths: false });
-    if (texts.some(({ text }) => this.isPending(source.id, text))) return null;
-    if (this.errors.has(source.id)) return null;
-    const { text, uniforms } = this.look(alone, side, source, wi, eye);
+    const source = this.sources.get(state[side].source)!;
+    const { text, uniforms } = this.look(state, side, source, wi, eye);
     const program = this.programs.get(text);
     if (!program) return null;
-    gpu.drawPass(this.gl, program, this.pixel, [1, 1], { ...this.uniforms, ...uniforms });
+    gpu.drawPass(this.gl, program, this.pixel, [1, 1], { ...this.uniforms, ...uniforms, ...own });
     const [red = 0, green = 0, blue = 0] = gpu.readPixels(this.gl, this.pixel, 0, [0, 0, 1, 1]);
     return [red, green, blue];
   }
@@ -140,7 +213,7 @@ export class Engine {
     this.errors.clear();
     const { texts } = this;
     const own = [texts.geometry(state.shape), texts.picture(state.shape), texts.screen()];
-    if (state.shape !== "sphere") own.push(texts.shadow(state.shape));
+    if (!isUnshadowed(state.shape)) own.push(texts.shadow(state.shape));
     const missing = own.filter((text) => this.isPending("", text)).map(() => "");
     for (const side of SIDES) {
       const source = this.sources.get(state[side].source);
@@ -191,12 +264,13 @@ export class Engine {
       stage_light: light,
       stage_light_view: toView(view, light),
       stage_intensity: state.light,
+      stage_bend: bend(state.shape),
       stage_rho: state.color,
       stage_parameter: state.roughness,
       stage_surface: layer(geometry),
       stage_place: layer(geometry, 1),
       stage_detail: layer(geometry, 2),
-      stage_lit: state.shape === "sphere" ? white : layer(lit),
+      stage_lit: isUnshadowed(state.shape) ? white : layer(lit),
       stage_environment: this.textures.surroundings(state.surroundings, "radiance"),
       stage_irradiance: this.textures.surroundings(state.surroundings, "irradiance"),
       stage_before: white,
@@ -210,7 +284,7 @@ export class Engine {
     const { geometry, lit } = this.targets;
     const seen = JSON.stringify([state.shape, size, index]);
     this.pass("geometry", seen, this.texts.geometry(state.shape), geometry, size, {});
-    if (state.shape === "sphere") return;
+    if (isUnshadowed(state.shape)) return;
     const light = JSON.stringify([seen, lightVector(state)]);
     this.pass("lit", light, this.texts.shadow(state.shape), lit, size, {});
   }

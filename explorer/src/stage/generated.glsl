@@ -10,6 +10,7 @@ uniform highp sampler2D stage_lit;
 uniform mat3 stage_camera;
 uniform vec4 stage_frame;
 uniform float stage_intensity;
+uniform vec2 stage_bend; // Height of the center about which fibers bend, and 1; 0 for other shapes.
 
 void main()
 {
@@ -24,6 +25,8 @@ void main()
     vec3 stage_beside = stage_camera * stage_normal;
     stage_beside = vec3(stage_beside.z, 0.0, -stage_beside.x);
     stage_beside = dot(stage_beside, stage_beside) > 0.0 ? stage_beside : vec3(1.0, 0.0, 0.0);
+    if (stage_bend.y > 0.0)
+        stage_beside = cross(stage_camera * stage_position.xyz - vec3(0.0, stage_bend.x, 0.0), vec3(0.0, 0.0, 1.0));
     vec3 stage_tangent = normalize(stage_beside) * stage_camera;
     float stage_lamp = texture(stage_lit, gl_FragCoord.xy / stage_frame.xy).x;
     u_numActiveLightSources = stage_lamp * stage_intensity > 0.0 ? 1 : 0;

@@ -24,7 +24,7 @@ vec2 stage_globe(vec3 direction)
 // Texture coordinates: of a globe, and along what is plane its own two axes at about the same scale.
 vec2 stage_texture_place(vec3 p, vec3 normal)
 {
-#if STAGE_SHAPE == 2
+#if STAGE_SHAPE == 2 || STAGE_SHAPE == 4
     return 0.5 + 0.25 * p.xy;
 #elif STAGE_SHAPE == 3
     float radius = length(p);

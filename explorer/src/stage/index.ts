@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stage: draws a state when it changes, sharpens the picture at rest, and then does nothing.
 
-import type { PageData, Triple, Vec3 } from "../data";
+import type { PageData, ShaderSource, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
+import type { Errors } from "../verdict";
 import { diameterOf, Engine, SIDES } from "./engine";
 import { Pace } from "./pace";
 import type { Size } from "./paths";
@@ -40,6 +41,10 @@ export interface Stage {
   pick(x: number, y: number, state: State): Pick | null;
   /** pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or fail. */
   evaluate(pair: { wo: Vec3; wi: Vec3 }, state: State): { left: Triple; right: Triple } | null;
+  /** Largest errors of a shader against its reference; null while it compiles or if it fails. */
+  check(source: ShaderSource): Errors | null;
+  /** What is wrong with a source in the latest picture; "" for nothing. */
+  failure(source: string): string;
   /** The light that a point of the picture stands for, and the point of a light. */
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number };
   fromLight(state: State): [number, number];
@@ -50,6 +55,8 @@ export interface Stage {
   diameter(): number;
   /** Whether the picture of a state is final, so that nothing is drawn until something changes. */
   isSettled(state: State): boolean;
+  /** Whether a picture of a state was drawn, final or not. */
+  isDrawn(state: State): boolean;
   onStatus(callback: (status: Status) => void): void;
   dispose(): void;
 }
@@ -113,6 +120,8 @@ class CanvasStage implements Stage {
 
   draw(state: State, dragging = false): void {
     this.pace.change(dragging);
+    const old = this.state;
+    if (SIDES.some((side) => old?.[side].source !== state[side].source)) this.pace.renew();
     this.state = state;
     this.restart();
   }
@@ -137,6 +146,14 @@ class CanvasStage implements Stage {
   ): { left: Triple; right: Triple } | null {
     const [left, right] = SIDES.map((side) => this.engine?.value(state, side, wo, wi));
     return left && right ? { left, right } : null;
+  }
+
+  check(source: ShaderSource): Errors | null {
+    return this.engine?.check(source) ?? null;
+  }
+
+  failure(source: string): string {
+    return this.engine?.errors.get(source) ?? "";
   }
 
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number } {
@@ -174,6 +191,10 @@ class CanvasStage implements Stage {
 
   isSettled(state: State): boolean {
     return this.state === state && this.index > 0 && !this.request && !this.pace.moving;
+  }
+
+  isDrawn(state: State): boolean {
+    return this.state === state && this.index > 0 && !this.fence;
   }
 
   onStatus(callback: (status: Status) => void): void {
@@ -215,6 +236,15 @@ class CanvasStage implements Stage {
     return fitted(this.canvas);
   }
 
+  /** The canvas' size, set if it is another one. */
+  private sized([width, height]: Size): Size {
+    const { canvas } = this;
+    if (canvas.width !== width || canvas.height !== height) {
+      [canvas.width, canvas.height] = [width, height];
+    }
+    return [width, height];
+  }
+
   private isFitted(): boolean {
     const [width, height] = this.fit();
     return this.canvas.width === width && this.canvas.height === height;
@@ -242,11 +272,12 @@ class CanvasStage implements Stage {
     if (!state || !engine || !this.canvas.clientWidth) return;
     if (this.isBusy()) return this.schedule();
     if (!this.goesOn(state, engine)) return;
-    const canvas = this.fit();
-    if (this.index === 0) this.pace.begin(canvas, state.paths);
+    const full = this.fit();
+    if (this.index === 0) this.pace.begin(full, state.paths);
     const size = this.drawnSize();
-    if (!this.isFitted()) [this.canvas.width, this.canvas.height] = canvas;
-    const done = engine.frame(state, size, canvas, this.index);
+    // What moves is enlarged by the browser: a software driver takes longer than for the material.
+    const canvas = this.pace.moving ? size : full;
+    const done = engine.frame(state, size, full, this.sized(canvas), this.index);
     this.tellErrors(engine);
     if (!done) {
       this.tell({ kind: "compiling", source: engine.waiting });

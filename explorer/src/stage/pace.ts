@@ -4,18 +4,18 @@
 import type { Size } from "./paths";
 
 const SMOOTHING = 8; // frames that a picture at rest is the average of,
-const SLOW_SMOOTHING = 4; // and where a frame takes longer than
-const SLOW = 60; // milliseconds
-const MOVING_BUDGET = 28; // milliseconds of a frame while something moves,
+const LEAST_SMOOTHING = 2; // and where they take longer, as many as take so many
+const SMOOTHING_BUDGET = 1000; // milliseconds
+const MOVING_BUDGET = 24; // milliseconds of a frame while something moves: 30 frames a second
 const PATHS_BUDGET = 120; // and of a pass of paths
 const REST = 220; // milliseconds after which what changed last is at rest
-const SMALLEST = 0.3; // share of the resolution that is kept
-const FIRST_SHARE = 0.5; // that of the first picture
+const SMALLEST = 0.15; // share of the resolution that is kept
+const FIRST_SHARE = 0.35; // that of the first picture of a material
 
 export class Pace {
   moving = false; // and another state will follow soon
   private dragging = false;
-  private first = true; // The first picture is coarse, to be there soon.
+  private first = true; // The first picture of a material is coarse, to be there soon.
   private changed = -Infinity; // when the state last did
   private timer = 0;
   private share = 1; // of the resolution
@@ -37,14 +37,19 @@ export class Pace {
     if (often && !dragging) this.timer = window.setTimeout(this.stop, REST);
   }
 
+  /** Take note of new materials, which may take longer. */
+  renew(): void {
+    this.first = true;
+  }
+
   /** Choose the resolution of what is drawn from now on. */
   begin([width, height]: Size, paths: boolean): void {
     // What is dragged keeps one size, unless that is still too slow.
-    if (this.moving && this.share < 1 && this.latest < 2 * MOVING_BUDGET) return;
+    if (this.moving && this.share < 1 && this.latest < 1.5 * MOVING_BUDGET) return;
     const budget = this.moving ? MOVING_BUDGET : paths ? PATHS_BUDGET : Infinity;
     const affordable = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;
     const share = this.first ? FIRST_SHARE : affordable;
-    this.share = Math.min(Math.max(Math.ceil(share * 10) / 10, SMALLEST), 1);
+    this.share = Math.min(Math.max(Math.floor(share * 20) / 20, SMALLEST), 1);
   }
 
   /** Size in which a picture is drawn that fills so much: even, as that is. */
@@ -65,7 +70,8 @@ export class Pace {
   /** Frames that a picture at rest is the average of; one while it moves. */
   frames([width, height]: Size): number {
     if (this.moving) return 1;
-    return this.rate * width * height > SLOW ? SLOW_SMOOTHING : SMOOTHING;
+    const affordable = Math.floor(SMOOTHING_BUDGET / Math.max(this.rate * width * height, 1));
+    return Math.min(Math.max(affordable, LEAST_SMOOTHING), SMOOTHING);
   }
 
   end(): void {

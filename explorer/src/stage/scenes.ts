@@ -28,10 +28,29 @@ const VIEWS: Record<Shape, View> = {
   plane: { pitch: 18, distance: 8, target: -0.12, span: 1.5 },
   cloth: { pitch: 0, distance: 7, target: 0, span: 1.3 },
   ball: { pitch: 15, distance: 8, target: -0.12, span: 1.36 },
+  fiber: { pitch: 0, distance: 8, target: 0, span: 1.1 },
 };
 
 /** Index of a shape in shapes.glsl. */
-export const SHAPE_INDEX: Record<Shape, number> = { sphere: 0, plane: 1, cloth: 2, ball: 3 };
+export const SHAPE_INDEX: Record<Shape, number> = {
+  sphere: 0,
+  plane: 1,
+  cloth: 2,
+  ball: 3,
+  fiber: 4,
+};
+
+const BEND = -1.9; // height of the center about which the fibers bend: STAGE_BEND of shapes.glsl
+
+/** Height of the center of the bend, and 1; 0 for shapes whose tangents are those of a globe. */
+export function bend(shape: Shape): [number, number] {
+  return shape === "fiber" ? [BEND, 1] : [0, 0];
+}
+
+/** Whether the light may reach a point from behind its surface, which then takes no shadow. */
+export function isUnshadowed(shape: Shape): boolean {
+  return shape === "sphere" || shape === "fiber";
+}
 
 export function camera(shape: Shape): Camera {
   const { pitch, distance, target, span } = VIEWS[shape];
@@ -72,9 +91,13 @@ export function lightAt(shape: Shape, x: number, y: number, aspect: number) {
   const [wx, wy, wz] = toWorld(view, [right * side, up * side, Math.cos(polar)]);
   const degrees = 180 / Math.PI;
   return {
-    azimuth: Math.atan2(wx, wz) * degrees,
-    elevation: Math.asin(Math.max(-1, Math.min(1, wy))) * degrees,
+    azimuth: tenth(Math.atan2(wx, wz) * degrees),
+    elevation: tenth(Math.asin(Math.max(-1, Math.min(1, wy))) * degrees),
   };
+}
+
+function tenth(degrees: number): number {
+  return Math.round(10 * degrees) / 10;
 }
 
 /** The point of the picture that stands for the light; inverse of `lightAt`. */

@@ -2,7 +2,7 @@
 // The shapes of the stage as functions that a ray is cast at.
 //
 // STAGE_SHAPE says which: 0 a sphere, 1 a sphere on a plane, 2 a hanging cloth, 3 a ball cut open
-// around a core, on a foot. World frame: x to the right, y up, z towards the viewer. Distances are
+// around a core, on a foot, 4 a lock of fibers. World frame: x to the right, y up, z towards the viewer. Distances are
 // in radii of the sphere.
 
 #define STAGE_NEVER 1.0e9
@@ -29,6 +29,15 @@
 #define STAGE_CLOTH_HEIGHT 1.12
 #define STAGE_CLOTH_DEPTH 0.27
 #define STAGE_CLOTH_STEPS 32
+
+// The fibers: rings about an axis along z, of which the frame shows the tops.
+#define STAGE_BEND -1.9
+#define STAGE_FIRST_RING 1.25
+#define STAGE_RING_GAP 0.2
+#define STAGE_RINGS 7.0
+#define STAGE_FIBER 0.085
+#define STAGE_FIBER_STEPS 40
+#define STAGE_FIBER_NEAR 5.0e-5
 
 struct Hit {
     float t;
@@ -116,6 +125,35 @@ Hit stage_nearest(vec3 origin, vec3 direction)
     }
     return hit;
 }
+#elif STAGE_SHAPE == 4
+// Distance from the nearest fiber, and the vector to it from its core.
+vec4 stage_fiber(vec3 p)
+{
+    vec2 across = p.xy - vec2(0.0, STAGE_BEND);
+    float ring = length(across);
+    float index = clamp(round((ring - STAGE_FIRST_RING) / STAGE_RING_GAP), 0.0, STAGE_RINGS - 1.0);
+    float beside = ring - STAGE_FIRST_RING - STAGE_RING_GAP * index;
+    vec3 core = vec3(beside * across / ring, p.z);
+    return vec4(core, length(core) - STAGE_FIBER);
+}
+
+// Steps along the ray by the distance from the nearest fiber, from the plane in front of them.
+Hit stage_nearest(vec3 origin, vec3 direction)
+{
+    Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
+    if (direction.z >= 0.0)
+        return hit;
+    float t = max((STAGE_FIBER - origin.z) / direction.z, 0.0);
+    for (int k = 0; k < STAGE_FIBER_STEPS; ++k) {
+        vec4 fiber = stage_fiber(origin + t * direction);
+        if (fiber.w < STAGE_FIBER_NEAR) {
+            stage_keep(hit, t, normalize(fiber.xyz), STAGE_SUBJECT);
+            return hit;
+        }
+        t += fiber.w;
+    }
+    return hit;
+}
 #else
 // How far inside the cut a point is, across its two upright faces and its sill.
 vec3 stage_in_cut(vec3 p)
@@ -196,7 +234,7 @@ float stage_opacity(vec3 p)
 // all but the cap that the sphere hides, 1 / d^2 of it times the cosine. Path tracing is exact.
 float stage_ambient(vec3 p, vec3 normal)
 {
-#if STAGE_SHAPE == 0
+#if STAGE_SHAPE == 0 || STAGE_SHAPE == 4
     return 1.0;
 #elif STAGE_SHAPE == 2
     return clamp(0.75 + 1.4 * p.z, 0.3, 1.0);

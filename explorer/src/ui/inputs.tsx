@@ -3,7 +3,7 @@
 
 import type { Port, ShaderSource, Triple } from "../data";
 import type { State, Value } from "../state";
-import { SIDES, source_of, values_of } from "../view";
+import { SIDES, source_of, stem_of, values_of } from "../view";
 import { Check, Color, NumberField, Slider } from "./fields";
 import type { ViewProps } from "./sides";
 
@@ -13,7 +13,7 @@ export function Inputs(props: ViewProps) {
   const shown = new Map<string, ShaderSource>();
   for (const name of SIDES) {
     const source = source_of(sources, state[name]);
-    if (source.kind === "shader" && source.id.startsWith("document/")) {
+    if (source.kind === "shader" && !source.id.startsWith("shader/")) {
       const stem = stem_of(source.id);
       if (!shown.has(stem)) shown.set(stem, source);
     }
@@ -25,11 +25,6 @@ export function Inputs(props: ViewProps) {
       ))}
     </>
   );
-}
-
-/** What the ids of a material have in common, whatever the library. */
-function stem_of(id: string): string {
-  return id.replace(/[^/]*$/, "");
 }
 
 function Group({ source, data, state, change }: ViewProps & { readonly source: ShaderSource }) {
@@ -51,6 +46,7 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
         <Field
           key={port.name}
           port={port}
+          alone={source.id.startsWith("lobe/")}
           value={values.get(port.name)!}
           onChange={(value) => set(port, value)}
         />
@@ -61,21 +57,29 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
 
 interface FieldProps {
   readonly port: Port;
+  readonly alone: boolean; // whether one node has all inputs, so that its name says nothing
   readonly value: Value;
   readonly onChange: (value: Value) => void;
 }
 
-function Field({ port, value, onChange }: FieldProps) {
+function Field({ port, alone, value, onChange }: FieldProps) {
   const node = port.path.split("/").slice(-2, -1)[0];
-  const label = node ? `${node.replaceAll("_", " ")}: ${port.label}` : port.label;
+  const label = node && !alone ? `${node.replaceAll("_", " ")}: ${port.label}` : port.label;
   if (typeof value === "boolean") return <Check label={label} value={value} onChange={onChange} />;
   if (typeof value === "number") {
     const [min, max] = range(port, value);
     const step = port.type === "integer" ? 1 : (max - min) / 200;
     return <Slider label={label} {...{ value, min, max, step, onChange }} />;
   }
-  if (port.type === "color3") {
+  // An index of refraction is no color: colors end at 1.
+  if (port.type === "color3" && Math.max(...(port.value as Triple)) <= 1) {
     return <Color label={label} value={value as Triple} onChange={onChange} />;
+  }
+  const [first, second] = value;
+  if (port.type === "vector2" && port.label.startsWith("roughness") && first === second) {
+    return (
+      <Slider label={label} value={first!} min={0} max={1} onChange={(x) => onChange([x, x])} />
+    );
   }
   return (
     <fieldset class="parts">

@@ -10,6 +10,7 @@ const SHAPE_TITLES: Readonly<Record<Shape, string>> = {
   plane: "on a plane",
   cloth: "cloth",
   ball: "shader ball",
+  fiber: "hair",
 };
 
 const SURROUNDINGS_TITLES: Readonly<Record<Surroundings, string>> = {

@@ -5,7 +5,7 @@ import { useMemo } from "preact/hooks";
 import type { Triple, Vec3 } from "../data";
 import { triple } from "../format";
 import { albedo_avg, albedo_dir, type Model } from "../models/table";
-import { actual_model, enter, inversion_model, LETTER, SIDES, source_of } from "../view";
+import { actual_model, enter, LETTER, meant_model, SIDES, source_of } from "../view";
 import { Check, Choice, Color, Slider, Swatch } from "./fields";
 import type { ViewProps } from "./sides";
 
@@ -13,7 +13,13 @@ function per_channel(color: Vec3, one: (rho: number) => number): Triple {
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
-export function Material({ sources, state, change }: ViewProps) {
+/** Color and roughness; albedos, which take long, wait until the first picture is drawn. */
+export function Material({
+  sources,
+  state,
+  change,
+  drawn,
+}: ViewProps & { readonly drawn: boolean }) {
   const { color, roughness } = state;
   const shown = SIDES.map((name) => source_of(sources, state[name]));
   const models = shown.map((source, k) => actual_model(source, state[SIDES[k]!], state));
@@ -50,7 +56,9 @@ export function Material({ sources, state, change }: ViewProps) {
             return (
               <tr key={name} class={name}>
                 <th scope="row">{LETTER[name]}</th>
-                {of ? (
+                {!drawn ? (
+                  <td colSpan={2}>…</td>
+                ) : of ? (
                   <Albedos of={of} color={color} roughness={roughness} />
                 ) : (
                   <td colSpan={2}>not one model</td>
@@ -90,9 +98,15 @@ function Albedos({ of, color, roughness }: AlbedosProps) {
   );
 }
 
-export function Wanted({ sources, state, change }: ViewProps) {
+/** Which color to enter, of a material that is one rough diffuse lobe. */
+export function Wanted(props: ViewProps) {
+  const { sources, state } = props;
+  const of = meant_model(source_of(sources, state.left), state.left, state);
+  return of && <WantedFor {...props} of={of} />;
+}
+
+function WantedFor({ state, change, of }: ViewProps & { readonly of: Model }) {
   const { wanted, average, keep, roughness } = state;
-  const of = inversion_model(state, sources);
   const color = useMemo(
     () => enter(of, wanted, roughness, average),
     [of, wanted, roughness, average],

@@ -6,7 +6,7 @@ import { useState } from "preact/hooks";
 import type { Triple } from "../data";
 import { copy, material_x, python_line, shader_text } from "../copies";
 import { degrees, signed, triple } from "../format";
-import { apart, type Pair, values } from "../probe";
+import { apart, is_other, type Pair, values } from "../probe";
 import { actual_model, LETTER, meant_model, SIDES, source_of } from "../view";
 import { AlbedoPlot, type Curve, Polar } from "./plots";
 import type { ViewProps } from "./sides";
@@ -20,14 +20,14 @@ export interface Measured {
 interface ProbeProps extends ViewProps {
   readonly pair: Pair;
   readonly measured: Measured | null; // null while something moves, and where no shader runs
+  readonly able: boolean; // whether shaders run
+  readonly drawn: boolean; // whether the first picture is there, before which nothing is plotted
 }
 
 const DECIMALS = 7;
-/** Errors below it are roundings of float32, of which the shaders make some tens. */
-const ROUNDING = 64 * 2 ** -24;
 
 export function Probe(props: ProbeProps) {
-  const { sources, state, change, pair } = props;
+  const { sources, state, change, pair, drawn } = props;
   const { color, roughness, probe } = state;
   const curves: Curve[] = [];
   for (const side of SIDES) {
@@ -52,7 +52,7 @@ export function Probe(props: ProbeProps) {
         <Values {...props} />
         <Copies {...props} />
       </div>
-      {curves.length > 0 && (
+      {drawn && curves.length > 0 && (
         <>
           <Polar {...{ curves, pair, color, roughness }} />
           <AlbedoPlot {...{ curves, pair, color, roughness }} />
@@ -81,7 +81,7 @@ function Directions({ pair: { wo, wi } }: { readonly pair: Pair }) {
   );
 }
 
-function Values({ sources, state, pair, measured }: ProbeProps) {
+function Values({ sources, state, pair, measured, able }: ProbeProps) {
   const { color, roughness } = state;
   return (
     <table class="values">
@@ -101,6 +101,7 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
           {SIDES.map((name) => {
             const of = actual_model(source_of(sources, state[name]), state[name], state);
             const value = measured?.[name];
+            if (!value && able) return <Measuring />;
             if (!value && !of) return "–";
             return (
               <>
@@ -132,8 +133,12 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
               actual_model(source, state[name], state),
               meant_model(source, state[name], state),
             ];
-            const value = measured?.[name] ?? (is && values(is, pair, color, roughness));
-            if (!value || !of) return "–";
+            if (!of) return "–";
+            if (!measured?.[name] && able) return <Measuring />;
+            // Where no shader runs, a model is not compared with itself.
+            const value =
+              measured?.[name] ?? (is && is !== of && values(is, pair, color, roughness));
+            if (!value) return "not measured";
             const error = apart(value, values(of, pair, color, roughness));
             const right = !is_other(value, values(of, pair, color, roughness));
             return (
@@ -143,20 +148,21 @@ function Values({ sources, state, pair, measured }: ProbeProps) {
             );
           })}
         </Row>
-        {measured?.left && measured.right && (
-          <tr>
-            <th scope="row">A − B</th>
-            <td colSpan={2}>{signed(apart(measured.left, measured.right), 3)}</td>
-          </tr>
-        )}
+        <tr>
+          <th scope="row">A − B</th>
+          <td colSpan={2}>
+            {measured?.left && measured.right
+              ? signed(apart(measured.left, measured.right), 3)
+              : "–"}
+          </td>
+        </tr>
       </tbody>
     </table>
   );
 }
 
-/** Whether two values differ by more than roundings. */
-function is_other(value: Triple, other: Triple): boolean {
-  return !(Math.abs(apart(value, other)) < ROUNDING);
+function Measuring() {
+  return <span class="of">measuring…</span>;
 }
 
 interface RowProps {

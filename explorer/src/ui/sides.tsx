@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two materials: what they are, and the verdict on them.
 
+import { useMemo } from "preact/hooks";
 import type { PageData } from "../data";
 import { SAMPLERS, type Sampler, type SideName, type State } from "../state";
-import { verdict_on } from "../verdict";
-import { has_flag, LETTER, SIDES, source_of, with_source, type Sources } from "../view";
-import { useMemo } from "preact/hooks";
-import { Check } from "./fields";
+import { type Evidence, type Verdict, verdict_on } from "../verdict";
+import {
+  has_flag,
+  LETTER,
+  materials_of,
+  SIDES,
+  source_of,
+  stem_of,
+  with_material,
+  with_source,
+  type Sources,
+} from "../view";
+import { Check, Choice } from "./fields";
 
 export interface ViewProps {
   readonly data: PageData;
@@ -21,7 +31,28 @@ const SAMPLER_TITLES: Readonly<Record<Sampler, string>> = {
   cosine: "cosine sampling",
 };
 
-export function Sides(props: ViewProps) {
+/** Which material of both libraries is compared. */
+export function Materials({ data, sources, state, change }: ViewProps) {
+  const materials = materials_of(data);
+  const stem = stem_of(state.left.source);
+  return (
+    <section class="materials" aria-label="What to compare">
+      <Choice
+        label="eonlib beside stock MaterialX"
+        value={stem}
+        options={[...materials].map(([key, title]) => [key, title] as const)}
+        onChange={(key) => change(with_material(state, sources, key))}
+      />
+    </section>
+  );
+}
+
+interface SidesProps extends ViewProps {
+  readonly rest: State | null; // the view that verdicts are about; null before the first picture
+  readonly evidence: Readonly<Record<SideName, Evidence>>;
+}
+
+export function Sides(props: SidesProps) {
   return (
     <section class="sides" aria-label="Materials">
       {SIDES.map((name) => (
@@ -31,14 +62,19 @@ export function Sides(props: ViewProps) {
   );
 }
 
-function SideCard({ name, data, sources, state, change }: ViewProps & { readonly name: SideName }) {
+const WAITING: Verdict = { kind: "measuring", badge: "measuring", text: "" };
+
+function SideCard(props: SidesProps & { readonly name: SideName }) {
+  const { name, data, sources, state, rest, evidence, change } = props;
   const side = state[name];
   const source = source_of(sources, side);
   const groups = [...new Set(data.sources.map((each) => each.group))];
-  const { azimuth, elevation, color, roughness, inputs } = state;
+  const { able, confirmed, errors, failure } = evidence[name];
+  // A verdict on a view that moves is that on the one before, if that had the same material.
+  const judged = rest && rest[name] === side ? rest : null;
   const verdict = useMemo(
-    () => verdict_on(state, sources, side),
-    [side, azimuth, elevation, color, roughness, inputs],
+    () => (judged ? verdict_on(judged, sources, side, evidence[name]) : WAITING),
+    [judged, side, able, confirmed, errors, failure],
   );
   return (
     <div class={`side ${name}`}>
@@ -64,13 +100,20 @@ function SideCard({ name, data, sources, state, change }: ViewProps & { readonly
           ))}
         </select>
       </label>
-      {has_flag(source) && (
-        <Check
-          label={<code>energy_compensation</code>}
-          value={side.flag}
-          onChange={(flag) => change({ [name]: { ...side, flag } })}
-        />
-      )}
+      <p class={`verdict ${verdict.kind}`}>
+        <strong>{verdict.badge}</strong> {verdict.text}
+      </p>
+      <div class="foot">
+        <Pages names={source.pages} pattern={data.pages} />
+        {has_flag(source) && (
+          <Check
+            label={<code>energy_compensation</code>}
+            value={side.flag}
+            onChange={(flag) => change({ [name]: { ...side, flag } })}
+          />
+        )}
+      </div>
+      {source.note && <p class="note">{source.note}</p>}
       {state.paths && (
         <label class="sampler">
           <span>Samples</span>
@@ -88,10 +131,30 @@ function SideCard({ name, data, sources, state, change }: ViewProps & { readonly
           </select>
         </label>
       )}
-      <p class={`verdict ${verdict.kind}`}>
-        <strong>{verdict.badge}</strong> {verdict.text}
-      </p>
-      {source.note && <p class="note">{source.note}</p>}
     </div>
+  );
+}
+
+interface PagesProps {
+  readonly names: readonly string[];
+  readonly pattern: string;
+}
+
+/** The pages on the defects of a material, as links where there is an address. */
+function Pages({ names, pattern }: PagesProps) {
+  if (names.length === 0) return null;
+  return (
+    <p class="note pages">
+      {names.length === 1 ? "Known defect: " : "Known defects: "}
+      {names.map((name, k) => {
+        const words = name.replace(/^gen[a-z]+_/, "").replaceAll("_", " ");
+        return (
+          <>
+            {k > 0 && ", "}
+            {pattern ? <a href={pattern.replace("{}", name)}>{words}</a> : words}
+          </>
+        );
+      })}
+    </p>
   );
 }

@@ -27,6 +27,11 @@ const TITLES: Readonly<Record<Comparison, string>> = {
 const NEAR = 18; // pixels from the line within which it is taken
 const CLICK = 4; // pixels that a click may move
 
+/** A place with as many digits as the address has. */
+function short([x, y]: readonly [number, number]): [number, number] {
+  return [Number(x.toFixed(4)), Number(y.toFixed(4))];
+}
+
 type Drag = { kind: "wipe" | "light" | "click"; x: number; y: number } | null;
 
 export function StageView(props: StageViewProps) {
@@ -71,13 +76,16 @@ export function StageView(props: StageViewProps) {
     if (now.kind === "click") return;
     setDragging(true);
     const [x, y] = place(event);
-    if (now.kind === "wipe") change({ wipe: x });
+    if (now.kind === "wipe") change({ wipe: short([x, y])[0] });
     else change(stage?.toLight(x, y, state) ?? {});
   };
-  const up = (event: PointerEvent): void => {
-    if (drag.current?.kind === "click") change({ probe: place(event) });
+  const end = (): void => {
     drag.current = null;
     setDragging(false);
+  };
+  const up = (event: PointerEvent): void => {
+    if (drag.current?.kind === "click") change({ probe: short(place(event)) });
+    end();
   };
 
   if (stage === null) return <Stills stills={data.stills} />;
@@ -90,7 +98,7 @@ export function StageView(props: StageViewProps) {
         onPointerDown={down}
         onPointerMove={move}
         onPointerUp={up}
-        onPointerCancel={up}
+        onPointerCancel={end}
       >
         <canvas
           ref={canvas}

@@ -18,6 +18,7 @@ from mxeon.conformance.results import Result
 from mxeon.explorer.data import PageData, ShaderSource
 from mxeon.explorer.diagnosis import measured_models
 from mxeon.explorer.documents import MEANT, document_sources
+from mxeon.explorer.references import pairs, views
 from mxeon.explorer.sources import model_sources, node_sources, run_sources
 from mxeon.explorer.stills import stills
 from mxeon.shaders.functions import source
@@ -31,7 +32,9 @@ ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u202
 
 
 def page_data(
-    documents: Iterable[tuple[ShaderSource, ...]] = (), results: Iterable[Result] = ()
+    documents: Iterable[tuple[ShaderSource, ...]] = (),
+    results: Iterable[Result] = (),
+    pages: str = "",
 ) -> PageData:
     """The data of a page.
 
@@ -41,6 +44,8 @@ def page_data(
         What `document_sources` gives for each document.
     results : iterable of Result
         Of a run whose diagnoses can be chosen too.
+    pages : str
+        Address of a page of `docs/upstream`, {} for its name; "" for none.
 
     Returns
     -------
@@ -58,6 +63,9 @@ def page_data(
         source("glsl"),
         tuple(chain(shaders, run_sources(results), model_sources())),
         stills(),
+        pairs(),
+        views(),
+        pages,
     )
 
 
@@ -92,13 +100,19 @@ def page(data: PageData) -> str:
 
 
 def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
-    """The data with each paragraph of shaders and documents once; `explorer/src/texts.ts` undoes it.
+    """The data with each paragraph and each reference once; `explorer/src/texts.ts` undoes it.
 
-    Shaders share nearly all of their functions, and materials of one file the whole document.
+    Shaders share nearly all of their functions, and materials of one file the whole document; both
+    libraries share the reference.
     """
     places: dict[str, int] = {}
+    references: list[dict[str, Any]] = []
     for each in fields["sources"]:
+        if (reference := each.get("reference")) is not None:
+            if reference not in references:
+                references.append(reference)
+            each["reference"] = references.index(reference)
         for name in filter(each.__contains__, TEXTS):
             parts = each[name].split(PARAGRAPH)
             each[name] = [places.setdefault(part, len(places)) for part in parts]
-    return fields | {"texts": list(places)}
+    return fields | {"texts": list(places), "references": references}

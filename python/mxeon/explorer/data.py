@@ -2,8 +2,11 @@
 """The data of a page, field for field the types of `explorer/src/data.ts`."""
 
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from mxeon.shaders.document.values import Plain
+
+Direction: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,8 @@ class ModelSource:
         Its name, the heading it stands under, and one sentence about it.
     model, meant : str
         The model that it is, and the one that it should be.
+    pages : tuple of str
+        Names of the pages of `docs/upstream` on its defects.
     """
 
     id: str
@@ -40,6 +45,7 @@ class ModelSource:
     model: str
     meant: str
     note: str = ""
+    pages: tuple[str, ...] = ()
     kind: str = "model"
 
 
@@ -104,6 +110,54 @@ class Controls:
 
 
 @dataclass(frozen=True)
+class ReferenceBounds:
+    """Largest errors that a shader may have, from `mxeon.conformance.accuracy`."""
+
+    direct: float
+    white: float
+
+
+@dataclass(frozen=True)
+class ShaderForm:
+    """Another function that a shader may have in place of a model.
+
+    Attributes
+    ----------
+    title : str
+    permitted : bool
+        Whether the specification leaves it open.
+    direct, white : tuple of float
+        As those of `ReferenceTable`, or empty.
+    """
+
+    title: str
+    permitted: bool
+    direct: tuple[float, ...] = ()
+    white: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class ReferenceTable:
+    """What the models make of a material, in float64, rounded to the digits of `references.py`.
+
+    Attributes
+    ----------
+    direct : tuple of float
+        pi f cos(theta_i) for each pair of a page, 3 each.
+    white : tuple of float
+        What it returns of white surroundings to each view of a page, 3 each.
+    bounds : ReferenceBounds
+    forms : tuple of ShaderForm
+        What shaders have in its place; empty for more than one lobe.
+    """
+
+    direct: tuple[float, ...]
+    white: tuple[float, ...]
+    bounds: ReferenceBounds
+    forms: tuple[ShaderForm, ...] = ()
+
+
+@dataclass(frozen=True)
 class ShaderSource:
     """A material as generated ESSL.
 
@@ -121,6 +175,10 @@ class ShaderSource:
         The document, as MaterialX text.
     meant, actual : Models or None
         What the node should be and what this library makes of it, where it is one diffuse node.
+    pages : tuple of str
+        As those of `ModelSource`.
+    reference : ReferenceTable or None
+        None where no model covers all of its lobes.
     """
 
     id: str
@@ -134,6 +192,8 @@ class ShaderSource:
     document: str
     meant: Models | None = None
     actual: Models | None = None
+    pages: tuple[str, ...] = ()
+    reference: ReferenceTable | None = None
     kind: str = "shader"
 
 
@@ -158,6 +218,10 @@ class PageData:
     sources : tuple of ModelSource and ShaderSource
         What can be compared.
     stills : tuple of Still
+    pairs, views : tuple
+        Pairs of directions, wo and wi of each, and views, in the local frame, of every reference.
+    pages : str
+        Address of a page on a defect, {} for its name; "" where there is none.
     """
 
     version: str
@@ -165,6 +229,9 @@ class PageData:
     functions: str
     sources: tuple[ModelSource | ShaderSource, ...]
     stills: tuple[Still, ...] = field(default=())
+    pairs: tuple[tuple[Direction, Direction], ...] = ()
+    views: tuple[Direction, ...] = ()
+    pages: str = ""
 
     @property
     def judged(self) -> bool:

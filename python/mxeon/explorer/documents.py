@@ -13,7 +13,8 @@ import MaterialX as mx
 import numpy as np
 
 from mxeon.errors import MxeonError, printable
-from mxeon.explorer.data import Controls, Models, ShaderInput, ShaderSource, Texels
+from mxeon.explorer.data import Controls, Models, ReferenceTable, ShaderInput, ShaderSource, Texels
+from mxeon.explorer.references import reference_of
 from mxeon.hosts.textures import read_texture
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.values import Plain, members
@@ -22,6 +23,7 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
 LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
+REFERENCES = 20  # materials of a document that are compared with models, some 0.1 s each
 LARGEST_IMAGE = 256  # texels on a side: a quarter of a mebibyte
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
@@ -52,6 +54,7 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
     """
     name = " ".join(printable(Path(file).name).split())
     sources: list[ShaderSource] = []
+    references: dict[str, ReferenceTable | None] = {}  # by element, alike for both libraries
     for library in LIBRARIES:
         # Generate with each library; a node may be in eonlib alone.
         try:
@@ -65,7 +68,9 @@ def document_sources(file: str, policy: Policy = DEFAULT) -> tuple[ShaderSource,
         for shader in shaders:
             title = f"{shader.element}, {library}"
             source = shader_source(shader, text, f"{shader.name}/{library}", title, name, library)
-            sources.append(source)
+            if shader.element not in references and len(references) < REFERENCES:
+                references[shader.element] = reference_of(shader)
+            sources.append(replace(source, reference=references.get(shader.element)))
     return tuple(sources)
 
 

@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The materials of every page: the models, the renderers' variants, and the two libraries' nodes."""
+"""The materials of every page: the models, the renderers' variants, and lobes of both libraries."""
 
 from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache
+from itertools import chain
 
 from mxeon.conformance.results import FAILED, Result
 from mxeon.explorer.data import ModelSource, ShaderSource
-from mxeon.explorer.documents import shader_source
+from mxeon.explorer.documents import LIBRARIES, shader_source
+from mxeon.explorer.lobes import MATERIALS, ComparedMaterial
+from mxeon.explorer.references import reference_of
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from mxeon.shaders.generation import generate
-from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.nodes import FLAG
 
-NODES = "MaterialX node, generated shader"
+NODES = "Generated shaders"
 FAMILY = "Models, eonlib's functions"
 VARIANTS = "What renderers do instead"
 RUN = "What the run found"
@@ -33,17 +38,33 @@ RENDERERS = (
 
 
 def node_sources() -> tuple[ShaderSource, ...]:
-    """The node `oren_nayar_diffuse_bsdf` with eonlib and with stock MaterialX."""
-    text = material_text(OREN_NAYAR, {"color": (0.8, 0.4, 0.1), "roughness": 1.0, FLAG: True})
-    sources = []
-    for library, title in (("eonlib", "eonlib"), ("stock", "stock MaterialX")):
-        [shader] = generate(text, "essl", library=library, lights=True)
-        sources.append(
+    """Each of MATERIALS with eonlib and with stock MaterialX."""
+    return tuple(chain.from_iterable(map(_material_sources, MATERIALS)))
+
+
+@lru_cache
+def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
+    """A material of every page with both libraries, and the pages on what stock's does wrong."""
+    shaders = {
+        library: generate(material.text, "essl", library=library, lights=True)[0]
+        for library in LIBRARIES
+    }
+    reference = reference_of(shaders["eonlib"])
+    return tuple(
+        replace(
             shader_source(
-                shader, text, f"shader/{library}", f"{title}: {OREN_NAYAR}", NODES, library
-            )
+                shader,
+                material.text,
+                f"{material.key}/{library}",
+                f"{material.title}, {'stock MaterialX' if library == 'stock' else library}",
+                NODES,
+                library,
+            ),
+            reference=reference,
+            pages=material.pages if library == "stock" else (),
         )
-    return tuple(sources)
+        for library, shader in shaders.items()
+    )
 
 
 def model_sources() -> tuple[ModelSource, ...]:
@@ -57,7 +78,7 @@ def model_sources() -> tuple[ModelSource, ...]:
             VARIANTS,
             name,
             meant,
-            f"docs/upstream/{page}.md",
+            pages=(page,),
         )
         for position, (title, name, meant, page) in enumerate(RENDERERS)
     )

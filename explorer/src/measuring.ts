@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is computed and read back when a view rests, so that it holds no picture up.
+
+import { useEffect, useState } from "preact/hooks";
+import type { ModelName } from "./data";
+import { is_other, type Pair, values } from "./probe";
+import type { Stage } from "./stage";
+import type { SideName, State } from "./state";
+import type { Measured } from "./ui/probe_panel";
+import type { Errors, Evidence } from "./verdict";
+import { actual_model, SIDES, source_of, type Sources } from "./view";
+
+const REST = 120; // milliseconds without a change
+const MEASURE_DELAY = 60;
+const RETRY = 100;
+
+/** The latest view that rested after its picture was drawn; null before the first one. */
+export function useRest(
+  stage: Stage | null | undefined,
+  state: State,
+  dragging: boolean,
+): State | null {
+  const [rest, setRest] = useState<State | null>(null);
+  useEffect(() => {
+    if (stage === undefined || dragging) return;
+    let timer = 0;
+    const look = (): void => {
+      if (!stage || stage.isDrawn(state)) setRest(state);
+      else timer = window.setTimeout(look, RETRY);
+    };
+    timer = window.setTimeout(look, rest && stage ? REST : 0);
+    return () => clearTimeout(timer);
+  }, [stage, state, dragging]);
+  return rest;
+}
+
+/** Values of the shaders for a pair, asked when the picture is done; null until they are there. */
+export function useMeasured(
+  stage: Stage | null | undefined,
+  pair: Pair,
+  state: State,
+  moving: boolean,
+): Measured | null {
+  const [measured, setMeasured] = useState<Measured | null>(null);
+  useEffect(() => {
+    setMeasured(null);
+    if (!stage || moving) return;
+    let timer = 0;
+    const ask = (): void => {
+      const free = state.paths || stage.isSettled(state); // paths take long
+      const read = free ? stage.evaluate({ wo: [...pair.wo], wi: [...pair.wi] }, state) : null;
+      setMeasured(read);
+      if (!read?.left || !read.right) timer = window.setTimeout(ask, RETRY);
+    };
+    timer = window.setTimeout(ask, MEASURE_DELAY);
+    return () => clearTimeout(timer);
+  }, [stage, pair.wo.join(), pair.wi.join(), state, moving]);
+  return measured;
+}
+
+/** What was read back of the shaders of both sides, now or before. */
+export function useEvidence(
+  stage: Stage | null | undefined,
+  sources: Sources,
+  state: State,
+  pair: Pair,
+  measured: Measured | null,
+): Readonly<Record<SideName, Evidence>> {
+  const [confirmed, setConfirmed] = useState<ReadonlyMap<string, boolean>>(new Map());
+  const [errors, setErrors] = useState<ReadonlyMap<string, Errors>>(new Map());
+  const key = (side: SideName, of: ModelName): string => `${state[side].source} ${of}`;
+  useEffect(() => {
+    if (!measured) return;
+    const found = new Map(confirmed);
+    for (const side of SIDES) {
+      const of = actual_model(source_of(sources, state[side]), state[side], state);
+      const value = measured[side];
+      if (!of || !value) continue;
+      const right = !is_other(value, values(of, pair, state.color, state.roughness));
+      found.set(key(side, of.name), right && found.get(key(side, of.name)) !== false);
+    }
+    setConfirmed(found);
+  }, [measured]);
+  useEffect(() => {
+    if (!stage || !measured) return;
+    const asked = SIDES.map((side) => source_of(sources, state[side])).find(
+      (each) => each.kind === "shader" && each.reference && !errors.has(each.id),
+    );
+    if (asked?.kind !== "shader") return;
+    const timer = window.setTimeout(() => {
+      const found = stage.check(asked);
+      if (found) setErrors(new Map(errors).set(asked.id, found));
+    });
+    return () => clearTimeout(timer);
+  }, [stage, measured, errors]);
+  const one = (side: SideName): Evidence => {
+    const of = actual_model(source_of(sources, state[side]), state[side], state);
+    return {
+      able: stage !== null,
+      confirmed: (of && confirmed.get(key(side, of.name))) ?? null,
+      errors: errors.get(state[side].source) ?? null,
+      failure: stage?.failure(state[side].source) ?? "",
+    };
+  };
+  return { left: one("left"), right: one("right") };
+}

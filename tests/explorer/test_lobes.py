@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lobes of the page: verdicts by values that the browser read back, and a layout that stays."""
+
+from dataclasses import replace
+
+import pytest
+
+from mxeon.explorer import page, page_data
+from mxeon.explorer.lobes import MATERIALS
+from mxeon.io.files import write_text
+from tests.explorer.browser import opened, show, until
+
+KEYS = [material.key for material in MATERIALS]
+# What MaterialX's own GLSL is, by diagnosis of the host gl: pages of docs/upstream say it.
+STOCK = {
+    "shader": "wrong",
+    "lobe/sheen": "wrong",
+    "lobe/sheen_zeltner": "correct",  # wrong under other lobes, and where the normal leans
+    "lobe/dielectric": "differs",
+    "lobe/conductor": "differs",
+    "lobe/schlick": "differs",
+    "lobe/film_dielectric": "differs",
+    "lobe/film_conductor": "differs",
+    "lobe/film_schlick": "wrong",
+    "lobe/hair": "wrong",
+    "lobe/openpbr": "differs",  # its lobes, one by one, say more
+}
+JUDGED = "![...document.querySelectorAll('.verdict')].some(e => e.classList.contains('measuring'))"
+PLACES = """['.stage', '.side.left', '.side.right', '.verdict', '.probe', '.values'].map(name => {
+    const {left, top, width, height} = document.querySelector(name).getBoundingClientRect();
+    return [name, left, top + scrollY, width, height].join();
+})"""
+PLAIN = {"shape": "sphere", "surroundings": "none"}
+
+
+def choose(sheet, key):
+    """Compare both libraries on a material, drawn in little time."""
+    sheet.get_by_role("group", name="eonlib beside stock MaterialX").locator(
+        f"input[value='{key}/']"
+    ).check(force=True)
+    show(sheet, **PLAIN)
+
+
+def kinds(sheet):
+    """Kind of both verdicts."""
+    return [
+        sheet.locator(f".side.{side} .verdict").get_attribute("class").split()[1]
+        for side in ("left", "right")
+    ]
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_every_lobe_is_judged_by_its_values(page, key):
+    choose(page, key)
+    until(page, JUDGED)
+    assert kinds(page) == ["correct", STOCK[key]]
+
+
+def test_a_verdict_names_what_the_other_one_is(page):
+    choose(page, "lobe/conductor")
+    until(page, JUDGED)
+    text = page.locator(".side.right .verdict").inner_text()
+    assert "F at the half vector" in text and "leaves this open" in text
+    choose(page, "lobe/film_schlick")
+    until(page, JUDGED)
+    assert (
+        "half of the substrate's reflectance" in page.locator(".side.right .verdict").inner_text()
+    )
+
+
+@pytest.fixture(scope="module")
+def mistaken(tmp_path_factory):
+    """Address of a page whose reference of sheen is a hundredth too bright."""
+    data = page_data(pages="upstream/{}.html")
+    sources = tuple(map(brightened, data.sources))
+    file = tmp_path_factory.mktemp("mistaken") / "page.html"
+    write_text(file, page(replace(data, sources=sources)))
+    return file.as_uri()
+
+
+def brightened(source):
+    if not source.id.startswith("lobe/sheen/"):
+        return source
+    values = tuple(1.01 * value for value in source.reference.direct)
+    return replace(source, reference=replace(source.reference, direct=values, forms=()))
+
+
+SHEEN = "a=lobe/sheen/eonlib,0,exact&b=lobe/sheen/stock,0,exact&shape=sphere&surroundings=none"
+
+
+def test_values_that_are_not_those_of_the_reference_are_found_out(browser, mistaken):
+    with opened(browser, f"{mistaken}#{SHEEN}") as sheet:
+        until(sheet, JUDGED)
+        assert kinds(sheet) == ["differs", "differs"]
+
+
+def test_pages_on_defects_are_links_where_there_is_an_address(browser, mistaken, page):
+    with opened(browser, f"{mistaken}#{SHEEN}", drawn=False) as sheet:
+        links = [each.get_attribute("href") for each in sheet.locator(".pages a").all()]
+        assert links[0] == "upstream/genglsl_conty_kulla_fit.html"
+    choose(page, "lobe/sheen")
+    assert page.locator(".pages").inner_text().startswith("Known defects: conty kulla fit")
+    assert page.locator(".pages a").count() == 0
+
+
+def test_nothing_is_called_correct_before_a_value_is_read_back(browser, address):
+    with opened(browser, address, drawn=False) as sheet:
+        assert sheet.locator(".verdict.correct").count() == 0
+        assert "✓" not in sheet.locator(".values").inner_text()
+    with opened(browser, address) as sheet:
+        sheet.evaluate("mxeon.stage.evaluate = () => null")
+        show(sheet, left={"source": "lobe/sheen/eonlib", "flag": True, "sampler": "exact"}, **PLAIN)
+        sheet.wait_for_timeout(1000)
+        assert kinds(sheet)[0] == "measuring"
+        assert "measuring…" in sheet.locator(".values").inner_text()
+        assert sheet.locator(".verdict.correct").count() == 0
+
+
+def test_no_verdict_moves_the_page(page):
+    places = set()
+    for key in ("shader", "lobe/sheen", "lobe/conductor"):
+        choose(page, key)
+        places.add(tuple(page.evaluate(PLACES)[:4]))
+        until(page, JUDGED)
+        places.add(tuple(page.evaluate(PLACES)[:4]))
+    assert len(places) == 1
+
+
+def test_a_measured_value_is_as_high_as_one_that_is_not(page):
+    until(page, "document.querySelector('.values').innerText.includes('float32')")
+    before = page.evaluate(PLACES)
+    page.evaluate("mxeon.show({...mxeon.state(), azimuth: 20})")
+    until(page, "document.querySelector('.values').innerText.includes('measuring')")
+    assert page.evaluate(PLACES) == before
+
+
+def test_a_page_of_another_lobe_has_no_heading_of_diffuse_ones(page):
+    choose(page, "lobe/sheen")
+    headings = page.locator("h2").all_inner_texts()
+    assert headings == ["Inputs of Sheen, Conty-Kulla", "Light and shape", "Probe"]
+
+
+DROP = """name => {
+    const data = new DataTransfer();
+    data.items.add(new File(["<materialx/>"], name));
+    dispatchEvent(new DragEvent("drop", {dataTransfer: data, cancelable: true}));
+}"""
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("wood.mtlx", "mxeon explore wood.mtlx --output page.html"),
+        ("my wood's.mtlx", "mxeon explore 'my wood'\\''s.mtlx' --output page.html"),
+        ("--all.mtlx", "mxeon explore ./--all.mtlx --output page.html"),
+        ("wood.png", "wood.png is no MaterialX document"),
+    ],
+)
+def test_a_file_that_is_dropped_gets_its_command(page, name, said):
+    page.evaluate(DROP, name)
+    assert said in page.locator(".dropped").inner_text()
+    page.get_by_role("button", name="Close").click()
+    assert page.locator(".dropped").count() == 0

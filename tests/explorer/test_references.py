@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tables that a page compares shaders with: values of the models, which a right shader has."""
+
+import numpy as np
+import pytest
+
+from mxeon.explorer.documents import document_sources
+from mxeon.explorer.lobes import MATERIALS
+from mxeon.explorer.references import SEEN, WI, WO, pairs, reference_of, views
+from mxeon.explorer.sources import node_sources
+from mxeon.models import eon_brdf
+from mxeon.models.diffuse.albedo import eon_albedo_dir
+from mxeon.shaders.document.notes import DocumentWarning
+from mxeon.shaders.generation import generate
+from mxeon.shaders.library import examples_folder
+from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+
+# What is wrong with them shows under other lobes, or with a normal that leans.
+ALIKE = ("lobe/sheen_zeltner",)
+COLOR = (0.8, 0.4, 0.1)
+
+
+def errors(host, text, library, reference):
+    """Largest errors in direct light and in white surroundings, as a page has them."""
+    shader = host.compile(text, library=library)[0]
+    direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
+    white = host.evaluate(shader, SEEN, SEEN, {}, "environment")
+    expected = np.reshape(reference.direct, (-1, 3))
+    scale = np.maximum(np.abs(expected).max(axis=1, keepdims=True), 1.0)
+    return (
+        (np.abs(direct - expected) / scale).max(),
+        np.abs(white - np.reshape(reference.white, (-1, 3))).max(),
+    )
+
+
+def within(found, bounds):
+    return found[0] <= bounds.direct and found[1] <= bounds.white
+
+
+@pytest.mark.parametrize("material", MATERIALS, ids=lambda each: each.key)
+def test_eonlib_is_within_the_bounds_and_stock_is_not(gl, material):
+    shader = generate(material.text, "essl", lights=True)[0]
+    reference = reference_of(shader)
+    assert within(errors(gl, material.text, "eonlib", reference), reference.bounds)
+    stock = within(errors(gl, material.text, "stock", reference), reference.bounds)
+    assert stock == (material.key in ALIKE)
+
+
+def test_the_values_are_those_of_the_model():
+    text = material_text(OREN_NAYAR, {"color": COLOR, "roughness": 0.7, FLAG: True})
+    reference = reference_of(generate(text, "essl", lights=True)[0])
+    expected = np.pi * WI[:, 2:] * eon_brdf(WO, WI, COLOR, 0.7)
+    # Half of the last of seven digits.
+    assert np.allclose(np.reshape(reference.direct, (-1, 3)), expected, rtol=5e-7, atol=1e-16)
+    white = eon_albedo_dir(SEEN[:, 2], COLOR, 0.7)
+    assert np.allclose(np.reshape(reference.white, (-1, 3)), white, rtol=5e-7)
+    assert len(pairs()) == len(WO) and len(views()) == len(SEEN)
+
+
+def test_every_material_of_a_page_has_a_reference_and_pages_of_stock():
+    for source in node_sources():
+        assert source.reference is not None
+        assert bool(source.pages) == (source.library == "stock")
+
+
+@pytest.mark.parametrize(
+    ("name", "known"), [("openpbr_rough_base", True), ("velvet", True), ("brick", False)]
+)
+def test_a_document_has_a_reference_where_models_cover_it(name, known):
+    for source in document_sources(str(examples_folder() / f"{name}.mtlx")):
+        assert (source.reference is not None) == known
+
+
+def test_a_value_outside_of_a_models_domain_has_no_reference():
+    text = material_text(OREN_NAYAR, {"color": (2.0, 0.0, 0.0)})
+    with pytest.warns(DocumentWarning, match="must lie in"):
+        shader = generate(text, "essl", lights=True)[0]
+    assert reference_of(shader) is None
