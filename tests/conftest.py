@@ -45,6 +45,14 @@ def pytest_runtest_protocol(item):
         coverage.start()
 
 
+@pytest.fixture(scope="session", autouse=True)
+def one_worker():
+    """Commands in this process start one worker: other tests run on the other processors."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("os.cpu_count", lambda: 1)
+        yield
+
+
 @pytest.fixture(scope="session")
 def hosts():
     """The host of a name, which stays open until the session ends."""

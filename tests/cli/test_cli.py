@@ -59,6 +59,7 @@ def test_check_takes_a_folder_as_library_and_prints_json_for_machines(capsys, mo
 
 
 def test_check_on_a_host_that_is_missing_did_not_run(monkeypatch, capsys):
+    keep_checks(monkeypatch, "value", "picture")
     monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
     assert main(["check", PLASTER, "--host", "cycles"]) == NOT_RUN
     assert "not run: cycles" in capsys.readouterr().out
