@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `run` installs and starts, with programs that only say how they were called."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SAY = '#!/bin/sh\necho "$(basename "$0") $*"\n'
+PYTHON = """#!/bin/sh
+[ "$2" = venv ] || exit 0
+mkdir -p "$3/bin"
+for name in pip mxeon python; do cp "$(dirname "$0")/say" "$3/bin/$name"; done
+"""
+INSTALLED = "#!/bin/sh\necho install ok installed\n"
+DEMO = "mxeon check --host gl --report out/demo"
+BOTH = "mxeon check --host gl --host cycles --report out/demo"
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A function that runs a job in a fresh checkout, and returns what it says, by line."""
+    for name in ("run", "pyproject.toml"):
+        shutil.copy(ROOT / name, tmp_path)
+    (tmp_path / "bin").mkdir()
+    for name, text in {"python": PYTHON, "say": SAY, "dpkg-query": INSTALLED}.items():
+        (tmp_path / "bin" / name).write_text(text)
+        (tmp_path / "bin" / name).chmod(0o755)
+    path = {"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin", "PYTHON": str(tmp_path / "bin" / "python")}
+
+    def job(*arguments):
+        command = ["sh", str(tmp_path / "run"), *arguments]
+        ended = subprocess.run(command, env=path, capture_output=True, text=True, check=True)
+        return ended.stdout.splitlines()
+
+    return job
+
+
+def test_the_demo_says_first_what_it_installs_and_installs_that_alone(run):
+    said, installed, checked = run("demo")
+    assert said.startswith("demo: install 260 MB of packages (half a minute), check eonlib on gl ")
+    assert installed.startswith("pip install ") and installed.endswith(" --editable .[report]")
+    assert checked == DEMO
+    said, checked = run("demo")
+    assert said.startswith("demo: check eonlib on gl ") and checked == DEMO
+
+
+def test_cycles_joins_the_demo_once_it_was_asked_for(run):
+    run("demo")
+    said, installed, checked = run("demo", "--host", "cycles")
+    assert "install Blender (1 GB)" in said and " bpy==" in installed and checked.startswith(BOTH)
+    said, checked = run("demo")
+    assert "on gl and cycles" in said and checked == BOTH
+
+
+def test_the_tests_complete_the_environment_of_the_demo_which_keeps_it(run):
+    run("demo")
+    installed, tested, time = run("test", "--quick", "-x")
+    assert installed.endswith(" --editable .[test]")
+    assert tested.startswith("python -m pytest --numprocesses 2 ") and " -x " in tested
+    assert re.fullmatch(r"run test: \d+:\d\d minutes", time)
+    assert len(run("demo")) == 2
+
+
+def test_every_quick_test_is_there():
+    [names] = re.findall(r'^quick="([^"]*)"', (ROOT / "run").read_text(), re.MULTILINE)
+    for name in names.split():
+        file, _, function = name.partition("::")
+        assert (ROOT / file).exists(), file
+        assert not function or f"def {function}(" in (ROOT / file).read_text(), name
