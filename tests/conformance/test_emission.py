@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes that emit light, and media: verdicts on MaterialX, on eonlib, and on wrong shaders."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,6 @@ from mxeon.conformance.accuracy.emission import (
     POWER_RADIANCE,
     QUADRATURE,
     TRANSMITTANCE,
-    cone_roundings,
     widen_for_functions,
 )
 from mxeon.conformance.checks.application import applies, judge_check
@@ -171,13 +172,21 @@ def test_the_quadrature_of_the_equations_is_as_exact_as_its_tolerance_says(subje
     assert np.abs(total - exitance).max() <= QUADRATURE
 
 
-def test_the_falloffs_that_are_asked_are_as_wide_as_the_tolerance_says():
+def test_soft_and_hard_cones_are_asked_and_their_condition_is_the_slope():
     probe = PROBES[PairProbe][CONE](None, SUBJECTS["conical_edf"], "stock")
-    assert 115.0 < cone_roundings() < 120.0
     for batch in (*probe.batches, probe.backs):
         inner, outer = (batch.inputs[f"{name}_angle"] for name in ("inner", "outer"))
         soft = outer > inner
         assert (outer - inner)[soft].min() >= LEAST_FALLOFF - 1e-4 and not soft.all()
+        white = batch.altered(color=np.ones((len(batch.wo), 3)))
+        up, down = (
+            probe.expected(replace(white, wo=batch.wo + [0.0, 0.0, step])) for step in (1e-7, -1e-7)
+        )
+        slope = (np.abs(up - down) / 2e-7).max(axis=1)
+        condition = probe.condition(batch)[:, 0]
+        kept = soft & (batch.wo[:, 2] > 1e-6)
+        error = np.where(kept, np.abs(1.0 + slope - condition), 0.0)
+        assert error.max() < 0.01 * condition.max()
         assert min(inner.min(), outer.min()) >= 0.0 and max(inner.max(), outer.max()) <= 360.0
 
 

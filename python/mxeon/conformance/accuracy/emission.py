@@ -10,7 +10,6 @@ from mxeon.conformance.nodes.emission import (
     CLOSED,
     CONE,
     EXPONENTS,
-    LEAST_FALLOFF,
     MEDIUM,
     POWER,
 )
@@ -20,10 +19,10 @@ from mxeon.conformance.samples.batch import RIM, SEED, Array
 from mxeon.conformance.samples.measurement import scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
 from mxeon.hosts.base import Host
-from mxeon.models.media.emission import cone_cosine, cone_width
 
-UNIT = "radiance"
+UNIT, EXITANCE = "radiance", "exitance / pi"
 QUADRATURE = 1e-6  # of the weighted sum on the equations
+CONE_QUADRATURE = 3e-8  # of that of cones, at cosines of 24 bits
 COUNT = 1 << 14
 FUNCTIONS = """float mxeon_power(float x, float y)
 {
@@ -34,19 +33,6 @@ float mxeon_exponential(float x, float y)
     return exp(-x) + 0.0 * y;
 }
 """
-
-
-def cone_roundings() -> float:
-    """Largest error of a cone's radiance, in roundings: a smoothstep has the slope 3/2 over its width.
-
-    A cosine is 1 - 2 sin^2, with twelve roundings of the second term; seven are of the view's cosine
-    and of differences, and eight of the step itself. The falloff has at least LEAST_FALLOFF degrees,
-    and some of it lies above the horizon.
-    """
-    inner = np.linspace(0.0, 180.0, 181)
-    outer = inner + LEAST_FALLOFF
-    sines = 1.0 - cone_cosine(inner) + 1.0 - cone_cosine(outer)
-    return float((1.5 * (12.0 * sines + 7.0) / cone_width(inner, outer)).max()) + 8.0
 
 
 UNIFORM_RADIANCE = Tolerance(
@@ -63,12 +49,12 @@ POWER_RADIANCE = Tolerance(
     "own power; rounded up",
 )
 CONE_RADIANCE = Tolerance(
-    rounded_up(cone_roundings() * ROUNDING),
-    UNIT,
+    rounded_up(12 * ROUNDING),
+    "radiance and its slope",
     scaled,
-    f"at most {cone_roundings():.0f} roundings of float32, 2^-24 each: twelve of the cosine of each angle "
-    f"and seven beside them, times the slope of a smoothstep over {LEAST_FALLOFF:.0f} degrees, 3/2 over its "
-    "width in cosine, and eight of the step; rounded up",
+    "twelve roundings of float32, 2^-24 each, relative to 1 and the slope of the falloff in the cosine: "
+    "ten of 1 - cos of both angles, of which a view takes 1 - mu in all, three of mu, and two of "
+    "differences; the eight of the step count against 1; rounded up",
 )
 PICTURE_RADIANCE = Tolerance(
     rounded_up(5 * 6 * ROUNDING / RIM + 8 * ROUNDING),
@@ -92,16 +78,24 @@ OPACITY = Tolerance(
     "a product and two sums with 0 of float32, 2^-24 each; rounded up",
 )
 RADIANCES = {CLOSED: UNIFORM_RADIANCE, POWER: POWER_RADIANCE, CONE: CONE_RADIANCE}
+CONE_EXITANCE = Tolerance(
+    rounded_up((8 + 2 * 10 * 0.25) * ROUNDING + CONE_QUADRATURE),
+    EXITANCE,
+    scaled,
+    "an average of radiances, each of eight roundings of float32, 2^-24 each; ten of the cosine of an "
+    "angle, which shift the falloff by 1 - mu of them at a slope of 2 mu; and the error of the "
+    f"quadrature on the equations, {CONE_QUADRATURE:.0e}; rounded up",
+)
 EXITANCES = {
     kind: Tolerance(
         rounded_up(tolerance.value + QUADRATURE),
-        "exitance / pi",
+        EXITANCE,
         scaled,
         f"an average of radiances, each within {tolerance.value:.2g}, and the error of the quadrature "
         f"on the equations, {QUADRATURE:.0e}; rounded up",
     )
     for kind, tolerance in RADIANCES.items()
-}
+} | {CONE: CONE_EXITANCE}
 
 
 def widen_for_functions(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:

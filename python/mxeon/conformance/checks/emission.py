@@ -14,7 +14,12 @@ from mxeon.conformance.nodes.emission import (
     SURFACES,
     UNIMPLEMENTED,
 )
-from mxeon.conformance.probes.cases import back_cases, transmittance_cases, value_cases
+from mxeon.conformance.probes.cases import (
+    back_cases,
+    conditioned,
+    transmittance_cases,
+    value_cases,
+)
 from mxeon.conformance.probes.probe import Probe
 
 
@@ -54,7 +59,7 @@ CHECKS = (
         "radiance",
         "The radiance is that of the node's equation for every view from the front.",
         EMITTER,
-        value_cases,
+        conditioned(value_cases),
         "every channel gets the mean color",
         gray,
         "value",
@@ -65,7 +70,7 @@ CHECKS = (
         "back",
         "The back of the surface emits what the equation has for it.",
         EMITTER,
-        back_cases,
+        conditioned(back_cases),
         "a thousandth is added to every value",
         offset,
         "value",

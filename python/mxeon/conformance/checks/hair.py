@@ -2,15 +2,17 @@
 """Checks of the hair node alone: its lobes apart, where they are wide, narrow, or seen straight."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
-from mxeon.conformance.accuracy.hair import HAIR_REGIONS
+from mxeon.conformance.accuracy.hair import HAIR_REGION
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import with_inputs
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.hair_regions import REGIONS
+from mxeon.conformance.probes.cases import over_condition
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.measurement import Case
+from mxeon.conformance.samples.measurement import Case, scaled
 from mxeon.models.hair.defects import FORMS, TILTED
 from mxeon.models.nodes.hair import HAIR_NODE
 
@@ -31,8 +33,8 @@ def _case(probe: Probe, key: str) -> Case:
 
 
 def _measure(key: str) -> Callable[[Probe], Iterable[Case]]:
-    """Values of a region against those of the equations."""
-    return lambda probe: [_case(probe, key)]
+    """Values of a region against those of the equations, over their condition."""
+    return lambda probe: [over_condition(probe, _case(probe, key))]
 
 
 def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
@@ -41,7 +43,8 @@ def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
     def diagnose(probe: Probe) -> Diagnosis:
         others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
         candidates = [each for each in probe.value_candidates if each.title not in others]
-        return diagnosis.diagnose_case(probe, _case(probe, key), candidates, HAIR_REGIONS[key])
+        tolerance = replace(HAIR_REGION, metric=scaled)
+        return diagnosis.diagnose_case(probe, _case(probe, key), candidates, tolerance)
 
     return diagnose
 
@@ -59,7 +62,7 @@ CHECKS = tuple(
         _measure(key),
         "the normal is turned about the fiber by a tenth",
         without_offset,
-        HAIR_REGIONS[key],
+        HAIR_REGION,
         diagnose=_diagnose(key),
         open=True,
     )

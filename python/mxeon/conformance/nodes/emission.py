@@ -38,7 +38,7 @@ PORT = '    <input name="{}" type="EDF" nodename="{}" />\n'
 SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
 BLACK = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
 EMITTED = '    <input name="edf" type="EDF" nodename="emission" />\n'
-LEAST_FALLOFF = 60.0  # degrees of full angle between the cones: what rounds is divided by it
+LEAST_FALLOFF = 1.0  # degrees of full angle between the cones
 EXPONENTS = (1.0, 8.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
 INNER, OUTER = "inner_angle", "outer_angle"
@@ -233,7 +233,7 @@ def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
     """Angles of cones: half of them with a falloff, of at least LEAST_FALLOFF degrees."""
     inner, wide = 360.0 * rng.random(count), rng.random(count) < 0.5
     inner = np.where(wide, inner * (1.0 - LEAST_FALLOFF / 360.0), inner)
-    more = LEAST_FALLOFF + (360.0 - LEAST_FALLOFF - inner) * rng.random(count)
+    more = LEAST_FALLOFF * ((360.0 - inner) / LEAST_FALLOFF) ** rng.random(count)
     outer = np.where(wide, inner + more, inner * rng.random(count))
     angles = rounded([inner, outer])
     return {INNER: angles[:, 0], OUTER: angles[:, 1]}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of a probe beside those that are expected of it, which checks measure and diagnoses explain."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +19,18 @@ def value_cases(probe: Probe) -> Iterator[Case]:
     """Values against the expected ones, over all pairs of the probe."""
     for batch in probe.batches:
         yield Case(batch, probe.direct(batch), probe.expected(batch))
+
+
+def conditioned(cases: Callable[[Probe], Iterator[Case]]) -> Callable[[Probe], Iterator[Case]]:
+    """The same cases, each over its condition."""
+    return lambda probe: (over_condition(probe, case) for case in cases(probe))
+
+
+def over_condition(probe: Probe, case: Case) -> Case:
+    """Values that count relative to what they are sensitive to."""
+    batch, measured, expected = case
+    condition = probe.condition(batch)
+    return Case(batch, measured / condition, expected / condition)
 
 
 def albedo_cases(probe: Probe) -> Iterator[Case]:

@@ -12,7 +12,7 @@ from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, Values, 
 from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts.base import Host
-from mxeon.models.media.emission import cone_cosine
+from mxeon.models.media.emission import cone_cosine, cone_width
 from mxeon.shaders.generation import Shader
 
 EDGE = 1e-3  # cosine from a hard edge: within it the engine's own cosine decides
@@ -122,6 +122,13 @@ class ConeProbe(EmissionProbe):
         """Those of any emission; views near both edges; and views of turned axes."""
         rng = np.random.default_rng(SEED)
         return (*super().batches, self._at_edges(rng), self._turned(rng))
+
+    def condition(self, batch: Batch) -> Array:
+        """1 and the slope of the falloff in the cosine, (N, 1)."""
+        inner, outer = (batch.inputs[f"{name}_angle"] for name in CONES)
+        width = np.where(outer > inner, cone_width(inner, outer), np.inf)
+        t = np.clip((np.maximum(batch.wo[:, 2], 0.0) - cone_cosine(outer)) / width, 0.0, 1.0)
+        return np.asarray(1.0 + 6.0 * t * (1.0 - t) / width)[:, np.newaxis]
 
     def _views(self, rng: np.random.Generator, wo: Array) -> Batch:
         return _away(super()._views(rng, wo))

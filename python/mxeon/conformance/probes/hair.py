@@ -3,6 +3,7 @@
 
 from dataclasses import replace
 from functools import cached_property
+from itertools import product
 from typing import ClassVar
 
 import numpy as np
@@ -14,6 +15,9 @@ from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directio
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED, special_directions
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.hair.formulas import SCALE, section
+
+STEP = 1e-6  # of an angle, by which slopes are measured
+LEAST = 0.01  # value of which errors count relative, where there is less
 
 
 class HairProbe(BsdfProbe):
@@ -88,6 +92,18 @@ class HairProbe(BsdfProbe):
             )
         return Batch(wo, aimed(rng, wo, inputs), {**inputs, **row.tints})
 
+    def condition(self, batch: Batch) -> Array:
+        """The values, or LEAST, and their slopes in inclination and azimuth of both directions."""
+        total = np.maximum(self.expected(batch), LEAST)
+        for name, step in product(("wo", "wi"), np.eye(2) * STEP):
+            direction = getattr(batch, name)
+            up, down = (
+                self.expected(replace(batch, **{name: _turned(direction, *turn)}))
+                for turn in (step, -step)
+            )
+            total += np.abs(up - down) / (2.0 * STEP)
+        return total
+
     def _integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
         """Wide lobes without tilt."""
         least = WIDE_VARIANCE, WIDE_SCALE
@@ -105,6 +121,14 @@ class HairProbe(BsdfProbe):
         weights = np.tile(w, 2 * count) / count
         shape = (len(wo), *wi.shape)
         return np.broadcast_to(wi, shape), np.broadcast_to(weights, shape[:2])
+
+
+def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
+    """Directions turned by two angles, (N, 3)."""
+    x, y, z = direction.T
+    theta, phi = np.arctan2(x, np.hypot(y, z)) + inclination, np.arctan2(y, z) + azimuth
+    cosine = np.cos(theta)
+    return np.stack([np.sin(theta), cosine * np.sin(phi), cosine * np.cos(phi)], axis=-1)
 
 
 def _sides(rng: np.random.Generator, count: int) -> Array:

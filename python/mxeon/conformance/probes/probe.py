@@ -190,6 +190,10 @@ class Probe:
 
     # Values that are expected.
 
+    def condition(self, batch: Batch) -> Array:
+        """What errors of values are divided by, (N, 3) or one number: 1 where little rounds."""
+        return np.ones((1, 1))
+
     def expected(self, batch: Batch) -> Array:
         """Values that a right shader has in direct light, (N, 3)."""
         self._lacks("expected")
