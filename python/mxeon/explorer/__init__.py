@@ -106,12 +106,14 @@ def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
     libraries share the reference.
     """
     places: dict[str, int] = {}
-    references: list[dict[str, Any]] = []
+    references: list[object] = []
     for each in fields["sources"]:
+        # Name the place of its reference.
         if (reference := each.get("reference")) is not None:
             if reference not in references:
                 references.append(reference)
             each["reference"] = references.index(reference)
+        # Name the places of its paragraphs.
         for name in filter(each.__contains__, TEXTS):
             parts = each[name].split(PARAGRAPH)
             each[name] = [places.setdefault(part, len(places)) for part in parts]

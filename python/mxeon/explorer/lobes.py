@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 from numpy.typing import ArrayLike
 
@@ -16,12 +17,14 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 
-ROUGH = {"roughness": (0.5, 0.5)}
-FILM = {"thinfilm_thickness": 420.0, "thinfilm_ior": 1.4}
-COPPER = {"ior": (0.216, 0.905, 1.137), "extinction": (3.67, 2.59, 2.43), **ROUGH}
-BRONZE = {"color0": (0.85, 0.55, 0.25), "color82": (0.9, 0.8, 0.7), **ROUGH}
-GLASS = {"ior": 1.5, "scatter_mode": "R", **ROUGH}
-VELVET = {"color": (0.75, 0.12, 0.2), "roughness": 0.4}
+Inputs: TypeAlias = Mapping[str, ArrayLike]
+
+ROUGH: Inputs = {"roughness": (0.5, 0.5)}
+FILM: Inputs = {"thinfilm_thickness": 420.0, "thinfilm_ior": 1.4}
+COPPER: Inputs = {"ior": (0.216, 0.905, 1.137), "extinction": (3.67, 2.59, 2.43), **ROUGH}
+BRONZE: Inputs = {"color0": (0.85, 0.55, 0.25), "color82": (0.9, 0.8, 0.7), **ROUGH}
+GLASS: Inputs = {"ior": 1.5, "scatter_mode": "R", **ROUGH}
+VELVET: Inputs = {"color": (0.75, 0.12, 0.2), "roughness": 0.4}
 LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08" />
     <input name="base_diffuse_roughness" type="float" value="0.8" />
     <input name="specular_roughness" type="float" value="0.5" />
@@ -64,9 +67,7 @@ class ComparedMaterial:
                 yield issue.page
 
 
-def _lobe(
-    key: str, title: str, category: str, inputs: Mapping[str, ArrayLike], *subjects: str
-) -> ComparedMaterial:
+def _lobe(key: str, title: str, category: str, inputs: Inputs, *subjects: str) -> ComparedMaterial:
     """A material that is one BSDF node."""
     return ComparedMaterial(
         key, title, material_text(category, inputs, types=input_types(category)), subjects
@@ -87,14 +88,14 @@ MATERIALS = (
         "lobe/sheen",
         "Sheen, Conty-Kulla",
         "sheen_bsdf",
-        VELVET | {"mode": "conty_kulla"},
+        {**VELVET, "mode": "conty_kulla"},
         "sheen_bsdf, mode conty_kulla",
     ),
     _lobe(
         "lobe/sheen_zeltner",
         "Sheen, Zeltner",
         "sheen_bsdf",
-        VELVET | {"mode": "zeltner"},
+        {**VELVET, "mode": "zeltner"},
         "sheen_bsdf, mode zeltner",
     ),
     _lobe(
@@ -109,28 +110,28 @@ MATERIALS = (
         "lobe/schlick",
         "Schlick",
         "generalized_schlick_bsdf",
-        BRONZE | {"scatter_mode": "R"},
+        {**BRONZE, "scatter_mode": "R"},
         "generalized_schlick_bsdf, scatter_mode R",
     ),
     _lobe(
         "lobe/film_dielectric",
         "Film on dielectric",
         "dielectric_bsdf",
-        GLASS | FILM,
+        {**GLASS, **FILM},
         "dielectric_bsdf, thin film",
     ),
     _lobe(
         "lobe/film_conductor",
         "Film on conductor",
         "conductor_bsdf",
-        COPPER | FILM,
+        {**COPPER, **FILM},
         "conductor_bsdf, thin film",
     ),
     _lobe(
         "lobe/film_schlick",
         "Film on Schlick",
         "generalized_schlick_bsdf",
-        BRONZE | FILM | {"scatter_mode": "R"},
+        {**BRONZE, **FILM, "scatter_mode": "R"},
         "generalized_schlick_bsdf, thin film",
     ),
     _lobe(

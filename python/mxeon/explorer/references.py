@@ -12,8 +12,9 @@ import numpy as np
 
 from mxeon.conformance import reference
 from mxeon.conformance.accuracy.accuracy import ACCURACY
-from mxeon.conformance.nodes.bsdf import BSDFS, NOTHING, BsdfSubject
+from mxeon.conformance.nodes.bsdf import BSDFS, BsdfSubject
 from mxeon.conformance.nodes.hair import HAIRS
+from mxeon.conformance.nodes.rows import ZERO
 from mxeon.conformance.nodes.surface_shaders import WHOLE
 from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, rounded
@@ -138,7 +139,7 @@ def _forms(subject: BsdfSubject, shader: Shader) -> Iterator[ShaderForm]:
 
 def _others(candidates: tuple[Candidate, ...]) -> list[Candidate]:
     """Candidates but for the first, which is the subject's own, and the one that is nothing."""
-    return [each for each in candidates[1:] if each is not NOTHING]
+    return [each for each in candidates[1:] if each is not ZERO]
 
 
 def _batches(subject: BsdfSubject, shader: Shader) -> tuple[Batch, Batch]:
