@@ -210,7 +210,7 @@ def test_the_gallery_page_is_the_one_that_its_script_writes():
     assert (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8") == gallery["page"]()
     documents = gallery["EXAMPLES"].glob("*.mtlx")
     materials = {name for file in documents for name in gallery["materials"](file)}
-    assert {file.stem for file in gallery["PICTURES"].glob("*.png")} == materials
+    assert {file.stem for file in gallery["PICTURES"].glob("*.webp")} == materials
 
 
 def test_the_page_on_the_specification_is_the_one_that_its_script_writes():

@@ -39,6 +39,14 @@ OSL = ("generate", "--target", "osl", "--outputPath", "out")
         (["render", PLASTER, "--output", "out.exr", "--environment", "sky.hdr"], "sky.hdr"),
         (["render", PLASTER, "--output", "out.exr", "--size", "0"], "size must lie in [1, 8192]"),
         (["render", PLASTER, "--output", "out.exr", "--samples", "0"], "samples must lie in [1, "),
+        (
+            ["render", PLASTER, "--output", "out.exr", "--shape", "cube"],
+            "shape must be one of sphere,",
+        ),
+        (
+            ["render", PLASTER, "--output", "out.exr", "--shape", "ball", "--host", "reference"],
+            "reference: shape must be sphere; got ball, which gl and webgl draw",
+        ),
         (["render", PLASTER, "--output", "out.exr", "--bounces", "-1"], "bounces must lie in [1, "),
         (
             ["render", PLASTER, "--output", "out.exr", "--samples", "4"],

@@ -19,7 +19,8 @@ from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader, generate
 from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
-from mxeon.shaders.scene import FURNACE, SCENES, Scene, sphere
+from mxeon.shaders.scene import FRONT, FURNACE, SCENES, Scene, sphere
+from mxeon.shaders.shader_ball import shader_ball
 from tests.support.documents import material
 from tests.support.tolerances import PICTURE
 
@@ -51,6 +52,14 @@ def test_every_pixel_is_the_models(gl, reference, name, scene):
     error = np.abs(image - expected)[mask].max(axis=1) * wo[:, 2]
     assert error.max() <= PICTURE
     assert not image[~mask].any()
+
+
+def test_the_shader_ball_is_drawn_at_its_points(gl):
+    lambert = f'<{EON} name="lobe" type="BSDF">{COLOR}</{EON}>'
+    image = picture(gl, lambert, replace(FRONT, shape="ball"))
+    points = shader_ball(SIZE)
+    cosine = np.where(points.mask, points.normal[..., 2], 0.0)[..., None]
+    assert np.abs(image - cosine * [0.8, 0.4, 0.1]).max() <= PICTURE
 
 
 def test_a_closed_host_takes_no_program_from_the_next():

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from mxeon.shaders.scene import LARGEST, SCENES, Scene, scene, sphere
+from mxeon.shaders.shader_ball import CENTER, CLOSE, OBJECT, RADIUS, STEP, distance, shader_ball
 
 
 @pytest.mark.parametrize("known", SCENES, ids=lambda each: each.name)
@@ -26,6 +27,25 @@ def test_an_unknown_scene_lists_the_known_ones():
 def test_a_size_outside_its_range_is_refused(size):
     with pytest.raises(ValueError, match=rf"size must lie in \[1, {LARGEST}\]; got {size}"):
         Scene("a", light=(0.0, 0.0, 1.0), size=size)
+
+
+def test_an_unknown_shape_lists_the_known_ones():
+    with pytest.raises(ValueError, match="shape must be one of sphere, ball; got 'cube'"):
+        Scene("a", environment=1.0, shape="cube")
+
+
+def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
+    points = shader_ball(64)
+    seen = points.position[points.mask]
+    assert np.abs(distance(seen)).max() <= CLOSE
+    # A point outside of the picture's frame does not exist: nothing lies before what is seen.
+    assert (distance(seen + [0.0, 0.0, 0.01]) > 0.0).all()
+    outward = seen - CENTER @ OBJECT
+    ball = np.abs(np.linalg.norm(outward, axis=-1) - RADIUS) <= CLOSE
+    assert 0.7 < ball.mean() < 0.9
+    # Central differences of a sphere's distance are off by less than their step squared over it.
+    away = np.abs(points.normal[points.mask][ball] * RADIUS - outward[ball]).max(axis=-1)
+    assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE  # the rest lies at the edge of a groove
 
 
 @pytest.mark.parametrize("size", [1, 2, 7, 64])

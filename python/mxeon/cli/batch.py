@@ -131,6 +131,7 @@ def picture(
     scene: str,
     environment: str | None,
     size: int,
+    shape: str,
     element: str | None,
     library: str,
     policy: Policy,
@@ -146,6 +147,8 @@ def picture(
         A latitude-longitude image instead of the scene's light.
     size : int
         Width and height in pixels.
+    shape : str
+        Of `mxeon.shaders.scene.SHAPES`.
     policy : Policy
     paths : Paths
 
@@ -173,7 +176,7 @@ def picture(
     # Generate the shader, and draw it.
     with open_host(host, reference.ROW) as engine:
         shader = _one_shader(file, engine, element, library, policy)
-        setting = replace(setting, size=size, paths=paths)
+        setting = replace(setting, size=size, paths=paths, shape=shape)
         image = engine.picture(shader, setting)
         for reason in engine.approximations(shader, setting):
             warnings.warn(LobeWarning(shader.element, reason), stacklevel=2)
@@ -187,6 +190,7 @@ def picture(
         "document": file,
         "element": shader.element,
         "scene": setting.name,
+        "shape": shape,
     }
 
 

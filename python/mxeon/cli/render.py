@@ -17,7 +17,9 @@ def add_parser(commands: arguments.Commands) -> None:
     # Name the hosts that make pictures.
     rows = (row.name for row in HOSTS if row.scenes and row.name != "gl")
     hosts = ", ".join((*rows, "reference"))
-    command = arguments.add_command(commands, "render", "draw a material on a sphere", run)
+    command = arguments.add_command(
+        commands, "render", "draw a material on a sphere or a shader ball", run
+    )
     # Choose the material, the light and the size.
     command.add_argument("file", metavar="FILE", help="a MaterialX document")
     command.add_argument("--host", default="gl", metavar="NAME", help=f"gl (the default), {hosts}")
@@ -28,6 +30,12 @@ def add_parser(commands: arguments.Commands) -> None:
     )
     command.add_argument(
         "--environment", metavar="IMAGE", help="light it with a latitude-longitude image instead"
+    )
+    command.add_argument(
+        "--shape",
+        default="sphere",
+        metavar="NAME",
+        help="sphere (the default), or ball: a shader ball",
     )
     command.add_argument(
         "--size", type=int, default=512, help="width and height in pixels; %(default)s"
@@ -50,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
 
     arguments.assert_other(options.output, [options.file, options.environment])
     # Draw the picture in a worker process.
-    names = ("host", "scene", "environment", "size", "element", "library")
+    names = ("host", "scene", "environment", "size", "shape", "element", "library")
     known = {name: getattr(options, name) for name in names}
     paths = Paths(options.samples, options.bounces)
     work = partial(picture, policy=arguments.policy(options), paths=paths, **known)

@@ -86,6 +86,19 @@ class Engine(ABC):
                 f"{self.name}: this host takes no number of samples or bounces; cycles does"
             )
 
+    def refuse_shape(self, scene: Scene) -> None:
+        """Raise InputError if a scene shows anything but a sphere.
+
+        Raises
+        ------
+        ValueError
+            If the scene has another shape.
+        """
+        if scene.shape != "sphere":
+            raise InputError(
+                f"{self.name}: shape must be sphere; got {scene.shape}, which gl and webgl draw"
+            )
+
     def _unsupported(self, verb: str, other: str) -> Unsupported:
         return Unsupported(f"{self.name}: this host has no {verb}; {other} has")
 

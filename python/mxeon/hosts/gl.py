@@ -85,11 +85,13 @@ class Host(FragmentHost):
         self.refuse_paths(scene)
         program = self._program(fragment.DIALECTS["glsl"].vertex, points.pixel_stage(shader))
         _set(program, raster.inputs(shader) | raster.light(scene))
-        captured, size = points.outputs(shader), scene.size
+        captured, frame = points.outputs(shader), (scene.size, scene.size)
         textures = self._textures(program, raster.textures(shader, scene))
         if captured:
-            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
-        return raster.picture(self._draw(program, textures, (size, size)), size)
+            textures[points.SAMPLER] = self._points(
+                shader.stages["vertex"], captured, scene.size, scene.shape
+            )
+        return raster.picture(self._draw(program, textures, frame), scene)
 
     @_current
     def accumulate(
@@ -223,11 +225,15 @@ def _program(context: moderngl.Context, vertex: str, pixel: str) -> moderngl.Pro
 
 
 def _points(
-    context: moderngl.Context, vertex: str, captured: tuple[points.Output, ...], size: int
+    context: moderngl.Context,
+    vertex: str,
+    captured: tuple[points.Output, ...],
+    size: int,
+    shape: str,
 ) -> moderngl.TextureArray:
     """Texture of what a vertex stage gives at the points of a picture."""
     program = context.program(vertex_shader=vertex, varyings=tuple(each.name for each in captured))
-    vertices = points.vertices(size)
+    vertices = points.vertices(size, shape)
     count = len(vertices["i_position"])
     stage = context.vertex_array(program, _buffers(context, program, vertices))
     buffer = context.buffer(reserve=count * points.stride(captured))

@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from mxeon.hosts.fragment import RENAME
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import sphere, tangents
+from mxeon.shaders.scene import VisiblePoints, sphere, tangents
+from mxeon.shaders.shader_ball import shader_ball
 
 MARGIN = 1  # points beyond each edge, for the derivatives of the last row and column
 SAMPLER = "mxeon_points"
@@ -78,12 +79,17 @@ def pixel_stage(shader: Shader) -> str:
     )
 
 
-def vertices(size: int) -> dict[str, NDArray[np.float32]]:
+def visible(size: int, shape: str, margin: int = 0) -> VisiblePoints:
+    """Visible points of a shape of `mxeon.shaders.scene.SHAPES`."""
+    return shader_ball(size, margin) if shape == "ball" else sphere(size, margin)
+
+
+def vertices(size: int, shape: str) -> dict[str, NDArray[np.float32]]:
     """Attributes of the points of a picture, with a margin, in the rows of a frame, row 0 at the top.
 
     A point beside the sphere has the normal of the nearest point of the rim.
     """
-    points = sphere(size, margin=MARGIN)
+    points = visible(size, shape, MARGIN)
     flat = points.normal.reshape(-1, 3)
     attributes = {
         "i_position": points.position.reshape(-1, 3),

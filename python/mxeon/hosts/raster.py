@@ -8,11 +8,12 @@ from typing import TypeAlias
 import numpy as np
 
 from mxeon.hosts.base import Array
+from mxeon.hosts.points import visible
 from mxeon.hosts.textures import irradiance, read_latlong, read_texture
 from mxeon.shaders.document.values import Plain, members
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
-from mxeon.shaders.scene import Scene, sphere
+from mxeon.shaders.scene import Scene
 
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
@@ -98,6 +99,6 @@ def light(scene: Scene) -> Uniforms:
     return values
 
 
-def picture(image: Array, size: int) -> Array:
-    """Picture of a frame whose row 0 is at the bottom: 0 off the sphere, row 0 at the top."""
-    return np.where(sphere(size).mask[..., None], image[::-1], np.float32(0.0))
+def picture(image: Array, scene: Scene) -> Array:
+    """Picture of a frame whose row 0 is at the bottom: 0 off the shape, row 0 at the top."""
+    return np.where(visible(scene.size, scene.shape).mask[..., None], image[::-1], np.float32(0.0))

@@ -108,13 +108,15 @@ class Host(FragmentHost):
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Picture of the sphere; see `mxeon.hosts.base.Host`."""
         self.refuse_paths(scene)
-        captured, size = points.outputs(shader), scene.size
+        captured, frame = points.outputs(shader), (scene.size, scene.size)
         stages = {"vertex": VERTEX, "pixel": points.pixel_stage(shader)}
         uniforms = UNIFORMS | _inputs(shader) | raster.light(scene)
         textures = raster.textures(shader, scene)
         if captured:
-            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, size)
-        return raster.picture(self._draw(stages, uniforms, textures, (size, size)), size)
+            textures[points.SAMPLER] = self._points(
+                shader.stages["vertex"], captured, scene.size, scene.shape
+            )
+        return raster.picture(self._draw(stages, uniforms, textures, frame), scene)
 
     def close(self) -> None:
         """End the browser; the next request starts another."""
@@ -149,10 +151,10 @@ class Host(FragmentHost):
         return pixels.reshape(size[1], size[0], 4)[..., :3]
 
     def _capture(
-        self, vertex: str, captured: tuple[points.Output, ...], size: int
+        self, vertex: str, captured: tuple[points.Output, ...], size: int, shape: str
     ) -> NDArray[np.float32]:
         """Texels of what a vertex stage gives at the points of a picture."""
-        attributes = points.vertices(size)
+        attributes = points.vertices(size, shape)
         job = {
             "vertex": vertex,
             "outputs": [each.name for each in captured],

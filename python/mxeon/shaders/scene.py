@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes of pictures: one unit sphere, seen orthographically along -z, and the light on it.
+"""Scenes of pictures: a shape, seen orthographically along -z, and the light on it.
 
 World frame: x to the right, y up, z towards the viewer. The frame of the picture is the square
 [-1, 1]^2, row 0 is its top. NumPy only: hosts and checks share this module and nothing else.
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError, assert_known
 from mxeon.io.images import Floats
 
+SHAPES = ("sphere", "ball")
 LARGEST = 8192  # the width that every OpenGL 4 device draws; an image of it takes some gigabytes
 MOST_SAMPLES = 65536  # a day of one core for a picture of 512 x 512 pixels
 MOST_BOUNCES = 1024  # the most that Cycles takes
@@ -54,7 +55,7 @@ class Paths:
 
 @dataclass(frozen=True)
 class Scene:
-    """A light on the sphere.
+    """A shape and a light on it.
 
     Attributes
     ----------
@@ -69,11 +70,13 @@ class Scene:
         Width and height in pixels, in [1, LARGEST].
     paths : Paths
         For cycles and cycles-native; other hosts refuse any but the default.
+    shape : str
+        One of SHAPES: the unit sphere, or the shader ball, which gl and webgl draw.
 
     Raises
     ------
     ValueError
-        If the size leaves its range.
+        If the size leaves its range, or the shape is unknown.
     """
 
     name: str
@@ -81,10 +84,13 @@ class Scene:
     environment: float | Path | None = None
     size: int = 256
     paths: Paths = Paths()
+    shape: str = "sphere"
 
     def __post_init__(self) -> None:
         if not 1 <= self.size <= LARGEST:
             raise InputError(f"size must lie in [1, {LARGEST}]; got {self.size}")
+        if self.shape not in SHAPES:
+            raise InputError(f"shape must be one of {', '.join(SHAPES)}; got {self.shape!r}")
 
 
 def _towards(azimuth: float, polar: float) -> tuple[float, float, float]:
@@ -124,8 +130,8 @@ def scene(name: str) -> Scene:
 
 
 @dataclass(frozen=True)
-class Sphere:
-    """The visible points of the sphere, one per pixel center.
+class VisiblePoints:
+    """The visible points of a shape, one per pixel center.
 
     Attributes
     ----------
@@ -147,7 +153,7 @@ class Sphere:
 
 
 @lru_cache(maxsize=8)
-def sphere(size: int, margin: int = 0) -> Sphere:
+def sphere(size: int, margin: int = 0) -> VisiblePoints:
     """Points of the unit sphere under the pixel centers of a `size` x `size` picture.
 
     A `margin` adds as many rows and columns of pixel centers around the frame.
@@ -165,7 +171,7 @@ def sphere(size: int, margin: int = 0) -> Sphere:
     # Find texture coordinates.
     u = 0.5 + np.arctan2(normal[..., 0], normal[..., 2]) / (2.0 * np.pi)
     v = 0.5 + np.arcsin(np.clip(normal[..., 1], -1.0, 1.0)) / np.pi
-    points = Sphere(mask, position, normal, np.stack([u, v], axis=-1))
+    points = VisiblePoints(mask, position, normal, np.stack([u, v], axis=-1))
     for array in vars(points).values():
         array.flags.writeable = False  # shared by all callers
     return points

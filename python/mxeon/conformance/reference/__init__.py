@@ -45,6 +45,7 @@ class Host(base.Host):
             If the scene asks for paths.
         """
         self.refuse_paths(scene)
+        self.refuse_shape(scene)
         points = sphere(scene.size)
         image = np.zeros(points.normal.shape)
         image[points.mask] = Graph(shader.document, _shown(scene)).element(shader.element)

@@ -131,6 +131,7 @@ class Host(base.Host):
         `tracing.ENVIRONMENT_SAMPLES` samples, always the same; at roughness 1 its error is 2e-3 rms, 0.1 at
         the rim, and 2e-5 in the mean over the sphere.
         """
+        self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
             raise NotRun("cycles: environment must be uniform; got an image")
         text = _on_sphere(shader.stages["pixel"])

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A shader ball as exact points: a ball with a groove and a belt, on a foot, seen from a little above.
+
+The shape is a signed distance, whose surface each ray of the picture finds by sphere tracing; its
+gradient is the normal. Nothing casts a shadow: the shaders that draw it know one point at a time.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.io.images import Floats
+from mxeon.shaders.scene import VisiblePoints
+
+CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
+BELT_HEIGHT, BELT_RADIUS = 0.13, 0.7  # half of its height; a little inside of the ball
+GROOVE, FILLET = 0.035, 0.02  # radius of the grooves beside the belt, and of rounded edges
+FOOT_HEIGHT, FOOT_RADIUS = 0.1, 0.5
+TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # of the view, and of the belt
+
+NEAR, FAR = 2.0, -2.0  # ends of a ray, in z
+STEPS, CLOSE = 96, 1e-5  # of sphere tracing
+STEP = 1e-4  # of the central differences of a normal
+
+
+def _rotation(angle: float, axis: int) -> NDArray[np.float64]:
+    """Rotation about the x (0) or z axis (2)."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    i, j = [(1, 2), (2, 0), (0, 1)][axis]
+    matrix = np.eye(3)
+    matrix[[i, i, j, j], [i, j, i, j]] = cosine, -sine, sine, cosine
+    return matrix
+
+
+OBJECT = _rotation(-TILT, 0)  # from the frame of the picture to that of the foot
+BELT = _rotation(ROLL, 2) @ _rotation(0.35, 0)  # and on to that of the belt
+
+
+def _cylinder(points: Floats, radius: float, height: float) -> Floats:
+    """Signed distance from a cylinder with rounded edges around the y axis."""
+    across = np.hypot(points[..., 0], points[..., 2]) - radius + FILLET
+    along = np.abs(points[..., 1]) - height + FILLET
+    outside = np.hypot(np.maximum(across, 0.0), np.maximum(along, 0.0))
+    distance: Floats = np.minimum(np.maximum(across, along), 0.0) + outside - FILLET
+    return distance
+
+
+def distance(points: Floats) -> Floats:
+    """Signed distance of points (..., 3) of the picture's frame from the shader ball; at most that."""
+    upright = points @ OBJECT.T
+    # Cut the grooves into the ball.
+    inside = (upright - CENTER) @ BELT.T
+    radius = np.linalg.norm(inside, axis=-1)
+    across = np.hypot(inside[..., 0], inside[..., 2])
+    ring = np.sqrt(RADIUS**2 - BELT_HEIGHT**2)
+    groove = np.hypot(across - ring, np.abs(inside[..., 1]) - BELT_HEIGHT) - GROOVE
+    ball = np.maximum(radius - RADIUS, -groove)
+    # Put it on a foot.
+    foot = _cylinder(upright - [0.0, -0.6, 0.0], FOOT_RADIUS, FOOT_HEIGHT)
+    nearest: Floats = np.minimum(ball, foot)
+    return nearest
+
+
+@lru_cache(maxsize=2)
+def shader_ball(size: int, margin: int = 0) -> VisiblePoints:
+    """Visible points of the shader ball, one per pixel center; arguments as those of `sphere`."""
+    # Let a ray of each pixel run until it meets the surface.
+    axis = (2.0 * np.arange(-margin, size + margin) + 1.0) / size - 1.0
+    x, y = np.meshgrid(axis, -axis)
+    points = np.stack([x, y, np.full_like(x, NEAR)], axis=-1)
+    rays, mask = points.reshape(-1, 3), np.zeros(x.size, dtype=bool)
+    running = np.arange(x.size)
+    for _ in range(STEPS):
+        step = distance(rays[running])
+        rays[running, 2] -= step
+        mask[running] = step < CLOSE
+        running = running[(step >= CLOSE) & (rays[running, 2] > FAR)]
+    mask = mask.reshape(x.shape)
+    # Differentiate the distance for the normals.
+    gradient = [distance(points + each) - distance(points - each) for each in STEP * np.eye(3)]
+    normal = np.stack(gradient, axis=-1)
+    normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), STEP**2)
+    normal[~mask] = 0.0, 0.0, 1.0
+    # Find texture coordinates by the direction from the middle of the ball.
+    outward = points @ OBJECT.T - CENTER
+    u = 0.5 + np.arctan2(outward[..., 0], outward[..., 2]) / (2.0 * np.pi)
+    v = 0.5 + np.arctan2(outward[..., 1], np.hypot(outward[..., 0], outward[..., 2])) / np.pi
+    found = VisiblePoints(mask, points, normal, np.stack([u, v], axis=-1))
+    for array in vars(found).values():
+        array.flags.writeable = False  # shared by all callers
+    return found
