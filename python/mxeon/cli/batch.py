@@ -128,7 +128,7 @@ def _ending(shader: Shader, stage: str) -> str:
 def picture(
     file: str,
     host: str,
-    scene: str,
+    scene: str | None,
     environment: str | None,
     size: int,
     shape: str,
@@ -142,9 +142,9 @@ def picture(
     Parameters
     ----------
     file, host, scene, element, library : str
-        Scene is a name that `mxeon.shaders.scene.scene` knows.
+        Scene is a name that `mxeon.shaders.scene.scene` knows; None is `side`, or the environment alone.
     environment : str or None
-        A latitude-longitude image instead of the scene's light.
+        A latitude-longitude image in place of the scene's environment.
     size : int
         Width and height in pixels.
     shape : str
@@ -170,9 +170,10 @@ def picture(
     from mxeon.shaders import scene as scenes
 
     # Choose the light.
-    setting = scenes.scene(scene)
+    setting = scenes.scene(scene or "side")
     if environment:
-        setting = scenes.Scene("environment", environment=Path(environment))
+        light = setting.light if scene else None
+        setting = scenes.Scene("environment", light, Path(environment))
     # Generate the shader, and draw it.
     with open_host(host, reference.ROW) as engine:
         shader = _one_shader(file, engine, element, library, policy)

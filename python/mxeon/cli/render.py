@@ -26,10 +26,12 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument("--element", metavar="NAME", help="needed where there are several")
     command.add_argument("--output", metavar="OUT", required=True, help="linear .exr or sRGB .png")
     command.add_argument(
-        "--scene", default="side", metavar="NAME", help="front, side (the default), back, furnace"
+        "--scene", metavar="NAME", help="its light: front, side (the default), back, furnace"
     )
     command.add_argument(
-        "--environment", metavar="IMAGE", help="light it with a latitude-longitude image instead"
+        "--environment",
+        metavar="IMAGE",
+        help="light it with a latitude-longitude image, alone unless --scene is given",
     )
     command.add_argument(
         "--shape",
