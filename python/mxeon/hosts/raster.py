@@ -20,7 +20,7 @@ Uniforms: TypeAlias = dict[str, Plain]  # values by name
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 WHITE = np.ones((1, 1, 3), dtype=np.float32)
 
-# Directions over which a shader of microfacets sums its environment: see docs/hosts.md for the error
+# Directions over which a shader of microfacets sums its environment: see docs/host_notes.md for the error
 # of each number, and its cost. The environment has no smaller versions of itself.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE = {"u_envRadianceSamples": 256, "u_envRadianceMips": 1}
