@@ -7,21 +7,25 @@ from mkdocs.structure.files import File
 
 ROOT = Path(__file__).resolve().parents[1]
 # Page of the site -> file of the repository, whose links are relative to the root.
-OUTSIDE = {"changelog.md": "CHANGELOG.md", "contributing.md": "CONTRIBUTING.md"}
-BIBLIOGRAPHY = "## Bibliography\n"
+OUTSIDE = {
+    "index.md": "README.md",
+    "changelog.md": "CHANGELOG.md",
+    "contributing.md": "CONTRIBUTING.md",
+}
 
 
 def on_files(files, config):
-    """Add the changelog, contributing and the bibliography of the README."""
+    """Add the home page, the changelog and contributing."""
     pages = {page: ROOT / name for page, name in OUTSIDE.items()}
     for page, path in pages.items():
         files.append(File.generated(config, page, abs_src_path=str(path)))
-    bibliography = (ROOT / "README.md").read_text(encoding="utf-8").partition(BIBLIOGRAPHY)[2]
-    text = f"# Bibliography\n{bibliography}"
-    files.append(File.generated(config, "bibliography.md", content=text))
     return files
 
 
 def on_page_markdown(markdown, page, **_):
     """Make links relative to `docs/`."""
-    return markdown.replace("](docs/", "](") if page.file.src_uri in OUTSIDE else markdown
+    if page.file.src_uri not in OUTSIDE:
+        return markdown
+    for page_name, name in OUTSIDE.items():
+        markdown = markdown.replace(f"]({name})", f"]({page_name})")
+    return markdown.replace("](docs/", "](")

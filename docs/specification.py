@@ -60,8 +60,7 @@ SUMMARY = (
     ),
     ("output", "blackbody", "a fit beyond its range"),
 )
-SHORT = 6  # rows of the summary in the README
-SUMMARIES = (FOLDER.parent / "README.md", FOLDER / "results.md")
+RESULTS = FOLDER / "results.md"
 SUMMARY_HEAD = (
     "| check | eonlib | stock MaterialX 1.39.5 | what stock computes |\n|---|---|---|---|\n"
 )
@@ -113,16 +112,15 @@ def page(text, data):
 
 
 def table(name, data):
-    """The table of a node, the summary, or the first rows of it."""
-    count = {"summary": len(SUMMARY), "short": SHORT}.get(name)
-    return summary(data, count) if count else node_table(name, data)
+    """The table of a node, or the summary."""
+    return summary(data) if name == "summary" else node_table(name, data)
 
 
-def summary(data, count):
+def summary(data):
     """A table of what stock computes in place of the specification."""
     errors = {(r["check"], r["subject"], r["library"]): r["error"] for r in data["results"]}
     lines = []
-    for check, subject, words in SUMMARY[:count]:
+    for check, subject, words in SUMMARY:
         stock, eonlib = (errors.get((check, subject, each), "") for each in LIBRARIES)
         name = f"`{subject.split(',')[0]}`{_mode(subject) and ', ' + _mode(subject)}, `{check}`"
         lines.append(f"| {name} | {eonlib} | {stock} | {words} |\n")
@@ -238,7 +236,7 @@ def main():
     for host in [] if words == ["--page"] else words or HOSTS:
         data[host] = measured(host)
         write_text(DATA, _text(data))
-    for file in (PAGE, *SUMMARIES):
+    for file in (PAGE, RESULTS):
         write_text(file, page(file.read_text(encoding="utf-8"), data[HOST]))
     write_text(TARGETS, targets(data))
 

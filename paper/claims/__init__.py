@@ -13,8 +13,8 @@ COLUMNS = ("where", "claim", "measured", "required", "verdict")
 HEAD = """# The paper, checked
 
 `mxeon figures` writes this page. It measures the numbers below, in float64 unless stated otherwise.
-Equations, figures and listings are those of [Portsmouth2025], the JCGT 2025 edition; the bibliography
-is in the README. The figures are below the claims; their data are in the folder `figures`.
+Equations, figures and listings are those of [Portsmouth2025], the JCGT 2025 edition
+([bibliography](bibliography.md)). The figures are below the claims; their data are in the folder `figures`.
 
 A claim *holds* if all of its measured values lie within the bound in the column *required*, holds *in
 part* if some do, and *fails* if none does. A value that is not a number lies within no bound.
