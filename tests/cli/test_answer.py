@@ -101,6 +101,12 @@ def test_many_documents_are_a_line_each_those_with_failures_first():
     )
 
 
+def test_a_name_of_a_file_is_one_line_and_steers_no_terminal():
+    name = "a\n\x1b[31mb.mtlx"
+    lines = answer(made_run(made(library="my\nlibrary"), documents=(name,)))
+    assert not any(set(line) & {"\n", "\x1b"} for line in lines)
+
+
 def test_what_did_not_run_is_said_with_its_number():
     lines = answer(made_run(made(NOT_RUN, reason="gl: nowhere")))
     assert lines == ["No check ran.", "not run: gl with eonlib, 1 check: gl: nowhere"]

@@ -91,7 +91,7 @@ def _block(run: Run, document: str, host: str) -> list[str]:
     titles = sorted(rows, key=lambda title: (not _failed(rows[title]), title == "pictures"))
     kept = [title for title in titles if _failed(rows[title]) or title == "pictures"]
     kept += [title for title in titles if title not in kept][: max(1, NODES - len(kept))]
-    table = [[f"{document} on {host}", *libraries]]
+    table = [[one_line(f"{document} on {host}"), *map(one_line, libraries)]]
     for title in filter(kept.__contains__, titles):
         cells = [
             _cell([each for each in rows[title] if each.library == library])
