@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Definitions of a studio's own, loaded beside the library."""
 
+import OpenImageIO as oiio
 import pytest
 
 from mxeon.cli import main
@@ -65,6 +66,8 @@ def test_definitions_need_no_permission_of_the_document(studio, tmp_path, capsys
     folder, document = studio
     options = ["--definitions", str(folder), "--output", str(tmp_path / "coat.png")]
     assert main(["render", str(document), *options, "--size", "32", "--workers", "0"]) == 0
+    image = oiio.ImageBuf(str(tmp_path / "coat.png"))
+    assert image.spec().get_string_attribute("mxeon:definitions") == str(folder)
     assert main(["render", str(document), "--output", str(tmp_path / "no.png")]) == 2
     assert "load further definitions by --definitions FOLDER" in one_line(capsys.readouterr().err)
 

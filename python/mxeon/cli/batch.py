@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -192,7 +193,7 @@ def picture(
         "element": shader.element,
         "scene": setting.name,
         "shape": shape,
-    }
+    } | ({"definitions": os.pathsep.join(policy.definitions)} if policy.definitions else {})
 
 
 def _one_shader(
