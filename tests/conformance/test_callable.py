@@ -70,6 +70,11 @@ def test_values_that_a_check_cannot_tell_from_wrong_ones_are_said_to_be():
     assert all(each.diagnosis for each in run.results if each.verdict == "failed")
 
 
+def test_a_model_that_is_nearly_named_is_suggested():
+    with pytest.raises(ValueError, match="got 'eom': did you mean eon.$"):
+        mxeon.check_brdf(eon_brdf, "eom")
+
+
 @pytest.mark.parametrize("row", reference.PARAMETRIZATIONS, ids=lambda row: row.name)
 def test_another_parametrization_is_recognized_by_name(row):
     run = mxeon.check_brdf(row.brdf, "eon")
