@@ -28,7 +28,7 @@ def measure(workers=WORKERS, documents=DOCUMENTS, progress=iter):
     with TemporaryDirectory(prefix="mxeon-farm-") as base:
         files = [document(Path(base), number) for number in range(documents)]
         seconds = [_seconds(files, count) for count in progress(workers)]
-        run = check(files[:1], workers=1)
+        run = check(files[:1], workers=1, nodes=["common"])
     sizes = [picture.image.nbytes + picture.reference.nbytes for picture in run.pictures]
     return {
         "workers": list(workers),
@@ -42,8 +42,8 @@ def measure(workers=WORKERS, documents=DOCUMENTS, progress=iter):
 def _seconds(files, workers):
     options = {"threads_per_worker": 1, "dashboard_address": ":0"}
     with safe_path(), LocalCluster(n_workers=workers, **options) as cluster:
-        check(files[:1], scheduler=cluster.scheduler_address)  # opens the hosts
+        check(files[:1], scheduler=cluster.scheduler_address, nodes=["common"])  # opens the hosts
         began = time.monotonic()
-        run = check(files, scheduler=cluster.scheduler_address)
+        run = check(files, scheduler=cluster.scheduler_address, nodes=["common"])
         assert {each.verdict for each in run.results} == {"passed"}
         return time.monotonic() - began

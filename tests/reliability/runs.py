@@ -21,7 +21,7 @@ def start(folder, *options, files=(DOCUMENT,), capture=True):
 
     It leads a process group of its own, like a command in a terminal.
     """
-    command = [*PYTHON, "-m", "mxeon", "check", *map(str, files)]
+    command = [*PYTHON, "-m", "mxeon", "check", *map(str, files), "--node", "common"]
     command += ["--report", str(folder), "--resume", "--workers", "2", *options]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} if capture else {}
     return psutil.Popen(command, text=True, process_group=0, **streams)
