@@ -27,6 +27,7 @@ from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.noise import ratio, tiles
 from mxeon.kit.views import MATERIALS, SETUP, views
 from mxeon.models import table as reference
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import ApproximationWarning, generate
 from tests.support.availability import available
 from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
@@ -571,3 +572,41 @@ def test_cycles_with_the_profile_is_named_eon(tmp_path):
     for light in ("distant light", "environment"):
         assert result_of(run, "model", f"energy_compensation true, {light}").verdict == "passed"
         assert names(run)[f"energy_compensation true, {light}"] == EON
+
+
+STUDIO = """<materialx version="1.39">
+  <nodedef name="ND_studio_rough" node="studio_rough">
+    <input name="color" type="color3" value="0.18, 0.18, 0.18" />
+    <input name="roughness" type="float" value="0.0" />
+    <output name="out" type="BSDF" />
+  </nodedef>
+  <nodegraph name="NG_studio_rough" nodedef="ND_studio_rough">
+    <eon_diffuse_bsdf name="lobe" type="BSDF">
+      <input name="color" type="color3" interfacename="color" />
+      <input name="roughness" type="float" interfacename="roughness" />
+    </eon_diffuse_bsdf>
+    <output name="out" type="BSDF" nodename="lobe" />
+  </nodegraph>
+</materialx>
+"""
+
+
+def test_a_kit_may_show_a_node_of_a_studios_own(tmp_path, capsys):
+    (tmp_path / "studio").mkdir()
+    (tmp_path / "studio" / "rough.mtlx").write_text(STUDIO)
+    kit, definitions = tmp_path / "kit", ["--definitions", str(tmp_path / "studio")]
+    assert main(["kit", "export", str(kit), "--node", "studio_rough", *definitions]) == 0
+    policy = Policy(definitions=(str(tmp_path / "studio"),))
+    (shader,) = generate(kit / "materials" / "true.mtlx", "glsl", policy=policy)
+    assert "eon_brdf" in shader.stages["pixel"]
+    scene = (kit / "scenes" / "true_side.usda").read_text()
+    assert '"ND_studio_rough"' in scene and "energy_compensation" not in scene
+    assert main(["kit", "check", str(kit), "--claims", "eon"]) == 3
+    assert "none of the 8 pictures is there" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("node", ["studio_rough", "conductor_bsdf"])
+def test_a_node_that_has_no_color_and_roughness_is_refused(tmp_path, capsys, node):
+    assert main(["kit", "export", str(tmp_path / "kit"), "--node", node]) == 2
+    assert "node must be a BSDF with the inputs color" in capsys.readouterr().err
+    assert not (tmp_path / "kit").exists()

@@ -156,6 +156,10 @@ def policy(options: argparse.Namespace) -> Policy:
     """The policy for documents that the options describe."""
     limits = {name: getattr(options, f"max{name.capitalize()}") for name in LIMITS}
     path = (*map(os.path.abspath, options.path), *environment_path())
-    definitions = tuple(map(os.path.abspath, options.definitions))
     code = getattr(options, "allowCode", True)
-    return Policy(options.allowOutside, code, path, definitions, **limits)
+    return Policy(options.allowOutside, code, path, definitions(options), **limits)
+
+
+def definitions(options: argparse.Namespace) -> tuple[str, ...]:
+    """The folders of --definitions, as absolute paths."""
+    return tuple(map(os.path.abspath, options.definitions))

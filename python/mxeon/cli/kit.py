@@ -7,6 +7,7 @@ from mxeon.cli import arguments
 from mxeon.cli.output import Progress
 from mxeon.cli.verdict import show_run
 from mxeon.errors import PASSED
+from mxeon.shaders.nodes import OREN_NAYAR
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -22,6 +23,13 @@ def add_parser(commands: arguments.Commands) -> None:
     export.add_argument(
         "--size", type=int, default=128, help="width and height in pixels; %(default)s"
     )
+    export.add_argument(
+        "--node",
+        default=OREN_NAYAR,
+        metavar="NAME",
+        help="BSDF node of the materials, with color and roughness; %(default)s",
+    )
+    arguments.add_definitions(export)
     # Add the action that judges pictures.
     check = arguments.add_command(actions, "check", "check the images in DIR/renders", run_check)
     check.add_argument("folder", metavar="DIR", help="the folder of the kit")
@@ -44,9 +52,10 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run_export(options: argparse.Namespace) -> int:
     """Write the kit and print the path of its page; return the exit status."""
-    from mxeon.kit.export import export_kit
+    from mxeon.kit.export import export_kit, kit_node
 
-    print(export_kit(options.folder, options.size))
+    node = kit_node(options.node, arguments.definitions(options))
+    print(export_kit(options.folder, options.size, node))
     return PASSED
 
 

@@ -22,7 +22,7 @@ from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
 from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.questions import Question, answer, questions
 from mxeon.kit.submitted import Missing, Unusable, read_render
-from mxeon.kit.views import MATERIALS, View, views
+from mxeon.kit.views import LAMBERT, MATERIALS, View, views
 from mxeon.models import table as reference
 from mxeon.shaders.scene import sphere
 
@@ -118,13 +118,21 @@ def _size(folder: Path) -> int:
         raise InputError(f"{file}: size must be a whole number; got {size!r}: export it again")
     # Compare the description with that of this version.
     try:
-        exported = json.loads(json.dumps(description(views(size), size)))
+        exported = json.loads(json.dumps(description(views(size), size, _node(kit))))
     except ValueError as error:
         raise InputError(f"{file}: {error}: export it again") from None
     for key in EXACT:
         if kit.get(key) != exported[key]:
             raise InputError(f"{file}: {key} must be as kit export writes it: export it again")
     return size
+
+
+def _node(kit: dict[str, Any]) -> str:
+    """Category of the node of a kit's materials, which may be any one."""
+    match kit.get("materials"):
+        case {LAMBERT.name: {"node": str(node)}}:
+            return node
+    return ""
 
 
 def _description(file: Path) -> dict[str, Any]:

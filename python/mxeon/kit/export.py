@@ -4,6 +4,7 @@
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
@@ -16,7 +17,8 @@ from mxeon.io.files import write_text
 from mxeon.kit.mesh import Mesh, to_obj, unit_sphere
 from mxeon.kit.usd import mesh_layer, scene_layer
 from mxeon.kit.views import MATERIALS, USUAL, Material, View, views
-from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
+from mxeon.shaders.library import load_library
+from mxeon.shaders.nodes import FLAG, INPUT_TYPES, OREN_NAYAR, material_text
 from mxeon.shaders.scene import Scene
 
 KIT_FORMAT = 1
@@ -24,7 +26,43 @@ DESCRIPTION = "kit.json"
 RENDERS = "renders"
 
 
-def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
+@dataclass(frozen=True)
+class KitNode:
+    """The node that the materials of a kit are made of.
+
+    Attributes
+    ----------
+    category, definition : str
+        Its category, and the name of its nodedef.
+    flagged : bool
+        Whether it has the input energy_compensation.
+    """
+
+    category: str = OREN_NAYAR
+    definition: str = f"ND_{OREN_NAYAR}"
+    flagged: bool = True
+
+
+def kit_node(category: str, definitions: tuple[str, ...] = ()) -> KitNode:
+    """A node of eonlib's, of MaterialX's or of folders of definitions, as the node of a kit.
+
+    Raises
+    ------
+    ValueError
+        If there is no BSDF node of that category with the inputs color and roughness.
+    """
+    needed = {"color": "color3", "roughness": "float"}
+    for each in load_library("eonlib", None, definitions).getMatchingNodeDefs(category):
+        ports = {port.getName(): port.getType() for port in each.getActiveInputs()}
+        if each.getType() == "BSDF" and needed.items() <= ports.items():
+            return KitNode(category, each.getName(), ports.get(FLAG) == "boolean")
+    raise InputError(
+        "node must be a BSDF with the inputs color (color3) and roughness (float); "
+        f"got {category!r}: load its definition by --definitions FOLDER"
+    )
+
+
+def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = KitNode()) -> Path:
     """Write the kit into `folder`. Replaces an earlier kit; keeps submitted pictures.
 
     Parameters
@@ -33,6 +71,8 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
         Created if it does not exist; empty, or of an earlier kit.
     size : int
         Width and height of the pictures in pixels.
+    node : KitNode
+        Of the materials.
 
     Returns
     -------
@@ -51,16 +91,24 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL) -> Path:
     # Write materials and scenes.
     folder, pictures, mesh = Path(folder), views(size), unit_sphere()
     for material in MATERIALS:
-        write_text(folder / "materials" / f"{material.name}.mtlx", material_document(material))
+        write_text(
+            folder / "materials" / f"{material.name}.mtlx", material_document(material, node)
+        )
     for view in pictures:
-        write_text(folder / "scenes" / f"{view.name}.usda", scene_layer(view))
+        write_text(
+            folder / "scenes" / f"{view.name}.usda",
+            scene_layer(view, node.definition, node.flagged),
+        )
     # Write the sphere.
     write_text(folder / "sphere.obj", to_obj(mesh))
     write_text(folder / "sphere.usda", mesh_layer(mesh))
     # Write the description, and the page for a person.
-    write_text(folder / DESCRIPTION, json.dumps(description(pictures, size), indent=1) + "\n")
+    write_text(
+        folder / DESCRIPTION,
+        json.dumps(description(pictures, size, node.category), indent=1) + "\n",
+    )
     (folder / RENDERS).mkdir(exist_ok=True)
-    write_text(folder / "README.md", _page(pictures, size, mesh))
+    write_text(folder / "README.md", _page(pictures, size, mesh, node.category))
     return folder / "README.md"
 
 
@@ -81,17 +129,18 @@ def _assert_own(folder: str | PathLike[str]) -> None:
         raise InputError(f"{link}: must be no link, through which another file would be replaced")
 
 
-def material_document(material: Material) -> str:
+def material_document(material: Material, node: KitNode = KitNode()) -> str:
     """A material of the kit as MaterialX text."""
     inputs: dict[str, Any] = {
         "color": material.color,
         "roughness": material.roughness,
-        FLAG: material.energy_compensation,
     }
-    return material_text(OREN_NAYAR, inputs, material.name)
+    if node.flagged:
+        inputs[FLAG] = material.energy_compensation
+    return material_text(node.category, inputs, material.name, INPUT_TYPES)
 
 
-def description(pictures: Sequence[View], size: int) -> dict[str, Any]:
+def description(pictures: Sequence[View], size: int, node: str = OREN_NAYAR) -> dict[str, Any]:
     """The numbers of the kit, as kit.json holds them.
 
     Returns
@@ -115,7 +164,7 @@ def description(pictures: Sequence[View], size: int) -> dict[str, Any]:
             "frame": [[-1, -1], [1, 1]],
         },
         "sphere": {"center": [0, 0, 0], "radius": 1, "mesh": "sphere.obj"},
-        "materials": {each.name: _material(each) for each in MATERIALS},
+        "materials": {each.name: _material(each, node) for each in MATERIALS},
         "scenes": {name: _light(scene) for name, scene in scenes.items()},
         "pictures": [
             {
@@ -128,10 +177,10 @@ def description(pictures: Sequence[View], size: int) -> dict[str, Any]:
     }
 
 
-def _material(material: Material) -> dict[str, Any]:
+def _material(material: Material, node: str) -> dict[str, Any]:
     return {
         "file": f"materials/{material.name}.mtlx",
-        "node": OREN_NAYAR,
+        "node": node,
         "color": material.color,
         "roughness": material.roughness,
         "energy_compensation": material.energy_compensation,
@@ -144,7 +193,7 @@ def _light(scene: Scene) -> dict[str, Any]:
     return {"distant": {"direction": scene.light, "irradiance": math.pi}}
 
 
-def _page(pictures: Sequence[View], size: int, mesh: Mesh) -> str:
+def _page(pictures: Sequence[View], size: int, mesh: Mesh, node: str) -> str:
     """README.md of the kit."""
     text = files("mxeon.kit").joinpath("templates", "kit.md").read_text(encoding="utf-8")
     rows = [
@@ -166,6 +215,7 @@ def _page(pictures: Sequence[View], size: int, mesh: Mesh) -> str:
         lights="\n".join(f"| {name} | {_in_words(scene)} |" for name, scene in scenes.items()),
         triangles=len(mesh.triangles),
         depth=f"{mesh.depth:.1e}",
+        node=node,
     )
 
 

@@ -71,11 +71,10 @@ def Xform "world"
 
         def Shader "lobe"
         {{
-            uniform token info:id = "ND_oren_nayar_diffuse_bsdf"
+            uniform token info:id = "{node}"
             color3f inputs:color = {color}
             float inputs:roughness = {roughness!r}
-            bool inputs:energy_compensation = {flag:d}
-            token outputs:out
+{flag}            token outputs:out
         }}
     }}
 }}
@@ -90,6 +89,8 @@ def Scope "Render"
     }}
 }}
 """
+
+FLAG = "            bool inputs:energy_compensation = {flag:d}\n"
 
 DISTANT = """    def DistantLight "light"
     {{
@@ -116,8 +117,8 @@ def mesh_layer(mesh: Mesh) -> str:
     )
 
 
-def scene_layer(view: View) -> str:
-    """The scene of one picture."""
+def scene_layer(view: View, node: str, flagged: bool) -> str:
+    """The scene of one picture, whose material is of a nodedef, with energy_compensation if it has it."""
     material, scene = view.material, view.scene
     if scene.light is None:
         light = DOME.format(radiance=scene.environment)
@@ -130,7 +131,8 @@ def scene_layer(view: View) -> str:
         light=light,
         color=material.color,
         roughness=material.roughness,
-        flag=material.energy_compensation,
+        node=node,
+        flag=FLAG.format(flag=material.energy_compensation) if flagged else "",
     )
 
 
