@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mxeon.conformance import known_issues
 from mxeon.conformance.accuracy.accuracy import ACCURACY
 from mxeon.conformance.checks.application import applies, judge_subject
 from mxeon.conformance.checks.table import CHECKS
@@ -22,9 +21,8 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.pictures import document_pictures as image
 from mxeon.conformance.probes.families import ALL_SUBJECTS, COMMON_SUBJECTS, PBR_SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Result
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT
 from mxeon.conformance.run import check, judge, plan
 from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
 from mxeon.conformance.samples.uneven_environment import sky
@@ -36,12 +34,10 @@ from mxeon.hosts.base import Host, Identity
 from mxeon.jobs import dask
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
-from mxeon.shaders.library import examples_folder
+from tests.conformance.conftest import EXAMPLES
 from tests.support.plans import keep_checks
-from tests.support.sharing import shared
 
 EON, QON, NODE = SUBJECTS
-EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough_base.mtlx")]
 VALUE_CHECKS = ("value", "albedo")
 
 
@@ -76,11 +72,6 @@ def local(normal, direction):
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     axes = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
     return (axes @ direction[:, :, np.newaxis])[:, :, 0]
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    return shared(tmp_path_factory, "eonlib", lambda: check(EXAMPLES, ["gl"], nodes=["common"]))
 
 
 def judged(host, subject=EON):
@@ -343,99 +334,6 @@ def test_the_shader_functions_are_checked_once_and_belong_to_eonlib():
             task for task in plan.make_plan([], ["gl"], libraries).tasks if task.check == "twins"
         ]
         assert [task.library for task in tasks] == ["eonlib"] * count
-
-
-# --- stock MaterialX ----------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def stock(tmp_path_factory):
-    return shared(
-        tmp_path_factory, "stock", lambda: check(EXAMPLES[:1], ["gl"], ["stock"], nodes=["common"])
-    )
-
-
-@pytest.mark.parametrize(
-    "host, key, subject, words",
-    [
-        ("gl", "value", EON.title, "EON with clamped dot(wo, wi)"),
-        ("gl", "albedo", EON.title, "EON with clamped dot(wo, wi)"),
-        ("gl", "environment", QON.title, "QON with MaterialX's fit of its albedo"),
-        ("gl", "lobe", "open_pbr_surface", "EON with clamped dot(wo, wi)"),
-        ("gl", "lobe", "open_pbr_surface, thin-walled", "QON tinted twice"),
-        ("source", "source", f"{EON.title}, osl", "never used: energy_compensation"),
-        ("source", "clamp", f"{EON.title}, glsl", "s is wrong for back-lit pairs"),
-        ("gl", "flag", QON.title, "; see docs/upstream/genglsl_clamped_dot.md"),
-        ("source", "closure", f"{EON.title}, mdl", "FON + white lobe"),
-        ("source", "closure", f"{EON.title}, osl", "energy_compensation is not the node's"),
-    ],
-)
-def test_known_defects_of_stock_materialx_are_found_and_named(stock, host, key, subject, words):
-    (result,) = [
-        each
-        for each in stock.results
-        if (each.host, each.check, each.subject) == (host, key, subject)
-    ]
-    assert result.verdict == FAILED and words in result.diagnosis
-    assert "; see docs/upstream/" in result.diagnosis
-
-
-def test_the_text_of_the_other_model_is_not_held_against_qon(stock):
-    clamps = [each for each in stock.results if each.check == "clamp"]
-    assert clamps and all(EON.title in each.subject for each in clamps)
-
-
-def test_the_lobes_of_surface_shaders_are_judged_and_those_that_are_right_pass(stock, run):
-    right = {"standard_surface", "UsdPreviewSurface", "gltf_pbr"}
-    for findings, expected in ((stock, right), (run, right | {"open_pbr_surface"})):
-        lobes = [each for each in findings.results if each.check == "lobe"]
-        assert {each.subject for each in lobes if each.verdict == PASSED} == expected
-        assert all(each.control.caught for each in lobes)
-
-
-def test_a_defect_that_was_repaired_upstream_is_said_to_be_once_all_its_rows_pass(stock):
-    def noted(*repaired):
-        results = [
-            replace(each, verdict=PASSED) if each.check in repaired else each
-            for each in stock.results
-        ]
-        return dict(map(reversed, known_issues.repaired(results, {"MaterialX": "2.0"})))
-
-    page = "docs/upstream/genglsl_clamped_dot.md"
-    assert noted() == {}
-    assert page not in noted("value", "albedo")
-    assert noted("value", "albedo", "lobe")[page].startswith("repaired in MaterialX 2.0")
-
-
-@pytest.mark.parametrize(
-    "library, words", [("stock", "see docs/upstream/cycles_rho_cubed.md"), ("eonlib", "")]
-)
-def test_what_follows_from_a_defect_of_stock_refers_to_its_page(library, words):
-    result = Result("inputs", "claim.", QON.title, "cycles", library, FAILED)
-    assert known_issues.with_page(result).diagnosis == words
-
-
-@pytest.mark.parametrize("verdict, named", [(DIFFERS, True), (FAILED, True), (PASSED, False)])
-def test_a_check_that_differs_refers_to_its_page_as_one_that_fails_does(verdict, named):
-    result = Result("value", "claim.", "conductor_bsdf", "wgsl", "stock", verdict)
-    page = "docs/upstream/genglsl_microfacet_compensation.md"
-    assert (page in known_issues.with_page(result).diagnosis) == named
-
-
-def test_every_page_that_a_check_refers_to_is_there():
-    folder = Path(__file__).parents[2] / "docs" / "upstream"
-    assert all((folder / f"{defect.page}.md").is_file() for defect in known_issues.ISSUES)
-
-
-@pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
-def test_stock_materialx_in_cycles_is_called_by_its_name(hosts, subject):
-    probe = PictureProbe(hosts("cycles"), subject, "stock")
-    assert "nearest known model: EON with rho^3 (rms " in diagnose_value(probe).text
-
-
-def test_what_stock_materialx_has_right_passes(stock):
-    passed = {(e.check, e.subject) for e in stock.results if e.verdict == PASSED}
-    assert passed >= {("value", QON.title), ("black", EON.title), ("furnace", EON.title)}
 
 
 def test_the_bundled_examples_leave_out_what_stock_lacks():
