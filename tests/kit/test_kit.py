@@ -2,113 +2,43 @@
 """The kit: its files, its verdicts on right and wrong pictures, and Cycles as an external renderer."""
 
 import json
-import os
 import re
 import subprocess
 import warnings
-from functools import cache
 from pathlib import Path
 
 import MaterialX as mx
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 
 from mxeon.cli import main
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.io.images import write_exr
-from mxeon.kit import check as judging
-from mxeon.kit import diagnosis, questions
 from mxeon.kit.check import check_kit
 from mxeon.kit.encoding import fault
-from mxeon.kit.expected import expected, judged, pixel_means
+from mxeon.kit.expected import expected, judged
 from mxeon.kit.export import export_kit
 from mxeon.kit.mesh import unit_sphere
 from mxeon.kit.noise import ratio, tiles
-from mxeon.kit.views import MATERIALS, SETUP, views
+from mxeon.kit.views import MATERIALS, SETUP
 from mxeon.models import table as reference
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import ApproximationWarning, generate
+from tests.kit.conftest import (
+    CUBED,
+    EON,
+    SIZE,
+    VIEWS,
+    names,
+    read,
+    render,
+    result_of,
+    write_pictures,
+)
 from tests.support.availability import available
 from tests.support.tolerances import KIT_DEPTH, KIT_FALSE_ALARMS, KIT_PRINTED
 
-SIZE = 64
-VIEWS = {view.name: view for view in views(SIZE)}
 EXTERNAL_RENDERER = Path(__file__).parents[1] / "support" / "external_renderer.py"
-EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
-
-
-@pytest.fixture(scope="module", autouse=True)
-def remembered():
-    """What is expected of a model in a view, worked out once for all tests."""
-    with pytest.MonkeyPatch.context() as patch:
-        for function in (expected, pixel_means):
-            once = cache(function)
-            for module in (diagnosis, questions, judging):
-                if hasattr(module, function.__name__):
-                    patch.setattr(module, function.__name__, once)
-        yield
-
-
-@cache
-def means(model, name):
-    """A model's means of the judged pixels of a view."""
-    return pixel_means(reference.model(model), VIEWS[name])
-
-
-EXPORTED = {}  # the files of a kit by their names, exported once
-
-
-def write_kit(folder):
-    """A kit without pictures, in an empty folder or over another kit."""
-    if not EXPORTED:
-        export_kit(folder, SIZE)
-        for file in filter(Path.is_file, folder.rglob("*")):
-            EXPORTED[file.relative_to(folder)] = file.read_bytes()
-    for name, data in EXPORTED.items():
-        (folder / name).parent.mkdir(exist_ok=True)
-        (folder / name).write_bytes(data)
-
-
-def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
-    """A kit, and pictures of these models with as much relative noise in each pixel."""
-    rng = np.random.default_rng(seed)
-    write_kit(folder)
-    for view in VIEWS.values():
-        model = true if view.material.energy_compensation else false
-        mask, image = judged(view.scene), np.zeros((SIZE, SIZE, 3))
-        values = means(model, view.name)
-        image[mask] = values * (1.0 + noise * rng.standard_normal(values.shape))
-        write_exr(folder / "renders" / f"{view.name}.exr", image, {})
-
-
-@pytest.fixture
-def kit(tmp_path):
-    """A kit with pictures of EON and QON."""
-    write_pictures(tmp_path)
-    return tmp_path
-
-
-def render(kit, name):
-    return kit / "renders" / f"{name}.exr"
-
-
-def read(path):
-    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
-
-
-def result_of(run, check, subject):
-    """The one result of a check on a subject that begins so."""
-    (result,) = [
-        each for each in run.results if each.check == check and each.subject.startswith(subject)
-    ]
-    return result
-
-
-def names(run):
-    """The first name in each of the notes, by subject."""
-    pattern = r"(.*): nearest known model: (.*) \(rms .*?\), then (.*) \("
-    return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}
 
 
 def test_the_mesh_lies_on_the_sphere():
@@ -254,129 +184,6 @@ def test_an_error_is_told_in_words_and_each_diagnosis_once(tmp_path, capsys):
     assert printed.count(f"nearest known model: {CUBED}") == 2  # distant light, environment
 
 
-def test_a_kit_without_pictures_is_one_line(tmp_path, capsys):
-    write_kit(tmp_path)
-    assert main(["kit", "check", str(tmp_path)]) == 3
-    printed = capsys.readouterr()
-    assert printed.out == "" and printed.err.count("\n") == 1
-    assert "none of the 12 pictures is there" in printed.err
-
-
-def test_a_missing_picture_is_not_run(kit):
-    render(kit, "true_back").unlink()
-    run = check_kit(kit)
-    assert "true_back.exr: must be in" in result_of(run, "file", "true_back").reason
-    assert result_of(run, "model", "energy_compensation true, distant").verdict == "not run"
-
-
-def spoiled(kit, name, change):
-    """The result on the file of a picture that was changed."""
-    write_exr(render(kit, name), change(read(render(kit, name))), {})
-    return result_of(check_kit(kit), "file", name)
-
-
-def planted(value):
-    def change(image):
-        image = image.copy()
-        image[SIZE // 2, SIZE // 2, 1] = value
-        return image
-
-    return change
-
-
-@pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_numbers_that_are_not_finite_are_refused(kit, value):
-    result = spoiled(kit, "true_side", planted(value))
-    assert result.verdict == "failed"
-    assert "must be finite numbers" in result.diagnosis and "row 32, column 32" in result.diagnosis
-
-
-def test_a_wrong_size_is_refused(kit):
-    result = spoiled(kit, "true_side", lambda image: image[:32])
-    assert result.diagnosis == "true_side.exr: must be 64 x 64 pixels; got 64 x 32"
-
-
-def test_eight_bits_in_a_float_file_are_refused(kit):
-    result = spoiled(kit, "true_side", lambda image: np.rint(image * 255.0) / 255.0)
-    assert "never rounded to eight bits" in result.diagnosis
-
-
-def test_one_bright_pixel_does_not_look_like_eight_bits(kit):
-    write_exr(render(kit, "true_side"), planted(3e38)(read(render(kit, "true_side"))), {})
-    assert not [each for each in check_kit(kit).results if each.check == "file"]
-
-
-def test_a_damaged_picture_costs_no_other(kit):
-    path = render(kit, "true_side")
-    path.write_bytes(path.read_bytes().replace(b"\0chlist\0", b"\0\xffhlist\0", 1))
-    run = check_kit(kit)
-    assert r"\xffhlist" in result_of(run, "file", "true_side").diagnosis
-    assert [each.check for each in run.results].count("file") == 1
-
-
-def test_an_eight_bit_file_is_refused(kit):
-    render(kit, "true_side").unlink()
-    path = kit / "renders" / "true_side.png"
-    image = oiio.ImageBuf(oiio.ImageSpec(SIZE, SIZE, 3, oiio.UINT8))
-    assert image.write(str(path))
-    assert "got uint8" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def test_two_files_of_a_name_are_refused(kit):
-    (kit / "renders" / "true_side.csv").write_text("")
-    assert "must be one file" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def test_a_file_that_is_no_image_is_refused(kit):
-    render(kit, "true_side").write_text("nothing")
-    assert "must be an EXR or CSV file" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def write_channels(kit, name, image, names, **place):
-    spec = oiio.ImageSpec(SIZE, SIZE, len(names), oiio.FLOAT)
-    spec.channelnames = names
-    for attribute, value in place.items():
-        setattr(spec, attribute, value)
-    file = oiio.ImageOutput.create(str(render(kit, name)))
-    assert file.open(str(render(kit, name)), spec) and file.write_image(image)
-    file.close()
-
-
-def test_red_green_and_blue_are_found_by_name(kit):
-    image = read(render(kit, "true_side"))
-    layers = np.concatenate([np.ones_like(image), image[..., ::-1]], axis=-1, dtype=np.float32)
-    names = [f"depth.{each}" for each in "XYZ"] + [f"beauty.{each}" for each in "BGR"]
-    write_channels(kit, "true_side", layers, names)
-    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
-
-
-@pytest.mark.parametrize("names", ["XYZ", ["a.R", "a.G", "a.B", "b.R", "b.G", "b.B"]])
-def test_channels_that_are_no_one_red_green_and_blue_are_refused(kit, names):
-    image = np.ones((SIZE, SIZE, len(names)), dtype=np.float32)
-    write_channels(kit, "true_side", image, list(names))
-    message = result_of(check_kit(kit), "file", "true_side").diagnosis
-    assert f"must hold one R, G and B; got channels {', '.join(names)}" in message
-
-
-def test_a_picture_beside_its_place_is_refused(kit):
-    image = read(render(kit, "true_side")).astype(np.float32)
-    write_channels(kit, "true_side", image, list("RGB"), x=5, y=9)
-    message = result_of(check_kit(kit), "file", "true_side").diagnosis
-    assert "must begin at the display window's corner; got (5, 9)" in message
-
-
-def test_half_a_file_is_refused(kit):
-    path = render(kit, "true_side")
-    path.write_bytes(path.read_bytes()[:900])
-    assert "true_side.exr: must be" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-@pytest.mark.parametrize("renderer", ["", " ", "two\nlines", "\x1b[31m", "\udcff"])
-def test_a_renderer_has_a_name_that_can_be_printed(kit, renderer):
-    with pytest.raises(ValueError, match="renderer must be a name on one line"):
-        check_kit(kit, renderer)
-
-
 def srgb(image):
     curve = 1.055 * np.maximum(image, 1e-9) ** (1.0 / 2.4) - 0.055
     return np.where(image <= 0.0031308, 12.92 * image, curve)
@@ -421,107 +228,6 @@ def test_where_the_encoding_is_wrong_no_model_is_named(kit):
     result = result_of(run, "model", "energy_compensation true, distant light")
     assert result.reason == "lambert_side is sRGB-encoded"
     assert names(run) == {}
-
-
-def as_csv(kit, name):
-    image = read(render(kit, name))
-    rows = [",".join(map(str, (*place, *image[place]))) for place in np.ndindex(SIZE, SIZE)]
-    render(kit, name).unlink()
-    path = kit / "renders" / f"{name}.csv"
-    path.write_text("\n".join(["row,column,red,green,blue", *rows]) + "\n")
-    return path
-
-
-def test_values_may_come_as_csv(kit):
-    as_csv(kit, "true_side")
-    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("row,column", "x,y", "must begin with row,column,red,green,blue; got x,y"),
-        ("5,5,", "64,5,", "must hold row and column of a pixel, of 64 x 64"),
-        ("5,5,", "-59,5,", "must hold row and column of a pixel, of 64 x 64"),
-        ("5,5,", "5,5,none,", "and three numbers"),
-        ("32,32,", "31,32,", "that no line before it has"),
-        ("32,32,.*\n", "", "must be finite numbers"),
-        ("5,5,", f"5,5,{'9' * 200_000},", "must be CSV in UTF-8; field larger"),
-    ],
-)
-def test_a_wrong_csv_is_refused(kit, old, new, message):
-    path = as_csv(kit, "true_side")
-    path.write_text(re.sub(f"(?m)^{old}", new, path.read_text(), count=1))
-    assert message in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def test_csv_may_have_a_byte_order_mark_and_empty_lines(kit):
-    path = as_csv(kit, "true_side")
-    path.write_text("\ufeff" + path.read_text() + "\n\n", encoding="utf-8")
-    assert {result.verdict for result in check_kit(kit).results} == {"passed"}
-
-
-@pytest.mark.parametrize("data", [b"", b"row\xff", "row".encode("utf-16")])
-def test_csv_that_is_none_costs_its_picture_alone(kit, data):
-    as_csv(kit, "true_side").write_bytes(data)
-    run = check_kit(kit)
-    assert "true_side.csv: must be" in result_of(run, "file", "true_side").diagnosis
-    assert result_of(run, "setup", "lambert").verdict == "passed"
-
-
-def test_a_folder_that_is_no_kit_is_refused(tmp_path, capsys):
-    assert main(["kit", "check", str(tmp_path)]) == 2
-    assert "folder must hold kit.json" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    "text", ["", "[]", "{}", '{"format": 0, "size": 64}', '{"format": 1, "size": "64"}', 9999 * "["]
-)
-def test_a_description_of_another_format_is_refused(tmp_path, text):
-    (tmp_path / "kit.json").write_text(text)
-    with pytest.raises(ValueError, match="must be"):
-        check_kit(tmp_path)
-
-
-@pytest.mark.parametrize(
-    "key, value, words",
-    [
-        ("format", True, "format must be 1; got True"),
-        ("format", 1.0, "format must be 1; got 1.0"),
-        ("size", None, "size must be a whole number; got None"),
-        ("size", 64.0, "size must be a whole number; got 64.0"),
-        ("size", True, "size must be a whole number; got True"),
-        ("size", 10**400, r"size must lie in \[64, 2048\]"),
-        ("size", -1, r"size must lie in \[64, 2048\]"),
-        ("camera", {}, "camera must be as kit export writes it: export it again"),
-        ("sphere", None, "sphere must be as kit export writes it"),
-        ("materials", {"clay": 1}, "materials must be as kit export writes it"),
-        ("pictures", [3], "pictures must be as kit export writes it"),
-    ],
-)
-def test_an_edited_description_is_refused(tmp_path, capsys, key, value, words):
-    write_kit(tmp_path)
-    content = json.loads((tmp_path / "kit.json").read_text())
-    (tmp_path / "kit.json").write_text(json.dumps(content | {key: value}))
-    assert main(["kit", "check", str(tmp_path)]) == 2
-    error = capsys.readouterr().err
-    assert re.search(f"kit.json: {words}", error) and error.count("\n") == 1
-
-
-@pytest.mark.parametrize("suffix", [".exr", ".csv"])
-@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir], ids=["pipe", "folder"])
-def test_what_is_no_regular_file_is_no_picture(kit, suffix, make):
-    render(kit, "true_side").unlink()
-    make(render(kit, "true_side").with_suffix(suffix))
-    assert "; not a regular file" in result_of(check_kit(kit), "file", "true_side").diagnosis
-
-
-def test_a_pipe_in_place_of_a_description_blocks_nobody(tmp_path):
-    os.mkfifo(tmp_path / "kit.json")
-    with pytest.raises(
-        ValueError, match="kit.json: must be a kit's description; not a regular file"
-    ):
-        check_kit(tmp_path)
 
 
 def test_the_command_exports_and_judges(tmp_path, capsys):

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Kits with pictures of known models, and what tests read of them."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from mxeon.io.images import write_exr
+from mxeon.kit import check as judging
+from mxeon.kit import diagnosis, questions
+from mxeon.kit.check import check_kit
+from mxeon.kit.expected import expected, judged, pixel_means
+from mxeon.kit.export import export_kit
+from mxeon.kit.views import views
+from mxeon.models import table as reference
+
+SIZE = 64
+VIEWS = {view.name: view for view in views(SIZE)}
+EON, QON, CUBED = (reference.model(name).title for name in ("eon", "qon", "eon_rho_cubed"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def remembered():
+    """What is expected of a model in a view, worked out once for all tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        for function in (expected, pixel_means):
+            once = cache(function)
+            for module in (diagnosis, questions, judging):
+                if hasattr(module, function.__name__):
+                    patch.setattr(module, function.__name__, once)
+        yield
+
+
+@cache
+def means(model, name):
+    """A model's means of the judged pixels of a view."""
+    return pixel_means(reference.model(model), VIEWS[name])
+
+
+EXPORTED = {}  # the files of a kit by their names, exported once
+
+
+def write_kit(folder):
+    """A kit without pictures, in an empty folder or over another kit."""
+    if not EXPORTED:
+        export_kit(folder, SIZE)
+        for file in filter(Path.is_file, folder.rglob("*")):
+            EXPORTED[file.relative_to(folder)] = file.read_bytes()
+    for name, data in EXPORTED.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_bytes(data)
+
+
+def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
+    """A kit, and pictures of these models with as much relative noise in each pixel."""
+    rng = np.random.default_rng(seed)
+    write_kit(folder)
+    for view in VIEWS.values():
+        model = true if view.material.energy_compensation else false
+        mask, image = judged(view.scene), np.zeros((SIZE, SIZE, 3))
+        values = means(model, view.name)
+        image[mask] = values * (1.0 + noise * rng.standard_normal(values.shape))
+        write_exr(folder / "renders" / f"{view.name}.exr", image, {})
+
+
+@pytest.fixture
+def kit(tmp_path):
+    """A kit with pictures of EON and QON."""
+    write_pictures(tmp_path)
+    return tmp_path
+
+
+def render(kit, name):
+    return kit / "renders" / f"{name}.exr"
+
+
+def read(path):
+    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+
+
+def result_of(run, check, subject):
+    """The one result of a check on a subject that begins so."""
+    (result,) = [
+        each for each in run.results if each.check == check and each.subject.startswith(subject)
+    ]
+    return result
+
+
+def names(run):
+    """The first name in each of the notes, by subject."""
+    pattern = r"(.*): nearest known model: (.*) \(rms .*?\), then (.*) \("
+    return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}
+
+
+def spoiled(kit, name, change):
+    """The result on the file of a picture that was changed."""
+    write_exr(render(kit, name), change(read(render(kit, name))), {})
+    return result_of(check_kit(kit), "file", name)
