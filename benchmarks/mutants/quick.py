@@ -13,8 +13,7 @@ import numpy as np
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis.verdicts import renderer_warnings
-from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
-from mxeon.conformance.probes.polyhedron import probe_type
+from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_type_of
 from mxeon.conformance.results import PASSED
 from mxeon.conformance.run.plan import SOURCE, Task
 from mxeon.conformance.samples.batch import Array, Batch

@@ -14,10 +14,9 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.bsdf import BsdfProbe
 from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe, BsdfPlaneProbe
-from mxeon.conformance.probes.families import probe_type_of
+from mxeon.conformance.probes.families import HOST_PROBES, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
-from mxeon.conformance.probes.polyhedron import PROBES
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.text import sources
@@ -28,7 +27,9 @@ SUBJECTS = {subject.model: subject for subject in BSDFS}
 
 def judged(host, model, key):
     """Result of a check of a stock node on a host."""
-    probe = probe_type_of(SUBJECTS[model], PROBES[{"cycles": "pictures"}.get(host.name, "pairs")])
+    probe = probe_type_of(
+        SUBJECTS[model], HOST_PROBES[{"cycles": "pictures"}.get(host.name, "pairs")]
+    )
     return judge_check(ROWS[key], probe(host, SUBJECTS[model], "stock"))
 
 

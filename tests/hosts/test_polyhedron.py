@@ -12,7 +12,8 @@ from mxeon.conformance.checks.application import judge_subject
 from mxeon.conformance.known_issues import with_page
 from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
-from mxeon.conformance.probes.polyhedron import PROBES, facet_pairs
+from mxeon.conformance.probes.families import HOST_PROBES
+from mxeon.conformance.probes.polyhedron import facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
@@ -34,7 +35,7 @@ def judged(name):
     """Results of a host, by check and subject."""
     with available(name), open_engine(name) as host:
         host.identity()
-        probe = PROBES[host_row(name).probe]
+        probe = HOST_PROBES[host_row(name).probe]
         results = [
             with_page(result)
             for subject in renderer_nodes(name)

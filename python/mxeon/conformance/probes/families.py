@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All nodes that are judged, and their probes: one table, by what a host shows and by a node's kind."""
+"""All nodes that are judged, and their probes, by what a host shows and by a node's kind."""
 
 from collections.abc import Mapping
 
@@ -27,11 +27,14 @@ from mxeon.conformance.probes.hair import HairProbe
 from mxeon.conformance.probes.media import MediumProbe
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
+from mxeon.conformance.probes.polyhedron import CoarseFacetProbe, FacetPairProbe, FacetProbe
 from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
 from mxeon.conformance.probes.subsurface import SubsurfaceProbe
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.probes.thin_films import FilmProbe
 from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
+from mxeon.hosts import host_row
 
 # Every run judges the common ones; the others are judged where they are asked for by name.
 COMMON_SUBJECTS: tuple[Subject, ...] = (*bsdf.BSDFS, *COMBINED_NODES)
@@ -54,6 +57,17 @@ PBR_SUBJECTS: tuple[Subject, ...] = (
 )
 ALL_SUBJECTS: tuple[Subject, ...] = (*SUBJECTS, *PBR_SUBJECTS, *SURFACES)
 
+# By the word of a host's row for how it is asked.
+HOST_PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
+    "pairs": PairProbe,
+    "pictures": PictureProbe,
+    "planes": PlaneProbe,
+    "native": NativeProbe,
+    "exact": ExactProbe,
+    "facets": FacetProbe,
+    "coarse facets": CoarseFacetProbe,
+    "facet pairs": FacetPairProbe,
+}
 BSDF_KINDS = (*bsdf.KINDS, bsdf.COMBINED, bsdf.NESTED)
 # Probes of nodes that shine by themselves or of which it is only asked whether they are there.
 IN_THE_DARK: Mapping[str, type[Probe]] = {
@@ -88,6 +102,11 @@ PROBES: Mapping[type[Probe], Mapping[str, type[Probe]]] = {
     },
     PlaneProbe: {"lobes": DiffuseLobePlaneProbe, **dict.fromkeys(BSDF_KINDS, BsdfPlaneProbe)},
 }
+
+
+def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
+    """Class of the probes of the host of a name, or None where only text is checked."""
+    return HOST_PROBES.get(host_row(host).probe)
 
 
 def probe_type_of(subject: Subject, probe: type[Probe]) -> type[Probe] | None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Probes of renderers that show their own nodes on a polyhedron, and the table of all probes."""
+"""Probes of renderers that show their own nodes on a polyhedron."""
 
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -8,20 +8,16 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.probes.cases import BLACK
-from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import (
     PICTURE_INPUTS,
     PICTURE_SIZE,
     Mask,
     Pairs,
-    PictureProbe,
-    PlaneProbe,
     lit_pairs,
 )
-from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
+from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions
 from mxeon.conformance.samples.edge_cases import outside_directions, special_directions
-from mxeon.hosts import host_row
 from mxeon.shaders.facets import facet_points
 from mxeon.shaders.scene import FURNACE, Scene
 
@@ -103,23 +99,6 @@ class FacetPairProbe(FacetProbe):
     def sample(self, batch: Batch, u: Array) -> Array:
         roughness = np.broadcast_to(batch.inputs["roughness"], len(batch.wo))
         return self.host.sample(batch.wo, u, roughness).astype(np.float64)
-
-
-PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
-    "pairs": PairProbe,
-    "pictures": PictureProbe,
-    "planes": PlaneProbe,
-    "native": NativeProbe,
-    "exact": ExactProbe,
-    "facets": FacetProbe,
-    "coarse facets": CoarseFacetProbe,
-    "facet pairs": FacetPairProbe,
-}
-
-
-def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
-    """Class of the probes of the host of a name, or None where only text is checked."""
-    return PROBES.get(host_row(host).probe)
 
 
 @lru_cache(maxsize=8)

@@ -16,8 +16,7 @@ from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
 from mxeon.conformance.pictures.documents import generate_document
 from mxeon.conformance.pictures.node_pictures import comparison_pictures
-from mxeon.conformance.probes.families import ALL_SUBJECTS, probe_type_of
-from mxeon.conformance.probes.polyhedron import PROBES
+from mxeon.conformance.probes.families import ALL_SUBJECTS, probe_type, probe_type_of
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.reference import Host as Reference
@@ -37,7 +36,7 @@ from mxeon.conformance.run.plan import (
 )
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError
-from mxeon.hosts import host_row, open_engine
+from mxeon.hosts import open_engine
 from mxeon.hosts.base import Host
 from mxeon.hosts.renderer import RendererHost
 from mxeon.shaders.document.policy import Policy
@@ -211,7 +210,8 @@ def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
     """The probe of a subject on a host."""
     subjects = renderer_nodes(host.name) or ALL_SUBJECTS
     subject = next(each for each in subjects if each.title == title)
-    probe = probe_type_of(subject, PROBES[host_row(host.name).probe])
+    own = probe_type(host.name)
+    probe = own and probe_type_of(subject, own)
     assert probe is not None  # or there were no task
     made = probe(cast(Host, host), subject, library)
     return made.nearest_form() if isinstance(made, ExactProbe) else made

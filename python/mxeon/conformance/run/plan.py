@@ -24,9 +24,8 @@ from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
+from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.polyhedron import probe_type
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import AlbedoCurve, Picture, Result
