@@ -161,12 +161,12 @@ class Host(FragmentHost):
         count, size = fragment.frame(arguments)
         program = self._program(vertex, pixel)
         _set(program, raster.EVALUATION)
-        textures = {
+        values = {
             name: self._argument(rows, size)
             for name, rows in arguments.items()
             if program.get(name, None)
         }
-        textures |= self._textures(program, raster.environment(irradiance))
+        textures = values | self._textures(program, raster.environment(irradiance))
         return self._draw(program, textures, size).reshape(-1, 3)[:count]
 
     def _draw(
