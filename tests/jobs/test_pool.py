@@ -10,8 +10,9 @@ import pytest
 from pebble import CONSTS
 
 from mxeon.jobs import pool
+from mxeon.jobs.attempts import Attempt, Queue
 from mxeon.jobs.pool import ATTEMPTS, LOCK, Outcome, in_order, run
-from tests.support.faults import Tar, misbehave, need, once, square
+from tests.support.faults import Tar, misbehave, need, once, process, square
 
 NUMBERS = [1, 2, 3, 4]
 
@@ -19,6 +20,21 @@ NUMBERS = [1, 2, 3, 4]
 def test_every_item_is_worked_on_once():
     found = dict(run(square, range(20), 2, 60.0))
     assert found == {item: Outcome(item * item) for item in range(20)}
+
+
+def test_items_of_one_group_have_one_worker_as_long_as_there_are_groups_for_all():
+    queue = Queue([Attempt(index, index, index % 3) for index in range(12)])
+    taken = [[queue.take(worker).index for worker in (0, 1)] for _ in range(4)]
+    assert taken == [[0, 1], [3, 4], [6, 7], [9, 10]]
+    assert queue.take(0).index == 2  # the group that nobody works on
+    assert queue.take(1).index == 5  # help with the longest, as there is no other
+    assert [attempt.index for attempt in queue] == [8, 11] and len(queue) == 2
+
+
+def test_a_group_shares_its_process():
+    found = run(process, range(4), 2, 60.0, group=lambda item: item % 2)
+    processes = {index: outcome.value for index, outcome in found}
+    assert processes[0] == processes[2] and processes[1] == processes[3]
 
 
 @pytest.mark.parametrize(

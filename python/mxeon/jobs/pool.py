@@ -8,8 +8,7 @@ import signal
 import sys
 import tempfile
 import threading
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass, replace
 from multiprocessing import resource_tracker
@@ -19,6 +18,7 @@ from typing import Any
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
 from mxeon.errors import InputError, MxeonError, NotRun
+from mxeon.jobs.attempts import Attempt, Queue
 from mxeon.jobs.processes import Context, safe_path
 from mxeon.jobs.signals import block_signals
 from mxeon.jobs.timeouts import check_timeout
@@ -31,6 +31,7 @@ ATTEMPTS = 2
 BREAKS = 3  # pools that break one after the other before any item is done
 START = 60.0  # seconds that a process may take before it begins to work
 LOCK = 10.0  # seconds until workers take over the lock of one that was killed while it held it
+LAST = 4  # tasks a worker that are left when none is scheduled ahead of its turn
 LAST_LINES = 4  # of a worker's output, in the reason
 
 
@@ -52,18 +53,12 @@ class Outcome:
     attempts: int = 1
 
 
-@dataclass(frozen=True)
-class _Attempt:
-    """An attempt at an item, whose worker prints to the file `log`."""
-
-    index: int
-    item: Any
-    number: int = 1
-    log: str = ""
-
-
 def run(
-    work: Callable[[Any], Any], items: Sequence[Any], workers: int, timeout: float
+    work: Callable[[Any], Any],
+    items: Sequence[Any],
+    workers: int,
+    timeout: float,
+    group: Callable[[Any], Hashable] = lambda item: None,
 ) -> Iterator[tuple[int, Outcome]]:
     """Outcomes of `work` on every item, as they come.
 
@@ -79,6 +74,9 @@ def run(
         Number of processes, at least 1.
     timeout : float
         Seconds for one item, after which its process is killed.
+    group : callable (item) -> hashable
+        Items of one group have something in common: one process works on them, as long as there are
+        groups for all.
 
     Yields
     ------
@@ -106,7 +104,7 @@ def run(
     _check_working_folder()
     workers = min(workers, len(items))
     # Serve the items; a pool that breaks is started again.
-    waiting = deque(_Attempt(index, item) for index, item in enumerate(items))
+    waiting = Queue([Attempt(index, item, group(item)) for index, item in enumerate(items)])
     with tempfile.TemporaryDirectory(prefix="mxeon-pool-") as logs:
         breaks = 0
         while waiting and breaks < BREAKS:
@@ -142,44 +140,55 @@ def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
 
 def _serve(
     work: Callable[[Any], Any],
-    waiting: deque[_Attempt],
+    waiting: Queue,
     workers: int,
     timeout: float,
     logs: str,
 ) -> Iterator[tuple[int, Outcome]]:
-    """Outcomes until nothing waits or the pool breaks, which leaves its items waiting."""
-    pool = ProcessPool(workers, initializer=_prepare, context=Context())
-    running: dict[Future[Any], _Attempt] = {}
+    """Outcomes until nothing waits or a pool breaks, which leaves its items waiting.
+
+    Each worker is a pool of its own, so that its items are chosen for it.
+    """
+    pools = [ProcessPool(1, initializer=_prepare, context=Context()) for _ in range(workers)]
+    running: list[dict[Future[Any], Attempt]] = [{} for _ in pools]
     try:
         # Start the processes.
-        active = _start(pool)
-        while active and (waiting or running) and pool.active:
-            # Keep two tasks a worker scheduled.
-            while waiting and len(running) < 2 * workers:
-                attempt = waiting.popleft()
-                attempt = replace(
-                    attempt, log=os.path.join(logs, f"{attempt.index}-{attempt.number}.txt")
-                )
-                arguments = (work, attempt.item, attempt.log)
-                running[pool.schedule(_work_logged, args=arguments, timeout=timeout)] = attempt
+        active = all([_start(pool) for pool in pools])
+        while active and (waiting or any(running)) and all(pool.active for pool in pools):
+            # Keep two tasks a worker scheduled, and one where few are left to share.
+            for worker, own in enumerate(running):
+                while waiting and len(own) < (2 if len(waiting) > LAST * workers else 1):
+                    attempt = waiting.take(worker)
+                    log = os.path.join(logs, f"{attempt.index}-{attempt.number}.txt")
+                    attempt = replace(attempt, log=log)
+                    arguments = (work, attempt.item, attempt.log)
+                    future = pools[worker].schedule(_work_logged, args=arguments, timeout=timeout)
+                    own[future] = attempt
             # Wait for outcomes.
-            done = wait(running, timeout=START + timeout, return_when=FIRST_COMPLETED).done
-            for future in done or tuple(running):  # none: the processes hang before they begin
-                attempt = running.pop(future)
+            begun = dict(pair for own in running for pair in own.items())
+            done = wait(begun, timeout=START + timeout, return_when=FIRST_COMPLETED).done
+            for future in done or begun:  # none: the processes hang before they begin
+                attempt = begun[future]
+                for own in running:
+                    own.pop(future, None)
                 # Yield an outcome, or try a task once more.
                 outcome = _outcome(future, attempt, timeout)
                 if outcome.failure and attempt.number < ATTEMPTS:
-                    waiting.append(replace(attempt, number=attempt.number + 1))
+                    waiting.put(replace(attempt, number=attempt.number + 1))
                 else:
                     yield attempt.index, outcome
                 Path(attempt.log).unlink(missing_ok=True)
             if not done:
                 return
     finally:
-        waiting.extend(running.values())
+        for own in running:
+            for attempt in own.values():
+                waiting.put(attempt)
         with block_signals():
-            pool.stop()
-            pool.join()
+            for pool in pools:
+                pool.stop()
+            for pool in pools:
+                pool.join()
 
 
 def _start(pool: ProcessPool) -> bool:
@@ -197,7 +206,7 @@ def _start(pool: ProcessPool) -> bool:
         raise NotRun(f"worker processes must start; {reason}") from error
 
 
-def _outcome(future: Future[Any], attempt: _Attempt, timeout: float) -> Outcome:
+def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
     # Return a result.
     error = future.exception() if future.done() else TimeoutError()
     if error is None:

@@ -221,7 +221,8 @@ def _executor(
             job = partial(work, policy)
             yield partial(cluster.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:
-        yield partial(pool.run, partial(work_or_not_run, policy), workers=workers, timeout=timeout)
+        job = partial(work_or_not_run, policy)
+        yield partial(pool.run, job, workers=workers, timeout=timeout, group=_subject)
     else:
         yield partial(_run_inline, policy)
 
@@ -232,6 +233,11 @@ def _outcomes(tasks: Sequence[Task], executor: Executor) -> Iterator[tuple[int, 
         findings = outcome.value
         assert findings is None or isinstance(findings, Findings)
         yield position, findings or not_run(tasks[position], outcome.failure)
+
+
+def _subject(task: Task) -> tuple[str, str, str]:
+    """What the checks of a subject have in common: its shader, its samples and its diagnosis."""
+    return task.host, task.library, task.subject
 
 
 def _run_inline(policy: Policy, tasks: Sequence[Task]) -> Iterator[tuple[int, pool.Outcome]]:
