@@ -5,6 +5,8 @@ import os
 import signal
 import subprocess
 import sys
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 from pebble import CONSTS
@@ -12,7 +14,7 @@ from pebble import CONSTS
 from mxeon.jobs import pool
 from mxeon.jobs.attempts import Attempt, Queue
 from mxeon.jobs.pool import ATTEMPTS, LOCK, Outcome, in_order, run
-from tests.support.faults import Tar, misbehave, need, once, process, square
+from tests.support.faults import Tar, misbehave, need, once, square
 
 NUMBERS = [1, 2, 3, 4]
 
@@ -31,10 +33,13 @@ def test_items_of_one_group_have_one_worker_as_long_as_there_are_groups_for_all(
     assert [attempt.index for attempt in queue] == [8, 11] and len(queue) == 2
 
 
-def test_a_group_shares_its_process():
-    found = run(process, range(4), 2, 60.0, group=lambda item: item % 2)
-    processes = {index: outcome.value for index, outcome in found}
-    assert processes[0] == processes[2] and processes[1] == processes[3]
+def test_what_a_pool_loses_when_it_breaks_is_no_attempt():
+    lost, failed = Future(), Future()
+    lost.set_exception(BrokenProcessPool("All workers expired"))
+    failed.set_exception(TimeoutError())
+    attempt = Attempt(0, "item")
+    assert pool._again(lost, attempt, Outcome(None, "broken")) == attempt
+    assert pool._again(failed, attempt, Outcome(None, "timed out")).number == ATTEMPTS
 
 
 @pytest.mark.parametrize(

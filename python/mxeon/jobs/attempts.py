@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Attempts at items that wait for a worker, those of one group for the same one."""
 
+import os
 from collections import deque
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 
@@ -16,6 +17,10 @@ class Attempt:
     group: Hashable = None
     number: int = 1
     log: str = ""
+
+    def logged(self, folder: str) -> "Attempt":
+        """The same attempt with a file in a folder."""
+        return replace(self, log=os.path.join(folder, f"{self.index}-{self.number}.txt"))
 
 
 class Queue:

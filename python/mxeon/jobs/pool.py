@@ -10,6 +10,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -156,13 +157,11 @@ def _serve(
         active = all([_start(pool) for pool in pools])
         while active and (waiting or any(running)) and all(pool.active for pool in pools):
             # Keep two tasks a worker scheduled, and one where few are left to share.
-            for worker, own in enumerate(running):
+            for worker, (pool, own) in enumerate(zip(pools, running, strict=True)):
                 while waiting and len(own) < (2 if len(waiting) > LAST * workers else 1):
-                    attempt = waiting.take(worker)
-                    log = os.path.join(logs, f"{attempt.index}-{attempt.number}.txt")
-                    attempt = replace(attempt, log=log)
+                    attempt = waiting.take(worker).logged(logs)
                     arguments = (work, attempt.item, attempt.log)
-                    future = pools[worker].schedule(_work_logged, args=arguments, timeout=timeout)
+                    future = pool.schedule(_work_logged, args=arguments, timeout=timeout)
                     own[future] = attempt
             # Wait for outcomes.
             begun = dict(pair for own in running for pair in own.items())
@@ -171,10 +170,9 @@ def _serve(
                 attempt = begun[future]
                 for own in running:
                     own.pop(future, None)
-                # Yield an outcome, or try a task once more.
-                outcome = _outcome(future, attempt, timeout)
-                if outcome.failure and attempt.number < ATTEMPTS:
-                    waiting.put(replace(attempt, number=attempt.number + 1))
+                # Yield an outcome, or let the item wait once more.
+                if again := _again(future, attempt, outcome := _outcome(future, attempt, timeout)):
+                    waiting.put(again)
                 else:
                     yield attempt.index, outcome
                 Path(attempt.log).unlink(missing_ok=True)
@@ -204,6 +202,18 @@ def _start(pool: ProcessPool) -> bool:
         cause = error.__cause__ or error  # pebble's own error has no words
         reason = getattr(cause, "strerror", None) or cause
         raise NotRun(f"worker processes must start; {reason}") from error
+
+
+def _again(future: Future[Any], attempt: Attempt, outcome: Outcome) -> Attempt | None:
+    """The next attempt at an item, if there is one.
+
+    Which task a pool was at when it broke is not known: none of them is counted.
+    """
+    if future.done() and isinstance(future.exception(), BrokenProcessPool):
+        return attempt
+    if outcome.failure and attempt.number < ATTEMPTS:
+        return replace(attempt, number=attempt.number + 1)
+    return None
 
 
 def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
