@@ -15,11 +15,13 @@ from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.selection import node_names
 from mxeon.shaders.library import load_library
+from tests.support.wrong_libraries import wrong_copy
 
 ROWS = {check.key: check for check in CHECKS if SHADERS[0].model in check.models}
 # Long shaders take seconds to compile: the shortest stands for all, and the rest for their sums.
 SHORT = SHADERS[-1]
-STOCK = {"lobes", "lobes_albedo", "lobes_energy"}  # what fails there, beside the rest
+LOBE = "genglsl/microfacet_lobe.glsl"
+STOCK = {"lobes", "lobes_albedo", "lobes_mean", "lobes_energy"}  # what fails there, beside the rest
 
 
 def judged(host, shader, library, keys=tuple(ROWS)):
@@ -45,6 +47,15 @@ def test_stock_has_its_known_departures_and_no_others(gl):
     failed = {key for key, result in results.items() if result.verdict == FAILED}
     assert failed == STOCK
     assert all("genglsl_microfacet_throughput" in results[key].diagnosis for key in failed)
+
+
+def test_light_that_every_layer_gains_is_seen_in_the_mean_alone(gl, tmp_path):
+    text = "bsdf.throughput = max(1.0 - lobe.albedo"
+    library = wrong_copy(
+        tmp_path, text, text.replace("1.0", "1.003"), LOBE, library="profiles/pbrlib"
+    )
+    results = judged(gl, SHORT, library, ("lobes", "lobes_albedo", "lobes_mean"))
+    assert {key for key, each in results.items() if each.verdict == FAILED} == {"lobes_mean"}
 
 
 def test_a_wrong_lobe_is_named():

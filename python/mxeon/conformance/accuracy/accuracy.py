@@ -142,15 +142,16 @@ ACCURACY: Mapping[str, Accuracy] = {
     MICROFACET: _lobe(
         MICROFACET,
         bsdf.MICROFACET_VALUE,
-        bsdf.MICROFACET_ALBEDO,
+        bsdf.MICROFACET_ENVIRONMENT,
         bsdf.MICROFACET_FRAME,
+        bsdf.MICROFACET_ALBEDO,
         light=bsdf.WHITE_FURNACE,
         mean=bsdf.MICROFACET_MEAN,
     ),
     SCHLICK: _lobe(
         SCHLICK,
         bsdf.MICROFACET_VALUE,
-        bsdf.MICROFACET_ALBEDO,
+        bsdf.MICROFACET_ENVIRONMENT,
         bsdf.MICROFACET_FRAME,
         bsdf.SCHLICK_THROUGHPUT,
         bsdf.WHITE_FURNACE,

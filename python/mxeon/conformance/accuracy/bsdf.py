@@ -14,6 +14,7 @@ LEAST_COSINE = 0.1  # of the same
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
 FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
+LAYER_FIT = 1.9e-3  # the same of exponent 5, and of indices from 1.05 to 2.5
 DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
 CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
 SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
@@ -53,6 +54,9 @@ CONTY_KULLA_VALUE = Tolerance(
     "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
     "the inverse of the roughness, at least 0.01; rounded up",
 )
+# Error of a compensation in an albedo, of which E_ss is a factor.
+COMPENSATION_ALBEDO = ESS_FIT / LEAST_ESS + FRESNEL_FIT * (1.0 - LEAST_ESS)
+ROUGH_SUM = 5e-4  # error of a sum over 1024 directions for alpha from 0.3 on: measured as `sum_of`
 COMPENSATION = (ESS_FIT + FRESNEL_FIT * (1.0 - LEAST_ESS)) / LEAST_ESS  # its error, relative
 MICROFACET_VALUE = Tolerance(
     rounded_up(ESS_FIT * SEEN_ESS + FRESNEL_FIT * (SEEN_ESS - 1.0)),
@@ -94,11 +98,20 @@ SCHLICK_THROUGHPUT = Tolerance(
     "the fit of the lobe's albedo, 3.2e-3, half of that of the dip at 82 degrees, 5.9e-3, and that of "
     "E_ss in its compensation, 5e-4 over the least E_ss, 0.31; rounded up",
 )
+MICROFACET_ENVIRONMENT = Tolerance(
+    rounded_up(max(sum_of(1024), COMPENSATION_ALBEDO + ROUGH_SUM)),
+    "albedo",
+    absolute,
+    "the sum over 1024 directions of an environment, 1.7e-3, of lobes that lose little; of others the fits "
+    "of E_ss, 5e-4 over the least, 0.31, and of F_ss, 3.6e-4 of 0.69, and the sum, 5e-4 from alpha 0.3 "
+    "on; rounded up",
+)
 ANISOTROPIC_ALBEDO = Tolerance(
-    MICROFACET_ALBEDO.value + sum_of(1024),
+    rounded_up(COMPENSATION_ALBEDO + sum_of(1024)),
     "albedo",
     scaled,
-    "the fits, and the error of a sum over the directions of an environment",
+    "the fits of E_ss, 5e-4 over the least, 0.31, and of F_ss, 3.6e-4 of 0.69, and the sum over 1024 "
+    "directions of an environment, 1.7e-3; rounded up",
 )
 FLAT_FRAME = Tolerance(
     rounded_up(3 * 5 / TURNED[0] * ROUNDING),
@@ -259,9 +272,9 @@ def layer_of(integral: Tolerance, throughput: Tolerance) -> Tolerance:
 def clear_of(passed: Tolerance) -> Tolerance:
     """Tolerance of the light that microfacets reflect and transmit."""
     return Tolerance(
-        rounded_up(MICROFACET_ALBEDO.value + passed.value),
+        rounded_up(MICROFACET_ENVIRONMENT.value + passed.value),
         "light",
         absolute,
-        f"a reflected albedo within {MICROFACET_ALBEDO.value:.2g}, and light that passes within "
+        f"a reflected albedo within {MICROFACET_ENVIRONMENT.value:.2g}, and light that passes within "
         f"{passed.value:.2g}; rounded up",
     )

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.accuracy.surface_shaders import VALUE
+from mxeon.conformance.accuracy.surface_shaders import MEAN, VALUE
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, scale, shifted
 from mxeon.conformance.checks.measures import counted
@@ -33,6 +33,11 @@ def energy(probe: Probe) -> Iterable[Case]:
     """Albedos above 1 over random materials with every lobe."""
     albedo = probe.albedo(probe.materials)
     return [Case(probe.materials, np.maximum(albedo, 1.0), np.ones((1, 3)))]
+
+
+def mean(probe: Probe) -> Iterable[Case]:
+    """Direct light and albedos against those by the layer equation."""
+    return [*value_cases(probe), *albedo_cases(probe)]
 
 
 def furnace(probe: Probe) -> Iterable[Case]:
@@ -129,6 +134,16 @@ CHECKS = (
         "each view has the inputs of another",
         shifted,
         "albedo",
+        diagnose=diagnose_sum,
+    ),
+    Check(
+        "lobes_mean",
+        "Over many materials and views no light is gained or lost in the mean.",
+        MODELS,
+        mean,
+        "every value is a hundredth lower",
+        scale(0.99),
+        MEAN,
         diagnose=diagnose_sum,
     ),
     Check(
