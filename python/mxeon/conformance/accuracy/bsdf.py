@@ -98,6 +98,19 @@ SCHLICK_THROUGHPUT = Tolerance(
     "the fit of the lobe's albedo, 3.2e-3, half of that of the dip at 82 degrees, 5.9e-3, and that of "
     "E_ss in its compensation, 5e-4 over the least E_ss, 0.31; rounded up",
 )
+DIP = Tolerance(
+    rounded_up((1.0 - LEAST_COLOR82) * DIP_FIT),
+    "albedo",
+    absolute,
+    "half of the fit of the dip at 82 degrees, 5.9e-3, in which compensation is part; of what is white "
+    "besides, fits have no effect; rounded up",
+)
+UNFITTED = Tolerance(
+    0.78,
+    "albedo",
+    absolute,
+    "the largest error of a cosine that is fitted to indices from 1.03 on, as docs/loading.md has it",
+)
 MICROFACET_ENVIRONMENT = Tolerance(
     rounded_up(max(sum_of(1024), COMPENSATION_ALBEDO + ROUGH_SUM)),
     "albedo",

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.probes.cases import layering_cases
+from mxeon.conformance.probes.cases import WHITE, layering_cases
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
@@ -37,6 +37,27 @@ def layer(probe: Probe) -> Iterable[Case]:
     own = subject_of(probe, BsdfSubject).albedo(views)
     sound = np.asarray((probe.integrals <= own + ROUNDED).all(axis=1))
     return [Case(views.where(sound), total[sound], np.ones((1, 3)))]
+
+
+def dip(probe: Probe) -> Iterable[Case]:
+    """Throughput of lobes that are white but for a dip at 82 degrees."""
+    white = {"color0": WHITE, "color90": WHITE, "color82": (LEAST_COLOR82,) * 3, "exponent": 5.0}
+    return [_passed(probe, batch.altered(**white)) for batch in probe.cosines]
+
+
+def denser(probe: Probe) -> Iterable[Case]:
+    """Throughput of lobes of the inverse indices."""
+    return [
+        _passed(probe, batch.altered(ior=1.0 / np.asarray(batch.inputs["ior"]), tint=WHITE))
+        for batch in probe.cosines
+    ]
+
+
+def _passed(probe: Probe, batch: Batch) -> Case:
+    """Throughput at full weight against 1 - E."""
+    full = batch.altered(weight=1.0)
+    passed = np.maximum(1.0 - probe.expected_albedo(full), 0.0)
+    return Case(full, probe.throughput(full, "direct"), passed)
 
 
 def energy(probe: Probe) -> Iterable[Case]:

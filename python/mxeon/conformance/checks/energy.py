@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of energy: what a lobe scatters in all, what it lets through, and both of two lobes together."""
 
+from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all, scale, shifted
@@ -36,6 +37,26 @@ CHECKS = (
         pass_all,
         "throughput",
         diagnose=diagnosis.diagnose_transmission,
+    ),
+    Check(
+        "dip",
+        "A dip at 82 degrees lets through what it does not reflect.",
+        tuple(row.name for row in NODES if row.layerable and "color82" in row.inputs),
+        measures.dip,
+        "all light passes",
+        pass_all,
+        tolerances.DIP,
+        diagnose=diagnosis.diagnose_throughput,
+    ),
+    Check(
+        "denser",
+        "The throughput towards a thinner side, of which no fit is made, is as near as stated.",
+        tuple(row.name for row in NODES if row.layerable and "tint" in row.inputs),
+        measures.denser,
+        "all light passes",
+        pass_all,
+        tolerances.UNFITTED,
+        diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
         "layer",

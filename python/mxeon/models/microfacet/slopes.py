@@ -214,7 +214,7 @@ def _horizon_azimuth(mu_o: Array, squared: Array) -> Array:
     slope = np.sqrt(np.maximum(4.0 * squared / mu_o**2 - 1.0, 0.0))
     length = np.where(sine * slope > 0.0, sine * slope, 1.0)
     meeting = np.where(sine * slope > 0.0, (2.0 * squared / mu_o - mu_o) / length, 0.0)
-    return np.arccos(np.clip(meeting, -1.0, 1.0))
+    return np.asarray(np.arccos(np.clip(meeting, -1.0, 1.0)))
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
