@@ -193,6 +193,7 @@ NESTED_VALUE = Tolerance(
     scaled,
     "three values, of which a throughput of two albedos multiplies one",
 )
+FACTOR = Tolerance(ROUNDING, SCALED, scaled, "the same products, of a factor that is exact")
 # Largest errors of the shader's thin film, for cosines from 0.1 on: fits/thin_film.py searches for each.
 FILM_ORDERS = 8.2e-3  # six orders and a geometric series, relative to the largest channel
 FILM_AVERAGE = 7.9e-3  # F_ss in six cosines

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
 from mxeon.conformance.samples.measurement import Case
+from mxeon.models.nodes.combinations import FACTOR
 
 FEW = 1 << 12
 ROUNDED = 1e-9  # difference of two albedos that are the same
@@ -26,6 +28,21 @@ def passing(probe: Probe) -> Iterable[Case]:
     cases = (
         case._replace(measured=np.maximum(case.measured, 0.0)) for case in layering_cases(probe)
     )
+    return cases
+
+
+def factors(probe: Probe) -> Iterable[Case]:
+    """Values and throughputs with factors beyond [0, 1], against those of the nearest end."""
+    cases = []
+    for batch, (factor, end) in product(probe.few, ((2.0, 1.0), (-1.0, 0.0))):
+        beyond, nearest = (
+            batch.altered(**{FACTOR: np.full_like(batch.inputs[FACTOR], number)})
+            for number in (factor, end)
+        )
+        cases += [
+            Case(beyond, probe.direct(beyond), probe.direct(nearest)),
+            Case(beyond, probe.throughput(beyond, "direct"), probe.throughput(nearest, "direct")),
+        ]
     return cases
 
 

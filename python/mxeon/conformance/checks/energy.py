@@ -1,21 +1,38 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of energy: what a lobe scatters in all, what it lets through, and both of two lobes together."""
 
+import numpy as np
+
 from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import pass_all, scale, shifted
+from mxeon.conformance.checks.controls import Altered, pass_all, scale, shifted
 from mxeon.conformance.checks.names import COMBINATION, OTHERS
 from mxeon.conformance.diagnosis import candidates as diagnosis
+from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.combinations import SINGLE
 from mxeon.conformance.probes.cases import (
     albedo_cases,
     layering_cases,
     transmission_cases,
     value_cases,
 )
+from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.models.nodes import NODES
+from mxeon.models.nodes.combinations import FACTOR
 
 LAYERS = tuple(row.name for row in NODES if row.layerable)
+
+
+def again(probe: Probe) -> Altered:
+    """A control whose values have their factor twice."""
+
+    def scaled(batch: Batch, values: Array) -> Array:
+        return values * np.reshape(batch.inputs[FACTOR], (len(values), -1))
+
+    return Altered(probe, values=scaled)
+
 
 CHECKS = (
     Check(
@@ -120,6 +137,18 @@ COMBINED_CHECKS = (
         pass_all,
         "throughput",
         diagnose=diagnosis.diagnose_throughput,
+        open=True,
+    ),
+    Check(
+        "factor",
+        "A factor above 1 counts as 1, and one below 0 as 0.",
+        SINGLE,
+        measures.factors,
+        "values are multiplied once more",
+        again,
+        tolerances.FACTOR,
+        pairs=True,
+        diagnose=lambda probe: Diagnosis("the factor counts as it is", permitted=True),
         open=True,
     ),
 )
