@@ -17,8 +17,11 @@ from tests.support.availability import available
 ROOT = Path(__file__).resolve().parents[1]
 # With the color, what is left is an error of the fit.
 OF_FIT = ("transmission", "sheen_bsdf, mode conty_kulla")
-# What is left is the arc tangent of the driver, in the narrowest lobes.
-OF_DRIVER = (("value", "chiang_hair_bsdf"), ("narrow_lobes", "chiang_hair_bsdf"))
+# What is left are roundings of the driver's arc tangent.
+OF_DRIVER = tuple(
+    (check, "chiang_hair_bsdf")
+    for check in ("value", "narrow_lobes", "tilted_lobes", "wide_lobes", "each_lobe")
+)
 ROWS = [pair for row in ledger.rows() for pair in row.repaired]
 ROUNDING = (
     1.5  # tolerances of the value of a sharp Zeltner lobe in float32, from aInv w.x + bInv w.z

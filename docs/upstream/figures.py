@@ -165,7 +165,12 @@ def profile_figures():
     """Errors of the albedo inversion, and of the profile's width with the repair."""
     colors = np.linspace(0.02, 0.98, 25)
     exact = [reflectance_of_h(each) for each in subsurface_albedo(colors)]
-    return {"isotropic": np.abs(exact - colors).max(), "width": max(map(_width_error, WIDTHS))}
+    return {
+        "isotropic": np.abs(exact - colors).max(),
+        "width": max(map(_width_error, WIDTHS)),
+        "dark": _walk_width(0.05, 0.0) / 2.5,
+        "bright": _walk_width(0.95, 0.0) / 2.5,
+    }
 
 
 WIDTHS = ((0.2, -0.5), (0.5, 0.0), (0.8, 0.0), (0.5, 0.5), (0.2, 0.5), (0.8, 0.5), (0.8, -0.5))
@@ -175,8 +180,12 @@ def _width_error(case):
     """Relative error of the mean distance 5/2 l / (s (1 - g)) against a random walk's."""
     color, g = case
     s = 1.9 - color + 3.5 * (color - 0.8) ** 2
-    walk = distances(float(subsurface_albedo(color, g)), g, PATHS).mean()
-    return abs(2.5 / (s * (1.0 - g)) / walk - 1.0)
+    return abs(2.5 / (s * (1.0 - g)) / _walk_width(color, g) - 1.0)
+
+
+def _walk_width(color, g):
+    """Mean distance of a random walk, in mean free paths."""
+    return distances(float(subsurface_albedo(color, g)), g, PATHS).mean()
 
 
 def specification_figures():

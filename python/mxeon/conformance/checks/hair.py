@@ -43,8 +43,10 @@ def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
     def diagnose(probe: Probe) -> Diagnosis:
         others = set(FORMS) - {REGIONS[key].form, TILTED}  # which may be the same there
         candidates = [each for each in probe.value_candidates if each.title not in others]
-        tolerance = replace(HAIR_REGION, metric=scaled)
-        return diagnosis.diagnose_case(probe, _case(probe, key), candidates, tolerance)
+        case = _case(probe, key)
+        brightest = min(float(case.expected.max()), 1.0)
+        tolerance = replace(HAIR_REGION, metric=scaled, value=brightest * HAIR_REGION.value)
+        return diagnosis.diagnose_case(probe, case, candidates, tolerance)
 
     return diagnose
 
