@@ -12,7 +12,7 @@ from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.cases import WHITE, layering_cases
 from mxeon.conformance.probes.probe import Probe, subject_of
-from mxeon.conformance.samples.batch import Array, Batch, rounded
+from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82
 from mxeon.conformance.samples.measurement import Case
 from mxeon.models.nodes.combinations import FACTOR
@@ -58,7 +58,8 @@ def layer(probe: Probe) -> Iterable[Case]:
 
 def dip(probe: Probe) -> Iterable[Case]:
     """Throughput of lobes that are white but for a dip at 82 degrees."""
-    white = {"color0": WHITE, "color90": WHITE, "color82": (LEAST_COLOR82,) * 3, "exponent": 5.0}
+    dipped = (LEAST_COLOR82,) * 3
+    white: Values = {"color0": WHITE, "color90": WHITE, "color82": dipped, "exponent": 5.0}
     return [_passed(probe, batch.altered(**white)) for batch in probe.cosines]
 
 

@@ -3,7 +3,6 @@
 
 from dataclasses import replace
 from functools import cached_property
-from itertools import product
 from typing import ClassVar
 
 import numpy as np
@@ -95,10 +94,11 @@ class HairProbe(BsdfProbe):
     def condition(self, batch: Batch) -> Array:
         """The values, or LEAST, and their slopes in inclination and azimuth of both directions."""
         total = np.maximum(self.expected(batch), LEAST)
-        for name, step in product(("wo", "wi"), np.eye(2) * STEP):
-            direction = getattr(batch, name)
+        for step in np.eye(4) * STEP:
             up, down = (
-                self.expected(replace(batch, **{name: _turned(direction, *turn)}))
+                self.expected(
+                    replace(batch, wo=_turned(batch.wo, *turn[:2]), wi=_turned(batch.wi, *turn[2:]))
+                )
                 for turn in (step, -step)
             )
             total += np.abs(up - down) / (2.0 * STEP)
