@@ -12,6 +12,7 @@ import MaterialX as mx
 import pytest
 
 import mxeon
+from mxeon.conformance.known_issues import ISSUES
 from mxeon.shaders.nodes import EON
 from tests.support.documents import lobe, material
 
@@ -22,6 +23,7 @@ SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
 LOAD = """
 import mxeon
+from mxeon.conformance.known_issues import ISSUES
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.library import assert_ours, data_folder, examples_folder, load_library
 print(data_folder())
@@ -78,7 +80,7 @@ def contents(wheel):
 
 def test_the_wheel_holds_the_data_of_the_checkout(wheel):
     files = {name for name in contents(wheel) if name.startswith("mxeon/data/")}
-    assert {name.split("/")[2] for name in files} == {*DATA, "renderers"}
+    assert {name.split("/")[2] for name in files} == {*DATA, "renderers", "upstream"}
     for folder in DATA:
         source = CHECKOUT / folder
         sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
@@ -90,6 +92,13 @@ def test_the_wheel_pins_the_renderers_from_npm_and_holds_none(wheel):
     folder = "mxeon/data/renderers/"
     files = {name for name in contents(wheel) if name.startswith(folder)}
     assert files == {f"{folder}package.json", f"{folder}package-lock.json"}
+
+
+def test_the_wheel_holds_the_page_of_each_known_issue_and_no_script(wheel):
+    folder = "mxeon/data/upstream/"
+    files = {name for name in contents(wheel) if name.startswith(folder)}
+    assert files >= {f"{folder}{issue.page}.md" for issue in ISSUES}
+    assert {Path(name).suffix for name in files} == {".md"}
 
 
 def test_the_wheel_says_that_it_has_types(wheel):

@@ -22,7 +22,7 @@ from mxeon.conformance.pictures import document_pictures as image
 from mxeon.conformance.probes.families import ALL_SUBJECTS, COMMON_SUBJECTS, PBR_SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT
+from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, SHADER_FUNCTIONS
 from mxeon.conformance.run import check, judge, plan
 from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
 from mxeon.conformance.samples.uneven_environment import sky
@@ -308,7 +308,7 @@ def test_a_host_that_is_missing_is_reported_as_not_run(monkeypatch):
     monkeypatch.setattr(judge, "open_engine", missing)
     run = check(EXAMPLES[:1], ["gl"], nodes=["common"])
     results = [each for each in run.results if each.host == "gl"]
-    assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), plan.TWINS}
+    assert {each.subject for each in results} > {EON.title, str(EXAMPLES[0]), SHADER_FUNCTIONS}
     assert {(each.verdict, each.reason) for each in results} == {(NOT_RUN, "gl: nowhere")}
 
 

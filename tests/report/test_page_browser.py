@@ -3,6 +3,8 @@
 
 import os
 from contextlib import contextmanager
+from pathlib import Path
+from urllib.parse import urlsplit
 
 import numpy as np
 import OpenImageIO as oiio
@@ -77,6 +79,14 @@ def test_a_cell_of_the_matrix_leads_to_its_evidence(browser, address):
         target = cell.get_attribute("href")
         cell.click()
         page.wait_for_selector(f"details{target}[open]")
+        assert page.locator(f"{target} summary").is_visible()  # those that passed are folded
+
+
+def test_a_failure_leads_to_the_page_on_its_defect(browser, address):
+    with opened(browser, address) as page:
+        found = page.locator(".findings a[href^='upstream/']").first.get_attribute("href")
+    file = Path(urlsplit(address).path).parent / found
+    assert file.read_text(encoding="utf-8").startswith("# ")
 
 
 def test_the_slider_draws_the_reference_over_the_picture(browser, address):
@@ -91,7 +101,9 @@ def test_the_slider_draws_the_reference_over_the_picture(browser, address):
 def test_without_a_script_all_tables_are_there(browser, address):
     with opened(browser, address, java_script_enabled=False) as page:
         assert visible(page, ".filters") == visible(page, "input") == 0
-        assert visible(page, ".matrix td a") == page.locator("details").count() > 10
+        nodes = page.locator("details[id^=check-]").count()
+        assert visible(page, ".matrix td a") == nodes > 5
+        assert page.locator("details[id^=audit-]").count() > 0
         page.locator("details:not([open]) summary").first.click()
         assert visible(page, ".result") > 0
 

@@ -215,7 +215,8 @@ def test_page_gives_the_verdict_before_anything_else(page):
         "Failed",
         "Failed checks",
         "Checks that did not run",
-        "Pictures",
+        'id="pictures"',
+        'id="checks"',
         "Versions and documents",
     )
     places = [page.text.index(words, len("mxeon:")) for words in order]

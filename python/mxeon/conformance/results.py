@@ -21,6 +21,8 @@ PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
 VERDICTS = (PASSED, DIFFERS, FAILED, NOT_RUN)
 # In the place of a document: one material of each node, as every host shows it.
 PORTRAIT = "portrait"
+SOURCE = "source"  # in the place of a host, for what none has to run
+SHADER_FUNCTIONS = "shader twins"  # in the place of a node, for the functions of a library
 DIRECT = ("value", "lobe")  # the checks of a node in direct light, of which it has one
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")
 

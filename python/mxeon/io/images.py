@@ -90,7 +90,9 @@ def _codes() -> tuple[Pixels, Codes]:
     No step holds the ends of two codes: at 0, where they are closest, the curve has the slope 12.92.
     """
     ends = srgb_decoded((np.arange(255) + 0.5) / 255.0).astype(np.float32)
-    least = np.searchsorted(ends, np.arange(STEPS + 1, dtype=np.float32) / np.float32(STEPS), "right")
+    least = np.searchsorted(
+        ends, np.arange(STEPS + 1, dtype=np.float32) / np.float32(STEPS), "right"
+    )
     return np.append(ends, np.float32(np.inf)), least.astype(np.uint8)
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mxeon.conformance.known_issues import page_file, pages_of
 from mxeon.conformance.records import make_converter
 from mxeon.conformance.results import Picture, Run, image_names
 from mxeon.errors import PackageError
@@ -20,6 +21,8 @@ from mxeon.io.files import replacing, write_text
 from mxeon.io.images import difference, write_exr, write_png
 from mxeon.report.junit import to_junit
 from mxeon.report.threads import in_threads
+
+PAGES = "upstream"  # folder beside the report with the pages on defects
 
 if TYPE_CHECKING:
     from mxeon.report.field import Entry
@@ -114,7 +117,8 @@ def _largest_difference(picture: Picture) -> float | None:
 def write(run: Run, folder: str | PathLike[str]) -> Path:
     """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
-    The pictures are those of the run and their references, each as EXR and PNG.
+    The pictures are those of the run and their references, each as EXR and PNG. The pages on defects that
+    explain failures lie in upstream/.
     Each file is written as a whole or not at all, and replaces one of the same name. The page is
     written last, so that all other files exist if it cannot be made.
 
@@ -145,6 +149,10 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     stems = [folder / "pictures" / stem for stem in image_names(pictures)]
     for _ in in_threads(_write_picture, zip(pictures, stems, strict=True)):
         pass
+    # Write the pages on the defects beside it, for a site that has no address.
+    for issue in {each for one in run.results for each in pages_of(one.diagnosis)}:
+        text = page_file(issue).read_text(encoding="utf-8")
+        write_text(folder / PAGES / f"{issue.page}.md", text)
     # Write the page, piece by piece.
     with replacing(folder / "report.html") as beside, open(beside, "w", encoding="utf-8") as page:
         for text in html(run):

@@ -12,14 +12,18 @@ from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from numpy.typing import ArrayLike, NDArray
 
+from mxeon.conformance.known_issues import PAGE, link, pages_of
+from mxeon.conformance.known_issues.issue import Issue
 from mxeon.conformance.results import (
     DIFFERS,
     FAILED,
     NOT_RUN,
     PASSED,
+    SHADER_FUNCTIONS,
+    SOURCE,
     AlbedoCurve,
     Picture,
     Result,
@@ -123,6 +127,20 @@ def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, f
     return [(title, distance, distance / largest) for title, distance in rows]
 
 
+def linked(diagnosis: str) -> Markup:
+    """A diagnosis as HTML, in which the pages of known issues are links."""
+    text = escape(PAGE.sub("", diagnosis))
+    for issue in pages_of(diagnosis):
+        text += Markup('; see <a href="{}">{}</a>').format(page_address(issue), issue.title)
+    return text
+
+
+def page_address(issue: Issue) -> str:
+    """Address of the page of an issue from a report: on the site, or beside the report."""
+    found = link(issue)
+    return found if "://" in found else f"upstream/{issue.page}.md"
+
+
 def vector(values: ArrayLike) -> str:
     """One or more numbers as text.
 
@@ -135,15 +153,26 @@ def vector(values: ArrayLike) -> str:
     return words[0] if len(words) == 1 else f"({', '.join(words)})"
 
 
-def checks_by_place(results: Iterable[Result]) -> dict[tuple[str, str], list[CheckResults]]:
-    """Checks by host and library, in order of appearance."""
+def _audit_apart(results: Iterable[Result]) -> tuple[list[Result], list[Result]]:
+    """Results of nodes and documents, and those of the library itself, its functions and its text."""
+    asked, own = [], []
+    for result in results:
+        audits = result.host == SOURCE or result.subject == SHADER_FUNCTIONS
+        (own if audits else asked).append(result)
+    return asked, own
+
+
+def checks_by_place(
+    results: Iterable[Result], prefix: str = "check"
+) -> dict[tuple[str, str], list[CheckResults]]:
+    """Checks by host and library, in order of appearance; the prefix is that of their anchors."""
     places: dict[tuple[str, str], dict[str, list[Result]]] = {}
     for result in results:
         place = places.setdefault((result.host, result.library), {})
         place.setdefault(result.check, []).append(result)
     return {
         location: [
-            CheckResults(key, f"check-{column}-{row}", tuple(members))
+            CheckResults(key, f"{prefix}-{column}-{row}", tuple(members))
             for row, (key, members) in enumerate(rows.items())
         ]
         for column, (location, rows) in enumerate(places.items())
@@ -245,7 +274,8 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
         Pieces of HTML; a picture is read when its piece is due. The page loads nothing, runs only its
         own script, and is complete without it. Text from documents, shaders and hosts is escaped.
     """
-    places = checks_by_place(run.results)
+    asked, own = _audit_apart(run.results)
+    places, audit = checks_by_place(asked), checks_by_place(own, "audit")
     rows = list(materials(run.pictures).items())
     shown = rows[:SHOWN_MATERIALS]
     drawn = in_threads(panels, (each for _, scenes in shown for each in scenes.values()))
@@ -258,13 +288,19 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
         lstrip_blocks=True,
     )
     environment.filters |= {"number": number, "vector": vector}
-    environment.filters |= {"share": share, "look": LOOKS.__getitem__, "nearest": nearest}
+    environment.filters |= {
+        "linked": linked,
+        "share": share,
+        "look": LOOKS.__getitem__,
+        "nearest": nearest,
+    }
     return environment.get_template("report.html.jinja").generate(
         run=run,
         summary=run.summary,
         script=Markup(script),
         script_hash=b64encode(sha256(script.encode()).digest()).decode(),
         places=places,
+        audit=audit,
         matrix=matrix(places),
         identities={identity.name: identity for identity in run.hosts},
         reasons=reasons(run.results),
@@ -276,5 +312,6 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
         plots=plots(run.curves),
         verdicts=tuple(LOOKS),
         FAILED=FAILED,
+        PASSED=PASSED,
         DIFFERS=DIFFERS,
     )

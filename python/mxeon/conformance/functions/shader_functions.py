@@ -15,7 +15,7 @@ from mxeon.conformance.accuracy.diffuse import DENSITY, LOSS, PART, VALUE, direc
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.functions import numpy_functions
-from mxeon.conformance.results import Place, Result
+from mxeon.conformance.results import SHADER_FUNCTIONS, Place, Result
 from mxeon.conformance.samples.batch import Array
 from mxeon.conformance.samples.measurement import Measurement, absolute, relative
 from mxeon.conformance.samples.tolerance import Tolerance
@@ -23,7 +23,6 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.shaders import functions
 
-SUBJECT = "shader twins"  # the name in reports
 KINDS = ("pairs", "pictures", "planes")  # of probes whose hosts evaluate functions
 ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
 SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
@@ -203,7 +202,7 @@ def _judge_check(check: FunctionCheck, probe: FunctionProbe) -> Result:
     place: Place = {
         "check": check.key,
         "claim": check.claim,
-        "subject": SUBJECT,
+        "subject": SHADER_FUNCTIONS,
         "host": probe.host.name,
         "library": probe.library,
     }

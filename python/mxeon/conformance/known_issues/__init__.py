@@ -33,8 +33,17 @@ def pages_of(diagnosis: str) -> tuple[Issue, ...]:
 
 def link(issue: Issue) -> str:
     """Address of the page of an issue on the project's site; its file where the site has no address."""
-    site = _site()
-    return f"{site}/upstream/{issue.page}.html" if site else f"docs/upstream/{issue.page}.md"
+    if site := _site():
+        return f"{site}/upstream/{issue.page}.html"
+    file = page_file(issue)
+    return str(file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file)
+
+
+def page_file(issue: Issue) -> Path:
+    """File of the page of an issue: inside an installed package, else in the checkout."""
+    package, checkout = (Path(__file__).resolve().parents[level] for level in (2, 4))
+    folder = package / "data" / "upstream"
+    return (folder if folder.is_dir() else checkout / "docs" / "upstream") / f"{issue.page}.md"
 
 
 @cache

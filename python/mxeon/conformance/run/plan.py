@@ -28,7 +28,7 @@ from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_ty
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
-from mxeon.conformance.results import AlbedoCurve, Picture, Result
+from mxeon.conformance.results import SHADER_FUNCTIONS, AlbedoCurve, Picture, Result
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.selection import (
     ALL,
@@ -54,7 +54,7 @@ HOST, DEFINITION, SOURCE = "host", "definition", "source"
 CURVE, PICTURE = "curve", "picture"
 FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
 EMPTY = Survey()
-TWINS, EVERY_NODE = functions.SUBJECT, "every node"
+EVERY_NODE = "every node"
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Task:
         Key of a row of `mxeon.conformance.checks.table`, or HOST, DEFINITION, SOURCE, CURVE,
         PICTURE, FUNCTIONS, INVERSION or DOCUMENT.
     subject : str
-        Title of a node, path of a document, or TWINS.
+        Title of a node, path of a document, or SHADER_FUNCTIONS.
     host, library : str
     """
 
@@ -242,7 +242,7 @@ def _on_host(
     # Functions and inversions.
     language = "osl" if row.target == "osl" else "glsl"
     if row.probe in functions.KINDS and has_functions(library, language):
-        yield Task(FUNCTIONS, TWINS, host, library)
+        yield Task(FUNCTIONS, SHADER_FUNCTIONS, host, library)
     if probe is PairProbe:
         yield from (Task(INVERSION, node, host, library) for node in inversions(library))
     # Diffuse nodes, the other nodes, and lobes of surface shaders.

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from mxeon.conformance.nodes.diffuse import DiffuseSubject
-from mxeon.conformance.results import FAILED, NOT_RUN, Result
+from mxeon.conformance.results import FAILED, NOT_RUN, SOURCE, Result
 from mxeon.conformance.samples.batch import SEED, directions
-from mxeon.conformance.text.counts import HOST, Claim, counted
+from mxeon.conformance.text.counts import Claim, counted
 from mxeon.conformance.text.interpreter import Array, Closure, Interpreter
 from mxeon.conformance.text.renderers import PBRLIB, Renderer
 from mxeon.conformance.text.sources import source, variable
@@ -65,7 +65,7 @@ def _judge(subject: DiffuseSubject, target: str, profile: str | None, library: s
         control = _faults(subject, Renderer(target, target, profile), weightless)
     except (NotRun, ShaderError) as error:
         # A text that cannot be read has not run or fails.
-        place = (CLAIM.key, CLAIM.sentence, title, HOST, library)
+        place = (CLAIM.key, CLAIM.sentence, title, SOURCE, library)
         if isinstance(error, NotRun):
             return Result(*place, verdict=NOT_RUN, reason=str(error))
         return Result(*place, verdict=FAILED, diagnosis=f"{target}: {error}")

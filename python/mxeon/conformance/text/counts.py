@@ -3,9 +3,7 @@
 
 from dataclasses import dataclass
 
-from mxeon.conformance.results import FAILED, PASSED, Control, Result
-
-HOST = "source"  # in reports, for what no host has to run
+from mxeon.conformance.results import FAILED, PASSED, SOURCE, Control, Result
 
 
 @dataclass(frozen=True)
@@ -47,7 +45,7 @@ def counted(
         check=claim.key,
         claim=claim.sentence,
         subject=subject,
-        host=HOST,
+        host=SOURCE,
         library=library,
         verdict=PASSED if count == 0 and caught else FAILED,
         error=count,

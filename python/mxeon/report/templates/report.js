@@ -37,7 +37,9 @@ for (const panels of document.querySelectorAll(".panels.referenced")) {
 
 function open() {
   const target = document.getElementById(location.hash.slice(1));
-  if (target instanceof HTMLDetailsElement) target.open = true;
+  for (let each = target; each; each = each.parentElement) {
+    if (each instanceof HTMLDetailsElement) each.open = true;
+  }
 }
 
 addEventListener("hashchange", open);
