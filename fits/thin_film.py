@@ -13,7 +13,7 @@ import numpy as np
 from mxeon.conformance.probes.thin_films import LEAST_OIL, MOST_COSINE, SHARP, STEEP
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film import formulas as film
-from mxeon.models.thin_film.curve import film_curve
+from mxeon.models.thin_film.curve import SUBSTRATES, TEXT, film_curve
 from mxeon.models.thin_film.lobe import film_albedo_dir
 
 SEED, COUNT = 1, 1 << 9  # films of a step
@@ -115,6 +115,27 @@ def slopes(category, material, _, mu):
     return np.abs(up - down).max(axis=0) / (2.0 * STEP)
 
 
+def wave_slopes(category, material, _, mu):
+    """Slopes of a curve in the waves of each Gaussian, whose errors may have any sign."""
+    thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
+    opd = film.path_difference(mu, thickness, index)
+    substrate = {k: v for k, v in material.items() if k != "tint" and not k.startswith("thinfilm")}
+    slopes = 0.0
+    for interface in SUBSTRATES[category](mu, index, TEXT, **substrate):
+        first, second, phase = interface
+        passed = 1.0 - first
+        amplitude = passed**2 * second / np.maximum(1.0 - first * second, LEAST) - passed
+        for k, v, position, var in film.GAUSSIANS:
+            height = (
+                np.abs(np.array(TEXT.matrix)[:, k]) * v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
+            )
+            wave = np.sqrt(first * second) * np.exp(1j * (2.0 * np.pi * position * opd + phase))
+            decay = var * (2.0 * np.pi * opd) ** 2
+            orders = sum(m * wave**m * np.exp(-decay * m * m) for m in range(1, 30))
+            slopes = slopes + height[:, np.newaxis] * np.abs(amplitude * orders)
+    return slopes.max(axis=0)
+
+
 def average_errors(category, material, *_):
     """Errors of F_ss in six cosines."""
     x, w = _gauss(6)
@@ -181,6 +202,7 @@ MEASURED = {
     "orders": (orders_errors, FILMS),
     "orders of curves": (curve_errors, CLEAR),
     "slope of curves": (slopes, CLEAR),
+    "waves of curves": (wave_slopes, CLEAR),
     "F_ss": (average_errors, FILMS),
     "F_ss of thin films": (average_errors, THIN),
     "visible facets": (visible_errors, SLANTED),

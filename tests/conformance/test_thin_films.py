@@ -57,6 +57,7 @@ STATED = {
     "orders": bsdf_tolerances.FILM_ORDERS,
     "orders of curves": bsdf_tolerances.FILM_SHARP_ORDERS,
     "slope of curves": bsdf_tolerances.FILM_SLOPE,
+    "waves of curves": bsdf_tolerances.FILM_WAVES,
     "F_ss": bsdf_tolerances.FILM_AVERAGE,
     "F_ss of thin films": bsdf_tolerances.FILM_THIN_AVERAGE,
     "visible facets": bsdf_tolerances.FILM_VISIBLE,

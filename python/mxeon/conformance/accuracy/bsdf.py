@@ -202,6 +202,8 @@ FILM_VISIBLE = 4.4e-2  # mean over the visible facets in nine of them, for cosin
 FILM_THIN_VISIBLE = 1.1e-2  # the same for films of 50 to 100 nm, alpha and cosine from 0.6 on
 FILM_SHARP_ORDERS = 6.2e-6  # six orders of films from 200 nm and cosines from 0.3 on
 FILM_SLOPE = 9.1  # slope of their curves in the logarithm of the path difference
+FILM_WAVES = 1.8  # slope of the same curves in the cosines and sines of their phases, of any signs
+FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
 FILM_HEIGHTS = 1.3e-3  # sum of the sensitivities' heights, of five digits, over 1
 FILM_VALUE = Tolerance(
     rounded_up(ESS_FIT * SEEN_ESS + FILM_AVERAGE * (SEEN_ESS - 1.0) + FILM_ORDERS),
@@ -237,7 +239,7 @@ FILM_CURVE = Tolerance(
     absolute,
     "the sum of six orders under films from 200 nm and cosines from 0.3 on, 6.2e-6; ten roundings of "
     "float32, 2^-24 each, in a phase, times the slope of the curve in its logarithm, 9.1; and 16 "
-    "beside them; rounded up",
+    "beside them; rounded up; and 1.8 times the error of the engine's own cosine and sine",
 )
 FILM_LIMIT = Tolerance(
     rounded_up(FILM_HEIGHTS + FRESNEL_FIT * (SEEN_ESS - 1.0)),

@@ -1,21 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of an engine's own functions, measured on the host, and the tolerances that take them in."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
+from mxeon.conformance.accuracy.bsdf import FILM_PHASE, FILM_WAVES
 from mxeon.conformance.accuracy.diffuse import power_of
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
-from mxeon.conformance.samples.tolerance import Tolerance
+from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
 from mxeon.hosts.base import Host
 
 COUNT = 1 << 14
 POWER = """float mxeon_power(float x, float y)
 {
     return pow(x, y);
+}
+"""
+WAVE = """float mxeon_wave(float x)
+{
+    return max(cos(x), sin(x));
 }
 """
 
@@ -42,3 +49,17 @@ def power_error(host: Host) -> float:
     error = np.abs(host.execute(POWER, "mxeon_power", sine, exponent)[:, 0] - power)
     factor = (2.0 + exponent) / 8.0
     return float((factor * error / np.maximum(1.0, factor * power)).max())
+
+
+def widen_for_waves(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
+    """Tolerance of a film's curve on a host, with the error of the engine's own cosine and sine."""
+    error = max(wave_error(host) - 2.0 * ROUNDING, 0.0)
+    return replace(tolerance, value=rounded_up(tolerance.value + FILM_WAVES * error))
+
+
+@lru_cache(maxsize=16)
+def wave_error(host: Host) -> float:
+    """Error of the engine's own cosine and sine of the phases of a film."""
+    phase = np.linspace(0.0, FILM_PHASE, COUNT).astype(np.float32).astype(np.float64)
+    exact = np.maximum(np.cos(phase), np.sin(phase))
+    return float(np.abs(host.execute(WAVE, "mxeon_wave", phase)[:, 0] - exact).max())

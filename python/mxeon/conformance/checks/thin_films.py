@@ -3,6 +3,7 @@
 
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
 from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.accuracy.engine import widen_for_waves
 from mxeon.conformance.checks import measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import pass_all, scale_cosine, with_inputs
@@ -42,6 +43,7 @@ CHECKS = (
         thicker,
         bsdf_tolerances.FILM_CURVE,
         open=True,
+        adapt=widen_for_waves,
     ),
     Check(
         "film_limit",
