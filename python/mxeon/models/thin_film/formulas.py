@@ -139,24 +139,42 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
     return np.asarray(dc + 2.0 * amplitude * series(r, phase, opd, orders or 0))
 
 
-def sensitivity(opd: Array, phase: Array) -> Array:
-    """Normalized sensitivity to a path difference and a phase, shape (3, ...)."""
-    phi = 2.0 * np.pi * opd
-    total = np.zeros((3, *np.broadcast_shapes(np.shape(opd), np.shape(phase))))
-    for k, v, mu, var in GAUSSIANS:
-        total[k] += (
-            v * np.sqrt(2.0 * np.pi * var) * np.cos(mu * phi + phase) * np.exp(-var * phi**2)
-        )
-    return total / NORMAL
-
-
 def _orders(r: Array, phase: Array, opd: Array, orders: int) -> Array:
     """Sum of r^m S(m opd, m phase) for m from 1 to `orders`, shape (3, ...)."""
-    total = np.zeros((3, *np.broadcast_shapes(np.shape(r), np.shape(opd))))
-    power = np.ones_like(r)
-    for m in range(1, orders + 1):
-        power = power * r
-        total += power * sensitivity(m * opd, m * phase)
+    r, phase, opd = np.broadcast_arrays(r, phase, opd)
+    total = np.zeros((3, r.size))
+    for start in range(0, r.size, BLOCK):
+        rows = slice(start, start + BLOCK)
+        block = (each.ravel()[rows] for each in (r, phase, opd))
+        total[:, rows] = damped_orders(*block, orders)
+    return total.reshape(3, *r.shape)
+
+
+def damped_orders(r: Array, phase: Array, opd: Array, orders: int) -> Array:
+    """Sum of r^m S(m opd, m phase) for m from 1 to `orders` of arrays (N,), shape (3, N).
+
+    S is the normalized sensitivity, which a sum over Gaussians gives with phi = 2 pi opd:
+
+        v sqrt(2 pi sigma^2) cos(mu phi + phase) exp(-sigma^2 phi^2)
+
+    Each order is made of the one before it, by the cosine of a multiple angle.
+    """
+    phi = 2.0 * np.pi * opd
+    total = np.zeros((3, len(r)))
+    for k, v, mu, var in GAUSSIANS:
+        # r^m exp(-var (m phi)^2), by what the next order has more of it.
+        damping = np.exp(-var * phi * phi)
+        height, twice = r * damping, damping * damping
+        growth = height * twice
+        cosine = np.cos(mu * phi + phase)
+        double, before = 2.0 * cosine, np.ones_like(cosine)
+        summed = height * cosine
+        for _ in range(1, orders):
+            before, cosine = cosine, double * cosine - before
+            height = height * growth
+            growth = growth * twice
+            summed += height * cosine
+        total[k] += v * np.sqrt(2.0 * np.pi * var) / NORMAL * summed
     return total
 
 
