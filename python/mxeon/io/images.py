@@ -6,7 +6,7 @@ from __future__ import annotations
 import errno
 import warnings
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, reduce
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -73,7 +73,7 @@ def srgb_encoded(image: ArrayLike) -> Codes:
     [0, 118, 255]
     """
     image = np.asarray(image, dtype=np.float32)
-    finite = np.logical_and.reduce(np.moveaxis(np.isfinite(image), -1, 0))
+    finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
     linear = np.clip(np.where(finite[..., np.newaxis], image, np.float32(0.0)), 0.0, 1.0)
     # Take the least code of each step, or the next one above its threshold.
     thresholds, least = _codes()
@@ -115,7 +115,8 @@ def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
     """
     image, reference = np.asarray(image, np.float64), np.asarray(reference, np.float64)
     with np.errstate(invalid="ignore"):  # inf - inf
-        largest: Floats = np.maximum.reduce(np.moveaxis(np.abs(image - reference), -1, 0))
+        # Channel by channel: a maximum over a short axis takes NumPy five times as long.
+        largest: Floats = reduce(np.maximum, np.moveaxis(np.abs(image - reference), -1, 0))
     return largest
 
 

@@ -17,7 +17,7 @@ from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result
-from mxeon.conformance.samples.measurement import Measurement, absolute
+from mxeon.conformance.samples.measurement import Measurement, Metric, absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
@@ -262,12 +262,12 @@ def _judge_match(
     place: Place, cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
 ) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
-    scaled = tolerance.unit == FITTED.unit
-    errors = [(*_worst_pixel(case, front_lit, scaled), case[0].name) for case in cases]
+    metric = scaled if tolerance.unit == FITTED.unit else absolute
+    errors = [(*_worst_pixel(case, front_lit, metric), case[0].name) for case in cases]
     error, worst, scene = max(errors, key=lambda entry: entry[0])
     first, image, expected = cases[0]
     brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
-    control_error, _ = _worst_pixel((first, brighter, expected), front_lit, scaled)
+    control_error, _ = _worst_pixel((first, brighter, expected), front_lit, metric)
     words = "" if error <= tolerance.value else f"most in the picture of the scene {scene}"
     return judge_measurements(
         place,
@@ -279,15 +279,16 @@ def _judge_match(
     )
 
 
-def _worst_pixel(case: Case, front_lit: bool, scaled: bool) -> tuple[float, dict[str, list[float]]]:
-    """Largest error times cos(theta_o), and its pixel; relative above 1 if scaled."""
+def _worst_pixel(
+    case: Case, front_lit: bool, metric: Metric
+) -> tuple[float, dict[str, list[float]]]:
+    """Largest error times cos(theta_o), and its pixel."""
     # Errors of the pixels that show the sphere.
     scene, image, reference = case
     mask = sphere(scene.size).mask
     wo, wi, _ = picture_pairs(scene)
-    error = absolute(image[mask], reference[mask]) * wo[:, 2]
-    if scaled:
-        error /= np.maximum(1.0, np.abs(reference[mask]).max(axis=-1))
+    measured, expected = image[mask], reference[mask]
+    error = metric(measured, expected) * wo[:, 2]
     if front_lit:
         error = np.where((wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0, error, 0.0)
     # The largest, and its place.
