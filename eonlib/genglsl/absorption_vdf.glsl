@@ -2,7 +2,7 @@
 // Entry point of the node absorption_vdf: Beer's law over one meter, since a surface has no
 // thickness.
 
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "medium.glsl"
 
 void absorption_vdf(ClosureData closureData, vec3 absorption, inout VDF vdf)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node add for two media: the coefficients of both.
 
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "medium.glsl"
 
 void add_vdf(ClosureData closureData, VDF in1, VDF in2, out VDF result)
 {

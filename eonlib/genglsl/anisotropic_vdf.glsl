@@ -2,7 +2,7 @@
 // Entry point of the node anisotropic_vdf: what neither absorption nor scattering takes from a ray in
 // one meter. Light that is scattered into the ray is left out, and with it the anisotropy.
 
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "medium.glsl"
 
 void anisotropic_vdf(ClosureData closureData, vec3 absorption, vec3 scattering, float anisotropy,
                      inout VDF vdf)

@@ -21,3 +21,12 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
     }
     bsdf.throughput = vec3(0.0);
 }
+
+// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
+                    vec2 roughness, float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,
+                    int distribution, inout BSDF bsdf)
+{
+    conductor_bsdf(closureData, weight, ior, extinction, roughness, false, thinfilm_thickness,
+                   thinfilm_ior, N, X, distribution, bsdf);
+}

@@ -23,3 +23,12 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);
 }
+
+// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
+                     float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X, int distribution,
+                     int scatter_mode, inout BSDF bsdf)
+{
+    dielectric_bsdf(closureData, weight, tint, ior, roughness, false, thinfilm_thickness,
+                    thinfilm_ior, N, X, distribution, scatter_mode, bsdf);
+}

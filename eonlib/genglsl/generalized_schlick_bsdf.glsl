@@ -34,3 +34,14 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     microfacet_add_film(lobe, fd, true, F);
     microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, scatter_mode, bsdf);
 }
+
+// As MaterialX before 1.39.5 calls it, which has no retroreflection.
+void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0, vec3 color82,
+                              vec3 color90, float exponent, vec2 roughness,
+                              float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,
+                              int distribution, int scatter_mode, inout BSDF bsdf)
+{
+    generalized_schlick_bsdf(closureData, weight, color0, color82, color90, exponent, roughness,
+                             false, thinfilm_thickness, thinfilm_ior, N, X, distribution,
+                             scatter_mode, bsdf);
+}

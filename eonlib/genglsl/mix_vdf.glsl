@@ -2,7 +2,7 @@
 // Entry point of the node mix for two media: a share of the coefficients of each, an exponent of what
 // passes.
 
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "medium.glsl"
 
 void mix_vdf(ClosureData closureData, VDF fg, VDF bg, float mixValue, out VDF result)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node multiply for a medium and a color: a multiple of the coefficients.
 
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "medium.glsl"
 
 void multiply_vdf_color3(ClosureData closureData, VDF in1, vec3 in2, out VDF result)
 {

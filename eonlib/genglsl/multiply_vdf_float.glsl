@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point of the node multiply for a medium and a number: a multiple of the coefficients.
 
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "medium.glsl"
 
 void multiply_vdf_float(ClosureData closureData, VDF in1, float in2, out VDF result)
 {

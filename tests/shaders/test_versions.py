@@ -24,7 +24,7 @@ CACHES = (
     load_library,
     generators._library_generator,
     closure_calls._functions,
-    closure_calls._parameters,
+    closure_calls._signatures,
     closure_calls._call,
 )
 # Functions that eonlib had for a target when this was written; it may have more.
@@ -126,7 +126,7 @@ def functions(target, profile):
 
 
 def parameters(row):
-    return closure_calls._parameters(row[0], row[2])
+    return next(iter(closure_calls._signatures(row[0], row[2])), [])
 
 
 def test_comments_between_parameters_are_none(tmp_path):
@@ -134,18 +134,14 @@ def test_comments_between_parameters_are_none(tmp_path):
     file.write_text(
         "void node(float x, // of 1, 2 or 3\n vec3 y /* a color, (3,) */, out vec3 z)\n{}\n"
     )
-    assert [each.strip() for each in closure_calls._parameters(file, "node")] == [
-        "float x",
-        "vec3 y",
-        "out vec3 z",
-    ]
+    assert closure_calls._signatures(file, "node") == [["float x", "vec3 y", "out vec3 z"]]
 
 
-def test_each_function_of_eonlib_is_refused_where_it_takes_one_argument_more(monkeypatch):
-    def parameters(file, function, old=closure_calls._parameters):
-        return [*old(file, function), "float gain"]
+def test_each_function_of_eonlib_is_refused_where_it_takes_other_arguments(monkeypatch):
+    def signatures(file, function, old=closure_calls._signatures):
+        return [[*each, "float gain", "float bias"] for each in old(file, function)]
 
-    monkeypatch.setattr(closure_calls, "_parameters", parameters)
+    monkeypatch.setattr(closure_calls, "_signatures", signatures)
     for file, _, function in functions("glsl", None):
         with pytest.raises(InterfaceError, match=f"does not call eonlib's function {function}[(]"):
             check_closure_calls(Stage([file]), "glsl", "eonlib", None)

@@ -42,12 +42,12 @@ def check_closure_calls(
     known = _functions(library, profile)
     for file in stage.getSourceDependencies():
         for nodedef, function in known.get(file, ()):
-            parameters = _parameters(file, function)
+            signatures = _signatures(file, function)
             call = _call(target, library, profile, nodedef, function)
-            if parameters and len(call) != len(parameters):
+            if signatures and len(call) not in map(len, signatures):
                 raise InterfaceError(
                     f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "
-                    f"{function}({', '.join(parameters)}); use --library stock"
+                    f"{function}({', '.join(signatures[0])}); use --library stock"
                 )
 
 
@@ -65,11 +65,11 @@ def _functions(library: str, profile: str | None) -> Mapping[str, list[tuple[str
 
 
 @cache
-def _parameters(file: str, function: str) -> list[str]:
-    """Parameters of a function as a source defines it; none if it does not."""
+def _signatures(file: str, function: str) -> list[list[str]]:
+    """Parameters of each function of a name that a source defines: one for each form of the call."""
     text = COMMENT.sub("", Path(file).read_text(encoding="utf-8"))
-    definition = re.search(rf"\bvoid\s+{function}\s*\(", text)
-    return _arguments(text, definition.end()) if definition else []
+    definitions = re.finditer(rf"\bvoid\s+{function}\s*\(", text)
+    return [_arguments(text, definition.end()) for definition in definitions]
 
 
 @cache
