@@ -80,7 +80,7 @@ def contents(wheel):
 
 def test_the_wheel_holds_the_data_of_the_checkout(wheel):
     files = {name for name in contents(wheel) if name.startswith("mxeon/data/")}
-    assert {name.split("/")[2] for name in files} == {*DATA, "renderers", "upstream"}
+    assert {name.split("/")[2] for name in files} == {*DATA, "renderers", "upstream", "LICENSE"}
     for folder in DATA:
         source = CHECKOUT / folder
         sources = [path for path in source.rglob("*") if path.suffix in SUFFIXES]
@@ -107,6 +107,13 @@ def test_the_wheel_says_that_it_has_types(wheel):
 
 def test_the_wheel_holds_the_page_of_the_explorer(wheel):
     assert "mxeon/explorer/explorer.html" in contents(wheel)
+
+
+def test_the_wheel_writes_a_copy_of_eonlib_for_others(environment, tmp_path):
+    run([environment / "bin" / "mxeon", "library", "--export", tmp_path / "copy"], tmp_path)
+    files = {path.relative_to(tmp_path / "copy").as_posix() for path in tmp_path.rglob("*.*")}
+    assert {"eonlib/genglsl/eon.glsl", "README.txt"} <= files
+    assert (tmp_path / "copy" / "LICENSE").read_bytes() == (CHECKOUT / "LICENSE").read_bytes()
 
 
 def test_no_folder_of_the_wheel_hides_materialxs_libraries(wheel):

@@ -111,7 +111,11 @@ def test_library_prints_the_folder_and_what_each_target_finds(capsys):
     assert main(["library", "--folder"]) == PASSED
     assert capsys.readouterr().out.strip() == str(eonlib_folder())
     assert main(["library", "--verify"]) == PASSED
-    assert "IM_oren_nayar_diffuse_bsdf_genosl" in capsys.readouterr().out
+    found = capsys.readouterr().out
+    assert "IM_oren_nayar_diffuse_bsdf_genosl" in found and "IM_sheen_bsdf_genglsl" in found
+    assert main(["library"]) == PASSED
+    recipes = capsys.readouterr().out.splitlines()
+    assert len(recipes) == 8 and all(str(eonlib_folder()) in line for line in recipes)
 
 
 @pytest.mark.parametrize(

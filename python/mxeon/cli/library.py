@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon library`: print the folder of eonlib and how to use it."""
+"""`mxeon library`: print the folder of eonlib and how to load it, or copy it."""
 
 import argparse
 
@@ -9,19 +9,27 @@ from mxeon.errors import PASSED
 
 def add_parser(commands: arguments.Commands) -> None:
     """Add the command and its options."""
-    summary = "print the folder of eonlib and how to use it"
+    summary = "print the folder of eonlib and how to load it, or copy it"
     command = arguments.add_command(commands, "library", summary, run)
     command.add_argument("--folder", action="store_true", help="print the folder only")
     command.add_argument(
         "--verify", action="store_true", help="list the implementation that each target gets"
     )
+    help_text = (
+        "write eonlib, its sources and license to the new folder DIR, or to an archive DIR.zip"
+    )
+    command.add_argument("--export", metavar="DIR", help=help_text)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the folder; return the exit status."""
+    """Print the folder, or write a copy; return the exit status."""
     from mxeon.shaders.library import eonlib_folder
 
-    if options.folder:
+    if options.export is not None:
+        from mxeon.shaders.library_export import export_library
+
+        print(export_library(options.export))
+    elif options.folder:
         print(eonlib_folder())
     elif options.verify:
         _verify()
@@ -44,8 +52,15 @@ def _explain() -> None:
     from mxeon.shaders.library import eonlib_folder, profile_folder
 
     folder, cycles = eonlib_folder(), profile_folder("cycles")
-    print(f"folder                      {folder}")
-    print(f"generateshader              --library {folder}")
-    print(f"generateshader, for Cycles  --library {cycles} {folder}")
-    print(f"USD                         PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
-    print(f'C++                         loadLibraries({{"{folder}", "libraries"}}, path, document)')
+    search = "mx.getDefaultDataSearchPath()"
+    print(f"folder                {folder}")
+    print(f"diffuse nodes alone   {folder / 'diffuse'}")
+    print(f'Python                mx.loadLibraries(["{folder}", "libraries"], {search}, library)')
+    search = search.replace(".", "::")
+    print(
+        f'C++                   mx::loadLibraries({{"{folder}", "libraries"}}, {search}, library);'
+    )
+    print(f"generateshader        generateshader.py --library {folder} --target glsl FILE")
+    print(f"MaterialX's viewer    MaterialXView --library {folder}")
+    print(f"USD                   export PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
+    print(f"Blender's Cycles      generateshader.py --library {cycles} {folder} --target osl FILE")

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Copies of eonlib: they hold all that they need, and every version of MaterialX can use them."""
+
+import re
+import subprocess
+import zipfile
+from pathlib import Path
+
+import MaterialX as mx
+import pytest
+
+import mxeon
+from mxeon.cli import main
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.shaders.library import TESTED, data_folder
+from mxeon.shaders.library_export import export_library
+from tests.support.wheels import run_with, verdicts_with
+from tests.support.wrong_libraries import wrong_copy
+
+NAMED = re.compile(r'(?:file="|#include ")([^"]+)"')
+STANDARD = Path(mx.getDefaultDataSearchPath().find("libraries").asString()).parent
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """Folder of a copy of eonlib."""
+    return export_library(tmp_path_factory.mktemp("export") / "copy")
+
+
+def contents(folder):
+    """Bytes of each file by its path in a folder."""
+    files = filter(Path.is_file, Path(folder).rglob("*"))
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def test_a_copy_has_the_sources_the_profile_and_the_license(copy):
+    found = contents(copy)
+    whole = {
+        f"{name}/{path}": data
+        for name in ("eonlib", "profiles")
+        for path, data in contents(data_folder() / name).items()
+    }
+    license_text = (data_folder() / "LICENSE").read_bytes()
+    assert mxeon.__version__ in found.pop("README.txt").decode()
+    assert found == whole | {"LICENSE": license_text}
+
+
+def test_every_file_that_a_copy_names_is_in_it_or_in_materialx(copy):
+    names = [
+        (path, name)
+        for path in copy.rglob("*.*")
+        for name in NAMED.findall(path.read_text(encoding="utf-8"))
+    ]
+    assert len(names) > 80
+    for path, name in names:
+        home = STANDARD if name.startswith("libraries/") else copy
+        found = (STANDARD if home == STANDARD else path.parent) / name
+        assert found.is_file() and found.resolve().is_relative_to(home.resolve()), (path, name)
+
+
+def test_an_archive_is_a_copy_under_its_name_and_the_same_each_time(copy, tmp_path):
+    first, again = (export_library(tmp_path / each / "eonlib-1.0.zip") for each in "ab")
+    assert first.read_bytes() == again.read_bytes()
+    with zipfile.ZipFile(first) as archive:
+        archive.extractall(tmp_path)
+    assert contents(tmp_path / "eonlib-1.0") == contents(copy)
+
+
+@pytest.mark.parametrize("name", ["full", "file"])
+def test_what_is_in_the_way_is_one_line_and_stays_as_it_is(tmp_path, capsys, name):
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine.txt").write_text("mine")
+    (tmp_path / "file").write_text("mine")
+    before = contents(tmp_path)
+    assert main(["library", "--export", str(tmp_path / name)]) == 2
+    assert capsys.readouterr().err == (
+        f"mxeon: {tmp_path / name}: must be a new or empty folder, or end in .zip\n"
+    )
+    assert contents(tmp_path) == before
+
+
+def test_an_empty_folder_is_filled_and_nothing_half_written_stays(tmp_path, monkeypatch):
+    (tmp_path / "empty").mkdir()
+
+    def full(path, data):
+        raise OSError(28, "No space left on device", str(path))
+
+    with monkeypatch.context() as patch, pytest.raises(OSError, match="No space left"):
+        patch.setattr(Path, "write_bytes", full)
+        export_library(tmp_path / "empty")
+    assert [*tmp_path.rglob("*")] == [tmp_path / "empty"]
+    assert contents(export_library(tmp_path / "empty")).keys() >= {"LICENSE", "README.txt"}
+
+
+# --- versions of MaterialX ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("version", TESTED)
+def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
+    run_with(version, "tests.support.client", copy / "eonlib", tmp_path)
+    shaders = sorted(tmp_path.glob("*.frag"))
+    assert len(shaders) == 23
+    done = subprocess.run(["glslangValidator", *shaders], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("version", TESTED[:-1])
+def test_microfacets_are_right_where_they_have_no_retroreflection(copy, version):
+    verdicts = verdicts_with(version, copy / "eonlib")
+    assert len(verdicts) == 6 and set(verdicts.values()) == {PASSED}
+
+
+def test_microfacets_are_wrong_where_the_call_without_retroreflection_is(tmp_path):
+    call = "weight, tint, ior, roughness, false, thinfilm_thickness,"
+    wrong = call.replace("false", "true")
+    library = wrong_copy(tmp_path, call, wrong, "eonlib/genglsl/dielectric_bsdf.glsl")
+    verdicts = verdicts_with(TESTED[0], library)
+    dielectrics = {verdicts.pop(key) for key in list(verdicts) if "dielectric" in key}
+    assert dielectrics == {FAILED} and set(verdicts.values()) == {PASSED}

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a program without mxeon does with a folder of eonlib, and MaterialX alone.
+
+    python -m tests.support.client FOLDER OUTPUT [DATA]
+
+Writes the GLSL of each node that the folder implements to OUTPUT/<implementation>.frag, with the
+definitions of MaterialX or of the folder DATA that holds others in `libraries`.
+"""
+
+import sys
+from pathlib import Path
+
+import MaterialX as mx
+import MaterialX.PyMaterialXGenGlsl as mx_glsl
+import MaterialX.PyMaterialXGenShader as mx_gen
+
+SURFACE = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of a surface, by the type of what they take
+FILLED = {"BSDF": "conductor_bsdf", "VDF": "absorption_vdf"}  # inputs of combinations
+
+
+def main(folder, output, data=None):
+    path = mx.FileSearchPath(data) if data else mx.getDefaultDataSearchPath()
+    library, ours = mx.createDocument(), mx.createDocument()
+    mx.loadLibraries([folder, "libraries"], path, library)
+    mx.loadLibraries([folder], mx.FileSearchPath(), ours)
+    for row in ours.getImplementations():
+        if row.getTarget() == "genglsl":
+            text = shader(library, row, path)
+            Path(output, f"{row.getName()}.frag").write_text(text, encoding="utf-8")
+
+
+def shader(library, row, path):
+    """GLSL of a document that has one node; the implementation has to be that of the row."""
+    document = mx.createDocument()
+    document.setDataLibrary(library)
+    element = rendered(document, document.getNodeDef(row.getNodeDefString()))
+    generator = mx_glsl.GlslShaderGenerator.create()
+    found = document.getNodeDef(row.getNodeDefString()).getImplementation("genglsl")
+    assert found.getActiveSourceUri() == row.getActiveSourceUri()
+    generator.registerTypeDefs(library)
+    context = mx_gen.GenContext(generator)
+    context.registerSourceCodeSearchPath(path)
+    return generator.generate("node", element, context).getSourceCode("pixel")
+
+
+def rendered(document, definition):
+    """A node of a definition with what it combines, or the surface that shows it."""
+    # Add the node, and what a combination takes.
+    kind = definition.getType()
+    node = document.addNode(definition.getNodeString(), "node", kind)
+    node.setNodeDefString(definition.getName())
+    for port in definition.getInputs():
+        if port.getType() in FILLED:
+            connect(document, node, port.getName(), port.getType(), FILLED[port.getType()])
+    # Put a medium below a dielectric, and a closure on a surface.
+    if kind == "VDF":
+        medium, node, kind = node, document.addNode("layer", "layered", "BSDF"), "BSDF"
+        connect(document, node, "top", "BSDF", "dielectric_bsdf")
+        node.addInput("base", "VDF").setConnectedNode(medium)
+    if kind not in SURFACE:
+        return node
+    surface = document.addNode("surface", "surface", "surfaceshader")
+    surface.addInput(SURFACE[kind], kind).setConnectedNode(node)
+    return surface
+
+
+def connect(document, node, name, kind, category):
+    """Connect an input to a new node of a category."""
+    node.addInput(name, kind).setConnectedNode(document.addNode(category, f"node_{name}", kind))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
