@@ -175,6 +175,12 @@ def test_sigma_of_a_roughness_times_half_pi_is_recognized(tmp_path):
     assert set(found.values()) == {reference.model("qon_half_pi").title}
 
 
+def test_models_that_are_one_in_the_pictures_are_named_once(kit):
+    result = result_of(check_kit(kit), "model", "energy_compensation false, distant")
+    assert next(iter(result.distances)) == reference.model("qon").title
+    assert "QON with sigma = roughness^2" not in result.distances
+
+
 def test_an_error_is_told_in_words_and_each_diagnosis_once(tmp_path, capsys):
     write_pictures(tmp_path, true="eon_rho_cubed")
     assert main(["kit", "check", str(tmp_path), "--claims", "eon"]) == 1

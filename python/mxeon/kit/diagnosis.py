@@ -52,11 +52,19 @@ def candidates(pictures: Sequence[JudgedPicture], depth: float) -> list[ModelDis
     -------
     list of ModelDistance
     """
-    rows = reference.PARAMETRIZATIONS + reference.KNOWN_DEFECTS + reference.MODELS
+    rows = reference.KNOWN_DEFECTS + reference.MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(case.view.scene.light for case in pictures):
         rows = tuple({row.brdf: row for row in rows}.values())  # some differ in their albedo alone
-    return sorted((_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance)
+    ranking = sorted(
+        (_candidate(row, pictures, depth) for row in rows), key=lambda one: one.distance
+    )
+    # A roughness and its square are one at roughness 1, where the model has the first place.
+    return [
+        one
+        for one, before in zip(ranking, [None, *ranking], strict=False)
+        if before is None or one.distance != before.distance
+    ]
 
 
 def _candidate(
