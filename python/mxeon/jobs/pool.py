@@ -166,12 +166,12 @@ def _serve(
             # Wait for outcomes.
             begun = dict(pair for own in running for pair in own.items())
             done = wait(begun, timeout=START + timeout, return_when=FIRST_COMPLETED).done
-            for future in done or begun:  # none: the processes hang before they begin
-                attempt = begun[future]
+            for ended in done or begun:  # none: the processes hang before they begin
+                attempt = begun[ended]
                 for own in running:
-                    own.pop(future, None)
+                    own.pop(ended, None)
                 # Yield an outcome, or let the item wait once more.
-                if again := _again(future, attempt, outcome := _outcome(future, attempt, timeout)):
+                if again := _again(ended, attempt, outcome := _outcome(ended, attempt, timeout)):
                     waiting.put(again)
                 else:
                     yield attempt.index, outcome

@@ -155,7 +155,8 @@ def vector(values: ArrayLike) -> str:
 
 def _audit_apart(results: Iterable[Result]) -> tuple[list[Result], list[Result]]:
     """Results of nodes and documents, and those of the library itself, its functions and its text."""
-    asked, own = [], []
+    asked: list[Result] = []
+    own: list[Result] = []
     for result in results:
         audits = result.host == SOURCE or result.subject == SHADER_FUNCTIONS
         (own if audits else asked).append(result)

@@ -287,7 +287,7 @@ def _worst_pixel(
     scene, image, reference = case
     mask = sphere(scene.size).mask
     wo, wi, _ = picture_pairs(scene)
-    measured, expected = image[mask], reference[mask]
+    measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
     error = metric(measured, expected) * wo[:, 2]
     if front_lit:
         error = np.where((wo[:, :2] * wi[:, :2]).sum(axis=1) >= 0.0, error, 0.0)

@@ -215,9 +215,10 @@ def lobe_albedo(
             E = E * (1.0 + curve.average(**material) * unseen)
         return E * material["tint"] if "tint" in material else E
 
+    arguments = {"wo": wo, "roughness": roughness, **vectors}
+    lead_shape(arguments, numbers)  # refuses what does not broadcast, by the names of the arguments
     # Light that is scattered more than once, for all elements before their many slopes.
     unseen = _unseen(wo, roughness) if compensate else np.zeros(())
-    arguments = {"wo": wo, "roughness": roughness, **vectors}
     scalars = {"unseen": unseen, **numbers}
     return evaluate_material(value, arguments, scalars, channel_count(vectors), BLOCK)
 

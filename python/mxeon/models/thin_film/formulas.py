@@ -145,7 +145,7 @@ def _orders(r: Array, phase: Array, opd: Array, orders: int) -> Array:
     total = np.zeros((3, r.size))
     for start in range(0, r.size, BLOCK):
         rows = slice(start, start + BLOCK)
-        block = (each.ravel()[rows] for each in (r, phase, opd))
+        block = r.ravel()[rows], phase.ravel()[rows], opd.ravel()[rows]
         total[:, rows] = damped_orders(*block, orders)
     return total.reshape(3, *r.shape)
 
