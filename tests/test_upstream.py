@@ -3,7 +3,7 @@
 
 import re
 import shutil
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -13,6 +13,7 @@ from docs.upstream import marks
 from docs.upstream import update as ledger
 from mxeon.conformance.known_issues.issue import Issue, read_issues
 from tests.support.availability import available
+from tests.support.sharing import shared
 from tests.support.tolerances import PRINTED
 
 PAGES = [defect.page for defect in ledger.CHECKED] + list(ledger.OF_QUANTITIES)
@@ -30,10 +31,18 @@ DEFECTS = [defect for defect in ledger.CHECKED if defect.host not in ("three", "
 of_each_defect = pytest.mark.parametrize("defect", DEFECTS, ids=lambda each: each.page)
 
 
-@cache
-def judged(host):
-    with available(host):
-        return ledger.judged(host)
+@pytest.fixture(scope="module")
+def judged(request, tmp_path_factory):
+    """A function of a host: results and place of its defects, judged by one process for all."""
+
+    @cache
+    def results(host):
+        with available(host):
+            known = request.getfixturevalue("stock").results if host == "gl" else ()
+            make = partial(ledger.judged, host, known)
+            return shared(tmp_path_factory, f"defects on {host}", make)
+
+    return results
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -108,13 +117,13 @@ def test_a_wrong_row_is_refused(tmp_path, old, new, message):
         rows.generated(tmp_path)
 
 
-def measured(defect):
+def measured(defect, judged):
     """The block of a page as it is measured here."""
     results, place = judged(defect.host)
     return ledger.block(ledger.shown(defect, results), place)
 
 
-def of_this_driver(defect):
+def of_this_driver(defect, judged):
     """Skip the test of a page about a driver that is not the one here."""
     place = judged(defect.host)[1]
     if defect.page in ledger.OF_DRIVERS and place not in ledger.written(defect.page):
@@ -122,25 +131,25 @@ def of_this_driver(defect):
 
 
 @of_each_defect
-def test_no_defect_has_been_repaired_upstream(defect):
-    of_this_driver(defect)
+def test_no_defect_has_been_repaired_upstream(judged, defect):
+    of_this_driver(defect, judged)
     results = ledger.shown(defect, judged(defect.host)[0])
     repaired = [each for each in results if each.verdict == "passed"]
     assert not repaired, f"docs/upstream/{defect.page}.md is out of date: the defect is repaired"
 
 
 @of_each_defect
-def test_the_figures_of_each_page_are_those_of_the_suite(defect):
-    of_this_driver(defect)
+def test_the_figures_of_each_page_are_those_of_the_suite(judged, defect):
+    of_this_driver(defect, judged)
     written = ledger.figures(ledger.written(defect.page))
-    np.testing.assert_allclose(ledger.figures(measured(defect)), written, rtol=PRINTED)
+    np.testing.assert_allclose(ledger.figures(measured(defect, judged)), written, rtol=PRINTED)
 
 
 @of_each_defect
-def test_the_bounds_and_names_of_each_page_are_those_of_the_suite(defect):
-    of_this_driver(defect)
+def test_the_bounds_and_names_of_each_page_are_those_of_the_suite(judged, defect):
+    of_this_driver(defect, judged)
     written = ledger.without_figures(ledger.written(defect.page))
-    assert written == ledger.without_figures(measured(defect))
+    assert written == ledger.without_figures(measured(defect, judged))
 
 
 @of_each_defect

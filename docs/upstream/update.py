@@ -50,8 +50,14 @@ CHECKED = tuple(each for each in ISSUES if each.rows)
 OF_DRIVERS = ("genglsl_albedo_acos",)
 
 
-def judged(host):
+def judged(host, known=()):
     """Results of the checks that show defects on a host or on "source".
+
+    Parameters
+    ----------
+    host : str
+    known : iterable of Result
+        Of a run of stock MaterialX, which are not judged again.
 
     Returns
     -------
@@ -66,6 +72,8 @@ def judged(host):
     """
     rows = {row for issue in CHECKED if issue.host == host for row in issue.rows}
     tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,), nodes=(ALL,)).tasks
+    known = [each for each in known if each.host == host and (each.check, each.subject) in rows]
+    rows -= {(each.check, each.subject) for each in known}
     chosen = [
         each
         for each in tasks
@@ -76,7 +84,7 @@ def judged(host):
     devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
     own = host in RENDERERS and host != "cycles"  # its nodes need no MaterialX
     place = ", ".join([*devices, *([] if own else [f"MaterialX {mx.__version__}"])])
-    return [result for each in findings for result in each.results], place
+    return [*known, *(result for each in findings for result in each.results)], place
 
 
 def shown(defect, results):

@@ -14,11 +14,3 @@ EXAMPLES = [examples_folder() / name for name in ("plaster.mtlx", "openpbr_rough
 def run(tmp_path_factory):
     """What eonlib does on gl, with two documents."""
     return shared(tmp_path_factory, "eonlib", lambda: check(EXAMPLES, ["gl"], nodes=["common"]))
-
-
-@pytest.fixture(scope="session")
-def stock(tmp_path_factory):
-    """What MaterialX does on gl by itself, with one document."""
-    return shared(
-        tmp_path_factory, "stock", lambda: check(EXAMPLES[:1], ["gl"], ["stock"], nodes=["common"])
-    )
