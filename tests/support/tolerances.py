@@ -291,3 +291,6 @@ SUBSURFACE_SIMILARITY = 0.009
 SUBSURFACE_RINGS = RINGS.value
 # Energy of a sphere: the quadrature's error on the kink at the horizon, 2e-5, and float32's.
 SUBSURFACE_SPHERE = 1e-4
+
+# Hydra Storm's color is of half floats, cut off: off by up to 2^-10 of a value, and the values are below 1.
+STORM = 2.0**-10
