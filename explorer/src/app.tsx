@@ -5,7 +5,14 @@ import { useCallback, useEffect, useLayoutEffect, useMemo, useState } from "prea
 import { from_address, to_address } from "./address";
 import { copy } from "./copies";
 import type { PageData } from "./data";
-import { useEvidence, useMeasured, useRest } from "./measuring";
+import {
+  type ErrorsOf,
+  farthest_row,
+  useErrors,
+  useEvidence,
+  useMeasured,
+  useRest,
+} from "./measuring";
 import { model } from "./models/table";
 import { facing_point, type Point, unit_pair, worst_point } from "./probe";
 import type { Stage } from "./stage";
@@ -45,27 +52,18 @@ export function App({ data, tell }: AppProps) {
   const rest = useRest(stage, state, dragging);
   const calm = rest ?? state;
   const worst = useWorst(rest, sources) ?? facing_point(state);
+  const errors = useState<ErrorsOf>(new Map());
+  const row = calm.probe ? null : farthest_row(sources, calm, errors[0]);
   const pair = useMemo(() => {
+    if (row !== null) return { wo: data.pairs[row]![0], wi: data.pairs[row]![1] };
     const probed = stage && rest?.probe ? stage.pick(...rest.probe, rest) : null;
     return probed && probed.wi[2] > 0 && probed.wo[2] > 0 ? unit_pair(probed) : worst;
-  }, [stage, rest]);
+  }, [stage, rest, row]);
   const measured = useMeasured(stage, pair, state, dragging || rest !== state);
-  const evidence = useEvidence(stage, sources, calm, pair, measured);
+  useErrors(stage, sources, calm, measured, errors);
+  const evidence = useEvidence(stage, sources, calm, pair, measured, errors[0]);
   const differ = rest && stage && state.shape === "sphere" ? on_sphere(stage, worst) : null;
   const view: ViewProps = { data, sources, state, change };
-  const probe = useMemo(
-    () => (
-      <Probe
-        {...view}
-        state={calm}
-        pair={pair}
-        measured={measured}
-        able={stage !== null}
-        drawn={rest !== null}
-      />
-    ),
-    [rest, pair, measured, stage],
-  );
   return (
     <>
       <Header data={data} />
@@ -87,7 +85,15 @@ export function App({ data, tell }: AppProps) {
           <Scene {...view} />
           <Wanted {...view} />
         </aside>
-        {probe}
+        <Probe
+          {...view}
+          calm={calm}
+          pair={pair}
+          row={row}
+          measured={measured}
+          able={stage !== null}
+          drawn={rest !== null}
+        />
       </div>
     </>
   );

@@ -8,7 +8,7 @@ import type { Stage } from "./stage";
 import type { SideName, State } from "./state";
 import type { Measured } from "./ui/probe_panel";
 import type { Errors, Evidence } from "./verdict";
-import { actual_model, SIDES, source_of, type Sources } from "./view";
+import { actual_model, has_table, SIDES, source_of, type Sources } from "./view";
 
 const REST = 120; // milliseconds without a change
 const MEASURE_DELAY = 60;
@@ -58,6 +58,42 @@ export function useMeasured(
   return measured;
 }
 
+/** Errors of shaders against the tables of their references, by the id of their source. */
+export type ErrorsOf = ReadonlyMap<string, Errors>;
+
+/** The errors of both sides, found one after the other when the values for the probe were read. */
+export function useErrors(
+  stage: Stage | null | undefined,
+  sources: Sources,
+  state: State,
+  measured: Measured | null,
+  [errors, setErrors]: [ErrorsOf, (errors: ErrorsOf) => void],
+): void {
+  useEffect(() => {
+    if (!stage || !measured) return;
+    const asked = SIDES.map((side) => source_of(sources, state[side]))
+      .filter(has_table)
+      .find(({ id }) => !errors.has(id));
+    if (!asked) return;
+    const timer = window.setTimeout(() => {
+      const found = stage.check(asked);
+      if (found) setErrors(new Map(errors).set(asked.id, found));
+    });
+    return () => clearTimeout(timer);
+  }, [stage, measured, errors]);
+}
+
+/** The row of the table at which a side is farthest off, of sides that no model in the page is. */
+export function farthest_row(sources: Sources, state: State, errors: ErrorsOf): number | null {
+  const sides = SIDES.map((side) => source_of(sources, state[side]));
+  const found = sides
+    .filter(has_table)
+    .map((each) => errors.get(each.id)?.direct)
+    .filter((each) => each !== undefined);
+  if (found.length === 0 || found.length < sides.length) return null;
+  return found.reduce((most, each) => (each.error > most.error ? each : most)).row;
+}
+
 /** What was read back of the shaders of both sides, now or before. */
 export function useEvidence(
   stage: Stage | null | undefined,
@@ -65,9 +101,9 @@ export function useEvidence(
   state: State,
   pair: Pair,
   measured: Measured | null,
+  errors: ErrorsOf,
 ): Readonly<Record<SideName, Evidence>> {
   const [confirmed, setConfirmed] = useState<ReadonlyMap<string, boolean>>(new Map());
-  const [errors, setErrors] = useState<ReadonlyMap<string, Errors>>(new Map());
   const key = (side: SideName, of: ModelName): string => `${state[side].source} ${of}`;
   useEffect(() => {
     if (!measured) return;
@@ -81,18 +117,6 @@ export function useEvidence(
     }
     setConfirmed(found);
   }, [measured]);
-  useEffect(() => {
-    if (!stage || !measured) return;
-    const asked = SIDES.map((side) => source_of(sources, state[side])).find(
-      (each) => each.kind === "shader" && each.reference && !errors.has(each.id),
-    );
-    if (asked?.kind !== "shader") return;
-    const timer = window.setTimeout(() => {
-      const found = stage.check(asked);
-      if (found) setErrors(new Map(errors).set(asked.id, found));
-    });
-    return () => clearTimeout(timer);
-  }, [stage, measured, errors]);
   const one = (side: SideName): Evidence => {
     const of = actual_model(source_of(sources, state[side]), state[side], state);
     return {

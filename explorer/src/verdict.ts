@@ -8,7 +8,7 @@ import { show } from "./format";
 import { albedo_dir, type Model } from "./models/table";
 import { largest_apart, worst_point } from "./probe";
 import type { Side, State } from "./state";
-import { actual_model, meant_model, type Sources, source_of } from "./view";
+import { actual_model, has_table, meant_model, type Sources, source_of } from "./view";
 
 /** "differs": from the reference, as the specification leaves open. */
 export type Kind = "correct" | "wrong" | "differs" | "model" | "unknown" | "measuring";
@@ -22,6 +22,7 @@ export interface Verdict {
 /** Largest difference between a shader's values and those of its reference, for its own inputs. */
 export interface ErrorOf {
   readonly error: number;
+  readonly row: number; // of the pair or view where it is
   readonly form: ShaderForm | null; // which explains the values where the reference does not
 }
 
@@ -53,7 +54,7 @@ export function verdict_on(
   if (evidence.failure) return { kind: "wrong", badge: "not drawn", text: evidence.failure };
   const [actual, meant] = [actual_model(source, side, state), meant_model(source, side, state)];
   if (!actual || !meant) {
-    if (source.kind === "shader" && source.reference) return by_reference(source, evidence);
+    if (has_table(source)) return by_reference(source, evidence);
     return {
       kind: "unknown",
       badge: "material",

@@ -34,6 +34,18 @@ export function meant_model(source: Source, side: Side, state: State): Model | n
   return source.meant && !is_changed(source, state) ? model(by_flag(source.meant, side)) : null;
 }
 
+/** Whether a shader is judged by the table of its reference: no model in the page is known to be it. */
+export function has_table(source: Source): source is ShaderSource {
+  return source.kind === "shader" && !!source.reference && !(source.meant && source.actual);
+}
+
+/** Values of the reference of a side in a row of its table, for the inputs that it starts with. */
+export function tabled(source: Source, state: State, row: number | null): Triple | null {
+  if (row === null || !has_table(source) || is_changed(source, state)) return null;
+  const [r, g, b] = source.reference?.direct.slice(3 * row, 3 * row + 3) ?? [];
+  return r === undefined ? null : [r, g!, b!];
+}
+
 /** Whether an input of a document, such as its weight, is not the document's own. */
 function is_changed(source: ShaderSource, state: State): boolean {
   const values = state.inputs[source.id] ?? {};

@@ -101,3 +101,9 @@ def shows(page, **fields):
 def show(page, **patch):
     """Show a view with other fields."""
     page.evaluate("patch => mxeon.show({...mxeon.state(), ...patch})", patch)
+
+
+def judged(page, side, badge):
+    """Require that the verdict on a side has a badge, soon: values are read back before."""
+    text = "side => document.querySelector(`.side.${side} .verdict strong`).textContent"
+    until(page, f"([side, badge]) => ({text})(side) === badge", [side, badge])

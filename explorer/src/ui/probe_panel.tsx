@@ -2,12 +2,13 @@
 // The probe: a pair of directions, the values of both sides for it, and their errors.
 
 import type { ComponentChild } from "preact";
-import { useState } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import type { Triple } from "../data";
 import { copy, material_x, python_line, shader_text } from "../copies";
+import type { State } from "../state";
 import { degrees, signed, triple } from "../format";
 import { apart, is_other, type Pair, values } from "../probe";
-import { actual_model, LETTER, meant_model, SIDES, source_of } from "../view";
+import { actual_model, LETTER, meant_model, SIDES, source_of, tabled } from "../view";
 import { AlbedoPlot, type Curve, Polar } from "./plots";
 import type { ViewProps } from "./sides";
 
@@ -18,7 +19,9 @@ export interface Measured {
 }
 
 interface ProbeProps extends ViewProps {
+  readonly calm: State; // the view that was at rest last, of which the values are
   readonly pair: Pair;
+  readonly row: number | null; // of the pair in the tables of references
   readonly measured: Measured | null; // null while something moves, and where no shader runs
   readonly able: boolean; // whether shaders run
   readonly drawn: boolean; // whether the first picture is there, before which nothing is plotted
@@ -27,19 +30,37 @@ interface ProbeProps extends ViewProps {
 const DECIMALS = 7;
 
 export function Probe(props: ProbeProps) {
-  const { sources, state, change, pair, drawn } = props;
-  const { color, roughness, probe } = state;
-  const curves: Curve[] = [];
-  for (const side of SIDES) {
-    const of = actual_model(source_of(sources, state[side]), state[side], state);
-    if (of) curves.push({ side, model: of });
-  }
+  const { sources, calm, change, pair, row, drawn } = props;
+  const { color, roughness, probe } = calm;
+  const known = SIDES.some((side) =>
+    actual_model(source_of(sources, calm[side]), calm[side], calm),
+  );
+  const plots = useMemo(() => {
+    const curves: Curve[] = [];
+    for (const side of SIDES) {
+      const of = actual_model(source_of(sources, calm[side]), calm[side], calm);
+      if (of) curves.push({ side, model: of });
+    }
+    if (!drawn || curves.length === 0) return null;
+    return (
+      <>
+        <Polar {...{ curves, pair, color, roughness }} />
+        <AlbedoPlot {...{ curves, pair, color, roughness }} />
+      </>
+    );
+  }, [calm, pair, drawn]);
   return (
     <section class="probe" aria-label="Probe">
       <div>
         <h2>Probe</h2>
         <p class="where">
-          {probe ? "The point that was clicked." : "Where A and B differ most in this light."}{" "}
+          {probe
+            ? "The point that was clicked."
+            : row !== null
+              ? "Where A or B is farthest off, of the pairs in the table."
+              : known
+                ? "Where A and B differ most in this light."
+                : "A point that faces the eye and the light alike."}{" "}
           {probe ? (
             <button type="button" class="link" onClick={() => change({ probe: null })}>
               Go to the largest difference
@@ -52,12 +73,7 @@ export function Probe(props: ProbeProps) {
         <Values {...props} />
         <Copies {...props} />
       </div>
-      {drawn && curves.length > 0 && (
-        <>
-          <Polar {...{ curves, pair, color, roughness }} />
-          <AlbedoPlot {...{ curves, pair, color, roughness }} />
-        </>
-      )}
+      {plots}
     </section>
   );
 }
@@ -81,7 +97,7 @@ function Directions({ pair: { wo, wi } }: { readonly pair: Pair }) {
   );
 }
 
-function Values({ sources, state, pair, measured, able }: ProbeProps) {
+function Values({ sources, calm: state, pair, row, measured, able }: ProbeProps) {
   const { color, roughness } = state;
   return (
     <table class="values">
@@ -116,12 +132,14 @@ function Values({ sources, state, pair, measured, able }: ProbeProps) {
         </Row>
         <Row title="reference">
           {SIDES.map((name) => {
-            const of = meant_model(source_of(sources, state[name]), state[name], state);
-            if (!of) return "–";
+            const source = source_of(sources, state[name]);
+            const of = meant_model(source, state[name], state);
+            const should = of ? values(of, pair, color, roughness) : tabled(source, state, row);
+            if (!should) return "–";
             return (
               <>
-                <span class="of">{of.short}, float64</span>
-                <Numbers values={values(of, pair, color, roughness)} />
+                <span class="of">{of ? of.short : "models"}, float64</span>
+                <Numbers values={should} />
               </>
             );
           })}
@@ -133,17 +151,23 @@ function Values({ sources, state, pair, measured, able }: ProbeProps) {
               actual_model(source, state[name], state),
               meant_model(source, state[name], state),
             ];
-            if (!of) return "–";
+            const should = of ? values(of, pair, color, roughness) : tabled(source, state, row);
+            if (!should) return "–";
             if (!measured?.[name] && able) return <Measuring />;
             // Where no shader runs, a model is not compared with itself.
             const value =
               measured?.[name] ?? (is && is !== of && values(is, pair, color, roughness));
             if (!value) return "not measured";
-            const error = apart(value, values(of, pair, color, roughness));
-            const right = !is_other(value, values(of, pair, color, roughness));
+            const error = apart(value, should);
+            const bound = source.kind === "shader" && !of ? source.reference!.bounds.direct : null;
+            const right =
+              bound === null
+                ? !is_other(value, should)
+                : Math.abs(error) <= bound * Math.max(1, ...should);
             return (
               <strong class={right ? "correct" : "wrong"}>
-                {signed(error, 2)} {right ? "✓ rounding" : error > 0 ? "too bright" : "too dark"}
+                {signed(error, 2)}{" "}
+                {right ? `✓ ${of ? "rounding" : "allowed"}` : error > 0 ? "too bright" : "too dark"}
               </strong>
             );
           })}
