@@ -19,6 +19,7 @@ from mxeon.errors import NotRun
 
 GROUPS = (
     "shaders", "noise", "materials", "instructions", "registers", "cycles", "models", "tool", "check",
+    "parts",
 )  # fmt: skip
 QUICK = {
     "shaders": {"rounds": 5},
@@ -30,6 +31,7 @@ QUICK = {
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
     "check": {"rounds": 1, "field": False},
+    "parts": {"rounds": 1},
 }
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
