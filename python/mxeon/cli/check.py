@@ -70,6 +70,7 @@ def run(options: argparse.Namespace) -> int:
     progress.show("reads the documents" if options.files else "reads the library")
     from mxeon.conformance.run import check
 
+    # Refuse what cannot be meant.
     if options.resume and not options.report:
         raise InputError("--resume needs the folder of the run to continue; pass --report DIR")
     hosts, nodes = options.host or ("gl",), options.node or ()
@@ -79,6 +80,7 @@ def run(options: argparse.Namespace) -> int:
         refused.append(error)
         fail(MISUSE, error)
 
+    # Check, and tell of documents that are refused at once.
     result = check(
         options.files,
         host_names() if "all" in hosts else hosts,

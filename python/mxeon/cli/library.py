@@ -51,10 +51,12 @@ def _verify() -> None:
 def _explain() -> None:
     from mxeon.shaders.library import eonlib_folder, profile_folder
 
+    # Say where it lies.
     folder, cycles = eonlib_folder(), profile_folder("cycles")
     search = "mx.getDefaultDataSearchPath()"
     print(f"folder                {folder}")
     print(f"diffuse nodes alone   {folder / 'diffuse'}")
+    # Say how each client loads it.
     print(f'Python                mx.loadLibraries(["{folder}", "libraries"], {search}, library)')
     search = search.replace(".", "::")
     print(

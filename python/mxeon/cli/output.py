@@ -110,9 +110,11 @@ class Progress:
 
     def __call__(self, steps: Iterable[Any], total: int | None = None) -> Iterator[Any]:
         """The steps, each of which is shown when it is handed on."""
+        # Say how many there are.
         total = len(steps) if total is None and isinstance(steps, Sized) else total
         begin = 0.0
         self.show(f"0 of {total}")
+        # Say after each what is left, by the mean time of those after the first.
         for done, step in enumerate(steps, 1):
             begin = begin or time.monotonic()  # the first step takes what all need
             spent = (time.monotonic() - begin) / max(done - 1, 1)

@@ -214,9 +214,11 @@ def summarize(
     >>> summarize(()).sentence
     'No check ran.'
     """
+    # Judge what there is.
     summary = _summarize_results(results)
     if not missing and not errors:
         return summary
+    # Say what is not there: without it nothing has passed.
     verdict = FAILED if summary.verdict == FAILED else NOT_RUN
     sentence = summary.sentence
     if missing:

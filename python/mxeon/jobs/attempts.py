@@ -5,7 +5,6 @@ import os
 from collections import deque
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 
 @dataclass(frozen=True)
@@ -13,7 +12,7 @@ class Attempt:
     """An attempt at an item, whose worker prints to the file `log`."""
 
     index: int
-    item: Any
+    item: object
     group: Hashable = None
     number: int = 1
     log: str = ""

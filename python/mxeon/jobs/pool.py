@@ -56,7 +56,7 @@ class Outcome:
 
 def run(
     work: Callable[[Any], Any],
-    items: Sequence[Any],
+    items: Sequence[object],
     workers: int,
     timeout: float,
     group: Callable[[Any], Hashable] = lambda item: None,

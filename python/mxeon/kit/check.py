@@ -3,7 +3,7 @@
 
 import json
 import platform
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
@@ -127,7 +127,7 @@ def _size(folder: Path) -> int:
     return size
 
 
-def _node(kit: dict[str, Any]) -> str:
+def _node(kit: Mapping[str, object]) -> str:
     """Category of the node of a kit's materials, which may be any one."""
     match kit.get("materials"):
         case {LAMBERT.name: {"node": str(node)}}:

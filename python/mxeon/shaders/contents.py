@@ -57,6 +57,7 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
     source : tuple of (str, str)
         A file and the name of a library.
     """
+    # Read the document.
     file, library = source
     try:
         with warnings.catch_warnings(action="ignore"):  # its checks tell them
@@ -65,6 +66,7 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
         return (
             error if isinstance(error, MxeonError) else DocumentError(f"{file}: {error.strerror}")
         )
+    # Walk from its materials to what they show.
     walk = Walk(document.renderables, values=True)
     for path in walk.shown:
         node = walk.node(path)
@@ -101,6 +103,7 @@ def _kind(source: mx.InterfaceElement | None) -> str:
 
 def _shown(walk: Walk, path: Path) -> ShownNode:
     """A node of a walk."""
+    # The inputs of its definition.
     node = walk.node(path)
     inputs = definition.getActiveInputs() if (definition := node.getNodeDef()) else ()
     ports = [(port.getName(), port.getType()) for port in inputs]
@@ -108,6 +111,7 @@ def _shown(walk: Walk, path: Path) -> ShownNode:
     sources = {name: walk.source(path, name) for name, kind in ports if kind in CLOSURES}
     ports = [port for port in ports if sources.get(port[0], path)]
     ports += [(name, _kind(walk.node(each))) for name, each in sources.items() if each]
+    # The values that choose a mode, and whether there is a film.
     values = ((name, walk.value(path, name)) for name, kind in ports if kind in MODES)
     known = tuple((name, value) for name, value in values if value is not None)
     thickness = walk.value(path, FILM) if (FILM, "float") in ports else "0"

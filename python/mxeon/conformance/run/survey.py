@@ -51,15 +51,15 @@ def survey_documents(
     MxeonError
         If a library cannot be used.
     """
+    # Read each document with each library.
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, None]] = {file: {} for file in files}
     refused: dict[Source, str] = {}
     answers = _answers(sources, policy, workers, timeout)
+    # Collect nodes, and errors; those of an example are the library's fault.
     for (file, library), answer in zip(sources, answers, strict=True):
         if isinstance(answer, DocumentError):
-            if (
-                not Path(file).resolve().is_relative_to(examples_folder())
-            ):  # else the library's fault
+            if not Path(file).resolve().is_relative_to(examples_folder()):
                 refused[file, library] = str(answer)
         elif isinstance(answer, MxeonError):
             raise answer

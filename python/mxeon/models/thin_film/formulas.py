@@ -162,13 +162,15 @@ def damped_orders(r: Array, phase: Array, opd: Array, orders: int) -> Array:
     phi = 2.0 * np.pi * opd
     total = np.zeros((3, len(r)))
     for k, v, mu, var in GAUSSIANS:
-        # r^m exp(-var (m phi)^2), by what the next order has more of it.
+        # Begin r^m exp(-var (m phi)^2), and by what it grows.
         damping = np.exp(-var * phi * phi)
         height, twice = r * damping, damping * damping
         growth = height * twice
+        # Begin cos(m (mu phi + phase)).
         cosine = np.cos(mu * phi + phase)
         double, before = 2.0 * cosine, np.ones_like(cosine)
         summed = height * cosine
+        # Go from order to order.
         for _ in range(1, orders):
             before, cosine = cosine, double * cosine - before
             height = height * growth
@@ -216,6 +218,7 @@ def _mean_inverse(r: Array, half: Array, step: Array) -> Array:
 
     It is large but finite where r is 1, where nothing passes and no order counts.
     """
+    # The node at the center.
     sine, cosine = np.sin(half), np.cos(half)
     turn_s, turn_c = np.sin(step), np.cos(step)
     square, quadruple = np.maximum((1.0 - r) ** 2, 1e-300), 4.0 * r
