@@ -64,6 +64,19 @@ export function App({ data, tell }: AppProps) {
   const evidence = useEvidence(stage, sources, calm, pair, measured, errors[0]);
   const differ = rest && stage && state.shape === "sphere" ? on_sphere(stage, worst) : null;
   const view: ViewProps = { data, sources, state, change };
+  // While the picture is dragged its frames have all the time: numbers follow when it rests.
+  const still = dragging ? calm : state;
+  const controls = useMemo(() => {
+    const own: ViewProps = { ...view, state: still };
+    return (
+      <aside class="controls" aria-label="Controls">
+        <Material {...own} drawn={rest !== null} />
+        <Inputs {...own} />
+        <Scene {...own} />
+        <Wanted {...own} />
+      </aside>
+    );
+  }, [still, rest !== null]);
   return (
     <>
       <Header data={data} />
@@ -79,12 +92,7 @@ export function App({ data, tell }: AppProps) {
             onDrag={setDragging}
           />
         </div>
-        <aside class="controls" aria-label="Controls">
-          <Material {...view} drawn={rest !== null} />
-          <Inputs {...view} />
-          <Scene {...view} />
-          <Wanted {...view} />
-        </aside>
+        {controls}
         <Probe
           {...view}
           calm={calm}
