@@ -130,7 +130,7 @@ def mesh(size):
     width = size + 2 * points.MARGIN
     corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
     square = corner[:, None] + [0, 1, width, width, 1, width + 1]
-    return points.vertices(size), square.astype("u4")
+    return points.vertices(size, "sphere"), square.astype("u4")
 
 
 def first_frame(host, generated, numbers):

@@ -104,7 +104,13 @@ def test_check_of_shaders_tells_fon_from_eon(gl):
     assert not shaders.checked(device, rivals["EON, eonlib"], kernel).passed
 
 
-TEXTS = (str(examples_folder() / "clay.mtlx"), "--host", "msl")  # nothing but texts is checked
+TEXTS = (
+    str(examples_folder() / "clay.mtlx"),
+    "--node",
+    "common",
+    "--host",
+    "msl",
+)  # nothing but texts is checked
 
 
 def test_check_whose_results_fail_is_wrong():
