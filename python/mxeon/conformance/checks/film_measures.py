@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.checks.controls import Altered
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, diagnose_albedo
 from mxeon.conformance.nodes.bsdf import BsdfSubject
+from mxeon.conformance.probes.bsdf import LEAST_INDEX
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case
@@ -21,7 +22,6 @@ ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
 RIGHT = "every value is right by itself"  # of an explanation that found nothing
 LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
-LEAST_INDEX = 1.05  # of a substrate whose lobe is compared
 
 
 def film_limit(probe: Probe) -> Iterable[Case]:

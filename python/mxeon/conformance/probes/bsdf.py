@@ -23,6 +23,7 @@ from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
+LEAST_INDEX = 1.05  # above 1, to which shaders fit their averages: fits/ggx_cosine.py
 
 
 class BsdfProbe(PairProbe):
@@ -193,14 +194,16 @@ class MicrofacetProbe(BsdfProbe):
 def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
     """Inputs whose albedo is that of the lobe and can be integrated.
 
-    The roughness is the same in both directions. The index of a dielectric is at least 1: the fits of
-    shaders end there, and nodes^2 directions do not resolve a critical angle. Deep dips at 82
-    degrees, which turn F negative, are left out.
+    The roughness is the same in both directions. The index of a dielectric is 1, where nothing is
+    reflected, or LEAST_INDEX and more: the fits of shaders begin there (docs/loading.md says how far off
+    they are between), and nodes^2 directions do not resolve a critical angle. Deep dips at 82 degrees,
+    which turn F negative, are left out.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
     if np.ndim(inputs.get("ior", ())) == 1 and np.size(inputs.get("ior", ())):
-        changed["ior"] = np.maximum(inputs["ior"], 1.0)
+        index = np.asarray(inputs["ior"])
+        changed["ior"] = np.where(index > 1.0, np.maximum(index, LEAST_INDEX), 1.0)
     if "color82" in inputs:
         changed["color82"] = np.maximum(inputs["color82"], LEAST_COLOR82)
     return changed
