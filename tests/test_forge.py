@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What runs on a forge: the project's own workflow, and the action for others."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from mxeon.shaders.library import eonlib_folder
+
+ROOT = Path(__file__).parents[1]
+WORKFLOW = ROOT / ".github" / "workflows" / "ci.yml"
+ACTION = ROOT / "action.yml"
+SCHEMAS = {WORKFLOW: "vendor.github-workflows", ACTION: "vendor.github-actions"}
+TOOLS = Path(sys.executable).parent
+UNKNOWN_KEYS = {
+    "runs-on": "run-on",
+    "timeout-minutes": "timeout-minute",
+    "  push:": "  pusch:",
+    "pages: write": "page: write",
+}
+UNSAFE = {
+    WORKFLOW: (
+        ("@3d3c42e5aac5ba805825da76410c181273ba90b1", "@v7"),  # whatever the tag will be
+        ("permissions:\n      contents: read  # for the checkout", "permissions: write-all"),
+        ("./run docs", "./run docs ${{ github.head_ref }}"),  # runs what a branch is called
+        ("        with:\n          persist-credentials: false\n", ""),  # leaves a token on disk
+    ),
+    ACTION: (('"$LIBRARY"', "${{ inputs.library }}"),),
+}
+
+
+def fits(path, schema):
+    """Whether a file has the form that the forge's schema asks for."""
+    command = [TOOLS / "check-jsonschema", "--builtin-schema", schema, path]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def is_safe(path):
+    """Whether the linter finds nothing in a file."""
+    command = [TOOLS / "zizmor", "--offline", "--strict-collection", "--no-config", path]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def changed(path, old, new, folder):
+    """A copy of a file with other words in it, below the folder as the file is below the root."""
+    text = path.read_text()
+    assert old in text
+    copy = folder / path.relative_to(ROOT)
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    copy.write_text(text.replace(old, new))
+    return copy
+
+
+@pytest.mark.parametrize("path", SCHEMAS, ids=lambda path: path.name)
+def test_the_forge_can_read_the_file_and_the_linter_finds_nothing(path):
+    assert fits(path, SCHEMAS[path])
+    assert is_safe(path)
+
+
+@pytest.mark.parametrize("old", UNKNOWN_KEYS)
+def test_a_key_that_the_forge_does_not_know_is_noticed(old, tmp_path):
+    assert not fits(changed(WORKFLOW, old, UNKNOWN_KEYS[old], tmp_path), SCHEMAS[WORKFLOW])
+
+
+@pytest.mark.parametrize(("path", "words"), [(p, w) for p, each in UNSAFE.items() for w in each])
+def test_what_is_unsafe_is_noticed(path, words, tmp_path):
+    assert not is_safe(changed(path, *words, tmp_path))
+
+
+def test_the_workflow_names_jobs_steps_and_commands_that_there_are():
+    text, jobs = WORKFLOW.read_text(), yaml.safe_load(WORKFLOW.read_text())["jobs"]
+    assert {name for job in jobs.values() for name in job.get("needs", ())} <= set(jobs)
+    steps = {step["id"] for job in jobs.values() for step in job["steps"] if "id" in step}
+    assert set(re.findall(r"steps\.(\w+)", text)) == steps
+    known = set(re.findall(r"^(\w+)\)$", (ROOT / "run").read_text(), re.MULTILINE))
+    assert set(re.findall(r"\./run (\w+)", text.partition("\njobs:")[2])) == known - {
+        "demo",
+        "bench",
+    }
+
+
+def test_the_action_installs_the_driver_that_run_installs():
+    [driver] = re.findall(r'^driver="(.*)"', (ROOT / "run").read_text(), re.MULTILINE)
+    assert f"--no-install-recommends {driver}\n" in ACTION.read_text()
+
+
+def test_the_five_lines_of_the_page_call_the_action():
+    [lines] = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "kit.md").read_text(), re.DOTALL)
+    *_, step = yaml.safe_load(lines)["steps"]
+    inputs = yaml.safe_load(ACTION.read_text())["inputs"]
+    assert len(lines.splitlines()) == 5 and "/mxeon@" in step["uses"]
+    assert {name for name, each in inputs.items() if each.get("required")} == set(step["with"])
+
+
+def ended(library, folder):
+    """The action's step that checks, as the forge starts it, for one node."""
+    # Put the command where the action installs it.
+    (folder / "mxeon" / "bin").mkdir(parents=True)
+    (folder / "mxeon" / "bin" / "mxeon").symlink_to(TOOLS / "mxeon")
+    # Take the step's script.
+    steps = yaml.safe_load(ACTION.read_text())["runs"]["steps"]
+    [script] = [step["run"] for step in steps if step.get("name") == "Check"]
+    (folder / "script.sh").write_text(script)
+    variables = {
+        "RUNNER_TEMP": str(folder),
+        "GITHUB_STEP_SUMMARY": str(folder / "summary.md"),
+        "LIBRARY": str(library),
+        "REPORT": str(folder / "report"),
+        "OPTIONS": "--node oren_nayar_diffuse_bsdf --host gl",
+    }
+    command = ["bash", "--noprofile", "--norc", "-e", "-o", "pipefail", folder / "script.sh"]
+    return subprocess.run(command, env=os.environ | variables, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(("wrong", "status"), [(False, 0), (True, 1)])
+def test_the_action_fails_where_the_library_does_and_keeps_the_report(wrong, status, tmp_path):
+    library = tmp_path / "libraries"
+    shutil.copytree(eonlib_folder(), library)
+    if wrong:
+        source = library / "genglsl" / "eon.glsl"
+        source.write_text(source.read_text().replace("0.5 - 2.0 / (3.0", "0.4 - 2.0 / (3.0"))
+    done = ended(library, tmp_path)
+    assert done.returncode == status, done.stdout + done.stderr
+    assert (tmp_path / "report" / "report.html").is_file()
+    sentence = done.stdout.splitlines()[0]
+    assert f"on gl with {library}" in sentence and ("failed" in sentence) == wrong
+    assert (tmp_path / "summary.md").read_text().startswith(f"    {sentence}\n")
