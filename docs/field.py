@@ -17,7 +17,7 @@ from mxeon.report.field import read_field
 from mxeon.shaders.library import examples_folder
 
 PAGE = Path(__file__).resolve().parent / "field.html"
-PAGES = "upstream/{}.html"  # beside the page in the built site
+PAGES = "upstream/{}.md"  # in the checkout; the site has pages in their place, see hooks.py
 EXAMPLE = examples_folder() / "clay.mtlx"
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*SUBJECTS, *SURFACES)))
 LIBRARIES = ("eonlib", "stock")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Add the pages of the site that lie outside `docs/`."""
+"""Add the pages of the site that lie outside `docs/`, and lead the page of the field to pages of the site."""
 
+import re
 from pathlib import Path
 
 from mkdocs.structure.files import File
@@ -29,3 +30,10 @@ def on_page_markdown(markdown, page, **_):
     for page_name, name in OUTSIDE.items():
         markdown = markdown.replace(f"]({name})", f"]({page_name})")
     return markdown.replace("](docs/", "](")
+
+
+def on_post_build(config):
+    """Lead the links of the page of the field, which are to files of the checkout, to the site's pages."""
+    page = Path(config.site_dir, "field.html")
+    text = page.read_text(encoding="utf-8")
+    page.write_text(re.sub(r'href="(upstream/\w+)\.md"', r'href="\1.html"', text), encoding="utf-8")

@@ -6,6 +6,7 @@ from base64 import b64encode
 from dataclasses import replace
 from hashlib import sha256
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,6 +28,7 @@ from mxeon.models import table as reference
 from mxeon.report import write, write_field
 from mxeon.report.field import CHECKS, read_field
 
+FIELD = Path(__file__).parents[2] / "docs" / "field.html"
 EON = SUBJECTS[0]
 TITLE = reference.model("eon").title
 HOSTILE = "<script>alert(1)</script>"
@@ -178,3 +180,9 @@ def test_what_has_no_renderer_is_refused_in_one_line(tmp_path, capsys, results):
     assert main(["report", "field", str(tmp_path), "--output", str(tmp_path / "a.html")]) == 2
     error = capsys.readouterr().err
     assert "must " in error and error.count("\n") == 1 and not (tmp_path / "a.html").exists()
+
+
+def test_the_pages_of_defects_lie_beside_the_page_in_the_checkout():
+    links = [given["href"] for tag, given in Page(FIELD.read_text()).tags if tag == "a"]
+    pages = {link for link in links if not link.startswith("#")}
+    assert pages and [page for page in pages if not (FIELD.parent / page).is_file()] == []

@@ -67,7 +67,8 @@ def render(entries: Sequence[Entry], pages: str = "") -> Iterator[str]:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"number": number, "share": share, "look": LOOKS.__getitem__}
+    filters = {"number": number, "share": share, "look": LOOKS.__getitem__, "breakable": breakable}
+    environment.filters |= filters
     return environment.get_template("field.html.jinja").generate(
         version=mxeon.__version__,
         entries=entries,
@@ -97,6 +98,17 @@ def order(cell: Result | None) -> float:
     """Number by which a column is sorted: error over tolerance, what did not run last."""
     ratio = math.inf if cell is None or cell.error is None else share(cell)
     return ratio if math.isfinite(ratio) else 1e30
+
+
+def breakable(name: str) -> Markup:
+    """A name that may go on in the next line after each underscore.
+
+    Examples
+    --------
+    >>> str(breakable("a_b<c"))
+    'a_<wbr>b&lt;c'
+    """
+    return Markup("_<wbr>").join(name.split("_"))
 
 
 def where(cell: Result) -> dict[str, str]:
