@@ -76,7 +76,16 @@ def test_bad_options_are_refused(workers, timeout, words):
 def test_a_picture_says_what_made_it(tmp_path):
     (tmp_path / "look.mtlx").write_text(material(lobe()))
     image, said = picture(
-        str(tmp_path / "look.mtlx"), "reference", "side", None, 4, None, "eonlib", DEFAULT, Paths()
+        str(tmp_path / "look.mtlx"),
+        "reference",
+        "side",
+        None,
+        4,
+        "sphere",
+        None,
+        "eonlib",
+        DEFAULT,
+        Paths(),
     )
     assert image.shape == (4, 4, 3)
     assert (said["element"], said["scene"], said["library"]) == ("look", "side", "eonlib")
@@ -86,7 +95,7 @@ def test_the_host_of_a_picture_closes_whatever_happens(tmp_path, monkeypatch):
     closed = []
     monkeypatch.setattr("mxeon.conformance.reference.Host.close", lambda host: closed.append(host))
     with pytest.raises(ValueError, match="--element must name one of"):
-        picture(CLAY, "reference", "side", None, 4, None, "eonlib", DEFAULT, Paths())
+        picture(CLAY, "reference", "side", None, 4, "sphere", None, "eonlib", DEFAULT, Paths())
     assert len(closed) == 1
 
 

@@ -8,7 +8,9 @@ import pytest
 
 from mxeon import albedo
 from mxeon.models.diffuse.brdf import eon_brdf, lambert_brdf, qon_brdf
-from mxeon.models.table import KNOWN_DEFECTS, MODELS, OTHERS, model
+from mxeon.models.table import KNOWN_DEFECTS, MODELS, OTHERS, PARAMETRIZATIONS, model
+
+ALL = (*MODELS, *KNOWN_DEFECTS, *OTHERS, *PARAMETRIZATIONS)
 
 UP = [0.0, 0.0, 1.0]
 
@@ -94,8 +96,7 @@ MESSAGES = (
     ),
     (
         lambda: model("phong"),
-        f"model must be one of {', '.join(row.name for row in (*MODELS, *KNOWN_DEFECTS, *OTHERS))}; "
-        "got 'phong'",
+        f"model must be one of {', '.join(row.name for row in ALL)}; got 'phong'",
     ),
 )
 

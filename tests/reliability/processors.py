@@ -62,6 +62,7 @@ COARSE = (
     "library",
     "paths",
     "specular",
+    "storm",
     "subsurface_blur",
     "tracer",
     "upstream",

@@ -143,7 +143,7 @@ def test_a_missing_image_is_an_error_to_render_and_check(home, capfd):
 @pytest.mark.parametrize("name", ["set.&lt;UDIM&gt;.exr", "set.<UDIM>.exr", "tile.<UVTILE>.exr"])
 @pytest.mark.parametrize("host", ["gl", "reference"])
 def test_a_set_of_textures_is_shown_as_its_first_tile(home, host, name):
-    rest = ("front", None, 16, None, "eonlib", searched(home), Paths())
+    rest = ("front", None, 16, "sphere", None, "eonlib", searched(home), Paths())
     shown, expected = (
         batch.picture(str(written(home, textured(each))), host, *rest)[0]
         for each in (name, "maps/a.exr")
@@ -162,7 +162,7 @@ def test_a_texture_of_five_channels_is_refused_by_its_name(home, host):
     picture(home / "five.exr", (0.1, 0.2, 0.3, 0.4, 0.5))
     path = str(written(home, textured("five.exr")))
     with pytest.raises(ImageError, match="five.exr: must have at most 4 channels; got 5"):
-        batch.picture(path, host, "front", None, 16, None, "eonlib", Policy(), Paths())
+        batch.picture(path, host, "front", None, 16, "sphere", None, "eonlib", Policy(), Paths())
 
 
 def test_a_texture_of_two_channels_is_not_the_references(home):

@@ -29,7 +29,7 @@ GROWTH = 1.05
 @pytest.mark.parametrize("node", SIZES)
 def test_a_shader_of_eonlib_is_no_longer_than_stated(node):
     with available("vulkan"):
-        eonlib, stock = sources(node).values()
+        eonlib, stock = (stages["pixel"] for stages in sources(node).values())
         text = len(eonlib) / len(stock)
         instructions = compiled(eonlib) / compiled(stock)
     for factor, stated in zip((text, instructions), SIZES[node], strict=True):

@@ -58,15 +58,16 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
     Parameters
     ----------
     distances : sequence of (str, float)
-        Title and root-mean-square distance of two models or more, nearest first.
+        Title and root-mean-square distance of one model or more, nearest first.
 
     Examples
     --------
     >>> sentence([("Lambert", 0.001), ("EON", 0.25)])
     'nearest known model: Lambert (rms 0.001), then EON (0.25)'
     """
-    (first, least), (second, next_least) = distances[:2]
-    return f"nearest known model: {first} (rms {least:.2g}), then {second} ({next_least:.2g})"
+    (first, least), *others = distances[:2]
+    then = "".join(f", then {second} ({next_least:.2g})" for second, next_least in others)
+    return f"nearest known model: {first} (rms {least:.2g}){then}"
 
 
 @lru_cache(maxsize=2)  # several checks of a subject fail for one reason
