@@ -20,7 +20,7 @@ from tests.support.wrong_libraries import wrong_copy
 ROWS = {check.key: check for check in CHECKS if SHADERS[0].model in check.models}
 # Long shaders take seconds to compile: the shortest stands for all, and the rest for their sums.
 SHORT = SHADERS[-1]
-LOBE = "genglsl/microfacet_lobe.glsl"
+LOBE = "eonlib/genglsl/microfacet_lobe.glsl"
 STOCK = {"lobes", "lobes_albedo", "lobes_mean", "lobes_energy"}  # what fails there, beside the rest
 
 
@@ -51,9 +51,7 @@ def test_stock_has_its_known_departures_and_no_others(gl):
 
 def test_light_that_every_layer_gains_is_seen_in_the_mean_alone(gl, tmp_path):
     text = "bsdf.throughput = max(1.0 - lobe.albedo"
-    library = wrong_copy(
-        tmp_path, text, text.replace("1.0", "1.003"), LOBE, library="profiles/pbrlib"
-    )
+    library = wrong_copy(tmp_path, text, text.replace("1.0", "1.003"), LOBE)
     results = judged(gl, SHORT, library, ("lobes", "lobes_albedo", "lobes_mean"))
     assert {key for key, each in results.items() if each.verdict == FAILED} == {"lobes_mean"}
 

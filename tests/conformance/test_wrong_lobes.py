@@ -227,7 +227,7 @@ BESIDE = {
         "w / 42.0 * tail",
         "w / 42.0",
         "exitance",
-        "but not as exact as it has to be",
+        "right but for",
     ),
     "far profile at nine reaches": (
         "subsurface_bsdf",

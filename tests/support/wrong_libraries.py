@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Libraries with one wrong text: a copy of eonlib, or one node of stock MaterialX or of eonlib alone."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -55,7 +56,7 @@ def wrong_eonlib_node(folder, name, old, new):
 
 
 def _node_alone(folder, name, rows, sources):
-    """Path of a library of one node, with the file that implements it."""
+    """Path of a library of one node, with the file that implements it and those that this includes."""
     document, alone = mx.createDocument(), mx.createDocument()
     mx.readFromXmlFile(document, str(rows))
     [row] = [
@@ -64,7 +65,9 @@ def _node_alone(folder, name, rows, sources):
         if name in (each.getNodeDefString().removeprefix("ND_"), Path(each.getFile()).name)
     ]
     file = Path(row.getFile()).name
-    shutil.copy(sources / file, folder / file)
+    text = shutil.copy(sources / file, folder / file).read_text(encoding="utf-8")
+    for name in re.findall(r'^#include "(\w+\.glsl)"', text, re.MULTILINE):
+        shutil.copy(sources / name, folder / name)
     alone.addImplementation(row.getName()).copyContentFrom(row)
     alone.getImplementation(row.getName()).setFile(file)
     mx.writeToXmlFile(alone, str(folder / "implementations.mtlx"))
