@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Add the pages of the site that lie outside `docs/`, and lead the page of the field to pages of the site."""
+"""Add the pages of the site that lie outside `docs/`, and fit others to the site."""
 
 import re
 from pathlib import Path
@@ -24,12 +24,25 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_):
-    """Make links relative to `docs/`."""
+    """Make links relative to `docs/`, and leave out the column of a section where there is none."""
+    if page.parent is None:
+        page.meta["hide"] = ["navigation"]
     if page.file.src_uri not in OUTSIDE:
         return markdown
     for page_name, name in OUTSIDE.items():
         markdown = markdown.replace(f"]({name})", f"]({page_name})")
     return markdown.replace("](docs/", "](")
+
+
+def on_page_content(html, page, **_):
+    """Show the halves of each picture of the gallery as two, which stand below each other on a phone."""
+    if page.file.src_uri != "gallery.md":
+        return html
+    picture = r'<p><img alt="(.*?)" src="(.*?)" ?/?></p>'
+    whole = r"(?!\n<p><em>[^<]*: stock MaterialX cannot)"  # eonlib's picture alone
+    half = r'<span data-library="{0}"><img alt="\1, {0}" src="\2" loading="lazy"></span>'
+    halves = half.format("stock") + half.format("eonlib")
+    return re.sub(picture + whole, f'<p class="halves">{halves}</p>', html)
 
 
 def on_post_build(config):
