@@ -19,6 +19,8 @@ from fits import (
     fresnel_average,
     ggx_albedo,
     ggx_cosine,
+    thin_film,
+    thin_film_nodes,
 )
 from fits.minimax import least_largest, mp
 from mxeon.models.diffuse import inversion
@@ -167,3 +169,31 @@ def test_the_colors_of_a_black_body_have_the_errors_that_stand_beside_them():
         assert 0.9 * limit < error <= limit
     lines = blackbody.defines(blackbody.FORM, rows["X"], "BLACKBODY_X")
     assert all(line in text for line in lines)
+
+
+def test_the_script_chooses_the_nodes_of_a_film():
+    (low, high), (weight, _), pair_width = thin_film.PAIR
+    assert thin_film_nodes.width() == (thin_film.WIDTH,)
+    assert thin_film_nodes.pair() == (low, high, weight, pair_width)
+    assert thin_film_nodes.bend_and_share() == (thin_film.BEND, thin_film.SHARE)
+
+
+def test_the_shader_has_the_nodes_of_a_film():
+    folder = eonlib_folder() / "genglsl"
+    text = "".join(
+        (folder / f"{name}.glsl").read_text() for name in ("thin_film", "microfacet_lobe")
+    )
+
+    def macros(pattern):
+        found = re.findall(rf"#define (?:THIN_FILM|MICROFACET)_{pattern} (.*)", text)
+        return [float(digits) for each in found for digits in re.findall(r"\d\.\d+", each)]
+
+    cosines, weights, width = thin_film.PAIR
+    assert macros(r"PAIR\d") == [cosines[0], weights[0], cosines[1], weights[1]]
+    assert macros("PAIR_WIDTH") == [width]
+    assert macros("WIDTH") == [thin_film.WIDTH, thin_film.SHARE]
+    assert macros("BEND") == [thin_film.BEND] and macros("ALIKE") == [thin_film.ALIKE]
+    np.testing.assert_allclose(macros("APART"), np.sqrt(1.0 - thin_film.SHARE**2), atol=1e-8)
+    np.testing.assert_allclose(
+        np.reshape(macros(r"GAUSS\d"), (-1, 2)).T, thin_film.gauss(5), atol=1e-8
+    )

@@ -11,6 +11,31 @@
 // float32 adds nothing to 1. With ior 0 the curve of eonlib reflects everything.
 #define MICROFACET_LEAST_IOR 1e-3
 
+// Gauss's rule of four nodes on [-1, 1]: two of them, and weights that add up to 1.
+#define MICROFACET_INNER vec2(0.33998104, 0.32607258)
+#define MICROFACET_OUTER vec2(0.86113631, 0.17392742)
+
+// Cosines of azimuths of facets.
+#define MICROFACET_AZIMUTHS vec4(0.92387953, 0.38268343, -0.38268343, -0.92387953)
+
+// Nodes for visible facets: how far skewness bends them, the width of each in standard deviations, and
+// sqrt(1 - width^2). Source: fits/thin_film_nodes.py.
+#define MICROFACET_BEND 0.39
+#define MICROFACET_WIDTH 0.29
+#define MICROFACET_APART 0.95702665
+
+// Deviation of the facets' cosines below which one node serves.
+#define MICROFACET_ALIKE 0.04
+
+// Roughness up to which a lobe is a mirror: the least of lobes.
+#define MICROFACET_MIRROR (2.0 * M_FLOAT_EPS)
+
+// A mirror has no variance, by which nothing is divided.
+#define MICROFACET_LEAST 1e-12
+
+// Compensation below which two cosines serve for F_ss.
+#define MICROFACET_LITTLE 0.005
+
 // Index of a mirror by MaterialX's curves of dielectrics and conductors.
 #define MICROFACET_MIRROR_IOR 1e8
 
@@ -65,47 +90,101 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     return lobe;
 }
 
-// Cosine of wo with one of nine visible facets of a lobe of roughness alpha in both directions, and
-// its weight, the masking: three heights by three azimuths on one side of the plane of view.
-vec2 microfacet_facet(MicrofacetLobe lobe, int i)
+// Node i of Gauss's rule in four, and its weight.
+vec2 microfacet_gauss(int i)
 {
-    int row = i / 3;
-    float u = row == 0 ? THIN_FILM_LOW : (row == 1 ? 0.5 : 1.0 - THIN_FILM_LOW);
-    float azimuth = (float(i - 3 * row) + 0.5) / 6.0;  // in units of 2 pi
-    vec3 wo = vec3(sqrt(max(1.0 - lobe.mu_o * lobe.mu_o, 0.0)), 0.0, lobe.mu_o);
-    vec3 H = mx_ggx_importance_sample_VNDF(vec2(azimuth, u), wo, vec2(lobe.alpha));
-    float mu_h = clamp(dot(wo, H), 0.0, 1.0);
-    float mu_i = max(2.0 * mu_h * H.z - lobe.mu_o, 0.0);
-    float height = row == 1 ? THIN_FILM_MIDDLE_WEIGHT : THIN_FILM_OUTER_WEIGHT;
-    return vec2(mu_h, height * mx_ggx_smith_G2(mu_i, lobe.mu_o, lobe.alpha));
+    vec2 node = i == 0 || i == 3 ? MICROFACET_OUTER : MICROFACET_INNER;
+    return i < 2 ? vec2(-node.x, node.y) : node;
 }
 
-// Put a film's reflectances in the place of those without one. All are taken in one loop, which has
-// no steps without a film: the half vector, six cosines of the hemisphere and nine visible facets.
+// Mean, deviation and skewness of the cosines of wo with 16 visible facets, weighted by masking: four
+// heights by four azimuths on one side of the plane of view. A facet is c + v, as
+// mx_ggx_importance_sample_VNDF has it, v the stretched view: |c + v|^2 = 2 (1 + c . v). A mirror has one
+// height, so that compilers keep the loop.
+vec3 microfacet_facets(MicrofacetLobe lobe)
+{
+    // Stretch the view. Along the normal lower facets mirror no light.
+    float steep2 = lobe.alpha * lobe.alpha;
+    float l = sqrt(steep2 + (1.0 - steep2) * lobe.mu_o * lobe.mu_o);
+    float v = lobe.mu_o / l;
+    float lowest = 2.0 * steep2 * v / (1.0 + steep2);
+    vec4 sums = vec4(0.0);
+    int heights = lobe.alpha > MICROFACET_MIRROR ? 4 : 1;
+    int i = 0;
+    do
+    {
+        // Take four facets of one height.
+        vec2 node = microfacet_gauss(i);
+        float height = mix(lowest, 1.0 + v, 0.5 + 0.5 * node.x);
+        float z = height - v;
+        vec4 across = MICROFACET_AZIMUTHS * sqrt(max((1.0 - v * v) * (1.0 - z * z), 0.0));
+        vec4 along = 1.0 + v * z + across;
+        vec4 length2 = 2.0 * steep2 * along + (1.0 - steep2) * height * height;
+        vec4 scale = inversesqrt(max(length2, MICROFACET_LEAST));
+        vec4 mu_h = clamp(l * along * scale, 0.0, 1.0);
+
+        // Mask them, but for a factor that all share.
+        vec4 mu_i = max(2.0 * height * mu_h * scale - lobe.mu_o, 0.0);
+        vec4 shadow = lobe.mu_o * sqrt(steep2 + (1.0 - steep2) * mu_i * mu_i) + l * mu_i;
+        vec4 weight = node.y * mu_i / max(shadow, MICROFACET_LEAST);
+
+        // Sum powers of the distance from the view.
+        vec4 d = mu_h - lobe.mu_o;
+        vec4 d2 = d * d;
+        sums += vec4(dot(weight, vec4(1.0)), dot(weight, d), dot(weight, d2), dot(weight, d2 * d));
+        i++;
+    } while (i < heights);
+    sums /= max(sums.x, MICROFACET_LEAST);
+
+    // Take the moments about the mean.
+    float mean = sums.y;
+    float deviation = sqrt(max(sums.z - mean * mean, MICROFACET_LEAST));
+    float third = sums.w - 3.0 * mean * sums.z + 2.0 * mean * mean * mean;
+    return vec3(lobe.mu_o + mean, deviation, third / (deviation * deviation * deviation));
+}
+
+// Node i of 1 or 4 for visible facets of these moments: cosine, weight and width. Four are Gauss's for
+// an even t of variance 1, bent to a t + b (t^2 - 1), of variance a^2 + 4 b^2 / 5.
+vec3 microfacet_visible(int i, int count, vec3 moments)
+{
+    vec2 node = microfacet_gauss(i);
+    float t2 = 3.0 * node.x * node.x;
+    float b = clamp(MICROFACET_BEND * moments.z, -0.8, 0.8);
+    float bent = sqrt(3.0 - 2.4 * b * b) * node.x + b * (t2 - 1.0);
+    float offset = count == 1 ? 0.0 : MICROFACET_APART * moments.y * bent;
+    return vec3(clamp(moments.x + offset, 0.0, 1.0), count == 1 ? 1.0 : node.y,
+                count == 1 ? moments.y : MICROFACET_WIDTH * moments.y);
+}
+
+// Put a film's reflectances in the place of those without one, in one loop: of the visible facets, of the
+// cosines of the hemisphere, and of the half vector.
 void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, bool use_visible,
                          inout MicrofacetFresnel F)
 {
-    MicrofacetFresnel film;
-    film.value = vec3(0.0);
-    film.average = vec3(0.0);
-    film.visible = vec3(0.0);
-    float weights = 0.0;
-    int first = lobe.closure == CLOSURE_TYPE_REFLECTION ? 0 : 1;
-    int end = !fd.airy ? 0 : (use_visible ? 16 : 7);
-    for (int i = first; i < end; i++)
-    {
-        vec2 gauss = thin_film_gauss(i);
-        vec2 facet = microfacet_facet(lobe, max(i - 7, 0));
-        vec3 curve = thin_film_fresnel(i == 0 ? lobe.mu_h : (i < 7 ? gauss.x : facet.x), fd);
-        film.value += i == 0 ? curve : vec3(0.0);
-        film.average += i > 0 && i < 7 ? gauss.y * curve : vec3(0.0);
-        film.visible += i < 7 ? vec3(0.0) : facet.y * curve;
-        weights += i < 7 ? 0.0 : facet.y;
-    }
-    film.visible /= max(weights, THIN_FILM_LEAST);
     if (fd.airy)
     {
-        F = film;
+        F.value = vec3(0.0);
+        F.average = vec3(0.0);
+        F.visible = vec3(0.0);
+        vec3 moments = microfacet_facets(lobe);
+        int facets = moments.y < MICROFACET_ALIKE ? 1 : 4;
+        int cosines = 1.0 - lobe.albedo < MICROFACET_LITTLE * lobe.albedo ? 2 : 5;
+        int last = facets + cosines;
+        int end = lobe.closure == CLOSURE_TYPE_REFLECTION ? last + 1 : last;
+        int i = use_visible ? 0 : facets;
+        do
+        {
+            // Cosine, weight and width of a node.
+            vec3 node = i < last ? thin_film_gauss(i - facets, cosines) : vec3(lobe.mu_h, 1.0, 0.0);
+            node = i < facets ? microfacet_visible(i, facets, moments) : node;
+
+            // Add its share.
+            vec3 curve = node.y * thin_film_fresnel(node.x, node.z, fd);
+            F.visible += i < facets ? curve : vec3(0.0);
+            F.average += i < facets || i == last ? vec3(0.0) : curve;
+            F.value = curve;
+            i++;
+        } while (i < end);
     }
 }
 

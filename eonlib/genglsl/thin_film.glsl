@@ -16,18 +16,18 @@
 #define THIN_FILM_GREEN vec4(-0.84281, -0.1531813, 1.956197, 0.03981614)
 #define THIN_FILM_BLUE vec4(0.05384126, 0.009785686, -0.2146441, 1.152291)
 
-// Gauss's rule for the average over a hemisphere, 2 F(mu) mu dmu: cosine and weight.
-#define THIN_FILM_GAUSS1 vec2(0.07305433, 0.01747660)
-#define THIN_FILM_GAUSS2 vec2(0.23076614, 0.08791033)
-#define THIN_FILM_GAUSS3 vec2(0.44132848, 0.19732230)
-#define THIN_FILM_GAUSS4 vec2(0.66301531, 0.28158511)
-#define THIN_FILM_GAUSS5 vec2(0.85192140, 0.27108499)
-#define THIN_FILM_GAUSS6 vec2(0.97068357, 0.14462066)
+// Gauss's rule for 2 F(mu) mu dmu: cosine and weight; and the width of its nodes.
+#define THIN_FILM_GAUSS1 vec2(0.09853509, 0.03149583)
+#define THIN_FILM_GAUSS2 vec2(0.30453573, 0.14781774)
+#define THIN_FILM_GAUSS3 vec2(0.56202519, 0.29277397)
+#define THIN_FILM_GAUSS4 vec2(0.80198658, 0.33434928)
+#define THIN_FILM_GAUSS5 vec2(0.96019014, 0.19356318)
+#define THIN_FILM_WIDTH 0.07
 
-// Gauss's rule on [0, 1] in three nodes, the one in the middle at 1/2.
-#define THIN_FILM_LOW 0.11270167
-#define THIN_FILM_OUTER_WEIGHT (5.0 / 18.0)
-#define THIN_FILM_MIDDLE_WEIGHT (8.0 / 18.0)
+// The same in two cosines. Source: fits/thin_film_nodes.py.
+#define THIN_FILM_PAIR1 vec2(0.294, 0.275)
+#define THIN_FILM_PAIR2 vec2(0.785, 0.725)
+#define THIN_FILM_PAIR_WIDTH 0.165
 
 // Two quotients of 0 by 0 are kept finite: of a vanishing root, and of full reflection at grazing.
 #define THIN_FILM_LEAST 1e-12
@@ -48,13 +48,17 @@ struct ThinFilmWaves
     vec4 tail; // by how much the ratio of the series falls below k15 at full reflection
 };
 
-ThinFilmWaves thin_film_waves(float opd)
+// Waves of path differences around opd, of standard deviation `width`. Wide fringes are seen by the
+// nodes of a rule, narrow ones vanish from its mean: exp(-(2 pi mu width)^4 / 4).
+ThinFilmWaves thin_film_waves(float opd, float width)
 {
     float phase = 2.0 * M_PI * opd;
+    vec4 spread = THIN_FILM_POSITIONS * (2.0 * M_PI * width);
+    vec4 spread2 = spread * spread;
     ThinFilmWaves waves;
     waves.cosine = mx_cos(THIN_FILM_POSITIONS * phase);
     waves.sine = mx_sin(THIN_FILM_POSITIONS * phase);
-    waves.k1 = exp(-THIN_FILM_VARIANCES * (phase * phase));
+    waves.k1 = exp(-THIN_FILM_VARIANCES * (phase * phase) - 0.25 * spread2 * spread2);
     vec4 k2 = waves.k1 * waves.k1;
     waves.k4 = k2 * k2;
     vec4 k8 = waves.k4 * waves.k4;
@@ -68,36 +72,26 @@ ThinFilmWaves thin_film_waves(float opd)
     return waves;
 }
 
-// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z. Six are summed, as powers of
-// one wave. What follows has the heights k^(7 + j)^2 = k^49 k^(14 j + j^2), and is summed as a
-// geometric series. Where r is small or the film thick its ratio is k^15, which agrees at j = 1, the
-// one that counts. Where r is near 1 and the film thin, k near 1, it is close to k^21, which
-// agrees at j = 7: many terms count, and those before it err in the other direction than those
-// after it.
+// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z: six by Clenshaw's recurrence,
+// b_m = h_m + 2 Re w b_(m + 1) - r^2 b_(m + 2), w = z exp(2 pi i mu opd), and a geometric series.
+// Its heights are k^(7 + j)^2 = k^49 k^(14 j + j^2). Where r is small or the film thick its ratio is
+// k^15, which agrees at j = 1, the one that counts. Where r is near 1 and the film thin, k near 1, it
+// is close to k^21, which agrees at j = 7: terms before it err in the other direction than later ones.
 vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
 {
-    // Take powers of the wave.
-    vec4 re1 = z.x * waves.cosine - z.y * waves.sine;
-    vec4 im1 = z.x * waves.sine + z.y * waves.cosine;
-    vec4 re2 = re1 * re1 - im1 * im1;
-    vec4 im2 = 2.0 * re1 * im1;
-    vec4 re3 = re2 * re1 - im2 * im1;
-    vec4 im3 = re2 * im1 + im2 * re1;
-    vec4 re4 = re2 * re2 - im2 * im2;
-    vec4 im4 = 2.0 * re2 * im2;
-
-    // Sum six orders.
-    vec4 orders = waves.k1 * re1 + waves.k4 * re2 + waves.k9 * re3 + waves.k16 * re4
-                  + waves.k25 * (re4 * re1 - im4 * im1) + waves.k36 * (re3 * re3 - im3 * im3);
-
-    // Add a geometric series from the seventh on.
-    vec4 re7 = re4 * re3 - im4 * im3;
-    vec4 im7 = re4 * im3 + im4 * re3;
-    vec4 ratio = waves.k15 - dot(z, z) * waves.tail;
-    vec4 divisor_re = 1.0 - ratio * re1;
-    vec4 divisor_im = ratio * im1;
-    vec4 squared = max(divisor_re * divisor_re + divisor_im * divisor_im, THIN_FILM_LEAST);
-    return orders + waves.k49 * (re7 * divisor_re - im7 * divisor_im) / squared;
+    float r2 = dot(z, z);
+    vec4 w = z.x * waves.cosine - z.y * waves.sine;
+    vec4 twice = 2.0 * w;
+    vec4 ratio = waves.k15 - r2 * waves.tail;
+    vec4 next = twice - r2 * ratio;
+    vec4 b7 = waves.k49 / max(1.0 - ratio * next, THIN_FILM_LEAST);
+    vec4 b6 = waves.k36 + next * b7;
+    vec4 b5 = waves.k25 + twice * b6 - r2 * b7;
+    vec4 b4 = waves.k16 + twice * b5 - r2 * b6;
+    vec4 b3 = waves.k9 + twice * b4 - r2 * b5;
+    vec4 b2 = waves.k4 + twice * b3 - r2 * b4;
+    vec4 b1 = waves.k1 + twice * b2 - r2 * b3;
+    return w * b1 - r2 * b2;
 }
 
 // Sums of orders of both polarizations, by channel: a channel of a polarization in each step of one
@@ -107,7 +101,8 @@ void thin_film_sums(vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, ThinFilmWaves wa
 {
     orders_s = vec3(0.0);
     orders_p = vec3(0.0);
-    for (int i = 0; i < 2 * channels; i++)
+    int i = 0;
+    do  // a loop that asks first takes one step more on llvmpipe
     {
         bool is_s = i < channels;
         int k = is_s ? i : i - channels;
@@ -119,7 +114,8 @@ void thin_film_sums(vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, ThinFilmWaves wa
         sums *= channels == 1 ? vec3(1.0) : channel;
         orders_s += is_s ? sums : vec3(0.0);
         orders_p += is_s ? vec3(0.0) : sums;
-    }
+        i++;
+    } while (i < 2 * channels);
 }
 
 // Reflectance of one polarization from the sums of its orders: r12 is the amplitude of the upper
@@ -178,8 +174,8 @@ void thin_film_lower(float mu_t, float n, float sin2, FresnelData fd, out vec3 r
     }
 }
 
-// F_airy at a cosine. A film thinner than vacuum counts as vacuum.
-vec3 thin_film_fresnel(float mu, FresnelData fd)
+// F_airy, its mean over a width of cosines around mu. A film thinner than vacuum counts as vacuum.
+vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
     // Refract into the film.
     float n = max(fd.tf_ior, 1.0);
@@ -197,8 +193,10 @@ vec3 thin_film_fresnel(float mu, FresnelData fd)
     vec3 re_s, im_s, re_p, im_p;
     thin_film_lower(mu_t, n, sin2, fd, re_s, im_s, re_p, im_p);
 
-    // Sum the orders between both.
-    ThinFilmWaves waves = thin_film_waves(2.0e-9 * n * mu_t * fd.tf_thickness);
+    // Sum the orders between both. The slope of 2 n mu_t d is 2 d mu / (n mu_t).
+    float twice = 2.0e-9 * fd.tf_thickness;
+    float nu = n * mu_t;
+    ThinFilmWaves waves = thin_film_waves(twice * nu, twice * width * mu / max(nu, THIN_FILM_LEAST));
     int channels = fd.model == FRESNEL_MODEL_DIELECTRIC ? 1 : 3;
     vec3 orders_s, orders_p;
     thin_film_sums(-r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p, waves, channels, orders_s,
@@ -208,13 +206,14 @@ vec3 thin_film_fresnel(float mu, FresnelData fd)
     return clamp(0.5 * (F_s + F_p), 0.0, 1.0);
 }
 
-// Cosine and weight of node i, from 1 to 6, of the cosine-weighted average over the hemisphere,
-// F_ss.
-vec2 thin_film_gauss(int i)
+// Node i of 2 or 5 for F_ss: cosine, weight and width.
+vec3 thin_film_gauss(int i, int count)
 {
-    if (i < 4)
+    if (count == 2)
     {
-        return i < 2 ? THIN_FILM_GAUSS1 : (i == 2 ? THIN_FILM_GAUSS2 : THIN_FILM_GAUSS3);
+        return vec3(i == 0 ? THIN_FILM_PAIR1 : THIN_FILM_PAIR2, THIN_FILM_PAIR_WIDTH);
     }
-    return i == 4 ? THIN_FILM_GAUSS4 : (i == 5 ? THIN_FILM_GAUSS5 : THIN_FILM_GAUSS6);
+    vec2 low = i == 0 ? THIN_FILM_GAUSS1 : (i == 1 ? THIN_FILM_GAUSS2 : THIN_FILM_GAUSS3);
+    vec2 high = i == 3 ? THIN_FILM_GAUSS4 : THIN_FILM_GAUSS5;
+    return vec3(i < 3 ? low : high, THIN_FILM_WIDTH);
 }

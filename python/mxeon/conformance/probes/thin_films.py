@@ -17,7 +17,6 @@ from mxeon.conformance.samples.edge_cases import special_directions
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
 STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `steep`
 SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `sharp`
-MOST_COSINE = 0.9  # of other views of albedos: next to 1 the shader's nine facets are three
 LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
 
@@ -51,9 +50,9 @@ class FilmProbe(MicrofacetProbe):
     @property
     def cosines(self) -> tuple[Batch, ...]:
         """Views of the random pairs, and as many where few facets stand for all the least."""
-        slanted = self.batches[0].where(self.batches[0].wo[:, 2] <= MOST_COSINE)
-        batch = slanted.where(slanted.wo[:, 2] >= self.least_cosine).first(self.counts.albedos)
-        easy = replace(batch, inputs=simple(batch.inputs))
+        batch = self.batches[0].where(self.batches[0].wo[:, 2] >= self.least_cosine)
+        easy = batch.first(self.counts.albedos)
+        easy = replace(easy, inputs=simple(easy.inputs))
         return easy, self._views(self.counts.albedos, HARD)
 
     @cached_property
