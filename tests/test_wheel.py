@@ -112,7 +112,7 @@ def test_the_wheel_holds_the_page_of_the_explorer(wheel):
 def test_the_wheel_writes_a_copy_of_eonlib_for_others(environment, tmp_path):
     run([environment / "bin" / "mxeon", "library", "--export", tmp_path / "copy"], tmp_path)
     files = {path.relative_to(tmp_path / "copy").as_posix() for path in tmp_path.rglob("*.*")}
-    assert {"eonlib/genglsl/eon.glsl", "README.txt"} <= files
+    assert {"genglsl/eon.glsl", "README.txt"} <= files
     assert (tmp_path / "copy" / "LICENSE").read_bytes() == (CHECKOUT / "LICENSE").read_bytes()
 
 

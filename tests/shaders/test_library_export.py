@@ -12,8 +12,8 @@ import pytest
 import mxeon
 from mxeon.cli import main
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.shaders.library import TESTED, data_folder
-from mxeon.shaders.library_export import export_library
+from mxeon.shaders.library import TESTED, data_folder, eonlib_folder
+from mxeon.shaders.library_export import export_library, recipes
 from tests.support.wheels import run_with, verdicts_with
 from tests.support.wrong_libraries import wrong_copy
 
@@ -33,15 +33,11 @@ def contents(folder):
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def test_a_copy_has_the_sources_the_profile_and_the_license(copy):
-    found = contents(copy)
-    whole = {
-        f"{name}/{path}": data
-        for name in ("eonlib", "profiles")
-        for path, data in contents(data_folder() / name).items()
-    }
+def test_a_copy_is_eonlib_with_its_license_and_recipes(copy):
+    found, whole = contents(copy), contents(eonlib_folder())
     license_text = (data_folder() / "LICENSE").read_bytes()
-    assert mxeon.__version__ in found.pop("README.txt").decode()
+    readme = found.pop("README.txt").decode()
+    assert mxeon.__version__ in readme and recipes("FOLDER") in readme
     assert found == whole | {"LICENSE": license_text}
 
 
@@ -97,7 +93,7 @@ def test_an_empty_folder_is_filled_and_nothing_half_written_stays(tmp_path, monk
 
 @pytest.mark.parametrize("version", TESTED)
 def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
-    run_with(version, "tests.support.client", copy / "eonlib", tmp_path)
+    run_with(version, "tests.support.client", copy, tmp_path)
     shaders = sorted(tmp_path.glob("*.frag"))
     assert len(shaders) == 23
     done = subprocess.run(["glslangValidator", *shaders], capture_output=True, text=True)
@@ -106,7 +102,7 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
 
 @pytest.mark.parametrize("version", TESTED[:-1])
 def test_microfacets_are_right_where_they_have_no_retroreflection(copy, version):
-    verdicts = verdicts_with(version, copy / "eonlib")
+    verdicts = verdicts_with(version, copy)
     assert len(verdicts) == 6 and set(verdicts.values()) == {PASSED}
 
 

@@ -15,6 +15,7 @@ from mxeon.errors import one_line
 LINES = 10  # of an answer, where nothing has to be said twice
 NODES = 5  # of a document, beside the number of the others that passed
 FEWEST = 3  # lines that failures have in any case
+NAMED = 3  # nodes in a line of failures, beside the number of the others
 FULL = "--full prints everything"
 PICTURES = ("picture", "finite", "document")  # checks of documents
 
@@ -177,10 +178,12 @@ def _is_of_node(result: Result) -> bool:
 def _sentence(results: Sequence[Result]) -> str:
     """What explains failures of one reason, and which checks they are."""
     first = results[0]
-    # The checks by their keys, the subjects by their number.
+    # The checks by their keys, and the nodes; one in one mode by its whole name.
     subjects = list(dict.fromkeys(each.subject for each in results))
     keys = ", ".join(dict.fromkeys(each.check for each in results))
-    where = subjects[0] if len(subjects) == 1 else counted(len(subjects), "node")
+    nodes = list(dict.fromkeys(each.partition(",")[0] for each in subjects))
+    more = f" and {len(nodes) - NAMED} more" if len(nodes) > NAMED else ""
+    where = subjects[0] if len(subjects) == 1 else ", ".join(nodes[:NAMED]) + more
     about = f"{where} ({keys})"
     # The sentence of its page, and where that is.
     if pages := pages_of(first.diagnosis):

@@ -2,6 +2,7 @@
 """`mxeon library`: print the folder of eonlib and how to load it, or copy it."""
 
 import argparse
+from pathlib import Path
 
 from mxeon.cli import arguments
 from mxeon.errors import PASSED
@@ -23,18 +24,24 @@ def add_parser(commands: arguments.Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the folder, or write a copy; return the exit status."""
-    from mxeon.shaders.library import eonlib_folder
+    from mxeon.shaders.library import eonlib_folder, profile_folder
 
     if options.export is not None:
         from mxeon.shaders.library_export import export_library
 
-        print(export_library(options.export))
+        copy = export_library(options.export)
+        if copy.is_dir():
+            _explain(copy)
+        else:
+            print(copy)
     elif options.folder:
         print(eonlib_folder())
     elif options.verify:
         _verify()
     else:
-        _explain()
+        _explain(eonlib_folder())
+        own = f"{profile_folder('cycles')} {eonlib_folder()}"
+        print(f"Blender's Cycles      generateshader.py --library {own} --target osl FILE")
     return PASSED
 
 
@@ -48,21 +55,10 @@ def _verify() -> None:
     assert_ours(document)
 
 
-def _explain() -> None:
-    from mxeon.shaders.library import eonlib_folder, profile_folder
+def _explain(folder: Path) -> None:
+    """Print a folder of eonlib, and how each client loads it."""
+    from mxeon.shaders.library_export import recipes
 
-    # Say where it lies.
-    folder, cycles = eonlib_folder(), profile_folder("cycles")
-    search = "mx.getDefaultDataSearchPath()"
     print(f"folder                {folder}")
     print(f"diffuse nodes alone   {folder / 'diffuse'}")
-    # Say how each client loads it.
-    print(f'Python                mx.loadLibraries(["{folder}", "libraries"], {search}, library)')
-    search = search.replace(".", "::")
-    print(
-        f'C++                   mx::loadLibraries({{"{folder}", "libraries"}}, {search}, library);'
-    )
-    print(f"generateshader        generateshader.py --library {folder} --target glsl FILE")
-    print(f"MaterialX's viewer    MaterialXView --library {folder}")
-    print(f"USD                   export PXR_MTLX_PLUGIN_SEARCH_PATHS={folder}")
-    print(f"Blender's Cycles      generateshader.py --library {cycles} {folder} --target osl FILE")
+    print(recipes(folder))

@@ -9,26 +9,34 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import mxeon
 from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, replacing
-from mxeon.shaders.library import SOURCES, data_folder
+from mxeon.shaders.library import SOURCES, data_folder, eonlib_folder
 
 README = """eonlib {version}, a MaterialX data library.
 
-Load the folder `eonlib` before the libraries of MaterialX, which ignores later definitions of a name.
-`eonlib/diffuse` can be loaded alone; it changes rough diffuse nodes only. For Blender's Cycles, load
-`profiles/cycles` before `eonlib`. MaterialX must be 1.39.3 or later.
+Load this folder, FOLDER below, before the libraries of MaterialX, which ignores later definitions of a
+name. FOLDER/diffuse can be loaded alone; it changes rough diffuse nodes only. MaterialX must be 1.39.3 or
+later. Blender's Cycles needs a profile, which comes with mxeon alone: mxeon generate --profile cycles.
 
-    C++             mx::loadLibraries({{ "FOLDER/eonlib", "libraries" }}, mx::getDefaultDataSearchPath(), library);
-    Python          mx.loadLibraries(["FOLDER/eonlib", "libraries"], mx.getDefaultDataSearchPath(), library)
-    generateshader  generateshader.py --library FOLDER/eonlib --target glsl FILE
-    MaterialXView   MaterialXView --library FOLDER/eonlib
-    USD             export PXR_MTLX_PLUGIN_SEARCH_PATHS=FOLDER/eonlib
+{recipes}
 
 License: Apache-2.0, see LICENSE.
 """
+CLIENTS = {
+    "Python": 'mx.loadLibraries(["{}", "libraries"], mx.getDefaultDataSearchPath(), library)',
+    "C++": 'mx::loadLibraries({{"{}", "libraries"}}, mx::getDefaultDataSearchPath(), library);',
+    "generateshader": "generateshader.py --library {} --target glsl FILE",
+    "MaterialX's viewer": "MaterialXView --library {}",
+    "USD": "export PXR_MTLX_PLUGIN_SEARCH_PATHS={}",
+}
+
+
+def recipes(folder: AnyPath) -> str:
+    """How each client loads a folder of eonlib, a line each."""
+    return "\n".join(f"{client:<21} {text.format(folder)}" for client, text in CLIENTS.items())
 
 
 def export_library(path: AnyPath) -> Path:
-    """Write eonlib, with its sources, profiles and license, to a new folder or a zip archive.
+    """Write eonlib, with its sources and license, to a new folder or a zip archive.
 
     Parameters
     ----------
@@ -58,14 +66,11 @@ def export_library(path: AnyPath) -> Path:
 
 def _content() -> dict[str, bytes]:
     """Files of the copy, by their paths in it."""
-    data = data_folder()
-    files = [path for name in ("eonlib", "profiles") for path in sorted((data / name).rglob("*.*"))]
-    content = {
-        path.relative_to(data).as_posix(): path.read_bytes()
-        for path in [*files, data / "LICENSE"]
-        if path.suffix in SOURCES or path.name == "LICENSE"
-    }
-    return content | {"README.txt": README.format(version=mxeon.__version__).encode()}
+    data, library = data_folder(), eonlib_folder()
+    files = [path for path in sorted(library.rglob("*.*")) if path.suffix in SOURCES]
+    content = {path.relative_to(library).as_posix(): path.read_bytes() for path in files}
+    text = README.format(version=mxeon.__version__, recipes=recipes("FOLDER"))
+    return content | {"LICENSE": (data / "LICENSE").read_bytes(), "README.txt": text.encode()}
 
 
 def _write_archive(target: Path) -> None:
