@@ -171,7 +171,8 @@ def _mode(subject):
 def _modes(modes, rows):
     """The modes that pass, where those are not all."""
     everything = {_mode(subject) for _, subject in rows}
-    return "" if set(modes) == everything else f" ({', '.join(modes)})"
+    listed = ", ".join(each or "by itself" for each in modes)
+    return "" if set(modes) == everything else f" ({listed})"
 
 
 def _links(check, subject):
