@@ -120,7 +120,7 @@ vec3 microfacet_facets(MicrofacetLobe lobe)
         vec4 across = MICROFACET_AZIMUTHS * sqrt(max((1.0 - v * v) * (1.0 - z * z), 0.0));
         vec4 along = 1.0 + v * z + across;
         vec4 length2 = 2.0 * steep2 * along + (1.0 - steep2) * height * height;
-        vec4 scale = inversesqrt(max(length2, MICROFACET_LEAST));
+        vec4 scale = 1.0 / sqrt(max(length2, MICROFACET_LEAST));
         vec4 mu_h = clamp(l * along * scale, 0.0, 1.0);
 
         // Mask them, but for a factor that all share.

@@ -9,7 +9,7 @@ from mxeon.models.diffuse.brdf import lambert_brdf, qon_brdf
 from mxeon.models.diffuse.burley import burley_brdf
 from mxeon.models.diffuse.known_defect_albedos import qon_degrees_albedo_dir
 from mxeon.models.diffuse.known_defects import burley_cosine_brdf, qon_degrees_brdf
-from mxeon.models.table import OTHERS, model
+from mxeon.models.table import OTHERS, PARAMETRIZATIONS, model
 from tests.support import tolerances
 
 
@@ -21,6 +21,22 @@ def directions(seed):
 
 
 WO, WI = directions(1), directions(2)
+
+
+# By the last word of a name: the parameter of the model, from a roughness.
+PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.36}
+
+
+@pytest.mark.parametrize("row", PARAMETRIZATIONS, ids=lambda row: row.name)
+def test_a_model_of_another_roughness_is_the_model_of_its_parameter(row):
+    [(word, parameter)] = [pair for pair in PARAMETERS.items() if row.name.endswith(pair[0])]
+    base = model(row.name.removesuffix(f"_{word}"))
+    rho = [0.8, 0.2]
+    np.testing.assert_allclose(row.brdf(WO, WI, rho, 0.6), base.brdf(WO, WI, rho, parameter))
+    assert bool(row.albedo_dir) == bool(base.albedo_dir)
+    if row.albedo_dir:
+        albedo = row.closed_albedo_dir(WO[:, 2], rho, 0.6)
+        np.testing.assert_allclose(albedo, base.closed_albedo_dir(WO[:, 2], rho, parameter))
 
 
 @pytest.mark.parametrize("row", OTHERS, ids=lambda row: row.name)

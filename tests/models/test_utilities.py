@@ -123,6 +123,7 @@ def test_the_pigments_are_those_of_materialx():
 
 @pytest.mark.parametrize("row", UTILITIES, ids=lambda row: row.category)
 def test_a_row_takes_any_input_and_returns_each_output(row):
+    assert row.name == row.category and row.category in row.title
     sizes = {"vector2": 2, "vector3": 3, "color3": 3}
     for value in (-1.0, 0.0, 0.5, 1.0, 3.0, 1e6):
         inputs = {name: np.full((4, *np.shape(each)), value) for name, each in row.inputs.items()}
