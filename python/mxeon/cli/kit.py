@@ -21,7 +21,7 @@ def add_parser(commands: arguments.Commands) -> None:
     export = arguments.add_command(actions, "export", summary, run_export)
     export.add_argument("folder", metavar="DIR", help="where to write")
     export.add_argument(
-        "--size", type=int, default=128, help="width and height in pixels; %(default)s"
+        "--size", type=int, default=128, help="width and height in pixels, 64 to 2048; %(default)s"
     )
     export.add_argument(
         "--node",
