@@ -29,6 +29,7 @@ def run(options: argparse.Namespace) -> int:
     if options.export is not None:
         from mxeon.shaders.library_export import export_library
 
+        # Write a copy, and say how it is loaded.
         copy = export_library(options.export)
         if copy.is_dir():
             _explain(copy)
@@ -39,6 +40,7 @@ def run(options: argparse.Namespace) -> int:
     elif options.verify:
         _verify()
     else:
+        # Say how the library is loaded where it lies, with the profile that no copy has.
         _explain(eonlib_folder())
         own = f"{profile_folder('cycles')} {eonlib_folder()}"
         print(f"Blender's Cycles      generateshader.py --library {own} --target osl FILE")
