@@ -76,10 +76,13 @@ def opened(browser, address, allowed=(), drawn=True, script="", **options):
 
 
 def until(page, expression, argument=None, seconds=120):
-    """Wait until an expression is true; playwright's own way needs what the page's policy forbids."""
+    """Wait until an expression is true, and give its value.
+
+    Playwright's own way needs what the page's policy forbids.
+    """
     for _ in range(20 * seconds):
-        if page.evaluate(expression, argument):
-            return
+        if value := page.evaluate(expression, argument):
+            return value
         page.wait_for_timeout(50)
     raise AssertionError(f"never true: {expression}")
 

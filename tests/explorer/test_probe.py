@@ -15,20 +15,32 @@ from tests.explorer.browser import show, until
 SHADER = 64 * 2**-24
 
 
+# The texts of the table's rows, once the values of both shaders are read back.
+READ = """(() => {
+    const rows = [...document.querySelectorAll('.values tbody tr')].map(
+        row => [...row.querySelectorAll('td')].map(cell => cell.innerText));
+    const texts = rows.flat().join();
+    return texts.includes('float32') && !texts.includes('measuring') && rows;
+})()"""
+
+
 def numbers(text):
     return [float(word) for word in re.findall(r"[+-]?\d+\.\d+", text.replace("−", "-"))]
 
 
+def values_read(page):
+    return until(page, READ)
+
+
 def test_the_probe_shows_the_value_of_the_shader_and_the_reference(page):
-    until(page, "document.querySelector('.values').innerText.includes('float32')")
+    rows = values_read(page)
     wo, wi = np.reshape(numbers(page.locator(".directions").inner_text()), (2, 3))
-    cells = [row.locator("td").all() for row in page.locator(".values tbody tr").all()]
-    value, reference = (numbers(cells[row][0].inner_text()) for row in (0, 1))
+    value, reference = (numbers(rows[row][0]) for row in (0, 1))
     wo, wi = wo / np.linalg.norm(wo), wi / np.linalg.norm(wi)
     expected = np.pi * eon_brdf(wo, wi, [0.8, 0.4, 0.1], 1.0) * wi[2]
     assert np.allclose(reference, expected, atol=1e-3)  # directions are shown with four digits
     assert np.allclose(value, reference, atol=SHADER)
-    assert "rounding" in cells[2][0].inner_text()
+    assert "rounding" in rows[2][0]
 
 
 def copied(page, side, what):
@@ -38,15 +50,12 @@ def copied(page, side, what):
 
 
 def test_the_python_line_runs_and_gives_the_value(page):
-    until(page, "document.querySelector('.values').innerText.includes('float32')")
     for column, side in enumerate("AB"):
         line = copied(page, side, "Python")
         command = [sys.executable, "-c", line]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
-        cell = page.locator(".values tbody tr").first.locator("td").nth(column).inner_text()
-        assert np.allclose(
-            [float(word) for word in done.stdout.split()], numbers(cell), atol=SHADER
-        )
+        shown = numbers(values_read(page)[0][column])
+        assert np.allclose([float(word) for word in done.stdout.split()], shown, atol=SHADER)
 
 
 def test_the_copied_document_is_the_material_in_sight(page):
