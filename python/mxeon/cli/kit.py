@@ -43,7 +43,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "--claims",
         default="",
         metavar="MODEL",
-        help="eon, qon or fon: the renderer has this model alone, and no switch between EON and QON",
+        help="eon, qon, fon or lambert: the renderer has this model alone, and no switch between EON and QON",
     )
     arguments.add_report(check)
     arguments.add_full(check)

@@ -20,7 +20,7 @@ from mxeon.io.files import regular
 from mxeon.kit.expected import judged, pixel_means
 from mxeon.kit.export import DESCRIPTION, KIT_FORMAT, RENDERS, description
 from mxeon.kit.mesh import unit_sphere
-from mxeon.kit.questions import Question, answer, questions
+from mxeon.kit.questions import Question, answer, one_model, questions
 from mxeon.kit.submitted import Missing, Unusable, read_render
 from mxeon.kit.views import LAMBERT, MATERIALS, View, views
 from mxeon.models import table as reference
@@ -51,13 +51,13 @@ def check_kit(
     progress : callable (sequence) -> iterable
         Iterates over the questions, such as a progress bar.
     claims : str
-        "eon", "qon" or "fon" for a renderer that has this model alone, for which pictures of the
-        other one are not needed; "" for one that has both EON and QON.
+        "eon", "qon", "fon" or "lambert" for a renderer that has this model alone, for which
+        pictures of the others are not needed; "" for one that has both EON and QON.
 
     Returns
     -------
     Run
-        Its notes name the nearest models.
+        Its notes name the nearest models, first the one that all pictures show, if there is one.
 
     Raises
     ------
@@ -92,6 +92,10 @@ def check_kit(
             obstacle = words
         if words:
             notes.append(f"{question.title}: {words}")
+    # Where a model is another one, say whether all pictures show the same.
+    wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
+    if wrong and (title := one_model(asked, pictures, images, depth)):
+        notes.insert(0, f"every picture of a rough material shows one model: {title}")
     # Make a run of the answers.
     return Run(
         version=mxeon.__version__,

@@ -110,7 +110,7 @@ QUESTIONS = (
     Question("white", WHITE_IS, (WHITE,), False, "the second lobe is dropped", _of("fon")),
 )
 
-CLAIMS = ("eon", "qon", "fon")  # models of renderers that have one
+CLAIMS = ("eon", "qon", "fon", "lambert")  # models of renderers that have one
 
 
 def questions(claim: str = "") -> tuple[Question, ...]:
@@ -131,15 +131,38 @@ def questions(claim: str = "") -> tuple[Question, ...]:
     assert_known("claims", claim, CLAIMS)
     # The materials whose roughness the model takes.
     rough = (FALSE,) if claim == "qon" else (TRUE, HALF)
-    control = ("roughness is dropped", _of("lambert"), claim)
+    dropped, acts = ("roughness is dropped", _of("lambert")), ("roughness acts", _of("eon"))
+    control = (*(acts if claim == "lambert" else dropped), claim)
     setup, *_, black, white = QUESTIONS
     return (
         setup,
         Question("model", IS_MODEL, rough, True, *control),
         Question("model", IS_MODEL, rough[:1], False, *control),
         black,
-        *([white] if claim == "eon" else []),
+        *([white] if claim in ("eon", "lambert") else []),
     )
+
+
+def one_model(
+    asked: Sequence[Question],
+    views: Sequence[View],
+    images: Mapping[str, NDArray[np.float64]],
+    depth: float,
+) -> str:
+    """Title of the one model that all pictures of rough materials show; "" if there is none.
+
+    Parameters
+    ----------
+    asked : sequence of Question
+    views, images, depth
+        Those of `answer`.
+    """
+    rough = [each for each in asked if each.key == "model"]
+    chosen = [view for view in views if any(each.includes(view) for each in rough)]
+    if any(view.name not in images for view in chosen):
+        return ""
+    nearest = candidates(_judged(chosen, images), depth)[0]
+    return nearest.title if nearest.ratio <= 1.0 else ""
 
 
 def answer(
@@ -180,11 +203,7 @@ def answer(
         reason = obstacle or f"no usable picture: {', '.join(missing)}"
         return Result(**place, verdict=NOT_RUN, reason=reason), ""
     # Compare them with the model, and with its mistake.
-    masks = [judged(view.scene) for view in chosen]
-    cases = [
-        JudgedPicture(view, mask, images[view.name][mask])
-        for view, mask in zip(chosen, masks, strict=True)
-    ]
+    cases = _judged(chosen, images)
     models = [expected(question.row(view), view, depth) for view in chosen]
     errors = _tiles(cases, models)
     error = _ratio(errors)
@@ -214,6 +233,16 @@ def answer(
         distances={each.title: each.distance for each in ranking},
         control=Control(question.variant, wrong, wrong > 1.0),
     ), words
+
+
+def _judged(
+    chosen: Sequence[View], images: Mapping[str, NDArray[np.float64]]
+) -> list[JudgedPicture]:
+    masks = [judged(view.scene) for view in chosen]
+    return [
+        JudgedPicture(view, mask, images[view.name][mask])
+        for view, mask in zip(chosen, masks, strict=True)
+    ]
 
 
 def _fault(case: JudgedPicture, model: Expected, images: Mapping[str, NDArray[np.float64]]) -> str:
