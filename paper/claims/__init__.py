@@ -17,10 +17,10 @@ Equations, figures and listings are those of [Portsmouth2025], the JCGT 2025 edi
 ([bibliography](bibliography.md)). The figures are below the claims; their data are in the folder `figures`.
 
 A claim *holds* if all of its measured values lie within the bound in the column *required*, holds *in
-part* if some do, and *fails* if none does. A value that is not a number lies within no bound.
-
-{count} claims: {holds} hold, {part} hold in part, {fails} fail.
+part* if some do, and *fails* if none does. A value that is not a number lies within no bound. The last
+table is about the text of MaterialX, not about the paper.
 """
+TALLY = "{count} claims: {holds} hold, {part} hold in part, {fails} fail."
 
 
 @dataclass(frozen=True)
@@ -95,18 +95,18 @@ def verdict(values: ArrayLike, least: float, most: float) -> str:
 def page(sections: Sequence[Section]) -> str:
     """The page as Markdown; measures every claim."""
     tables = [[claim.row() for claim in section.claims] for section in sections]
-    verdicts = [row[-1] for rows in tables for row in rows]
-    head = HEAD.format(
-        count=len(verdicts),
-        holds=verdicts.count(HOLDS),
-        part=verdicts.count(IN_PART),
-        fails=verdicts.count(FAILS),
-    )
-    parts = [head]
+    parts = [HEAD]
     for section, rows in zip(sections, tables, strict=True):
+        verdicts = [row[-1] for row in rows]
+        tally = TALLY.format(
+            count=len(verdicts),
+            holds=verdicts.count(HOLDS),
+            part=verdicts.count(IN_PART),
+            fails=verdicts.count(FAILS),
+        )
         lines = [_line(COLUMNS), "|---" * len(COLUMNS) + "|", *map(_line, rows), ""]
         remark = [section.remark, ""] if section.remark else []
-        parts.append("\n".join([f"## {section.heading}", "", *lines, *remark]))
+        parts.append("\n".join([f"## {section.heading}", "", tally, "", *lines, *remark]))
     return "\n".join(parts)
 
 
