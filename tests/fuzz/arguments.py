@@ -146,12 +146,9 @@ def answer(function, values):
     """ACCEPTED or REFUSED, and what is wrong with the answer of a function, empty if nothing is."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
-    named = {name: value for name, value in values.items() if name not in more}
-    places = [named.pop(n) for n, each in parameters.items() if each.kind < each.VAR_POSITIONAL]
-    places += [e for n, p in parameters.items() if p.kind is p.VAR_POSITIONAL for e in named.pop(n)]
     try:
         with warnings.catch_warnings(action="error"), np.errstate(under="ignore"):
-            result = function(*places, **named, **(values[more[0]] if more else {}))
+            result = call(function, values)
     except ValueError as error:
         first = str(error).split(" must ")[0].split(", ")
         names = set(parameters).union(*(each for each in values.values() if isinstance(each, dict)))
@@ -160,6 +157,16 @@ def answer(function, values):
     except Exception as error:
         return REFUSED, f"raises {type(error).__name__}: {error}"
     return ACCEPTED, "" if _is_finite(result) else f"returns {result}"
+
+
+def call(function, values):
+    """Result of a function for arguments by name."""
+    parameters = _parameters(function)
+    more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
+    named = {name: value for name, value in values.items() if name not in more}
+    places = [named.pop(n) for n, each in parameters.items() if each.kind < each.VAR_POSITIONAL]
+    places += [e for n, p in parameters.items() if p.kind is p.VAR_POSITIONAL for e in named.pop(n)]
+    return function(*places, **named, **(values[more[0]] if more else {}))
 
 
 @cache

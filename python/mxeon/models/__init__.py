@@ -8,6 +8,7 @@ import sys
 from importlib import import_module
 
 from mxeon.models.core.evaluation import threads
+from mxeon.models.core.namespaces import unchecked
 from mxeon.models.diffuse.brdf import (
     eon_brdf,
     eon_brdf_approx,
@@ -52,6 +53,7 @@ __all__ = [
     "smith_g2",
     "smith_g2_anisotropic",
     "threads",
+    "unchecked",
 ]
 
 # Modules that are public by a shorter name than that of their place.

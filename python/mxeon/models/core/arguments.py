@@ -6,17 +6,28 @@ Directions leave the surface, in a local frame with the normal +z.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from typing import NoReturn
+from collections.abc import Callable, Collection, Mapping
+from typing import NoReturn, cast
 
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.ranges import RANGES
+from mxeon.models.core.namespaces import (
+    NUMPY,
+    accept,
+    array_namespace,
+    checking,
+    host_values,
+    library,
+)
+from mxeon.models.core.ranges import CLOSED, RANGES
 from mxeon.models.core.tiling import blocks, channels_first
 
 # Largest error of the squared length of a direction: directions rounded to float32 pass.
 UNIT_TOLERANCE = 1e-6
+
+# One rounding of float32: an argument that leaves its range by less counts as the end of the range.
+ROUNDING = 2.0**-23
 
 
 def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
@@ -42,6 +53,10 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
         If an element is no real number or leaves the range; names it, and NaN leaves every range.
         A masked array is refused, for the result could not keep its mask.
 
+    Notes
+    -----
+    A value that is beyond an end of a range of `CLOSED` by less than `ROUNDING` counts as that end.
+
     Examples
     --------
     >>> checked("roughness", [0.5, 1.2])
@@ -49,13 +64,20 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
     ...
     ValueError: roughness must lie in [0, 1]; got 1.2 at index (1,)
     """
-    array = _real(name, value)
-    low, high, interval = RANGES[quantity or name]
-    # In float64: half floats would round the ends of the range to infinity.
-    if array.size and not (float(array.min()) >= low and float(array.max()) <= high):
+
+    def in_range(array: Numbers) -> Numbers:
+        low, high, interval = RANGES[quantity or name]
+        # In float64: half floats would round the ends of the range to infinity.
+        if not array.size or (float(array.min()) >= low and float(array.max()) <= high):
+            return array
+        beyond = ROUNDING if interval in CLOSED else 0.0
         wide = np.asarray(array, np.float64)
-        _refuse(f"{name} must lie in {interval}", array, (wide >= low) & (wide <= high))
-    return array
+        valid = (wide >= low - beyond) & (wide <= high + beyond)
+        if checking() and not valid.all():
+            _refuse(f"{name} must lie in {interval}", array, valid)
+        return np.where(valid, np.clip(array, low, high), array)
+
+    return _array(name, value, in_range)
 
 
 def checked_numbers(**values: ArrayLike) -> list[Array]:
@@ -71,11 +93,17 @@ def checked_numbers(**values: ArrayLike) -> list[Array]:
     return broadcastable({}, {name: checked(name, value) for name, value in values.items()})
 
 
+def checked_vector(name: str, value: ArrayLike) -> Numbers:
+    """Argument inside the range of its name, with at least one axis."""
+    array = checked(name, value)
+    return array if array.ndim else array[np.newaxis]
+
+
 def checked_color(name: str, value: ArrayLike) -> Numbers:
     """Argument inside the range of its name, with an axis of at least one channel."""
-    color = np.atleast_1d(checked(name, value))
+    color = checked_vector(name, value)
     if not color.shape[-1]:
-        raise ValueError(f"{name} must have at least one channel; got shape {color.shape}")
+        raise ValueError(f"{name} must have at least one channel; got shape {tuple(color.shape)}")
     return color
 
 
@@ -83,7 +111,7 @@ def checked_rgb(name: str, value: ArrayLike) -> Numbers:
     """Argument inside the range of its name, in red, green and blue; one channel counts for all."""
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
-        raise ValueError(f"{name} must have 1 or 3 channels; got shape {color.shape}")
+        raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")
     return np.broadcast_to(color, (*color.shape[:-1], 3))
 
 
@@ -146,34 +174,45 @@ def checked_directions(name: str, value: ArrayLike) -> Numbers:
     ...
     ValueError: wo must not point below the horizon (z >= 0); got z = -0.8
     """
-    array = checked_triples(name, value)
-    for block in blocks(array.shape[:-1]):
-        if not are_directions(channels_first(array[block])):
+
+    def above(array: Numbers) -> Numbers:
+        valid = all(
+            are_directions(channels_first(array[block])) for block in blocks(array.shape[:-1])
+        )
+        if checking() and not valid:
             refuse_direction(name, array)
-    return array
+        return on_horizon(array, -1)
+
+    return _array(name, checked_triples(name, value), above)
 
 
 def checked_transmitted(name: str, value: ArrayLike) -> Numbers:
     """Argument of shape (..., 3) of unit vectors, none of which points above the horizon."""
-    array = checked_triples(name, value)
-    z = array[..., 2]
-    if (z > 0.0).any():
-        _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > 0.0), "z = ")
-    return checked_sphere(name, array)
+
+    def below(array: Numbers) -> Numbers:
+        z = array[..., 2]
+        if checking() and (z > ROUNDING).any():
+            _refuse(f"{name} must not point above the horizon (z <= 0)", z, ~(z > ROUNDING), "z = ")
+        return -on_horizon(-checked_sphere(name, array), -1)
+
+    return _array(name, checked_triples(name, value), below)
 
 
 def checked_sphere(name: str, value: ArrayLike) -> Numbers:
     """Argument of shape (..., 3) of unit vectors, on either side of the surface."""
-    array = checked_triples(name, value)
-    checked_directions(name, np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1))
-    return array
+
+    def unit(array: Numbers) -> Numbers:
+        checked_directions(name, np.concatenate([array[..., :2], np.abs(array[..., 2:])], axis=-1))
+        return array
+
+    return _array(name, checked_triples(name, value), unit)
 
 
 def checked_triples(name: str, value: ArrayLike) -> Numbers:
     """Argument as an array of shape (..., 3), whose lengths are not looked at."""
-    array = _real(name, value)
+    array = _array(name, value, lambda array: array)
     if array.shape[-1:] != (3,):
-        raise ValueError(f"{name} must have shape (..., 3); got shape {array.shape}")
+        raise ValueError(f"{name} must have shape (..., 3); got shape {tuple(array.shape)}")
     return array
 
 
@@ -181,7 +220,7 @@ def checked_pairs(name: str, value: ArrayLike) -> Numbers:
     """Argument of shape (..., 2) inside the range that its name has in `RANGES`."""
     array = checked(name, value)
     if array.shape[-1:] != (2,):
-        raise ValueError(f"{name} must have shape (..., 2); got shape {array.shape}")
+        raise ValueError(f"{name} must have shape (..., 2); got shape {tuple(array.shape)}")
     return array
 
 
@@ -193,14 +232,24 @@ def are_directions(components: Numbers) -> bool:
     with np.errstate(over="ignore"):
         length = x * x + y * y + z * z
     unit = abs(length.min() - 1.0) <= UNIT_TOLERANCE and abs(length.max() - 1.0) <= UNIT_TOLERANCE
-    return bool(unit and z.min() >= 0.0)
+    return bool(unit and z.min() >= -ROUNDING)
+
+
+def on_horizon(w: Numbers, axis: int = 0) -> Numbers:
+    """Directions with their components on an axis; those below the horizon by a rounding, on it."""
+    z = w.take(2, axis)
+    if not z.size or z.min() >= 0.0:
+        return w
+    below = np.moveaxis(np.array(w), axis, 0)
+    below[2] = np.where(z >= -ROUNDING, np.maximum(z, 0.0), z)
+    return np.moveaxis(below, 0, axis)
 
 
 def refuse_direction(name: str, w: Numbers) -> NoReturn:
     """Raise for the first direction that is below the horizon or else of the wrong length."""
     z = w[..., 2]
-    if (z < 0.0).any():
-        _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < 0.0), "z = ")
+    if (z < -ROUNDING).any():
+        _refuse(f"{name} must not point below the horizon (z >= 0)", z, ~(z < -ROUNDING), "z = ")
     with np.errstate(over="ignore"):
         length = np.sum(np.square(w, dtype=np.float64), axis=-1)
     unit = np.abs(length - 1.0) <= UNIT_TOLERANCE
@@ -234,21 +283,24 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
     ValueError: wo, roughness must broadcast (last axis of wo apart); got shapes (4, 3), (5,)
     """
     arrays = [*vectors.values(), *numbers.values()]
-    leads = [array.shape[:-1] for array in vectors.values()]
-    leads += [array.shape for array in numbers.values()]
+    leads = [tuple(array.shape[:-1]) for array in vectors.values()]
+    leads += [tuple(array.shape) for array in numbers.values()]
     try:
         return np.broadcast_shapes(*leads)
     except ValueError:
         names = ", ".join([*vectors, *numbers])
         apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
-        shapes = ", ".join(str(array.shape) for array in arrays)
+        shapes = ", ".join(str(tuple(array.shape)) for array in arrays)
         raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
 
 
 def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
     """Checked vectors and numbers, in this order, as float64 arrays whose shapes broadcast."""
     lead_shape(vectors, numbers)
-    return [np.asarray(array, np.float64) for array in (*vectors.values(), *numbers.values())]
+    arrays = [*vectors.values(), *numbers.values()]
+    if array_namespace(*arrays) is not NUMPY:
+        return arrays
+    return [np.asarray(array, np.float64) for array in arrays]
 
 
 def channel_count(colors: Mapping[str, Numbers]) -> int:
@@ -266,6 +318,16 @@ def channel_count(colors: Mapping[str, Numbers]) -> int:
             f"{', '.join(colors)} must have equal numbers of channels; got {', '.join(map(str, counts))}"
         )
     return largest
+
+
+def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> Numbers:
+    """Argument as an array of real numbers that a check returns; another library's as it came."""
+    if not library(value):
+        return check(_real(name, value))
+    accept(name, value)
+    if checking():
+        check(_real(name, host_values(name, value)))
+    return cast(Numbers, value)
 
 
 def _real(name: str, value: ArrayLike) -> Numbers:

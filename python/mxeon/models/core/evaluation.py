@@ -13,11 +13,15 @@ import numpy as np
 from mxeon.models.core.arguments import (
     are_directions,
     checked,
+    checked_directions,
     checked_triples,
+    checked_vector,
     lead_shape,
+    on_horizon,
     refuse_direction,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.namespaces import NUMPY, array_namespace, checking
 from mxeon.models.core.tiling import BLOCK, blocks, tile, with_axes
 
 _threads: ContextVar[int] = ContextVar("threads", default=1)
@@ -97,8 +101,10 @@ def evaluate(
     """
     # Check the arguments.
     arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
-    arguments["rho"] = np.atleast_1d(checked("rho", rho))
+    arguments["rho"] = checked_vector("rho", rho)
     numbers = {name: checked(name, value) for name, value in parameter.items()}
+    if array_namespace(*arguments.values(), *numbers.values()) is not NUMPY:
+        return _evaluate_whole(formula, arguments, numbers)
     # Broadcast them.
     shape = lead_shape(arguments, numbers)
     arguments |= {name: array[..., np.newaxis] for name, array in numbers.items()}
@@ -109,8 +115,9 @@ def evaluate(
     def fill(block: tuple[slice, ...]) -> None:
         parts = {name: tile(array, block) for name, array in arrays.items()}
         for name in ("wo", "wi"):
-            if not are_directions(parts[name]):
+            if not are_directions(parts[name]) and checking():
                 refuse_direction(name, arguments[name])
+            parts[name] = on_horizon(parts[name])
         wo, wi, rho, *rest = parts.values()
         values = formula(np.moveaxis(wo, 0, -1), np.moveaxis(wi, 0, -1), rho, *(a[0] for a in rest))
         for channel, value in enumerate(values):
@@ -119,6 +126,30 @@ def evaluate(
     # Fill all blocks, on as many threads as are set.
     _for_each(fill, list(blocks(shape)))
     return out
+
+
+def _evaluate_whole(
+    formula: Callable[..., Array], vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]
+) -> Array:
+    """`evaluate` for arrays of another library, all at once."""
+    wo, wi = (checked_directions(name, vectors[name]) for name in ("wo", "wi"))
+    shape, rho = lead_shape(vectors, numbers), vectors["rho"]
+    value = formula(wo, wi, _leading_channels(rho, len(shape)), *numbers.values())
+    return _trailing_channels(value, int(rho.shape[-1]), shape)
+
+
+def _leading_channels(array: Numbers, axes: int) -> Numbers:
+    """Array (..., C) of another library as (C, ...), with this many axes behind C."""
+    xp = array_namespace(array)
+    shape = (1,) * (axes + 1 - array.ndim) + tuple(array.shape)
+    return xp.permute_dims(xp.reshape(array, shape), (axes, *range(axes)))
+
+
+def _trailing_channels(value: Array, channels: int, shape: tuple[int, ...]) -> Array:
+    """Values (C, ...) of another library as (..., C), broadcast to this shape."""
+    xp = array_namespace(value)
+    order = (*range(1, len(shape) + 1), 0)
+    return xp.permute_dims(xp.broadcast_to(value, (channels, *shape)), order)
 
 
 def evaluate_material(
@@ -158,6 +189,9 @@ def evaluate_material(
     array([0.2, 0.4])
     """
     shape = lead_shape(vectors, numbers)
+    if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
+        parts = {name: _leading_channels(array, len(shape)) for name, array in vectors.items()}
+        return _trailing_channels(formula(**parts, **numbers), channels, shape)
     arguments = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty((*shape, channels))

@@ -18,6 +18,9 @@ def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, 
     return dict.fromkeys(names.split(), ends)
 
 
+# Ranges at whose ends rounding may step over them.
+CLOSED = ("[0, 1]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
+
 # Ranges of the quantities, by name.
 RANGES = {
     **_each("mu mu_o mu_i", _SHARE),

@@ -12,10 +12,13 @@ import numpy as np
 
 from mxeon.models.core.arguments import checked_colors, checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import root
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.diffuse import formulas
 from mxeon.models.diffuse.formulas import C1, C2, fon_a, qon_a, qon_b
 
 
+@any_array
 def fon_loss(mu: ArrayLike) -> Array:
     """Energy that FON loses at unit reflectance, divided by roughness and by the factor A.
 
@@ -50,6 +53,7 @@ def fon_loss(mu: ArrayLike) -> Array:
     return formulas.fon_loss(mu)
 
 
+@any_array
 def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
     """Directional albedo of QON at unit reflectance.
 
@@ -83,10 +87,11 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
     array([0.949924, 0.784483])
     """
     mu, sigma = checked_numbers(mu=mu, sigma=sigma)
-    g_over_pi = C1 - formulas.fon_loss(mu) + 2.0 / (3.0 * np.pi) * np.sqrt((1.0 - mu) * (1.0 + mu))
+    g_over_pi = C1 - formulas.fon_loss(mu) + 2.0 / (3.0 * np.pi) * root((1.0 - mu) * (1.0 + mu))
     return qon_a(sigma) + qon_b(sigma) * g_over_pi
 
 
+@any_array
 def qon_albedo_avg(sigma: ArrayLike) -> Array:
     """Average albedo of QON at unit reflectance.
 
@@ -117,6 +122,7 @@ def qon_albedo_avg(sigma: ArrayLike) -> Array:
     return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_b(sigma)
 
 
+@any_array
 def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of FON at unit reflectance.
 
@@ -146,6 +152,7 @@ def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     return 1.0 - r * formulas.fon_loss(mu) * fon_a(r)
 
 
+@any_array
 def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of FON at unit reflectance, with a quartic.
 
@@ -175,6 +182,7 @@ def fon_albedo_dir_approx(mu: ArrayLike, roughness: ArrayLike) -> Array:
     return 1.0 - r * formulas.fon_loss_approx(mu) * fon_a(r)
 
 
+@any_array
 def fon_albedo_avg(roughness: ArrayLike) -> Array:
     """Average albedo of FON at unit reflectance.
 
@@ -200,6 +208,7 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
     return (1.0 + C2 * r) * fon_a(r)
 
 
+@any_array
 def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of EON.
 
@@ -243,6 +252,7 @@ def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array
     return _eon_albedo(formulas.fon_loss(mu), rho, r)
 
 
+@any_array
 def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of EON, with the quartic for the albedo of FON.
 
@@ -273,6 +283,7 @@ def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -
     return _eon_albedo(formulas.fon_loss_approx(mu), rho, r)
 
 
+@any_array
 def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Average albedo of EON.
 

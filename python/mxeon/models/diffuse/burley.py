@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, lead_shape
+from mxeon.models.core.arguments import checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.diffuse.formulas import cosines
 
 
+@any_array
 def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of Burley's diffuse model.
 
@@ -54,6 +56,7 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
     return evaluate(_formula, wo, wi, rho, roughness=roughness)
 
 
+@any_array
 def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of Burley's diffuse model, in closed form.
 
@@ -95,15 +98,12 @@ def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Ar
     >>> burley_albedo_dir(0.0, 1.0, 1.0).round(6)
     array([1.55754])
     """
-    mu, rho = checked("mu", mu), np.atleast_1d(checked("rho", rho))
-    roughness = checked("roughness", roughness)
-    lead_shape({"rho": rho}, {"mu": mu, "roughness": roughness})
-    m, r = np.asarray(mu, np.float64), np.asarray(roughness, np.float64)
+    (rho,), (m, r) = checked_colors({"rho": rho}, mu=mu, roughness=roughness)
     h, n = r - 0.5, (1.0 - m) ** 5
     both = (h**2 + 0.5 * r**2 * (1.0 - m) * (1.0 + m)) / 21.0
     both = both + h * r * m / 42.0 + r**2 * (3.0 * m**2 - 1.0) / 504.0
     unit = 1.0 + n * (h + 2.0 / 3.0 * r * m) + h / 21.0 + r * m / 84.0 + n * both
-    return np.asarray(rho, np.float64) * unit[..., np.newaxis]
+    return rho * unit
 
 
 def _formula(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:

@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, Number
+from mxeon.models.core.edges import at_least_0, cosine, except_at_1, hypot
+from mxeon.models.core.namespaces import array_namespace
 
 # FON loses r c1 / (1 + c1 r) at normal incidence and r (c1 - c2) / (1 + c1 r) on average:
 # [Portsmouth2025], Eqs. (10), (15), (29).
@@ -49,7 +51,7 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
     [0.8, 0.6, -0.48]
     """
     s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
-    return np.minimum(wo[..., 2], 1.0), np.minimum(wi[..., 2], 1.0), s
+    return cosine(wo[..., 2]), cosine(wi[..., 2]), s
 
 
 def fon_loss(mu: Array) -> Array:
@@ -59,10 +61,17 @@ def fon_loss(mu: Array) -> Array:
         S = sqrt(1 - mu^2),  t = mu / (1 + S)
 
     With theta_o = pi / 2 - 2 atan(t) and 1 - S = mu t nothing divides by mu and nothing cancels.
+    Near the normal H is c1 + O(S^3).
     """
-    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    return except_at_1(_fon_loss, mu, C1)
+
+
+def _fon_loss(mu: Array) -> Array:
+    """H(mu), whose steps have no derivative at mu = 1."""
+    xp = array_namespace(mu)
+    S = xp.sqrt((1.0 - mu) * (1.0 + mu))
     t = mu / (1.0 + S)
-    return mu * t * (C1 - S * t * (2.0 + S) / (3.0 * np.pi)) + (2.0 / np.pi) * S * np.arctan(t)
+    return mu * t * (C1 - S * t * (2.0 + S) / (3.0 * np.pi)) + (2.0 / np.pi) * S * xp.atan(t)
 
 
 def fon_loss_approx(mu: Array) -> Array:
@@ -113,17 +122,20 @@ def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
 
     A divisor below the smallest normal number counts as 0, for the quotient might overflow.
     """
-    return value / np.where(divisor < np.finfo(np.float64).tiny, np.inf, divisor)
+    xp = array_namespace(value, divisor)
+    return value / xp.where(divisor < xp.finfo(divisor.dtype).tiny, np.inf, divisor)
 
 
 def qon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
     """s / t_q: [Portsmouth2025], Eq. (4)."""
-    return oren_nayar_quotient(np.maximum(s, 0.0), np.maximum(mu_o, mu_i))
+    xp = array_namespace(mu_o, mu_i, s)
+    return oren_nayar_quotient(xp.maximum(s, 0.0), xp.maximum(mu_o, mu_i))
 
 
 def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
     """s / t_F: [Portsmouth2025], Eq. (11)."""
-    return qon_quotient(mu_o, mu_i, s) + np.minimum(s, 0.0)
+    xp = array_namespace(mu_o, mu_i, s)
+    return qon_quotient(mu_o, mu_i, s) + xp.minimum(s, 0.0)
 
 
 def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
@@ -145,7 +157,8 @@ def lambert_brdf(wo: Array, wi: Array, rho: Array) -> Array:
 
 def oren_nayar_angle(y: Array, x: Array) -> Array:
     """Angle whose sine is y and whose cosine is x, as a fraction of a right angle."""
-    return (2.0 / np.pi) * np.arctan2(y, x)
+    xp = array_namespace(y, x)
+    return (2.0 / np.pi) * xp.atan2(y, x)
 
 
 def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) -> Array:
@@ -154,11 +167,12 @@ def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) ->
     With q = 1 - 2 beta / pi the cube is 1 - q (3 - 3 q + q^2), and 1 - sin(alpha) is
     cos(alpha)^2 / (1 + sin(alpha)): the ones cancel, not the digits.
     """
-    high, low = np.maximum(mu_o, mu_i), np.minimum(mu_o, mu_i)
-    q = oren_nayar_angle(high, np.minimum(S_o, S_i))
-    rise = q * (3.0 - 3.0 * q + q**2) - low**2 / (1.0 + np.maximum(S_o, S_i))
+    xp = array_namespace(mu_o, mu_i, S_o, S_i)
+    high, low = xp.maximum(mu_o, mu_i), xp.minimum(mu_o, mu_i)
+    q = oren_nayar_angle(high, xp.minimum(S_o, S_i))
+    rise = q * (3.0 - 3.0 * q + q**2) - low**2 / (1.0 + xp.maximum(S_o, S_i))
     slope = oren_nayar_quotient(rise, high)
-    return np.where(high < np.finfo(np.float64).tiny, 6.0 / np.pi, slope)
+    return xp.where(high < xp.finfo(high.dtype).tiny, 6.0 / np.pi, slope)
 
 
 def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
@@ -176,18 +190,19 @@ def oren_nayar_brdf(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
 
     alpha is the larger polar angle, beta the smaller; both as fractions of a right angle below.
     """
+    xp = array_namespace(wo, wi)
     mu_o, mu_i, s = cosines(wo, wi)
-    S_o, S_i = np.hypot(wo[..., 0], wo[..., 1]), np.hypot(wi[..., 0], wi[..., 1])
+    S_o, S_i = hypot(wo[..., 0], wo[..., 1]), hypot(wi[..., 0], wi[..., 1])
     elevation_o, elevation_i = oren_nayar_angle(mu_o, S_o), oren_nayar_angle(mu_i, S_i)
-    alpha = 1.0 - np.minimum(elevation_o, elevation_i)
-    beta = 1.0 - np.maximum(elevation_o, elevation_i)
+    alpha = 1.0 - xp.minimum(elevation_o, elevation_i)
+    beta = 1.0 - xp.maximum(elevation_o, elevation_i)
     cos_phi = oren_nayar_quotient(s, S_o * S_i)
     # C2 cos(phi) tan(beta), where sin(beta) cos(phi) is s / sin(alpha).
-    behind = oren_nayar_quotient(np.minimum(s, 0.0), np.maximum(S_o, S_i))
+    behind = oren_nayar_quotient(xp.minimum(s, 0.0), xp.maximum(S_o, S_i))
     behind = behind * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i)
     # C3 and what follows it, where 1 - cos(phi)^2 is (cross / (S_o S_i))^2.
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
-    aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + np.abs(cos_phi))
+    aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
     C3 = 0.125 / 0.45 * qon_b(sigma) * (alpha * beta) ** 2
     single_scatter = qon_a(sigma) + qon_b(sigma) * (qon_quotient(mu_o, mu_i, s) + behind)
@@ -224,7 +239,7 @@ def eon_brdf(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
 def eon_brdf_approx(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     """EON with the quartic for H, which is kept from falling below 0 where mu < 0.0014."""
     mu_o, mu_i, s = cosines(wo, wi)
-    losses: Array = np.maximum(fon_loss_approx(mu_o), 0.0) * np.maximum(fon_loss_approx(mu_i), 0.0)
+    losses = at_least_0(fon_loss_approx(mu_o)) * at_least_0(fon_loss_approx(mu_i))
     single_scatter = 1.0 + roughness * fon_quotient(mu_o, mu_i, s)
     multi_scatter = eon_multiple_weight(rho, roughness) * losses
     return fon_scale(rho, roughness) * (single_scatter + multi_scatter)

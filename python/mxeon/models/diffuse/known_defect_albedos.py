@@ -39,7 +39,8 @@ def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike)
     array([0.25, 1.  ])
     """
     (color,), (m, s) = checked_colors({"rho": rho}, mu=mu, sigma=sigma)
-    return np.square(color) * qon_albedo_dir(m, s)
+    albedo: Array = np.square(color) * qon_albedo_dir(m, s)
+    return albedo
 
 
 def qon_degrees_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked
+from mxeon.models.core.arguments import checked, checked_triples
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.diffuse import formulas
 from mxeon.models.diffuse.brdf import qon_brdf
 from mxeon.models.diffuse.burley import burley_brdf
@@ -48,6 +49,7 @@ def eon_clamped_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Ar
     return evaluate(_eon_clamped, wo, wi, rho, roughness=roughness)
 
 
+@any_array
 def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflection of Burley's diffuse model at roughness^2, multiplied by mu_i.
 
@@ -73,8 +75,8 @@ def burley_cosine_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: 
     >>> burley_cosine_brdf([0.0, 0.0, 1.0], [0.8, 0.0, 0.6], [0.5, 1.0], 0.5).round(6)
     array([0.095395, 0.19079 ])
     """
-    value = burley_brdf(wo, wi, rho, np.square(checked("roughness", roughness)))
-    return value * np.asarray(wi, np.float64)[..., 2:]
+    value = burley_brdf(wo, wi, rho, checked("roughness", roughness) ** 2)
+    return value * checked_triples("wi", wi)[..., 2:]
 
 
 def burley_schlick_brdf(
@@ -195,6 +197,7 @@ def eon_floor_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arra
     return evaluate(_eon_floor, wo, wi, rho, roughness=roughness)
 
 
+@any_array
 def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """Reflection of QON that is multiplied by its own color once more.
 
@@ -214,7 +217,8 @@ def qon_tinted_twice_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: A
     >>> qon_tinted_twice_brdf([0.8, 0.0, 0.6], [0.8, 0.0, 0.6], [0.5, 1.0], 0.0).round(6)
     array([0.079577, 0.31831 ])
     """
-    return checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
+    value: Array = checked("rho", rho) * qon_brdf(wo, wi, rho, sigma)
+    return value
 
 
 def qon_degrees_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:

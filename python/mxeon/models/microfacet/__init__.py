@@ -10,10 +10,9 @@ In retroreflective mode wo is replaced by its mirror image about the normal.
 
 from __future__ import annotations
 
-import numpy as np
-
-from mxeon.models.core.arguments import checked, checked_switch
+from mxeon.models.core.arguments import checked, checked_switch, checked_vector
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.microfacet.lobe import (
     CONDUCTOR,
     DIELECTRIC,
@@ -24,6 +23,7 @@ from mxeon.models.microfacet.lobe import (
 )
 
 
+@any_array
 def dielectric_brdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -77,7 +77,7 @@ def dielectric_brdf(
     >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
     array([0.060074])
     """
-    vectors = {"tint": np.atleast_1d(checked("tint", tint))}
+    vectors = {"tint": checked_vector("tint", tint)}
     numbers = {"ior": checked("ior", ior)}
 
     return evaluate_lobe(
@@ -85,6 +85,7 @@ def dielectric_brdf(
     )
 
 
+@any_array
 def conductor_brdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -124,8 +125,8 @@ def conductor_brdf(
     array([1.472308, 0.543655])
     """
     vectors = {
-        "ior": np.atleast_1d(checked("ior", ior)),
-        "extinction": np.atleast_1d(checked("extinction", extinction)),
+        "ior": checked_vector("ior", ior),
+        "extinction": checked_vector("extinction", extinction),
     }
 
     return evaluate_lobe(
@@ -133,6 +134,7 @@ def conductor_brdf(
     )
 
 
+@any_array
 def generalized_schlick_brdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -187,7 +189,7 @@ def generalized_schlick_brdf(
     array([1.382929, 0.278522])
     """
     colors = {"color0": color0, "color82": color82, "color90": color90}
-    vectors = {name: np.atleast_1d(checked(name, value)) for name, value in colors.items()}
+    vectors = {name: checked_vector(name, value) for name, value in colors.items()}
     numbers = {"exponent": checked("exponent", exponent)}
 
     return evaluate_lobe(

@@ -10,12 +10,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import channel_count, checked
+from mxeon.models.core.arguments import channel_count, checked, checked_vector
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.microfacet import fresnel_formulas as formulas
 
 
+@any_array
 def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
     """Fresnel reflectance of a dielectric for unpolarized light.
 
@@ -57,6 +59,7 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
     return _number(formulas.dielectric, numbers)
 
 
+@any_array
 def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
     """Average Fresnel reflectance F_ss of a dielectric, in closed form.
 
@@ -93,6 +96,7 @@ def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
     return _number(formulas.dielectric_avg, {"ior": checked("ior", ior)})
 
 
+@any_array
 def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Fresnel reflectance of a conductor for unpolarized light.
 
@@ -155,6 +159,7 @@ def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
     return _colors(formulas.conductor_avg, vectors, {})
 
 
+@any_array
 def fresnel_schlick(
     mu: ArrayLike,
     color0: ArrayLike,
@@ -203,6 +208,7 @@ def fresnel_schlick(
     return _colors(formulas.schlick, vectors, numbers)
 
 
+@any_array
 def fresnel_schlick_avg(
     color0: ArrayLike, color82: ArrayLike, color90: ArrayLike, exponent: ArrayLike
 ) -> Array:
@@ -244,7 +250,7 @@ def fresnel_schlick_avg(
 
 def _color(name: str, value: ArrayLike) -> Numbers:
     """Checked argument with an axis of channels."""
-    return np.atleast_1d(checked(name, value))
+    return checked_vector(name, value)
 
 
 def _schlick_colors(

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.edges import hypot, power, root, trimmed
+from mxeon.models.core.namespaces import NUMPY, array_namespace
 
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
@@ -28,16 +30,17 @@ def dielectric(mu: Array, ior: Array) -> Array:
     g - c = (ior^2 - 1) / (g + c), and g^2 is a sum of terms >= 0 for ior >= 1. Without an interface
     (ior 1) F is 0 at grazing too, where 0 / 0 stands.
     """
+    xp = array_namespace(mu, ior)
     gap = (ior - 1.0) * (ior + 1.0)
     g2 = gap + mu * mu
-    g = np.sqrt(np.maximum(g2, 0.0))
-    total = np.where(g2 > 0.0, g + mu, 1.0)
+    g = root(xp.maximum(g2, 0.0))
+    total = xp.where(g2 > 0.0, g + mu, 1.0)
     amplitude = gap / total / total
     plus = mu * g + (1.0 - mu) * (1.0 + mu)
     minus = mu * g - (1.0 - mu) * (1.0 + mu)
-    ratio = minus / np.where(plus > 0.0, plus, 1.0)
+    ratio = minus / xp.where(plus > 0.0, plus, 1.0)
     F = 0.5 * amplitude**2 * (1.0 + ratio**2)
-    return np.where((g2 > 0.0) | (gap == 0.0), np.minimum(F, 1.0), 1.0)
+    return xp.where((g2 > 0.0) | (gap == 0.0), trimmed(F, 1.0), 1.0)
 
 
 def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
@@ -56,46 +59,48 @@ def polarized(mu: Array, ior: Array, extinction: Array) -> tuple[Array, Array]:
 
 def _gap(ior: Array, extinction: Array) -> Array:
     """|n^2 - 1|, which does not depend on the direction."""
-    gap: Array = np.hypot(ior - 1.0, extinction) * np.hypot(ior + 1.0, extinction)
-    return gap
+    return hypot(ior - 1.0, extinction) * hypot(ior + 1.0, extinction)
 
 
 def _conductor(mu: Array, ior: Array, extinction: Array, gap: Array) -> Array:
     """`conductor` from |n^2 - 1|."""
     Rp, Rs = _polarized(mu, ior, extinction, gap)
-    return np.minimum(0.5 * (Rs + Rp), 1.0)
+    return trimmed(0.5 * (Rs + Rp), 1.0)
 
 
 def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Array, Array]:
     """`polarized` from |n^2 - 1|."""
+    xp = array_namespace(mu, ior, extinction)
     # Find the complex root a + ib.
     S2 = (1.0 - mu) * (1.0 + mu)
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
-    length = modulus(real, 2.0 * ior * extinction)
+    size = modulus(real, 2.0 * ior * extinction)
     # The larger part of the root by a sum, the smaller one from their product.
-    larger = np.sqrt(0.5 * (length + np.abs(real)))
-    smaller = ior * extinction / np.where(larger > 0.0, larger, 1.0)
-    a, b = np.where(real >= 0.0, larger, smaller), np.where(real >= 0.0, smaller, larger)
+    larger = root(0.5 * (size + xp.abs(real)))
+    smaller = ior * extinction / xp.where(larger > 0.0, larger, 1.0)
+    a, b = xp.where(real >= 0.0, larger, smaller), xp.where(real >= 0.0, smaller, larger)
     # Compose the amplitudes of both polarizations.
     total = (a + mu) ** 2 + b * b
-    Rs = np.minimum((gap / np.where(total > 0.0, total, 1.0)) ** 2, 1.0)
+    Rs = trimmed((gap / xp.where(total > 0.0, total, 1.0)) ** 2, 1.0)
     minus, plus = ((mu * a + sign * S2) ** 2 + (mu * b) ** 2 for sign in (-1.0, 1.0))
-    Rp = Rs * np.where(plus > 0.0, minus / np.where(plus > 0.0, plus, 1.0), 1.0)
+    Rp = Rs * xp.where(plus > 0.0, minus / xp.where(plus > 0.0, plus, 1.0), 1.0)
     return Rp, Rs
 
 
 def modulus(real: Array, imaginary: Array) -> Array:
     """Length of complex numbers: `hypot` where a square overflows, which takes ten times as long."""
+    if array_namespace(real, imaginary) is not NUMPY:
+        return hypot(real, imaginary)
     with np.errstate(over="ignore"):
-        length: Array = np.sqrt(real * real + imaginary * imaginary)
-    return length if np.isfinite(length).all() else np.hypot(real, imaginary)
+        size: Array = np.sqrt(real * real + imaginary * imaginary)
+    return size if np.isfinite(size).all() else np.hypot(real, imaginary)
 
 
 def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
     """F_theta: [MaterialX2026], Generalized Schlick Equations; 0^0 counts as 1."""
     a = _schlick_a(color0, color82, color90, exponent)
     m = 1.0 - mu
-    return color0 + (color90 - color0) * m**exponent - a * mu * m**6
+    return color0 + (color90 - color0) * power(m, exponent) - a * mu * m**6
 
 
 def dielectric_avg(ior: Array) -> Array:
@@ -104,10 +109,11 @@ def dielectric_avg(ior: Array) -> Array:
     [Walsh1926] with n = e^t: every difference of large terms is taken out, and so is 1 - e^t.
     ior^2 (1 - F_ss(1 / ior)) = 1 - F_ss(ior) for the same interface from its other side.
     """
+    xp = array_namespace(ior)
     inside = ior < 1.0
-    gap = np.where(inside, (1.0 - ior) / np.maximum(ior, LEAST), ior - 1.0)
-    F = _external_avg(np.maximum(gap, 0.0))
-    return np.where(inside, (1.0 - ior) * (1.0 + ior) + ior * ior * F, F)
+    gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, LEAST), ior - 1.0)
+    F = _external_avg(xp.maximum(gap, 0.0))
+    return xp.where(inside, (1.0 - ior) * (1.0 + ior) + ior * ior * F, F)
 
 
 def conductor_avg(ior: Array, extinction: Array) -> Array:
@@ -164,25 +170,27 @@ def _external_avg(gap: Array) -> Array:
     F_ss = (sinh^2 t - (n - 1)) / (2 cosh^2 t) + tanh(t/2) (3 n + 1) / (6 (n + 1))
            + n sinh^2 t log(tanh(t/2)) / (2 cosh^3 t) + n (2 t coth(2 t) - 1) / (cosh t sinh 2 t)
     """
+    xp = array_namespace(gap)
     n = 1.0 + gap
-    t = np.log1p(gap)
+    t = xp.log1p(gap)
     sinh, cosh = 0.5 * gap * (n + 1.0) / n, 0.5 * (n + 1.0 / n)
     half = gap / (n + 1.0)
     double = 2.0 * sinh * cosh
-    log = np.log(np.where(gap > 0.0, half, 1.0))
+    log = xp.log(xp.where(gap > 0.0, half, 1.0))
     excess = _x_coth_x_minus_1(2.0 * t, double, cosh * cosh + sinh * sinh)
     return (
         0.5 * (sinh * sinh - gap) / cosh**2
         + half * (3.0 * n + 1.0) / (6.0 * (n + 1.0))
         + 0.5 * n * sinh * sinh * log / cosh**3
-        + n * excess / np.where(gap > 0.0, cosh * double, 1.0)
+        + n * excess / xp.where(gap > 0.0, cosh * double, 1.0)
     )
 
 
 def _x_coth_x_minus_1(x: Array, sinh: Array, cosh: Array) -> Array:
     """x coth(x) - 1, below 1 by its continued fraction of positive terms."""
-    fraction = np.full_like(x, 19.0)
-    y = np.minimum(x, 1.0) ** 2
+    xp = array_namespace(x)
+    fraction: Array | float = 19.0
+    y = xp.minimum(x, 1.0) ** 2
     for odd in range(17, 1, -2):
         fraction = odd + y / fraction
-    return np.where(x < 1.0, y / fraction, x * cosh / np.where(sinh > 0.0, sinh, 1.0) - 1.0)
+    return xp.where(x < 1.0, y / fraction, x * cosh / xp.where(sinh > 0.0, sinh, 1.0) - 1.0)

@@ -8,9 +8,11 @@ import numpy as np
 from mxeon.models.core.arguments import checked, checked_directions, checked_pairs
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.microfacet import ggx_formulas as formulas
 
 
+@any_array
 def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
     """Density D of microfacet normals, anisotropic GGX.
 
@@ -57,6 +59,7 @@ def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
     return values[..., 0][()]
 
 
+@any_array
 def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Masking G1 of anisotropic GGX: the visible part of the microfacets.
 
@@ -93,11 +96,12 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
     def value(wo: Array, roughness: Array) -> Array:
         length = formulas.stretched_length(wo, roughness)
         masking = 2.0 * wo[2] * formulas.reciprocal(wo[2] + length)
-        return np.where(length > 0.0, masking, 1.0)[np.newaxis]
+        return array_namespace(wo).where(length > 0.0, masking, 1.0)[np.newaxis]
 
     return evaluate_material(value, vectors, {}, 1)[..., 0][()]
 
 
+@any_array
 def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
     """Masking and shadowing G2 of the specification, height-correlated Smith.
 
@@ -143,6 +147,7 @@ def smith_g2(mu_o: ArrayLike, mu_i: ArrayLike, alpha: ArrayLike) -> Array:
     return evaluate_material(value, {}, numbers, 1)[..., 0][()]
 
 
+@any_array
 def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Masking and shadowing G2 that belongs to anisotropic GGX, height-correlated Smith.
 

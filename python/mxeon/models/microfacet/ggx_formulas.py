@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.edges import at_most, hypot, root
+from mxeon.models.core.namespaces import array_namespace
 
 # Sums of cosines below count as 0: D alone is at most 1e162.
 LEAST = 1e-140
@@ -20,24 +22,24 @@ def ndf(wh: Array, roughness: Array) -> Array:
 
     D = a^3 / (pi ((alpha_y h_x)^2 + (alpha_x h_y)^2 + (a h_z)^2)^2),  a = alpha_x alpha_y
     """
+    xp = array_namespace(wh, roughness)
     (alpha_x, alpha_y), (x, y, z) = roughness, wh
     area = alpha_x * alpha_y
     squared = (alpha_y * x) ** 2 + (alpha_x * y) ** 2 + (area * z) ** 2
     # Squares of alpha below 1e-100 underflow: such a surface is a mirror.
     positive = squared > 0.0
-    scale = area / np.where(positive, squared, 1.0)
-    return np.where(positive, area * scale * scale / np.pi, 0.0)
+    scale = area / xp.where(positive, squared, 1.0)
+    return xp.where(positive, area * scale * scale / np.pi, 0.0)
 
 
 def smith_lambda(mu: Array, alpha: Array) -> Array:
     """lambda(cos theta): Height-Correlated Smith Masking-Shadowing."""
-    return np.sqrt(alpha * alpha + (1.0 - alpha) * (1.0 + alpha) * mu * mu)
+    return root(alpha * alpha + (1.0 - alpha) * (1.0 + alpha) * mu * mu)
 
 
 def mean_alpha(roughness: Array) -> Array:
     """alpha = sqrt(alpha_x alpha_y): Height-Correlated Smith Masking-Shadowing."""
-    alpha: Array = np.sqrt(roughness[0]) * np.sqrt(roughness[1])
-    return alpha
+    return root(roughness[0]) * root(roughness[1])
 
 
 def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
@@ -47,8 +49,7 @@ def visibility(mu_o: Array, mu_i: Array, alpha: Array) -> Array:
 
 def stretched_length(w: Array, roughness: Array) -> Array:
     """Length of (alpha_x x, alpha_y y, z)."""
-    length: Array = np.hypot(np.hypot(roughness[0] * w[0], roughness[1] * w[1]), w[2])
-    return length
+    return hypot(hypot(roughness[0] * w[0], roughness[1] * w[1]), w[2])
 
 
 def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
@@ -59,15 +60,17 @@ def visibility_anisotropic(wo: Array, wi: Array, roughness: Array) -> Array:
 
 def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
     """Unit half vector, and its cosine with either direction; (0, 0, 1) of opposite directions."""
+    xp = array_namespace(wo, wi)
     total = wo + wi
-    length = np.sqrt(np.sum(total * total, axis=0))
-    opposite = length == 0.0
-    wh = total / np.where(opposite, 1.0, length)
-    z = np.where(opposite, 1.0, wh[2])
-    return np.stack([wh[0], wh[1], z]), np.minimum(0.5 * length, 1.0)
+    size = root(xp.sum(total * total, axis=0))
+    opposite = size == 0.0
+    wh = total / xp.where(opposite, 1.0, size)
+    z = xp.where(opposite, 1.0, wh[2])
+    return xp.stack([wh[0], wh[1], z]), at_most(0.5 * size, 1.0)
 
 
 def reciprocal(x: Array) -> Array:
     """1 / x, and 0 where x is so small that a product with D could overflow."""
-    large = x > LEAST
-    return np.where(large, 1.0 / np.where(large, x, 1.0), 0.0)
+    xp = array_namespace(x)
+    large = x > max(LEAST, float(xp.finfo(x.dtype).tiny))  # that of float32 is larger
+    return xp.where(large, 1.0 / xp.where(large, x, 1.0), 0.0)

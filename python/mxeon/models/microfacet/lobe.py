@@ -16,6 +16,7 @@ from mxeon.models.core.arguments import (
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import array_namespace, library
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.ggx_albedo import albedo
@@ -68,9 +69,9 @@ def compensation(pair: Pair) -> Array:
     return 1.0 + pair.curve.average(**pair.material) * missing(pair.wo[2], pair.roughness)
 
 
-def uncompensated(pair: Pair) -> Array:
-    """1, in the shape of a value."""
-    return np.ones((1,) * pair.wo.ndim)
+def uncompensated(pair: Pair) -> float:
+    """1, for a value as it is."""
+    return 1.0
 
 
 def visibility(pair: Pair) -> Array:
@@ -80,6 +81,10 @@ def visibility(pair: Pair) -> Array:
 
 def missing(mu_o: Array, roughness: Array) -> Array:
     """(1 - E_ss) / E_ss at alpha = sqrt(alpha_x alpha_y)."""
+    if name := library(mu_o):
+        raise ValueError(
+            f"compensate must be False for arrays of {name}: its quadrature takes NumPy's"
+        )
     E_ss = albedo(mu_o, ggx.mean_alpha(roughness))
     return (1.0 - E_ss) / E_ss
 
@@ -100,9 +105,9 @@ class Lobe:
         Constant factor.
     """
 
-    factor: Callable[[Pair], Array] = compensation
+    factor: Callable[[Pair], Array | float] = compensation
     visibility: Callable[[Pair], Array] = visibility
-    alpha: Callable[[Array], Array] = np.asarray
+    alpha: Callable[[Array], Array] = lambda roughness: roughness
     scale: float = 1.0
 
     def value(self, pair: Pair, wh: Array) -> Array:
@@ -130,7 +135,7 @@ def evaluate_lobe(
 
     def value(wo: Array, wi: Array, roughness: Array, **material: Array) -> Array:
         if retroreflective:
-            wo = np.stack([-wo[0], -wo[1], wo[2]])
+            wo = array_namespace(wo).stack([-wo[0], -wo[1], wo[2]])
         wh, cosine = ggx.half_vector(wo, wi)
         return lobe.value(Pair(wo, wi, lobe.alpha(roughness), cosine, curve, material), wh)
 

@@ -26,6 +26,7 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.diffuse.formulas import (
     C1,
     C2,
@@ -118,6 +119,7 @@ def eon_sample(
     return wi, _density(wo, wi, rho, roughness)
 
 
+@any_array
 def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0) -> Array:
     """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
 

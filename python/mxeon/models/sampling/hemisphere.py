@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_directions, checked_pairs, lead_shape
+from mxeon.models.core.arguments import broadcastable, checked, checked_directions, checked_pairs
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 
 
@@ -165,9 +165,7 @@ def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
 
 def _broadcastable(vectors: dict[str, Numbers], numbers: dict[str, ArrayLike]) -> list[Array]:
     """Vectors and checked numbers as float64 arrays; raise if their shapes do not broadcast."""
-    arrays = {name: checked(name, value) for name, value in numbers.items()}
-    lead_shape(vectors, arrays)
-    return [np.asarray(array, np.float64) for array in (*vectors.values(), *arrays.values())]
+    return broadcastable(vectors, {name: checked(name, value) for name, value in numbers.items()})
 
 
 def _checked_pairs(u: ArrayLike) -> Array:

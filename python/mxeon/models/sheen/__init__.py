@@ -10,9 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_triples, lead_shape
+from mxeon.models.core.arguments import checked, checked_triples, checked_vector, lead_shape
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_most, guarded
 from mxeon.models.core.evaluation import evaluate
+from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace
 from mxeon.models.diffuse.formulas import cosines
 from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
 
@@ -31,6 +33,7 @@ ZELTNER_LEAST_ROUGHNESS = 0.01
 LEAST = 1e-300
 
 
+@any_array
 def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the sheen of Conty and Kulla.
 
@@ -172,37 +175,44 @@ def _tinted(
     roughness: ArrayLike,
 ) -> Array:
     """Values of a lobe over broadcast arguments, times the tint."""
-    color = np.atleast_1d(checked("color", color))
+    color = checked_vector("color", color)
     vectors = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi), "color": color}
     lead_shape(vectors, {"roughness": checked("roughness", roughness)})
-    values: Array = evaluate(lobe, wo, wi, 1.0, roughness=roughness) * color
-    return values
+    return evaluate(lobe, wo, wi, color, roughness=roughness)
 
 
-def _conty_kulla_formula(wo: Array, wi: Array, unit: Array, roughness: Array) -> Array:
-    """Conty and Kulla's lobe, (1, ...), on valid arrays."""
+def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
+    """Conty and Kulla's lobe, (C, ...), on valid arrays."""
     # Find the squared sine and cosine of the half vector.
+    xp = array_namespace(wo, wi, roughness)
+    least = max(LEAST, float(xp.finfo(wo.dtype).tiny))  # that of float32 is larger
     mu_o, mu_i, _ = cosines(wo, wi)
-    flat = np.square(wo[..., 0] + wi[..., 0]) + np.square(wo[..., 1] + wi[..., 1])
-    upright = np.square(mu_o + mu_i)
-    length = flat + upright
+    flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
+    upright = xp.square(mu_o + mu_i)
+    total = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
+    # Leave out the limits that are 0, the last one of which NumPy finds as the exponential of -inf.
+    counted = (roughness > 0.0) & (divisor >= least)
+    smooth = counted & (flat > 0.0)
+    roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
+    upright, total = guarded(upright, smooth, 1.0), guarded(total, smooth, 2.0)
+    divisor = guarded(divisor, smooth, 1.0)
     # Evaluate the lobe in logarithms.
-    shape = 0.5 / np.maximum(roughness, LEAST)
+    shape = 0.5 / xp.maximum(roughness, least)
     with np.errstate(divide="ignore", over="ignore"):
-        ratio = flat / np.maximum(length, LEAST)
+        ratio = flat / xp.maximum(total, least)
         # Each form of log(sin(theta_h)^2) where it does not cancel.
-        log_sine = np.where(
-            ratio < 0.5, np.log(ratio), np.log1p(-upright / np.maximum(length, LEAST))
-        )
-        lobe = (1.0 + shape) * np.exp(shape * log_sine) / (4.0 * np.pi * np.maximum(divisor, LEAST))
+        small = ratio < 0.5
+        above = guarded(upright / xp.maximum(total, least), ~small, 0.5)
+        log_sine = xp.where(small, xp.log(ratio), xp.log1p(-above))
+        lobe = (1.0 + shape) * xp.exp(shape * log_sine) / (4.0 * np.pi * xp.maximum(divisor, least))
     # Set the limits to 0.
-    counted = (roughness > 0.0) & (divisor >= LEAST)
-    return unit * np.where(counted, np.minimum(lobe, np.finfo(np.float64).max), 0.0)
+    counted = smooth if xp is not NUMPY else counted
+    return tint * xp.where(counted, at_most(lobe, float(xp.finfo(wo.dtype).max)), 0.0)
 
 
-def _zeltner_formula(wo: Array, wi: Array, unit: Array, roughness: Array) -> Array:
-    """Zeltner's lobe, (1, ...), on valid arrays."""
+def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
+    """Zeltner's lobe, (C, ...), on valid arrays."""
     mu_o, mu_i, s = cosines(wo, wi)
     sine = np.sqrt(np.square(wo[..., 0]) + np.square(wo[..., 1]))
     turned = sine > 0.0
@@ -211,7 +221,7 @@ def _zeltner_formula(wo: Array, wi: Array, unit: Array, roughness: Array) -> Arr
     y = np.where(turned, cross, wi[..., 1]) / np.where(turned, sine, 1.0)
     a, b = zeltner_matrix(mu_o, roughness)
     length = np.square(a * x + b * mu_i) + np.square(a * y) + np.square(mu_i)
-    lobe: Array = unit * _zeltner_albedo(mu_o, roughness) * np.square(a / length) / np.pi
+    lobe: Array = tint * (_zeltner_albedo(mu_o, roughness) * np.square(a / length) / np.pi)
     return lobe
 
 

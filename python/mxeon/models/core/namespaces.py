@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays of other libraries than NumPy: their functions, and whether their values are checked.
+
+A formula takes its functions from its arguments, by the names of the array API standard. What needs
+no NumPy besides is marked by `any_array`, and returns arrays of the library that it is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import wraps
+from importlib import import_module
+from types import SimpleNamespace
+from typing import ParamSpec, Protocol, TypeVar, cast
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array, Numbers
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_checking: ContextVar[bool] = ContextVar("checking", default=True)
+_any_array: ContextVar[bool] = ContextVar("any_array", default=False)
+
+
+class Namespace(Protocol):
+    """Functions of the array API standard of which formulas are made."""
+
+    abs: Callable[..., Array]
+    asarray: Callable[..., Array]
+    astype: Callable[..., Array]
+    atan: Callable[..., Array]
+    atan2: Callable[..., Array]
+    broadcast_to: Callable[..., Array]
+    exp: Callable[..., Array]
+    hypot: Callable[..., Array]
+    log: Callable[..., Array]
+    log1p: Callable[..., Array]
+    maximum: Callable[..., Array]
+    minimum: Callable[..., Array]
+    permute_dims: Callable[..., Array]
+    reshape: Callable[..., Array]
+    sqrt: Callable[..., Array]
+    square: Callable[..., Array]
+    stack: Callable[..., Array]
+    sum: Callable[..., Array]
+    where: Callable[..., Array]
+    finfo: Callable[..., np.finfo[np.float64]]
+    isdtype: Callable[..., bool]
+
+
+# NumPy below 2 has other names for some functions.
+_NAMES = {"atan": np.arctan, "atan2": np.arctan2}
+NUMPY = cast(Namespace, np if hasattr(np, "atan") else SimpleNamespace(**{**vars(np), **_NAMES}))
+
+
+@contextmanager
+def unchecked() -> Iterator[None]:
+    """Context in which the functions of `mxeon.models` do not look at the values of arrays.
+
+    Notes
+    -----
+    A transformation such as `jax.jit`, `jax.grad` or `torch.vmap` calls a function with arrays that
+    have no values yet, so their ranges cannot be checked, and outside this context they are refused.
+    Within it kinds and shapes are still checked, but a value outside its range gives whatever the
+    formula gives, which may be NaN. The setting belongs to the thread or task that enters the context.
+
+    Examples
+    --------
+    >>> from mxeon.models import lambert_brdf
+    >>> with unchecked():
+    ...     lambert_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 1.5).round(6)
+    array([0.477465])
+    """
+    token = _checking.set(False)
+    try:
+        yield
+    finally:
+        _checking.reset(token)
+
+
+def checking() -> bool:
+    """Whether values are looked at: False within `unchecked`."""
+    return _checking.get()
+
+
+def library(value: object) -> str:
+    """Name of the library other than NumPy whose array this is; "" for everything else.
+
+    Examples
+    --------
+    >>> library(np.zeros(2)), library(0.5)
+    ('', '')
+    """
+    if isinstance(value, np.ndarray | np.generic | float | int | list | tuple):
+        return ""
+    name = type(value).__module__.partition(".")[0]
+    if name == "torch" and hasattr(value, "dtype"):
+        return name
+    return name.removesuffix("lib") if hasattr(value, "__array_namespace__") else ""
+
+
+def array_namespace(*arrays: object) -> Namespace:
+    """Functions for these arrays: NumPy itself, unless one of them is another library's.
+
+    Raises
+    ------
+    ValueError
+        If arrays of several libraries come together.
+    ImportError
+        If an array of PyTorch comes and the package array-api-compat is missing.
+    """
+    others = [each for each in arrays if library(each)]
+    return _others_namespace(others) if others else NUMPY
+
+
+def _others_namespace(others: Sequence[object]) -> Namespace:
+    """Functions of the one library whose arrays these are."""
+    names = sorted({library(each) for each in others})
+    if len(names) > 1:
+        raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
+    if names == ["torch"]:
+        try:
+            return cast(Namespace, import_module("array_api_compat.torch"))
+        except ImportError:
+            message = "arrays of torch need array-api-compat: pip install 'mxeon[arrays]'"
+            raise ImportError(message) from None
+    return cast(Namespace, _own_namespace(others[0]))
+
+
+def _own_namespace(array: object) -> object:
+    """What an array of the standard says itself."""
+    namespace: Callable[[], object] = array.__array_namespace__  # type: ignore[attr-defined]
+    return namespace()
+
+
+def any_array(function: Callable[P, R]) -> Callable[P, R]:
+    """Function that takes arrays of any library, and returns arrays of that library.
+
+    Without such arrays it is the function itself, to the last bit. With them numbers, lists and arrays
+    of NumPy are brought to their library, precision and device.
+    """
+
+    @wraps(function)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
+        others = [each for each in (*args, *kwargs.values()) if library(each)]
+        if not others:
+            return function(*args, **kwargs)
+        convert = _converter(others)
+        values = (convert(each) for each in args)
+        named = {name: convert(each) for name, each in kwargs.items()}
+        token = _any_array.set(True)
+        try:
+            return cast(Callable[..., R], function)(*values, **named)
+        finally:
+            _any_array.reset(token)
+
+    return wrapper
+
+
+def _converter(others: Sequence[object]) -> Callable[[object], object]:
+    """What brings an argument to the library, the precision and the device of these arrays."""
+    xp = _others_namespace(others)
+    arrays = cast("Sequence[Array]", others)
+    floating = [each.dtype for each in arrays if xp.isdtype(each.dtype, "real floating")]
+    dtype = floating[0] if floating else xp.asarray(0.5).dtype
+    place = {"device": arrays[0].device} if library(others[0]) == "torch" else {}
+
+    def convert(value: object) -> object:
+        if library(value):
+            array = cast(Array, value)
+            return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)
+        if isinstance(value, bool) or not isinstance(
+            value, np.ndarray | float | int | list | tuple
+        ):
+            return value
+        numbers = np.asarray(value)
+        return xp.asarray(numbers, dtype=dtype, **place) if numbers.dtype.kind in "iuf" else value
+
+    return convert
+
+
+def accept(name: str, value: object) -> None:
+    """Raise ValueError unless the function at hand takes this other library's array as `name`."""
+    if not _any_array.get():
+        raise ValueError(
+            f"{name} must be an array of NumPy, not of {library(value)}: this function takes no other"
+        )
+
+
+def host_values(name: str, value: object) -> Numbers:
+    """Values of an array of another library, whose argument `name` is, in NumPy.
+
+    Raises
+    ------
+    ValueError
+        If the array has no values yet.
+    """
+    try:
+        return _to_numpy(value)
+    except (TypeError, RuntimeError):  # of JAX and of torch, where a transformation traces the call
+        raise ValueError(
+            f"{name} must have values, to be checked, and is traced; call within "
+            "mxeon.models.unchecked()"
+        ) from None
+
+
+def _to_numpy(value: object) -> Numbers:
+    """Copy of a whole array, without its gradient."""
+    if library(value) != "torch":
+        return np.asarray(value)
+    tensor: Callable[[], object] = value.detach  # type: ignore[attr-defined]
+    return np.asarray(tensor().cpu())  # type: ignore[attr-defined]

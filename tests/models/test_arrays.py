@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays of other libraries: values and gradients of every function that takes them.
+
+Where a library is not installed its tests are skipped. Gradients are compared with differences of the
+same function in NumPy, where these can be relied on.
+"""
+
+import inspect
+import re
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from docs import arrays as table
+from mxeon.albedo import fon_albedo_dir, fon_loss
+from mxeon.models import dielectric_brdf, eon_brdf, lambert_brdf, unchecked
+from mxeon.models.core import edges
+from mxeon.models.core.namespaces import NUMPY, array_namespace
+from mxeon.models.core.ranges import RANGES
+from tests.fuzz import arguments
+
+COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"}
+ROWS = 48
+SEED = 11
+GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
+RELIABLE = 2e-8  # two steps of differences that agree so far are taken for the derivative
+COMPARED = 0.6  # least share of partial derivatives that differences can judge
+VALUE = 1e-12  # of the larger of 1 and the value: another library's last digits of sines and powers
+
+PORTABLE = {
+    name: function
+    for name, function in arguments.functions().items()
+    if inspect.unwrap(function) is not function
+}
+OTHERS = sorted(set(arguments.functions()) - set(PORTABLE))
+HIGH = {"exponent": 8.0, "ior": 3.0, "extinction": 4.0}  # ends for tests, where a range has none
+
+
+def pytorch():
+    torch = pytest.importorskip("torch")
+    pytest.importorskip("array_api_compat")
+
+    def gradients(loss, values):
+        tensors = {k: torch.tensor(v, requires_grad=True) for k, v in values.items()}
+        loss(tensors).backward()
+        return {
+            k: np.zeros_like(values[k]) if t.grad is None else t.grad.numpy()
+            for k, t in tensors.items()
+        }
+
+    return SimpleNamespace(
+        array=lambda x: torch.tensor(np.asarray(x)),
+        numpy=lambda x: x.detach().numpy(),
+        gradients=gradients,
+        transforms=(torch.vmap,),
+    )
+
+
+def jax():
+    library = pytest.importorskip("jax")
+    library.config.update("jax_enable_x64", True)
+
+    def gradients(loss, values):
+        with unchecked():
+            return {k: np.asarray(v) for k, v in library.grad(loss)(values).items()}
+
+    return SimpleNamespace(
+        array=library.numpy.asarray,
+        numpy=np.asarray,
+        gradients=gradients,
+        transforms=(library.jit, library.vmap),
+    )
+
+
+@pytest.fixture(params=[pytorch, jax])
+def library(request):
+    return request.param()
+
+
+def directions(rng, below):
+    """Unit vectors, of which the first ones are along the normal or graze."""
+    w = rng.normal(size=(ROWS, 3))
+    w[:4] = 0.0, 0.0, 1.0
+    w[4:12, 2] = 0.0
+    w[:, 2] = np.abs(w[:, 2])
+    w /= np.linalg.norm(w, axis=1, keepdims=True)
+    return rng.permutation(w) * (1.0, 1.0, -1.0 if below else 1.0)
+
+
+def sampled(function):
+    """Arguments by name, each a row of its range or an end of it, and the switches."""
+    rng, arrays, switches = np.random.default_rng(SEED), {}, {}
+    for name, value in arguments.base(function).items():
+        if not isinstance(value, float | tuple | np.ndarray):
+            switches[name] = value
+        elif np.shape(value) == (3,) and name[0] in "wn":
+            arrays[name] = directions(rng, value[2] < 0.0)
+        else:
+            low, high, _ = RANGES[name]
+            high, shape = HIGH.get(name, high), (ROWS, *np.shape(value))
+            inside = low + (high - low) * rng.uniform(0.2, 0.95, shape)
+            ends = rng.choice([low, 1.0, high], shape)
+            arrays[name] = np.where(rng.random(shape) < 0.25, ends, inside)
+    channels = np.ndim(arguments.call(function, arguments.base(function)))
+    for name in COLORS & set(arrays) if channels else ():
+        if name.startswith(("rho", "color", "tint")) or "conductor" in function.__name__:
+            arrays[name] = arrays[name][:, np.newaxis]
+    return arrays, switches
+
+
+def scalar(value):
+    """One number per row: values of all channels together."""
+    return value if value.ndim == 1 else value[..., 0]
+
+
+def differences(function, arrays, switches, name, component):
+    """Derivative of each row by differences, and where they can be relied on."""
+    low, high, _ = (
+        RANGES[name] if name in RANGES else RANGES["mu" if component == 2 else "cos_theta"]
+    )
+    flat = arrays[name].reshape(ROWS, -1)
+    x = flat[:, component]
+
+    def at(step):
+        moved = flat.copy()
+        moved[:, component] = x + step
+        with unchecked(), np.errstate(all="ignore"):
+            values = arrays | {name: moved.reshape(arrays[name].shape)}
+            return scalar(function(**values, **switches))
+
+    def slope(h):
+        """From above and from below, of third order in h."""
+        f = {k: at(k * h) for k in (-3, -2, -1, 0, 1, 2, 3)}
+        with np.errstate(invalid="ignore"):
+            return [
+                s * (18 * f[s] - 9 * f[2 * s] + 2 * f[3 * s] - 11 * f[0]) / (6 * h) for s in (1, -1)
+            ]
+
+    coarse, fine = slope(2e-4), slope(1e-4)
+    usable = [x + 6e-4 <= high, x - 6e-4 >= low]
+    best = np.where(usable[0], fine[0], fine[1])
+    spread = np.zeros(len(x))
+    with np.errstate(invalid="ignore"):  # beyond an end of a range
+        for side, each in ((0, coarse[0]), (0, fine[0]), (1, coarse[1]), (1, fine[1])):
+            spread = np.maximum(spread, np.where(usable[side], np.abs(each - best), 0.0))
+    return best, spread <= RELIABLE * np.maximum(1.0, np.abs(best))
+
+
+@pytest.mark.parametrize("name", PORTABLE)
+def test_gradients_are_finite_and_those_of_differences(library, name):
+    function = PORTABLE[name]
+    arrays, switches = sampled(function)
+    found = library.gradients(lambda values: scalar(function(**values, **switches)).sum(), arrays)
+    for argument, gradient in found.items():
+        assert np.isfinite(gradient).all(), argument
+        columns, judged = gradient.reshape(ROWS, -1).T, 0
+        for k, column in enumerate(columns):
+            expected, reliable = differences(function, arrays, switches, argument, k)
+            error = np.abs(column - expected) / np.maximum(1.0, np.abs(expected))
+            worst = np.where(reliable, error, 0.0).argmax()
+            row = {each: value[worst] for each, value in arrays.items()}
+            assert error[reliable].max() <= GRADIENT, (
+                argument,
+                k,
+                column[worst],
+                expected[worst],
+                row,
+            )
+            judged += reliable.sum()
+        assert judged >= COMPARED * columns.size, argument
+
+
+@pytest.mark.parametrize("name", PORTABLE)
+def test_values_are_those_of_numpy(library, name):
+    function = PORTABLE[name]
+    arrays, switches = sampled(function)
+    expected = function(**arrays, **switches)
+    other = {name: library.array(value) for name, value in arrays.items()}
+    result = function(**other, **switches)
+    assert isinstance(
+        result, type(other["roughness" if "roughness" in other else next(iter(other))])
+    )
+    error = np.abs(library.numpy(result) - expected) / np.maximum(1.0, np.abs(expected))
+    assert error.max() <= VALUE
+
+
+def test_numpy_gets_its_own_functions_to_the_last_bit():
+    x, y = np.random.default_rng(SEED).uniform(0.0, 1.0, (2, 1000))
+    assert array_namespace(x, 0.5, [1.0]) is NUMPY
+    pairs = (
+        (edges.cosine(x), np.minimum(x, 1.0)),
+        (edges.at_most(x, 0.5), np.minimum(x, 0.5)),
+        (edges.trimmed(x, 0.5), np.minimum(x, 0.5)),
+        (edges.at_least_0(x - 0.5), np.maximum(x - 0.5, 0.0)),
+        (edges.root(x), np.sqrt(x)),
+        (edges.hypot(x, y), np.hypot(x, y)),
+        (edges.power(x, y), x**y),
+        (edges.except_at_1(np.cos, x, 0.0), np.cos(x)),
+        (edges.guarded(x, x > 0.5, 0.0), x),
+    )
+    assert all(np.array_equal(ours, plain) for ours, plain in pairs)
+    assert NUMPY.sqrt is np.sqrt and NUMPY.atan is np.arctan and NUMPY.atan2 is np.arctan2
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_functions_say_that_they_take_numpy_alone(name):
+    torch = pytest.importorskip("torch")
+    function = arguments.functions()[name]
+    values = arguments.base(function)
+    argument = next(iter(arguments.tried(function, arrays=True)))
+    status, why = arguments.answer(function, values | {argument: torch.tensor(values[argument])})
+    assert (status, why) == (arguments.REFUSED, "")
+    with pytest.raises(ValueError, match=f"^{argument} must be an array of NumPy, not of torch"):
+        arguments.call(function, values | {argument: torch.tensor(values[argument])})
+
+
+def test_transformations_of_jax_and_torch(library):
+    rng = np.random.default_rng(SEED)
+    wo, wi = directions(rng, False), directions(rng, False)
+    expected = eon_brdf(wo, wi, [0.2, 0.8], 0.5)
+    for transform in library.transforms:
+        traced = transform(lambda wo, wi: eon_brdf(wo, wi, [0.2, 0.8], 0.5))
+        with pytest.raises(
+            ValueError, match="^w. must have values, to be checked, and is traced; call w"
+        ):
+            traced(library.array(wo), library.array(wi))
+        with unchecked():
+            values = traced(library.array(wo), library.array(wi))
+        np.testing.assert_allclose(library.numpy(values), expected, VALUE, VALUE)
+
+
+def test_values_are_checked_wherever_there_are_any(library):
+    up, rho = library.array([0.0, 0.0, 1.0]), library.array([0.5])
+    with pytest.raises(ValueError, match=r"^rho must lie in \[0, 1\]; got 1.5 at index \(0,\)"):
+        lambert_brdf(up, up, library.array([1.5]))
+    with pytest.raises(ValueError, match="^wi must not point below the horizon"):
+        lambert_brdf(up, -up, rho)
+    with pytest.raises(ValueError, match="^roughness must be real numbers"):
+        eon_brdf(up, up, rho, "rough")
+    with pytest.raises(ValueError, match="^compensate must be False for arrays of"):
+        dielectric_brdf(up, up, rho, library.array([0.5, 0.5]), 1.5)
+    with unchecked():
+        assert library.numpy(lambert_brdf(up, -up, 2.0 * rho)) == 1.0 / np.pi
+
+
+def test_precision_is_that_of_the_arrays(library):
+    single = library.array(np.array([0.5], np.float32))
+    value = eon_brdf(np.array([[0.6, 0.0, 0.8]]), [0, 0, 1], single, 0.5)
+    assert library.numpy(value).dtype == np.float32 and tuple(value.shape) == (1, 1)
+    whole = lambert_brdf(library.array([0, 0, 1]), [0, 0, 1], 0.5)  # integers are no precision
+    assert library.numpy(whole).dtype in (np.float32, np.float64)
+
+
+def test_one_rounding_beyond_an_edge_counts_as_the_edge(library):
+    up, tilted, flat = [0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [1.0, 0.0, -1e-17]
+    edge = eon_brdf(up, tilted, 1.0, 1.0), eon_brdf([1.0, 0.0, 0.0], tilted, 1.0, 1.0)
+    assert eon_brdf([0.0, 0.0, 1.0 + 1e-9], tilted, 1.0 + 1e-9, 1.0) == edge[0]
+    assert eon_brdf(flat, tilted, 1.0, 1.0) == edge[1]
+    other = eon_brdf(library.array(flat), tilted, 1.0, 1.0)
+    assert library.numpy(other) == pytest.approx(edge[1], abs=VALUE)
+    beyond = library.array(1.0 + 1e-9)
+    assert library.numpy(fon_loss(beyond)) == pytest.approx(fon_loss(1.0), abs=VALUE)
+    with pytest.raises(ValueError, match="^mu must lie"):
+        fon_loss(1.0 + 1e-6)
+
+
+def test_arrays_of_two_libraries_do_not_mix():
+    tensor, array = pytest.importorskip("torch").ones(1), pytest.importorskip("jax").numpy.ones(1)
+    with pytest.raises(ValueError, match="^arrays must be of one library; got jax and torch"):
+        fon_albedo_dir(tensor, array)
+
+
+def test_torch_asks_for_the_package_that_gives_it_the_standard(monkeypatch):
+    torch = pytest.importorskip("torch")
+    monkeypatch.setitem(sys.modules, "array_api_compat.torch", None)
+    with pytest.raises(ImportError, match=r"pip install 'mxeon\[arrays\]'"):
+        fon_loss(torch.ones(1))
+
+
+def test_the_page_lists_the_functions_that_take_other_arrays():
+    text = table.PAGE.read_text(encoding="utf-8")
+    assert table.page(text) == text
+    assert table.page(text.replace("| `albedo.fon_loss` | `mu` |\n", "")) == text
+
+
+@pytest.mark.parametrize("name", ("torch", "jax"))
+def test_the_examples_of_the_page_run(name):
+    pytest.importorskip(name)
+    blocks = re.findall(r"```python\n(.*?)```", table.PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    [block] = [each for each in blocks if f"import {name}\n" in each]
+    exec(block, {})
