@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from mxeon.models.microfacet import fresnel_formulas
 from mxeon.models.microfacet.fresnel import (
     fresnel_conductor,
     fresnel_conductor_avg,
@@ -90,6 +91,16 @@ def test_the_printed_average_is_the_integral():
 def test_the_average_of_a_conductor_agrees_with_adaptive_quadrature(metal):
     with mp.workdps(16):
         assert abs(fresnel_conductor_avg(*metal)[0] - average(*metal)) < tolerances.CONDUCTOR
+
+
+def test_both_rules_of_a_conductors_average_agree_where_the_curve_is_smooth():
+    rng = np.random.default_rng(0)
+    n, k = 10.0 ** rng.uniform(-2.0, 2.0, (2, 3000))
+    smooth = fresnel_formulas._is_smooth((n + 1j * k) ** 2)
+    assert smooth.mean() > 0.2
+    n, k = n[smooth], k[smooth]
+    split = fresnel_formulas._split_avg(n, k, (n + 1j * k) ** 2)
+    assert np.abs(fresnel_formulas._smooth_avg(n, k) - split).max() < tolerances.CONDUCTOR
 
 
 @pytest.mark.parametrize("exponent", [0.0, 0.5, 5.0, 30.0])

@@ -119,7 +119,7 @@ def test_compensation_is_that_of_the_albedo_at_the_mean_alpha(name):
     E = ggx_albedo_dir(wo[:, 2], np.sqrt(alpha[:, 0] * alpha[:, 1]))[:, None]
     expected = BRDFS[name](wo, wi, alpha, False, False) * (1.0 + F_ss * (1.0 - E) / E)
     value = BRDFS[name](wo, wi, alpha)
-    assert np.allclose(value, expected, rtol=tolerances.MICROFACET, atol=0.0)
+    assert np.allclose(value, expected, rtol=tolerances.E_SS, atol=0.0)
 
 
 @every_node

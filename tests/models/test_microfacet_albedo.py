@@ -21,6 +21,7 @@ from mxeon.models import (
     generalized_schlick_brdf,
 )
 from mxeon.models.microfacet import ggx_albedo, slopes
+from mxeon.models.microfacet.missing import missing_light
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere
 
@@ -92,6 +93,24 @@ def test_the_albedo_lies_between_its_limits_on_the_closed_domain():
     E = ggx_albedo_dir(mu[:, None], alpha)
     assert (E > 0.3).all() and (E <= 1.0).all() and (E[:, 0] == 1.0).all()
     assert abs(ggx_albedo_dir(1.0, 1.0) - (1.0 - np.log(2.0))) < tolerances.E_SS
+
+
+def test_the_table_of_what_facets_miss_agrees_with_the_quadrature():
+    rng = np.random.default_rng(0)
+    mu, alpha = rng.random((2, 3000)) ** [[6.0], [3.0]]
+    # Small alpha, both ends, and cosines between on their own scale.
+    small = np.geomspace(1e-9, 1e-4, 6)[:, None]
+    mu = np.concatenate([mu, (small * [0.0, 0.1, 1.0, 10.0, 1e3]).ravel(), np.ones(30)])
+    alpha = np.concatenate([np.maximum(alpha, small[0]), np.repeat(small, 10)])
+    E = ggx_albedo.quadrature(mu, alpha, refined=4)
+    assert np.abs(missing_light(mu, alpha) - (1.0 - E) / E).max() < tolerances.E_SS
+
+
+def test_a_mirror_misses_nothing_and_grazing_light_has_a_limit():
+    mu = np.array([0.0, 5e-324, 1e-160, 0.5, 1.0, 1.0 + 1e-7])
+    assert (missing_light(mu, np.zeros(1)) == 0.0).all()
+    missing = missing_light(mu, np.array([5e-324, 1e-160, 1.0])[:, None])
+    assert (missing >= 0.0).all() and np.ptp(missing[:, 0]) < tolerances.E_SS
 
 
 def test_at_small_alpha_the_albedo_is_a_function_of_mu_over_alpha():

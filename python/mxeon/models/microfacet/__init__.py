@@ -4,6 +4,8 @@
 All functions broadcast, work on the closed domain and evaluate in blocks. alpha 0 is a mirror: a
 delta function, which has no value; it counts as 0. Where both directions graze the surface the
 value grows beyond bounds and counts as 0; value times cosine is 0 there for any finite choice.
+The compensation takes (1 - E_ss) / E_ss from a table that the first call computes, to 1e-10; the exact
+quadrature is `mxeon.albedo.ggx_albedo_dir`.
 
 In retroreflective mode wo is replaced by its mirror image about the normal.
 """
@@ -67,6 +69,7 @@ def dielectric_brdf(
     `ior` 0 disables the Fresnel curve, F = 1, which is what the equations give in its limit. Below 1
     light comes from the denser side and F is 1 beyond the critical angle. Of negative numbers the
     specification says nothing, stock MaterialX squares them; here they are refused.
+    Accuracy: relative error of the compensation's factor below 1e-10, of the rest 2e-14 at alpha >= 0.05.
 
     References
     ----------

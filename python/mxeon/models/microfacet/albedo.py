@@ -21,7 +21,8 @@ from mxeon.models.core.arguments import (
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.microfacet.ggx_albedo import albedo
-from mxeon.models.microfacet.lobe import CONDUCTOR, DIELECTRIC, SCHLICK, WHITE, Curve, missing
+from mxeon.models.microfacet.ggx_formulas import mean_alpha
+from mxeon.models.microfacet.lobe import CONDUCTOR, DIELECTRIC, SCHLICK, WHITE, Curve
 from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
 
 BLOCK = 2**3  # elements at once
@@ -224,11 +225,11 @@ def lobe_albedo(
 
 
 def _unseen(wo: Numbers, roughness: Numbers) -> Array:
-    """(1 - E_ss) / E_ss of checked arguments, shape (...)."""
-    values = evaluate_material(
-        lambda mu, roughness: missing(mu, roughness)[np.newaxis],
+    """(1 - E_ss) / E_ss of checked arguments by quadrature, shape (...)."""
+    E_ss = evaluate_material(
+        lambda mu, roughness: albedo(mu, mean_alpha(roughness))[np.newaxis],
         {"roughness": roughness},
         {"mu": wo[..., 2]},
         1,
-    )
-    return values[..., 0]
+    )[..., 0]
+    return (1.0 - E_ss) / E_ss

@@ -85,12 +85,12 @@ def _in_blocks(mu: Array, alpha: Array) -> Array:
     """E_ss on valid float64 arrays, block by block."""
     numbers = {"mu": mu, "alpha": alpha}
     return evaluate_material(
-        lambda mu, alpha: _albedo(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
+        lambda mu, alpha: quadrature(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
     )[..., 0]
 
 
-def _albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss by quadrature."""
+def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
+    """E_ss by quadrature, with so many panels for each one."""
     # Choose the scale on which the integrand changes.
     rough = np.maximum(alpha, LEAST_ALPHA)
     scaled = np.minimum(mu * (rough / np.maximum(alpha, 1e-300)), 1.0)
@@ -99,11 +99,11 @@ def _albedo(mu: Array, alpha: Array) -> Array:
     # Integrate the three parts.
     total = np.zeros(np.broadcast_shapes(mu.shape, rough.shape))
     # From wo to the normal, from wo to half its elevation, and from there to the horizon.
-    for d, weight in _graded(graded, 0.5 * np.pi - elevation, PANELS):
+    for d, weight in _graded(graded, 0.5 * np.pi - elevation, refined * PANELS):
         total += np.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
-    for d, weight in _graded(2.0 * rough, 0.5 * elevation, 1):
+    for d, weight in _graded(2.0 * rough, 0.5 * elevation, refined):
         total += np.sum(weight * _density(elevation, elevation - d, d, rough), axis=0)
-    for e, weight in _graded(rough, 0.5 * elevation, 1):
+    for e, weight in _graded(rough, 0.5 * elevation, refined):
         total += np.sum(weight * _density(elevation, e, elevation - e, rough), axis=0)
     return np.where(alpha > 0.0, np.minimum(total, 1.0), 1.0)
 

@@ -19,7 +19,7 @@ from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import array_namespace, library
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet import ggx_formulas as ggx
-from mxeon.models.microfacet.ggx_albedo import albedo
+from mxeon.models.microfacet.missing import missing_light
 
 
 @dataclass(frozen=True)
@@ -80,13 +80,10 @@ def visibility(pair: Pair) -> Array:
 
 
 def missing(mu_o: Array, roughness: Array) -> Array:
-    """(1 - E_ss) / E_ss at alpha = sqrt(alpha_x alpha_y)."""
+    """(1 - E_ss) / E_ss at alpha = sqrt(alpha_x alpha_y), to 1e-10."""
     if name := library(mu_o):
-        raise ValueError(
-            f"compensate must be False for arrays of {name}: its quadrature takes NumPy's"
-        )
-    E_ss = albedo(mu_o, ggx.mean_alpha(roughness))
-    return (1.0 - E_ss) / E_ss
+        raise ValueError(f"compensate must be False for arrays of {name}: its table takes NumPy's")
+    return missing_light(mu_o, ggx.mean_alpha(roughness))
 
 
 @dataclass(frozen=True)

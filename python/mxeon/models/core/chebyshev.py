@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Interpolation by Chebyshev polynomials on [0, 1]: nodes, coefficients, sums."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+
+
+def chebyshev_nodes(count: int) -> Array:
+    """Nodes of the interpolant of degree `count` - 1, in (0, 1).
+
+    Examples
+    --------
+    >>> chebyshev_nodes(2).round(6)
+    array([0.853553, 0.146447])
+    """
+    return 0.5 + 0.5 * np.cos(_angles(count))
+
+
+def chebyshev_coefficients(values: Array) -> Array:
+    """Coefficients of the interpolant of values at the nodes of the first axis, shape as theirs.
+
+    Examples
+    --------
+    >>> chebyshev_coefficients(1.0 + chebyshev_nodes(3)).round(6) + 0.0
+    array([1.5, 0.5, 0. ])
+    """
+    count = len(values)
+    cosines = np.cos(np.outer(np.arange(count), _angles(count)))
+    cosines[0] *= 0.5
+    return np.asarray(2.0 / count * np.einsum("kn,n...->k...", cosines, values))
+
+
+def chebyshev_polynomials(x: Array, count: int) -> Array:
+    """The polynomials T_0 to T_(count - 1) of 2 x - 1, shape (count, ...).
+
+    Examples
+    --------
+    >>> chebyshev_polynomials(np.array([0.0, 0.75]), 3)
+    array([[ 1. ,  1. ],
+           [-1. ,  0.5],
+           [ 1. , -0.5]])
+    """
+    rows = np.empty((count, *np.shape(x)))
+    rows[0] = 1.0
+    rows[1:2] = 2.0 * x - 1.0
+    for k in range(2, count):
+        rows[k] = 2.0 * rows[1] * rows[k - 1] - rows[k - 2]
+    return rows
+
+
+def chebyshev_sum(coefficients: Array, x: Array) -> Array:
+    """Sum of the polynomials of 2 x - 1, by Clenshaw's rule; coefficients have shape (count, ...).
+
+    Examples
+    --------
+    >>> chebyshev_sum(np.array([1.5, 0.5]), np.array([0.0, 0.25]))
+    array([1.  , 1.25])
+    """
+    y = 2.0 * x - 1.0
+    twice = 2.0 * y
+    later = np.zeros(np.broadcast_shapes(coefficients.shape[1:], np.shape(x)))
+    last = later
+    for row in coefficients[:0:-1]:
+        last, later = twice * last - later + row, last
+    return y * last - later + coefficients[0]
+
+
+def _angles(count: int) -> Array:
+    """Angles of the nodes, whose cosines they are."""
+    return np.asarray(np.pi * (np.arange(count) + 0.5) / count)
