@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from fits import thin_film as fit
+from fits import thin_film_sets as sets
 from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.thin_films import CHECKS
@@ -30,25 +31,31 @@ STOCK = {
     "dielectric_bsdf": {
         "film": (DIFFERS, f"{CHOICES}, and its compensation"),
         "film_curve": (DIFFERS, f"{CHOICES}, and its compensation"),
+        "film_orders": (DIFFERS, f"{CHOICES}, and its compensation"),
         "film_limit": (DIFFERS, CHOICES),
         "film_average": (DIFFERS, AVERAGE),
+        "film_smooth": (DIFFERS, AVERAGE),
         "film_visible": (DIFFERS, f"{CHOICES}, in light from all sides"),
         "film_throughput": (FAILED, f"{CHOICES}: {FITTED}"),
     },
     "conductor_bsdf": {
         "film": (DIFFERS, f"{CHOICES}, and its compensation"),
         "film_curve": (DIFFERS, f"{CHOICES}, and its compensation"),
+        "film_orders": (DIFFERS, f"{CHOICES}, and its compensation"),
         "film_limit": (DIFFERS, CHOICES),
         "film_environment": (DIFFERS, f"{CHOICES}, in light from all sides"),
         "film_average": (DIFFERS, AVERAGE),
+        "film_smooth": (DIFFERS, AVERAGE),
         "film_visible": (DIFFERS, f"{CHOICES}, in light from all sides"),
     },
     "generalized_schlick_bsdf": {
         "film": (FAILED, f"{HALF}, and its compensation"),
         "film_curve": (FAILED, f"{HALF}, and its compensation"),
+        "film_orders": (FAILED, f"{HALF}, and its compensation"),
         "film_limit": (FAILED, HALF),
         "film_environment": (FAILED, f"{HALF}, in light from all sides"),
         "film_average": (DIFFERS, AVERAGE),
+        "film_smooth": (DIFFERS, AVERAGE),
         "film_visible": (FAILED, f"{HALF}, in light from all sides"),
         "film_throughput": (FAILED, f"{HALF}: {FITTED}"),
     },
@@ -60,9 +67,14 @@ STATED = {
     "slope of curves": bsdf_tolerances.FILM_SLOPE,
     "waves of curves": bsdf_tolerances.FILM_WAVES,
     "F_ss": bsdf_tolerances.FILM_AVERAGE,
-    "F_ss of thin films": bsdf_tolerances.FILM_THIN_AVERAGE,
     "visible facets": bsdf_tolerances.FILM_VISIBLE,
-    "visible facets under thin films": bsdf_tolerances.FILM_THIN_VISIBLE,
+}
+# Largest of sets by their names in `fits.thin_film_sets`.
+SETS = {
+    "all orders": bsdf_tolerances.FILM_ALL_ORDERS,
+    "F_ss": bsdf_tolerances.FILM_MEAN,
+    "compensation in two cosines": bsdf_tolerances.FILM_SMOOTH_MEAN,
+    "visible facets": bsdf_tolerances.FILM_STEEP,
 }
 FILMS_IN = ("eonlib/genglsl/thin_film.glsl", "eonlib/genglsl/microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
@@ -71,6 +83,9 @@ WRONG = {
     "one order too few": ("conductor_bsdf", "waves.k4 + twice", "twice", "film"),
     "one digit of a variance": (
         "conductor_bsdf", "4.3278e9, 4.5282e9", "4.3728e9, 4.5282e9", "film_curve",
+    ),
+    "a ratio of no tail": (
+        "conductor_bsdf", "waves.k15 - r2 * waves.tail", "waves.k15", "film_orders",
     ),
     "no limit": ("dielectric_bsdf", "waves.k1 + twice", "0.9 * waves.k1 + twice", "film_limit"),
     "too much light": (
@@ -82,6 +97,9 @@ WRONG = {
     "one cosine for the average": (
         "conductor_bsdf", "F.average += i < facets || i == last ? vec3(0.0) : curve;",
         "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, fd);", "film_average",
+    ),
+    "weights of two cosines": (
+        "conductor_bsdf", "vec2(0.785, 0.725)", "vec2(0.785, 0.625)", "film_smooth",
     ),
     "facets without masking": (
         "conductor_bsdf", "node.y * mu_i / max(shadow, MICROFACET_LEAST)", "vec4(node.y)",
@@ -132,6 +150,12 @@ def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
     errors |= fit.errors([name for name in STATED if name != "orders"])
     for name, most in STATED.items():
         assert 0.2 * most < max(errors[name].values()) <= most
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_sets_of_films_are_as_near_as_its_tolerances_say(name):
+    found = max(sets.largest(*sets.MEASURED[name], sets=2).values())
+    assert 0.5 * SETS[name].value < found <= SETS[name].value
 
 
 def judged(host, node, library):

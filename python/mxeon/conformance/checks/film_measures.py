@@ -19,16 +19,22 @@ from mxeon.models.microfacet.ggx_formulas import smith_lambda
 Values = Callable[[Batch], Array]
 TURNED = (-1.0, -1.0, 1.0)
 ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
+SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
 RIGHT = "every value is right by itself"  # of an explanation that found nothing
 LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
+RARE = 0.5  # index of a film that MaterialX counts as vacuum
 
 
 def film_limit(probe: Probe) -> Iterable[Case]:
-    """Values under a film of index 1, and under one of THIN_LIMIT, against those without."""
+    """Values under a film of index 1, and under one of THIN_LIMIT, against those without.
+
+    A film of an index below that of vacuum counts as one of index 1, whatever that one does.
+    """
     batch = _compared(probe)
     bare = probe.direct(batch.altered(thinfilm_thickness=0.0))
-    cases = [Case(batch, probe.direct(batch.altered(thinfilm_ior=1.0)), bare)]
+    empty, rare = (probe.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, RARE))
+    cases = [Case(batch, empty, bare), Case(batch, rare, empty)]
     if "color0" not in batch.inputs:  # whose curve is taken at another angle under a film
         thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
         cases.append(Case(batch, probe.direct(thin), bare))
@@ -36,25 +42,48 @@ def film_limit(probe: Probe) -> Iterable[Case]:
 
 
 def film_curve(probe: Probe) -> Iterable[Case]:
-    """A film's curve at one cosine: values in mirrored lights over those of a mirror.
+    """A film's curve at one cosine, of which the first orders count alone."""
+    return [_curves(probe, probe.sharp)]
+
+
+def film_orders(probe: Probe) -> Iterable[Case]:
+    """The same at grazing and of thin films, of which all orders count."""
+    return [_curves(probe, probe.ordered)]
+
+
+def _curves(probe: Probe, batch: Batch) -> Case:
+    """Curves: values in mirrored lights over those of a mirror.
 
     The lobes are so smooth that their compensation is 1, whatever average it has.
     """
-    batch: Batch = probe.sharp
     (measured, mirror), (expected, white) = (
         (direct(batch), direct(_mirror(probe, batch))) for direct in _sides(probe)
     )
-    return [Case(batch, measured / mirror, expected / white)]
+    return Case(batch, measured / mirror, expected / white)
 
 
 def film_average(probe: Probe) -> Iterable[Case]:
     """F_ss of a film, from values at two roughnesses, against that of the equations."""
-    return [average_case(probe)]
+    return [average_case(probe, probe.fringed)]
 
 
-def average_case(probe: Probe) -> Case:
-    """The case of `film_average`."""
-    batch: Batch = probe.steep
+def film_smooth(probe: Probe) -> Iterable[Case]:
+    """Values F (1 + F_ss k) of lobes that lose little, against those of lobes that lose less.
+
+    F and k are the host's, and F_ss that of the equations.
+    """
+    batch: Batch = probe.fringed
+    F, F_ss = _averages(probe, probe.expected, batch)
+    (first, k), (second, other_k) = (
+        _parts(probe, probe.direct, batch.altered(roughness=(alpha, alpha))) for alpha in SMOOTH
+    )
+    expected = second * (1.0 + F_ss * k) / (1.0 + F_ss * other_k)
+    bright = F.min(axis=1) > LEAST_F
+    return [Case(batch.where(bright), first[bright], expected[bright])]
+
+
+def average_case(probe: Probe, batch: Batch) -> Case:
+    """F_ss of films whose curve is not next to 0, of the host and of the equations."""
     (_, measured), (F, expected) = (_averages(probe, each, batch) for each in _sides(probe))
     bright = F.min(axis=1) > LEAST_F
     return Case(batch.where(bright), measured[bright], expected[bright])
@@ -62,21 +91,22 @@ def average_case(probe: Probe) -> Case:
 
 def film_visible(probe: Probe) -> Iterable[Case]:
     """A film's mean over the visible facets, from its albedo, against that of the equations."""
-    batch, *_ = average_case(probe)
+    batch: Batch = probe.steep
     albedos = (
         lambda each: probe.albedo(each) / probe.albedo(_mirror(probe, each)),
         probe.expected_albedo,
     )
-    measured, expected = (
+    (_, measured), (F, expected) = (
         _visible(probe, direct, albedo, batch)
         for direct, albedo in zip(_sides(probe), albedos, strict=True)
     )
-    return [Case(batch, measured, expected)]
+    bright = F.min(axis=1) > LEAST_F
+    return [Case(batch.where(bright), measured[bright], expected[bright])]
 
 
 def diagnose_average(probe: Probe) -> Diagnosis:
     """Whether F at one cosine stands in the place of its average."""
-    batch, measured, expected = average_case(probe)
+    batch, measured, expected = average_case(probe, probe.fringed)
     direct, model = _sides(probe)
     slanted = replace(batch, wo=view_at(2.0 / 3.0, batch), wi=view_at(2.0 / 3.0, batch) * TURNED)
     others = {
@@ -124,16 +154,28 @@ def _averages(probe: Probe, direct: Values, batch: Batch) -> tuple[Array, Array]
 
 def _parts(probe: Probe, direct: Values, batch: Batch) -> tuple[Array, Array]:
     """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each."""
+    return direct(batch) / _facets(batch), _k(probe, direct, batch)
+
+
+def _k(probe: Probe, direct: Values, batch: Batch) -> Array:
+    """(1 - E_ss) / E_ss in mirrored lights, (N, 3)."""
+    return np.asarray(direct(_mirror(probe, batch)) / _facets(batch) - 1.0)
+
+
+def _facets(batch: Batch) -> Array:
+    """Values of facets that reflect everything, in mirrored lights, (N, 1)."""
     alpha, mu = np.broadcast_to(batch.inputs["roughness"], (len(batch.wo), 2))[:, 0], batch.wo[:, 2]
-    facets = 0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis]
-    return direct(batch) / facets, direct(_mirror(probe, batch)) / facets - 1.0
+    return np.asarray(0.25 / (alpha * alpha * smith_lambda(mu, alpha))[:, np.newaxis])
 
 
-def _visible(probe: Probe, direct: Values, albedo: Values, batch: Batch) -> Array:
-    """F_o of an albedo E_ss F_o (1 + F_ss k) over that of a mirror, E_ss (1 + k) = 1, (N, 3)."""
-    _, F_ss = _averages(probe, direct, batch)
-    _, k = _parts(probe, direct, batch)
-    return np.asarray(albedo(batch) * (1.0 + k) / (1.0 + F_ss * k))
+def _visible(probe: Probe, direct: Values, albedo: Values, batch: Batch) -> tuple[Array, Array]:
+    """F at the half vector, and F_o of an albedo E_ss F_o (1 + F_ss k), (N, 3) each.
+
+    The albedo is that over the one of a mirror, E_ss (1 + k) = 1.
+    """
+    F, F_ss = _averages(probe, direct, batch)
+    k = _k(probe, direct, batch)
+    return F, np.asarray(albedo(batch) * (1.0 + k) / (1.0 + F_ss * k))
 
 
 def _mirror(probe: Probe, batch: Batch) -> Batch:

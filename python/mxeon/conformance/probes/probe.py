@@ -116,6 +116,16 @@ class Probe:
         self._lacks("steep")
 
     @property
+    def fringed(self) -> Batch:
+        """The same under films of up to many fringes."""
+        self._lacks("fringed")
+
+    @property
+    def ordered(self) -> Batch:
+        """Views at grazing of films so thin that all orders count."""
+        self._lacks("ordered")
+
+    @property
     def sharp(self) -> Batch:
         """Views of smooth lobes under films, in which their curve is seen at one cosine."""
         self._lacks("sharp")

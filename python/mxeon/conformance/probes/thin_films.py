@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.thin_films import THICK
 from mxeon.conformance.probes.bsdf import MicrofacetProbe, simple
 from mxeon.conformance.probes.pictures import Mask
@@ -16,7 +17,11 @@ from mxeon.conformance.samples.edge_cases import special_directions
 
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
 STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `steep`
+FRINGED = {**STEEP, "thickness": (50.0, 1000.0)}  # see `fringed`
 SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `sharp`
+ORDERED = {"alpha": (1e-3, 1e-3), "mu": (0.1, 0.2), "thickness": (40.0, 100.0)}  # see `ordered`
+# Films whose errors have one mean: fits/thin_film_sets.py bounds it for sets of these sizes.
+FILMS, CURVES = 1 << 6, 1 << 10
 LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
 
@@ -53,34 +58,27 @@ class FilmProbe(MicrofacetProbe):
         batch = self.batches[0].where(self.batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(self.counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
-        return easy, self._views(self.counts.albedos, HARD)
+        return easy, film_views(self.subject, self.counts.albedos, HARD)
 
     @cached_property
     def steep(self) -> Batch:
-        return self._views(self.counts.materials, STEEP)
+        """Views of rough lobes under films of few fringes."""
+        return film_views(self.subject, FILMS, STEEP)
+
+    @cached_property
+    def fringed(self) -> Batch:
+        """The same under films of up to many fringes."""
+        return film_views(self.subject, FILMS, FRINGED)
+
+    @cached_property
+    def ordered(self) -> Batch:
+        """Views at grazing of films so thin that all orders count."""
+        return film_views(self.subject, CURVES, ORDERED)
 
     @cached_property
     def sharp(self) -> Batch:
         """Views of lobes that lose nothing, under films whose first orders count alone."""
-        return self._views(4 * self.counts.materials, SHARP)
-
-    def _views(self, count: int, ranges: Mapping[str, tuple[float, float]]) -> Batch:
-        """Views of films with a roughness, a cosine and a thickness in ranges, and mirrored lights."""
-        # Views in the ranges.
-        rng = np.random.default_rng(SEED)
-        alpha, mu, thickness = (
-            low + (high - low) * rng.random(count) for low, high in ranges.values()
-        )
-        azimuth, radius = 2.0 * np.pi * rng.random(count), np.sqrt(1.0 - mu * mu)
-        wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
-        # Films of the ranges on random substrates.
-        inputs = simple(self.subject.random_inputs(rng, count))
-        inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
-        inputs["roughness"] = rounded([alpha, alpha])
-        inputs["thinfilm_thickness"] = rounded([thickness])[:, 0]
-        if "tint" in inputs:
-            inputs["tint"] = np.ones((count, 3))
-        return Batch(wo, wo * [-1.0, -1.0, 1.0], inputs)
+        return film_views(self.subject, 4 * self.counts.materials, SHARP)
 
     @cached_property
     def edges(self) -> Batch:
@@ -93,6 +91,25 @@ class FilmProbe(MicrofacetProbe):
         inputs["thinfilm_thickness"] = rng.choice(THICK, len(wo))
         inputs["thinfilm_ior"][::16] = 0.0
         return Batch(wo, wi, inputs)
+
+
+def film_views(
+    subject: BsdfSubject, count: int, ranges: Mapping[str, tuple[float, float]], seed: int = SEED
+) -> Batch:
+    """Views of films with a roughness, a cosine and a thickness in ranges, and mirrored lights."""
+    # Views in the ranges.
+    rng = np.random.default_rng(seed)
+    alpha, mu, thickness = (low + (high - low) * rng.random(count) for low, high in ranges.values())
+    azimuth, radius = 2.0 * np.pi * rng.random(count), np.sqrt(1.0 - mu * mu)
+    wo = rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
+    # Films of the ranges on random substrates.
+    inputs = simple(subject.random_inputs(rng, count))
+    inputs["thinfilm_ior"] = np.maximum(inputs["thinfilm_ior"], LEAST_OIL)
+    inputs["roughness"] = rounded([alpha, alpha])
+    inputs["thinfilm_thickness"] = rounded([thickness])[:, 0]
+    if "tint" in inputs:
+        inputs["tint"] = np.ones((count, 3))
+    return Batch(wo, wo * [-1.0, -1.0, 1.0], inputs)
 
 
 def _steep(batch: Batch) -> Mask:

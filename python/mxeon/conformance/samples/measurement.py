@@ -64,6 +64,15 @@ def mean_error(measured: Array, expected: Array) -> Array:
     return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
+def root_mean_square(measured: Array, expected: Array) -> Array:
+    """Root mean square of the largest differences of all rows, for every row.
+
+    It notices a small error of many rows, where a bound on the largest has room for that of a few.
+    """
+    errors = absolute(measured, expected)
+    return np.broadcast_to(np.sqrt(np.mean(errors * errors)), len(errors))
+
+
 def worst_of(metric: Metric, cases: Iterable[Case]) -> Measurement:
     """The worst row of (batch, measured, expected) cases."""
     worst = Measurement(-1.0, {})
