@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The smallest repairs of MaterialX's GLSL: with them, the checks that show the defects pass."""
+"""The smallest repairs of MaterialX's data: with them, the checks that show the defects pass."""
 
 import json
 import os
@@ -15,28 +15,37 @@ from mxeon.conformance.results import PASSED
 from tests.support.availability import available
 
 ROOT = Path(__file__).resolve().parents[1]
-# With the color, what is left is an error of the fit.
-OF_FIT = ("transmission", "sheen_bsdf, mode conty_kulla")
-# What is left are roundings of the driver's arc tangent.
-OF_DRIVER = tuple(
-    (check, "chiang_hair_bsdf")
-    for check in ("value", "narrow_lobes", "tilted_lobes", "wide_lobes", "each_lobe")
-)
-ROWS = [pair for row in ledger.rows() for pair in row.repaired]
-ROUNDING = (
-    1.5  # tolerances of the value of a sharp Zeltner lobe in float32, from aInv w.x + bInv w.z
-)
-# Judges rows of stock MaterialX on gl, and prints what it found.
+# Slang compiles the repaired node; what is left is its fit.
+OF_SLANG = ("output", "blackbody", "slang")
+
+
+def hosted(row, pairs):
+    return [(*pair, row.issue.get("host", "gl")) for pair in pairs]
+
+
+ROWS = list(dict.fromkeys(each for row in ledger.rows() for each in hosted(row, row.repaired)))
+REMAINS = {
+    each: words
+    for row in ledger.rows()
+    for words, pairs in row.remains.items()
+    for each in hosted(row, pairs)
+}
+# Judges rows of stock MaterialX, and prints what it found.
 JUDGE = """
 import json, sys
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import Task
+from mxeon.conformance.run.plan import EVERY_NODE, SOURCE, Task
 from mxeon.shaders.document.policy import DEFAULT
 judge = Judge(DEFAULT)
 results = {}
-for row in json.loads(sys.argv[1]):
-    [result] = judge.work(Task(*row, "gl", "stock")).results
-    results["|".join(row)] = result.verdict, result.diagnosis
+for check, subject, host in json.loads(sys.argv[1]):
+    task = Task(check, EVERY_NODE if host == SOURCE else subject, host, "stock")
+    [result] = [
+        each
+        for each in judge.work(task).results
+        if (each.check, each.subject) == (check, subject)
+    ]
+    results["|".join((check, subject, host))] = result.verdict, result.diagnosis
 judge.close()
 print(json.dumps(results))
 """
@@ -45,32 +54,29 @@ print(json.dumps(results))
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory):
     """Verdict and diagnosis of each row with a repaired MaterialX."""
-    with available("gl"):
+    with available("gl"), available("slang"):
         path = [str(repairs.repaired(tmp_path_factory.mktemp("repaired"))), str(ROOT / "python")]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
-    command = [sys.executable, "-c", JUDGE, json.dumps(ROWS)]
+    command = [sys.executable, "-c", JUDGE, json.dumps([*ROWS, *REMAINS, OF_SLANG])]
     run = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
     assert run.returncode == 0, run.stderr
     return {tuple(key.split("|")): result for key, result in json.loads(run.stdout).items()}
 
 
-@pytest.mark.parametrize(
-    "row", [row for row in ROWS if row not in (OF_FIT, *OF_DRIVER)], ids=" ".join
-)
+@pytest.mark.parametrize("row", ROWS, ids=" ".join)
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(judged, row):
     verdict, diagnosis = judged[row]
     assert verdict == PASSED, diagnosis
 
 
-def test_the_sheen_that_is_repaired_has_no_defect_but_its_fit(judged):
-    diagnosis = judged[OF_FIT][1]
-    assert diagnosis.startswith("nearest known model: MaterialX's fit of its albedo (rms ")
-
-
-@pytest.mark.parametrize("row", OF_DRIVER, ids=" ".join)
-def test_the_hair_that_is_repaired_is_right_but_for_the_arc_tangent_of_the_driver(judged, row):
+@pytest.mark.parametrize("row", REMAINS, ids=" ".join)
+def test_what_remains_has_another_cause(judged, row):
     verdict, diagnosis = judged[row]
-    assert verdict == PASSED or diagnosis.startswith("the model is right, Chiang hair (rms ")
+    assert verdict == PASSED or diagnosis.startswith(f"{REMAINS[row]} (rms ")
+
+
+def test_slang_compiles_the_black_body_that_is_repaired(judged):
+    assert judged[OF_SLANG][1].startswith("nearest known model: Kang's cubic")
 
 
 @pytest.mark.parametrize("change", repairs.REPAIRS, ids=lambda each: each.page)

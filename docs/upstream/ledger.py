@@ -7,11 +7,14 @@
     also = ["webgl", "vulkan"]              # other hosts that show it
     library = "stock"                       # that has it; "its own nodes" of a renderer
     differs = true                          # where the text leaves the choice
+    pull = 2961                             # pull request that repairs it after the release
     [rows]                                  # check = subjects: the results of the page's table, if it
                                             # is one of checks; all of them fail
     value = ["sheen_bsdf, mode zeltner"]
     [implied]                               # other results that fail for it, or may
     [repaired]                              # results that pass with the repairs of materialx_repairs.py
+    [remains."DIAGNOSIS"]                   # results that pass with them, or are diagnosed so
+    [patch]                                 # for the upstream repository: patches.py tells its keys
     -->
 
 From these come the index, the navigation of the site, and `known_issues/issues.json` of the package.
@@ -21,7 +24,7 @@ import json
 import re
 import tomllib
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import fill
 
@@ -33,7 +36,29 @@ ISSUES = FOLDER.parents[1] / "python/mxeon/conformance/known_issues/issues.json"
 ROW = re.compile(r"<!-- ledger\n(.*?)-->\n", re.DOTALL)
 GROUP = re.compile(r"<!-- pages (\w+) -->\n.*?<!-- end -->\n", re.DOTALL)
 PAGES = re.compile(r"(?: {10}- upstream/\w+\.md\n)+")
-KEYS = {"group", "host", "also", "library", "differs", "rows", "implied", "repaired"}
+KEYS = {
+    "group",
+    "host",
+    "also",
+    "library",
+    "differs",
+    "rows",
+    "implied",
+    "repaired",
+    "remains",
+    "patch",
+    "pull",
+}
+
+
+@dataclass(frozen=True)
+class Patch:
+    """What the patch of a page has beside the page's text: `patches.py` tells the fields."""
+
+    subject: str
+    change: str
+    needs: list[str] = field(default_factory=list)
+    kind: str = ""
 
 
 @dataclass(frozen=True)
@@ -52,6 +77,11 @@ class Row:
         The fields of `mxeon.conformance.known_issues.issue.Issue`; empty if no check shows it.
     repaired : list of (str, str)
         Results that pass with the repairs.
+    remains : dict of str to list of (str, str)
+        Results that pass with them, or whose diagnosis begins so.
+    patch : Patch or None
+    pull : int
+        Pull request of the upstream that repairs it after the release; 0 for none.
     """
 
     page: str
@@ -60,6 +90,9 @@ class Row:
     differs: bool
     issue: dict[str, object]
     repaired: list[tuple[str, str]]
+    remains: dict[str, list[tuple[str, str]]]
+    patch: Patch | None = None
+    pull: int = 0
 
 
 def rows(folder=FOLDER):
@@ -95,8 +128,17 @@ def _row(path):
             "implied": _pairs(table.get("implied", {})),
             "library": table.get("library", "stock"),
         }
-    repaired = _pairs(table.get("repaired", {}))
-    return Row(path.stem, title, table["group"], table.get("differs", False), issue, repaired)
+    return Row(
+        path.stem,
+        title,
+        table["group"],
+        table.get("differs", False),
+        issue,
+        _pairs(table.get("repaired", {})),
+        {words: _pairs(each) for words, each in table.get("remains", {}).items()},
+        Patch(**table["patch"]) if "patch" in table else None,
+        table.get("pull", 0),
+    )
 
 
 def _pairs(table):

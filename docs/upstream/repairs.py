@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The smallest repairs of renderers from npm, and copies of their packages that have them."""
+"""Changes of upstream files: the smallest repairs of renderers from npm, and copies with them."""
 
 import os
 import shutil
@@ -30,6 +30,7 @@ class Repair:
     new: str
 
 
+MATERIALX = "MaterialX"
 THREE, BABYLON = "three", "@babylonjs/core"
 MAPPINGS = "examples/jsm/loaders/materialx/MaterialXSurfaceMappings.js"
 COLOR = "\tmaterial.colorNode = mul( inputs.base_weight, inputs.base_color );\n"
@@ -60,8 +61,18 @@ DIRECT = "ShadersInclude/pbrDirectLightingFunctions.js"
 SCALED, END = "environmentIrradiance*=vReflectionInfos.x;", "return environmentIrradiance;}"
 COLORED = "environmentIrradiance*=vReflectionColor.rgb*vReflectionInfos.x;"
 FACED, FLAT = {"normal": "surfaceNormal"}, {"normal": "normalW"}
-REPAIRS = (
+THREE_REPAIRS = (
     Repair("three_materialx_roughness", THREE, MAPPINGS, COLOR, COLOR + LOADED),
+    Repair(
+        "three_materialx_roughness",
+        THREE,
+        MAPPINGS,
+        "\t'base_color',\n\t'specular_weight',\n",
+        "\t'base_color',\n\t'base_diffuse_roughness',\n\t'specular_weight',\n",
+    ),
+)
+REPAIRS = (
+    *THREE_REPAIRS,
     Repair(
         "babylon_reflectance_floor",
         BABYLON,
@@ -103,7 +114,24 @@ PATHTRACER_REPAIRS = (
         "float sinThetaISq = 1.0f - cosThetaI * cosThetaI;",
         "float sinThetaISq = max( 0.0, 1.0f - cosThetaI * cosThetaI );",
     ),
+    Repair(
+        "pathtracer_webgl_nan",
+        PATHTRACER,
+        f"{SHADER}/common/fresnel_functions.glsl.js",
+        "float sinTheta = sqrt( 1.0 - cosTheta * cosTheta );",
+        "float sinTheta = sqrt( max( 0.0, 1.0 - cosTheta * cosTheta ) );",
+    ),
 )
+
+
+def library(page: str, file: str, old: str, new: str) -> Repair:
+    """A change of a file of MaterialX's data library."""
+    return Repair(page, MATERIALX, f"libraries/{file}", old, new)
+
+
+def glsl(page: str, file: str, old: str, new: str) -> Repair:
+    """A change of a file of pbrlib's GLSL."""
+    return library(page, f"pbrlib/genglsl/{file}", old, new)
 
 
 def copied(package: str, folder: Path) -> Path:

@@ -17,6 +17,8 @@ from tests.reliability.versions import ROOT, install, run
 from tests.support.availability import required
 
 KEPT = ROOT / "out" / "materialx"
+# What the data of MaterialX's main branch has over those of the release.
+MAIN = ROOT / "tests" / "materialx_main" / "libraries.patch"
 
 
 def wheel(version):
@@ -36,6 +38,26 @@ def wheel(version):
         finally:
             shutil.rmtree(beside, ignore_errors=True)
     return folder
+
+
+def git(folder, *arguments):
+    """The output of git in a folder, with no settings of its user."""
+    who = (
+        "-c",
+        "user.name=tests",
+        "-c",
+        "user.email=tests@mxeon.invalid",
+        "-c",
+        "core.autocrlf=false",
+    )
+    plain = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+    return subprocess.run(
+        ["git", "-C", folder, *who, *arguments],
+        check=True,
+        capture_output=True,
+        text=True,
+        env=os.environ | plain,
+    ).stdout
 
 
 def run_with(version, module, *arguments):
