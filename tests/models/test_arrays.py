@@ -19,6 +19,7 @@ from mxeon.models import dielectric_brdf, eon_brdf, lambert_brdf, unchecked
 from mxeon.models.core import edges
 from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.ranges import RANGES
+from mxeon.models.diffuse import formulas
 from tests.fuzz import arguments
 
 COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"}
@@ -264,6 +265,16 @@ def test_one_rounding_beyond_an_edge_counts_as_the_edge(library):
     assert library.numpy(fon_loss(beyond)) == pytest.approx(fon_loss(1.0), abs=VALUE)
     with pytest.raises(ValueError, match="^mu must lie"):
         fon_loss(1.0 + 1e-6)
+
+
+def test_formulas_take_arrays_of_dr_jit_and_public_functions_refuse_them():
+    drjit = pytest.importorskip("drjit.scalar")
+    mu_o, mu_i, s = np.array([0.3, 1.0, 0.0]), np.array([0.7, 0.4, 0.0]), np.array([0.2, 0.0, -0.5])
+    expected = formulas.eon_brdf_mu(mu_o, mu_i, s, np.array(0.7), np.array(0.4))
+    value = formulas.eon_brdf_mu(*map(drjit.ArrayXf, (mu_o, mu_i, s)), 0.7, 0.4)
+    np.testing.assert_allclose(np.array(value), expected, 1e-6)
+    with pytest.raises(ValueError, match=r"^arrays must not be Dr.Jit's, .* use mxeon.mitsuba"):
+        fon_albedo_dir(drjit.ArrayXf(0.5), 0.5)
 
 
 def test_arrays_of_two_libraries_do_not_mix():

@@ -66,10 +66,12 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
     """
 
     def in_range(array: Numbers) -> Numbers:
+        # Pass what lies within.
         low, high, interval = RANGES[quantity or name]
         # In float64: half floats would round the ends of the range to infinity.
         if not array.size or (float(array.min()) >= low and float(array.max()) <= high):
             return array
+        # Count one rounding beyond an end as the end.
         beyond = ROUNDING if interval in CLOSED else 0.0
         wide = np.asarray(array, np.float64)
         valid = (wide >= low - beyond) & (wide <= high + beyond)

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from mxeon.models.core.arrays import Array, Numbers
-from mxeon.models.core.namespaces import NUMPY, array_namespace
+from mxeon.models.core.namespaces import NUMPY, array_namespace, library
 
 INSIDE = 0.5  # an argument at which every formula of a cosine is smooth
 
@@ -25,6 +27,13 @@ def cosine(z: Array) -> Array:
     if xp is NUMPY:
         return xp.minimum(z, 1.0)  # what is negative was refused, or counted as 0
     return xp.where(z > 1.0, 1.0, xp.where(z < 0.0, 0.0, z))
+
+
+def least_normal(x: Array) -> float:
+    """Smallest positive number that has all its digits in the precision of x."""
+    if library(x) == "drjit":  # whose arrays have no such attribute
+        return float(np.finfo(np.float32).tiny)
+    return float(array_namespace(x).finfo(x.dtype).tiny)
 
 
 def at_most(x: Array, high: float) -> Array:

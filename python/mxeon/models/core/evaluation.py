@@ -189,9 +189,11 @@ def evaluate_material(
     array([0.2, 0.4])
     """
     shape = lead_shape(vectors, numbers)
+    # Evaluate another library's arrays at once.
     if array_namespace(*vectors.values(), *numbers.values()) is not NUMPY:
         parts = {name: _leading_channels(array, len(shape)) for name, array in vectors.items()}
         return _trailing_channels(formula(**parts, **numbers), channels, shape)
+    # Evaluate NumPy's block by block.
     arguments = {**vectors, **{name: array[..., np.newaxis] for name, array in numbers.items()}}
     arrays = {name: with_axes(array, len(shape) + 1) for name, array in arguments.items()}
     out = np.empty((*shape, channels))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import wraps
+from functools import lru_cache, wraps
 from importlib import import_module
 from types import SimpleNamespace
 from typing import ParamSpec, Protocol, TypeVar, cast
@@ -98,7 +98,7 @@ def library(value: object) -> str:
     if isinstance(value, np.ndarray | np.generic | float | int | list | tuple):
         return ""
     name = type(value).__module__.partition(".")[0]
-    if name == "torch" and hasattr(value, "dtype"):
+    if (name == "torch" and hasattr(value, "dtype")) or name == "drjit":
         return name
     return name.removesuffix("lib") if hasattr(value, "__array_namespace__") else ""
 
@@ -119,9 +119,13 @@ def array_namespace(*arrays: object) -> Namespace:
 
 def _others_namespace(others: Sequence[object]) -> Namespace:
     """Functions of the one library whose arrays these are."""
+    # Refuse a mixture.
     names = sorted({library(each) for each in others})
     if len(names) > 1:
         raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
+    # Ask those that do not say it themselves.
+    if names == ["drjit"]:
+        return _drjit()
     if names == ["torch"]:
         try:
             return cast(Namespace, import_module("array_api_compat.torch"))
@@ -129,6 +133,13 @@ def _others_namespace(others: Sequence[object]) -> Namespace:
             message = "arrays of torch need array-api-compat: pip install 'mxeon[arrays]'"
             raise ImportError(message) from None
     return cast(Namespace, _own_namespace(others[0]))
+
+
+@lru_cache(maxsize=1)
+def _drjit() -> Namespace:
+    """Functions of Dr.Jit, which has most names of the standard."""
+    drjit = import_module("drjit")
+    return cast(Namespace, SimpleNamespace(**vars(drjit), where=drjit.select))
 
 
 def _own_namespace(array: object) -> object:
@@ -146,9 +157,11 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
+        # Call it as it is without another library's arrays.
         others = [each for each in (*args, *kwargs.values()) if library(each)]
         if not others:
             return function(*args, **kwargs)
+        # Bring all arguments to that library.
         convert = _converter(others)
         values = (convert(each) for each in args)
         named = {name: convert(each) for name, each in kwargs.items()}
@@ -163,12 +176,16 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
 
 def _converter(others: Sequence[object]) -> Callable[[object], object]:
     """What brings an argument to the library, the precision and the device of these arrays."""
+    # Find the library's precision and device.
+    if library(others[0]) == "drjit":
+        raise ValueError("arrays must not be Dr.Jit's, which have no shape; use mxeon.mitsuba")
     xp = _others_namespace(others)
     arrays = cast("Sequence[Array]", others)
     floating = [each.dtype for each in arrays if xp.isdtype(each.dtype, "real floating")]
     dtype = floating[0] if floating else xp.asarray(0.5).dtype
     place = {"device": arrays[0].device} if library(others[0]) == "torch" else {}
 
+    # Leave switches and words alone.
     def convert(value: object) -> object:
         if library(value):
             array = cast(Array, value)

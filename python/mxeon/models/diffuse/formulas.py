@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, Number
-from mxeon.models.core.edges import at_least_0, cosine, except_at_1, hypot
+from mxeon.models.core.edges import at_least_0, cosine, except_at_1, hypot, least_normal
 from mxeon.models.core.namespaces import array_namespace
 
 # FON loses r c1 / (1 + c1 r) at normal incidence and r (c1 - c2) / (1 + c1 r) on average:
@@ -123,7 +123,7 @@ def oren_nayar_quotient(value: Array, divisor: Array) -> Array:
     A divisor below the smallest normal number counts as 0, for the quotient might overflow.
     """
     xp = array_namespace(value, divisor)
-    return value / xp.where(divisor < xp.finfo(divisor.dtype).tiny, np.inf, divisor)
+    return value / xp.where(divisor < least_normal(divisor), np.inf, divisor)
 
 
 def qon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
@@ -141,6 +141,11 @@ def fon_quotient(mu_o: Array, mu_i: Array, s: Array) -> Array:
 def qon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
     """rho / pi (A_q + B_q s / t_q): [Portsmouth2025], Eqs. (1), (3)."""
     return rho / np.pi * (qon_a(sigma) + qon_b(sigma) * qon_quotient(mu_o, mu_i, s))
+
+
+def fon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+    """rho / pi A_F (1 + r s / t_F): [Portsmouth2025], Eq. (10)."""
+    return fon_scale(rho, roughness) * (1.0 + roughness * fon_quotient(mu_o, mu_i, s))
 
 
 def eon_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
@@ -172,7 +177,7 @@ def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) ->
     q = oren_nayar_angle(high, xp.minimum(S_o, S_i))
     rise = q * (3.0 - 3.0 * q + q**2) - low**2 / (1.0 + xp.maximum(S_o, S_i))
     slope = oren_nayar_quotient(rise, high)
-    return xp.where(high < xp.finfo(high.dtype).tiny, 6.0 / np.pi, slope)
+    return xp.where(high < least_normal(high), 6.0 / np.pi, slope)
 
 
 def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
@@ -227,8 +232,8 @@ def qon_fujii_brdf(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
 
 
 def fon_brdf(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
-    """rho / pi A_F (1 + r s / t_F): [Portsmouth2025], Eq. (10)."""
-    return fon_scale(rho, roughness) * (1.0 + roughness * fon_quotient(*cosines(wo, wi)))
+    """[Portsmouth2025], Eqs. (10), (11)."""
+    return fon_brdf_mu(*cosines(wo, wi), rho, roughness)
 
 
 def eon_brdf(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:

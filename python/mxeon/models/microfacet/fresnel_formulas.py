@@ -37,9 +37,11 @@ def dielectric(mu: Array, ior: Array) -> Array:
     (ior 1) F is 0 at grazing too, where 0 / 0 stands.
     """
     xp = array_namespace(mu, ior)
+    # Find g.
     gap = (ior - 1.0) * (ior + 1.0)
     g2 = gap + mu * mu
     g = root(xp.maximum(g2, 0.0))
+    # Compose both polarizations.
     total = xp.where(g2 > 0.0, g + mu, 1.0)
     amplitude = gap / total / total
     plus = mu * g + (1.0 - mu) * (1.0 + mu)

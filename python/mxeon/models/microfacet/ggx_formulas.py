@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import at_most, hypot, root
+from mxeon.models.core.edges import at_most, hypot, least_normal, root
 from mxeon.models.core.namespaces import array_namespace
 
 # Sums of cosines below count as 0: D alone is at most 1e162.
@@ -72,5 +72,5 @@ def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
 def reciprocal(x: Array) -> Array:
     """1 / x, and 0 where x is so small that a product with D could overflow."""
     xp = array_namespace(x)
-    large = x > max(LEAST, float(xp.finfo(x.dtype).tiny))  # that of float32 is larger
+    large = x > max(LEAST, least_normal(x))  # that of float32 is larger
     return xp.where(large, 1.0 / xp.where(large, x, 1.0), 0.0)

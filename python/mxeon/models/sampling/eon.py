@@ -26,7 +26,7 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.namespaces import any_array
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.diffuse.formulas import (
     C1,
     C2,
@@ -157,7 +157,11 @@ def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLik
 
 def _density(wo: Array, wi: Array, rho: Array, roughness: Array) -> Array:
     """The four parts together, with the weight of `multiple` for `rho`, over their integral."""
-    mu_o, mu_i, s = cosines(wo, wi)
+    return eon_density_mu(*cosines(wo, wi), rho, roughness)
+
+
+def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
+    """Density from the cosines, and from s of `cosines`."""
     weight, loss_o = eon_multiple_weight(rho, roughness), fon_loss(mu_o)
     parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss(mu_i)
     total = 1.0 + C1 * roughness + (weight * (C1 - C2) - roughness) * loss_o
@@ -186,13 +190,13 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
 
 def eon_integrals(
     mu_o: Array, S_o: Array, rho: Array, roughness: Array
-) -> tuple[Array, Array, Array, Array]:
+) -> tuple[Array, Array, Array, float]:
     """Integrals over the disk of lower, upper, multiple and flat, over pi."""
     towards = (2.0 / np.pi) * roughness * S_o
     lower = towards * (1.0 - mu_o) * eon_cube_gap(mu_o, S_o) / 3.0
     upper = towards * eon_segment(mu_o, S_o)
     multiple = (C1 - C2) * eon_multiple_weight(rho, roughness) * fon_loss(mu_o)
-    return lower, upper, multiple, np.ones_like(mu_o)
+    return lower, upper, multiple, 1.0
 
 
 def eon_cube_gap(mu: Array, S: Array) -> Array:
@@ -202,7 +206,8 @@ def eon_cube_gap(mu: Array, S: Array) -> Array:
 
 def eon_segment(mu: Array, S: Array) -> Array:
     """K(theta), integral of sin^2 (1 - cos); near the normal its terms cancel, perhaps below 0."""
-    return np.maximum(0.5 * (np.arctan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
+    xp = array_namespace(mu, S)
+    return xp.maximum(0.5 * (xp.atan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
 
 
 def _stretched(u: Array, start: Array, end: Array) -> Array:
@@ -221,7 +226,7 @@ def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
 
 def eon_lower_cosine(x: Array, S: Array) -> Array:
     """Cosine drawn in proportion to S mu below mu_o: x = 1 - S^3 is uniform."""
-    return np.sqrt(x * (1.0 + S) / (1.0 + S + S * S))
+    return array_namespace(x, S).sqrt(x * (1.0 + S) / (1.0 + S + S * S))
 
 
 def eon_upper_limit(mu: Array, S: Array) -> Array:
@@ -252,7 +257,7 @@ def eon_multiple_cosine(t: Array) -> Array:
     """Cosine drawn in proportion to H(mu) mu, a function of t = v^(1/3)."""
     a, b, c, d, e, f = MULTIPLE
     m = 1.0 - t
-    w = np.sqrt(m)
+    w = array_namespace(m).sqrt(m)
     even, odd = a + m * (b + m * d), c + m * (e + m * m * f)
     return t * (1.0 + m * (even + m * w * odd))
 
@@ -264,8 +269,13 @@ def eon_flat_draw(v: Array, u2: Array, q: Array) -> Array:
     (x, y). z is the square root of 1 - x^2 - y^2 without a cancellation.
     """
     wh = around(np.sqrt(1.0 - v), np.sqrt(v), u2)
-    x, y = wh[..., 0], wh[..., 1]
+    return stack_xyz(*eon_flat_direction(v, wh[..., 0], wh[..., 1], q))
+
+
+def eon_flat_direction(v: Array, x: Array, y: Array, q: Array) -> tuple[Array, Array, Array]:
+    """Components of the direction that `eon_flat_draw` makes of a point of the disk, v = x^2 + y^2."""
+    sqrt = array_namespace(v, x, y, q).sqrt
     ahead = 1.0 + q * x
-    root = np.sqrt(ahead * ahead + q * q * (1.0 - v))
-    z = np.sqrt(2.0 * (1.0 - v) / (ahead + root))
-    return stack_xyz((q * (1.0 - y * y) + 2.0 * x) / (1.0 + root), y, z)
+    root = sqrt(ahead * ahead + q * q * (1.0 - v))
+    z = sqrt(2.0 * (1.0 - v) / (ahead + root))
+    return (q * (1.0 - y * y) + 2.0 * x) / (1.0 + root), y, z

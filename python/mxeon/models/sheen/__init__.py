@@ -12,7 +12,7 @@ import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_triples, checked_vector, lead_shape
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.edges import at_most, guarded
+from mxeon.models.core.edges import at_most, guarded, least_normal
 from mxeon.models.core.evaluation import evaluate
 from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace
 from mxeon.models.diffuse.formulas import cosines
@@ -185,7 +185,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     """Conty and Kulla's lobe, (C, ...), on valid arrays."""
     # Find the squared sine and cosine of the half vector.
     xp = array_namespace(wo, wi, roughness)
-    least = max(LEAST, float(xp.finfo(wo.dtype).tiny))  # that of float32 is larger
+    least = max(LEAST, least_normal(wo))  # that of float32 is larger
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
     upright = xp.square(mu_o + mu_i)

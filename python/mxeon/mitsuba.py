@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: Apache-2.0
+"""EON, FON and QON as BSDF plugins of Mitsuba 3.
+
+The values are those of the formulas of `mxeon.models`, which Dr.Jit evaluates and differentiates. In
+Mitsuba's words `si.wi` is the direction to the viewer and `wo` the one to the light: wo and wi here.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from mxeon.errors import NotRun, PackageError
+from mxeon.models.diffuse import formulas
+from mxeon.models.sampling import eon as sampling
+
+# Objects of Mitsuba and Dr.Jit, whose types are those of the variant.
+Mitsuba: TypeAlias = Any
+
+# LLVM 15 and older cannot compile what Dr.Jit 1.5 makes of a minimum; it ends the process.
+OLDEST_LLVM = (16, 0, 0)
+
+
+def register() -> None:
+    """Register the BSDFs `eon`, `fon` and `qon` for the variant of Mitsuba that is set.
+
+    Raises
+    ------
+    PackageError
+        If Mitsuba is missing.
+    NotRun
+        If no variant is set, or its LLVM is missing or too old for Dr.Jit.
+
+    Notes
+    -----
+    `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in
+    radian. All are in `mitsuba.traverse`, and can be differentiated. `eon` is sampled exactly for the mean
+    of its reflectance, the others by the cosine. As Mitsuba's `diffuse` they reflect on the front alone.
+    """
+    mi = _mitsuba()
+    for name, kind in {"eon": EonPlugin, "fon": FonPlugin, "qon": QonPlugin}.items():
+        members = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
+        mi.register_bsdf(name, type(name, (mi.BSDF,), members | _members(kind)))
+
+
+def _mitsuba() -> Mitsuba:
+    """Mitsuba, with a variant that can run."""
+    try:
+        mi = import_module("mitsuba")
+    except ModuleNotFoundError:
+        raise PackageError("mitsuba is not installed: pip install 'mxeon[mitsuba]'") from None
+    variant = mi.variant()
+    if not variant:
+        raise NotRun("mitsuba: no variant is set; call mitsuba.set_variant('llvm_ad_rgb') first")
+    version = import_module("drjit").detail.llvm_version() if "llvm" in variant else OLDEST_LLVM
+    if version < OLDEST_LLVM:
+        raise NotRun(
+            f"mitsuba: Dr.Jit found LLVM {version[0]}, with which it ends the process; install LLVM 16 "
+            "or later (Debian: libllvm19), or name its library in DRJIT_LIBLLVM_PATH"
+        )
+    return mi
+
+
+def _members(kind: type) -> dict[str, object]:
+    """What a class and its bases define: a class of Mitsuba's must have one base alone."""
+    named = [item for each in reversed(kind.__mro__) for item in vars(each).items()]
+    return {name: member for name, member in named if not name.startswith("__")}
+
+
+def _initialize(self: Mitsuba, properties: Mitsuba) -> None:
+    """Make a BSDF of its properties."""
+    self.mi.BSDF.__init__(self, properties)
+    self.configure(properties)
+
+
+class RoughDiffusePlugin:
+    """Methods of a BSDF of Mitsuba with a reflectance and one more parameter.
+
+    Attributes
+    ----------
+    mi, dr : module
+    parameter : str
+        Name of the parameter.
+    largest : float
+        End of its range.
+    """
+
+    mi: Mitsuba
+    dr: Mitsuba
+    parameter = "roughness"
+    largest = 1.0
+
+    def configure(self, properties: Mitsuba) -> None:
+        """Take the textures, and say which lobes there are."""
+        self.reflectance = properties.get_texture("reflectance", 0.5)
+        self.amount = properties.get_texture(self.parameter, 0.0)
+        flags = self.mi.BSDFFlags.DiffuseReflection | self.mi.BSDFFlags.FrontSide
+        self.m_components, self.m_flags = [flags], flags
+
+    def traverse(self, callback: Mitsuba) -> None:
+        """Show the textures to `mitsuba.traverse`."""
+        for name, texture in (("reflectance", self.reflectance), (self.parameter, self.amount)):
+            callback.put(name, texture, self.mi.ParamFlags.Differentiable)
+
+    def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
+        """BSDF times the cosine, 0 where a direction is not in front."""
+        active = self._front(context, si.wi, wo, active)
+        color = self.reflectance.eval(si, active)
+        amount = self._clipped(self.amount.eval_1(si, active))
+        return self.dr.select(active, self._reflected(si.wi, wo, color, amount), 0.0)
+
+    def pdf(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
+        """Density in solid angle of `sample`."""
+        active = self._front(context, si.wi, wo, active)
+        rho, amount = self._gray(si, active)
+        return self.dr.select(active, self._density(si.wi, wo, rho, amount), 0.0)
+
+    def eval_pdf(
+        self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True
+    ) -> tuple[Mitsuba, Mitsuba]:
+        """`eval` and `pdf`."""
+        return self.eval(context, si, wo, active), self.pdf(context, si, wo, active)
+
+    def sample(
+        self,
+        context: Mitsuba,
+        si: Mitsuba,
+        sample1: Mitsuba,
+        sample2: Mitsuba,
+        active: Mitsuba = True,
+    ) -> tuple[Mitsuba, Mitsuba]:
+        """Direction to the light, and `eval` over `pdf`."""
+        # Draw a direction.
+        rho, amount = self._gray(si, active)
+        wo = self._draw(si.wi, sample1, sample2, self.dr.detach(rho), self.dr.detach(amount))
+        active = self._front(context, si.wi, wo, active)
+        pdf = self._density(si.wi, wo, rho, amount)
+        active = active & (pdf > 0.0)
+        # Fill in the record.
+        record = self.mi.BSDFSample3f(wo)
+        record.pdf = self.dr.select(active, self.dr.detach(pdf), 0.0)
+        record.eta = 1.0
+        record.sampled_type = self.mi.UInt32(+self.mi.BSDFFlags.DiffuseReflection)
+        record.sampled_component = 0
+        # Weigh it.
+        value = self.eval(context, si, wo, active)
+        return record, self.dr.select(active, value / self.dr.select(active, record.pdf, 1.0), 0.0)
+
+    def eval_diffuse_reflectance(self, si: Mitsuba, active: Mitsuba = True) -> Mitsuba:
+        """Reflectance, for denoisers."""
+        return self.reflectance.eval(si, active)
+
+    def to_string(self) -> str:
+        """Name and textures."""
+        return f"{self.parameter}: {self.amount}, reflectance: {self.reflectance}"
+
+    def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
+        """Where the lobe is asked for, and both directions are in front."""
+        wanted = context.is_enabled(self.mi.BSDFFlags.DiffuseReflection)
+        return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
+
+    def _clipped(self, amount: Mitsuba) -> Mitsuba:
+        """Parameter in its range, which an optimizer may have left."""
+        return self.dr.clip(amount, 0.0, self.largest)
+
+    def _gray(self, si: Mitsuba, active: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
+        """Reflectance for which the sampling is exact, and the parameter."""
+        rho = self.dr.mean(self.reflectance.eval(si, active))
+        return self.dr.clip(rho, 0.0, 1.0), self._clipped(self.amount.eval_1(si, active))
+
+    def _reflected(self, view: Mitsuba, light: Mitsuba, color: Mitsuba, amount: Mitsuba) -> Mitsuba:
+        """BSDF times the cosine, per channel."""
+        s = view.x * light.x + view.y * light.y
+        channels = [self._brdf(view.z, light.z, s, rho, amount) * light.z for rho in color]
+        return type(color)(*map(self.mi.Float, channels))
+
+    def _brdf(
+        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
+    ) -> Mitsuba:
+        """BRDF of one channel, in 1/sr."""
+        raise NotImplementedError
+
+    def _density(self, view: Mitsuba, light: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
+        """Density of `_draw`: by the cosine."""
+        return light.z * self.dr.inv_pi
+
+    def _draw(
+        self, view: Mitsuba, choice: Mitsuba, u: Mitsuba, rho: Mitsuba, amount: Mitsuba
+    ) -> Mitsuba:
+        """Direction to the light: by its cosine."""
+        return self.mi.warp.square_to_cosine_hemisphere(u)
+
+
+class FonPlugin(RoughDiffusePlugin):
+    """FON, sampled by the cosine."""
+
+    def _brdf(
+        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
+    ) -> Mitsuba:
+        return formulas.fon_brdf_mu(mu_o, mu_i, s, rho, amount)
+
+
+class QonPlugin(RoughDiffusePlugin):
+    """QON, sampled by the cosine."""
+
+    parameter = "sigma"
+    largest = 0.5 * np.pi
+
+    def _brdf(
+        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
+    ) -> Mitsuba:
+        return formulas.qon_brdf_mu(mu_o, mu_i, s, rho, amount)
+
+
+class EonPlugin(RoughDiffusePlugin):
+    """EON, sampled exactly; see `mxeon.models.sampling.eon`."""
+
+    def _brdf(
+        self, mu_o: Mitsuba, mu_i: Mitsuba, s: Mitsuba, rho: Mitsuba, amount: Mitsuba
+    ) -> Mitsuba:
+        return formulas.eon_brdf_mu(mu_o, mu_i, s, rho, amount)
+
+    def _density(self, view: Mitsuba, light: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
+        s = view.x * light.x + view.y * light.y
+        return self.mi.Float(sampling.eon_density_mu(view.z, light.z, s, rho, amount))
+
+    def _draw(
+        self, view: Mitsuba, choice: Mitsuba, u: Mitsuba, rho: Mitsuba, amount: Mitsuba
+    ) -> Mitsuba:
+        """Direction from one of the four parts, drawn as `eon_draw` does it."""
+        # Choose a part.
+        dr, number = self.dr, self.mi.Float
+        mu_o, S_o = view.z, dr.safe_sqrt(view.x * view.x + view.y * view.y)
+        lower, upper, multiple, flat = sampling.eon_integrals(mu_o, S_o, rho, amount)
+        place = choice * number(lower + upper + multiple + flat)
+        is_lower, is_towards = place < number(lower), place < number(lower + upper)
+        is_flat = place >= number(lower + upper + multiple)
+        # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
+        v, u2 = u.x, u.y
+        x = number(v * mu_o * sampling.eon_cube_gap(mu_o, S_o))
+        mu_lower = number(sampling.eon_lower_cosine(x, dr.cbrt(1.0 - x)))
+        limit = sampling.eon_upper_limit(mu_o, S_o)
+        mu_upper = number(sampling.eon_upper_cosine(v**0.4, mu_o, limit))
+        mu_multiple = number(sampling.eon_multiple_cosine(dr.cbrt(v)))
+        mu = dr.select(is_lower, mu_lower, dr.select(is_towards, mu_upper, mu_multiple))
+        # Draw an azimuth from that of wo: towards it, uniform, or by the chord of the disk.
+        S, (sine, cosine) = dr.safe_sqrt((1.0 - mu) * (1.0 + mu)), dr.sincos(2.0 * dr.pi * u2)
+        ahead = dr.select(is_towards, 2.0 * dr.safe_sqrt(u2 * (1.0 - u2)), cosine)
+        aside = dr.select(is_towards, 2.0 * u2 - 1.0, sine)
+        r = dr.sqrt(v)
+        point = sampling.eon_flat_direction(v, r * cosine, r * sine, amount * S_o)
+        wo = [
+            dr.select(is_flat, number(each), other)
+            for each, other in zip(point, (S * ahead, S * aside, mu), strict=True)
+        ]
+        # Turn it to the azimuth of wo.
+        tilted = S_o > 0.0
+        to_x = dr.select(tilted, view.x / dr.select(tilted, S_o, 1.0), 1.0)
+        to_y = dr.select(tilted, view.y / dr.select(tilted, S_o, 1.0), 0.0)
+        return self.mi.Vector3f(to_x * wo[0] - to_y * wo[1], to_y * wo[0] + to_x * wo[1], wo[2])

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""EON, FON and QON as plugins of Mitsuba: values, sampling, energy and gradients."""
+
+import re
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mxeon import mitsuba as plugins
+from mxeon import models
+from mxeon.errors import NotRun, PackageError
+from tests.support.availability import available
+from tests.support.tolerances import MITSUBA_EVAL, MITSUBA_WEIGHT
+
+PAGE = Path(__file__).parents[2] / "docs" / "mitsuba.md"
+PARAMETERS = {"eon": "roughness", "fon": "roughness", "qon": "sigma"}
+COLOR = (0.25, 0.5, 1.0)  # exact in float32
+PAIRS, SEED = 512, 7
+SAMPLES = 100_000  # of a chi-square test
+ANGLES = (0.0, 0.8, 1.5)
+
+
+@pytest.fixture
+def mi():
+    """Mitsuba in an LLVM variant, with the plugins."""
+    mitsuba = pytest.importorskip("mitsuba")
+    mitsuba.set_variant("llvm_ad_rgb")
+    with available("mitsuba"):
+        plugins.register()
+    return mitsuba
+
+
+def material(name, amount, color=COLOR):
+    reflectance = {"type": "rgb", "value": list(color)}
+    return {"type": name, "reflectance": reflectance, PARAMETERS[name]: amount}
+
+
+def directions(rng):
+    """Unit vectors in float32, some of them along the normal or grazing."""
+    w = rng.normal(size=(PAIRS, 3))
+    w[:, 2] = np.abs(w[:, 2])
+    w[:8], w[8:16, 2] = (0.0, 0.0, 1.0), 1e-3
+    return (w / np.linalg.norm(w, axis=1, keepdims=True)).astype(np.float32)
+
+
+def surface(mi, wo):
+    """Points that are seen from these directions."""
+    point = mi.SurfaceInteraction3f()
+    point.wi = mi.Vector3f(np.asarray(wo).T)
+    return point
+
+
+def expected(name, wo, wi, amount):
+    f = getattr(models, f"{name}_brdf")(wo, wi, COLOR, float(np.float32(amount)))
+    return f * np.asarray(wi, np.float64)[..., 2:]
+
+
+@pytest.mark.parametrize("amount", (0.0, 0.3, 1.0))
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_values_are_those_of_the_model(mi, name, amount):
+    rng = np.random.default_rng(SEED)
+    wo, wi = directions(rng), directions(rng)[::-1].copy()
+    bsdf = mi.load_dict(material(name, amount))
+    light = mi.Vector3f(wi.T)
+    values = np.array(bsdf.eval(mi.BSDFContext(), surface(mi, wo), light)).T
+    assert np.abs(values - expected(name, wo, wi, amount)).max() <= MITSUBA_EVAL
+    behind = bsdf.eval(mi.BSDFContext(), surface(mi, wo), -light)
+    assert not np.array(behind).any()
+
+
+def test_a_scalar_variant_has_the_same_values(mi):
+    mi.set_variant("scalar_rgb")
+    plugins.register()
+    bsdf, point = mi.load_dict(material("eon", 0.3)), mi.SurfaceInteraction3f()
+    point.wi = [0.6, 0.0, 0.8]
+    value = bsdf.eval(mi.BSDFContext(), point, mi.Vector3f(0.0, 0.6, 0.8))
+    reference = expected("eon", [0.6, 0.0, 0.8], [0.0, 0.6, 0.8], 0.3)
+    assert np.abs(np.array(value) - reference).max() <= MITSUBA_EVAL
+    _, weight = bsdf.sample(mi.BSDFContext(), point, 0.5, mi.Point2f(0.25, 0.75))
+    assert np.array(weight).min() > 0.2
+
+
+@pytest.mark.parametrize("amount", (0.3, 1.0))
+@pytest.mark.parametrize("angle", ANGLES)
+def test_mitsubas_chi_square_test_accepts_the_sampling_of_eon(mi, angle, amount):
+    test = chi_square(
+        mi, angle, lambda adapter: adapter("eon", material("eon", amount, (0.5,) * 3))
+    )
+    assert test.run(test_count=2 * len(ANGLES), quiet=True), test.messages
+
+
+def test_mitsubas_chi_square_test_refuses_the_density_of_another_roughness(mi):
+    def mismatched(adapter):
+        rough, smooth = (adapter("eon", material("eon", each, (0.5,) * 3)) for each in (1.0, 0.5))
+        return rough[0], smooth[1]
+
+    assert not chi_square(mi, 0.8, mismatched).run(test_count=2 * len(ANGLES), quiet=True)
+
+
+def chi_square(mi, angle, functions):
+    """Mitsuba's test of the pair of functions that its adapter makes of a BSDF."""
+    from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+
+    wi = [float(0.8 * np.sin(angle)), float(0.6 * np.sin(angle)), float(np.cos(angle))]
+    sample, pdf = functions(lambda *arguments: BSDFAdapter(*arguments, wi=wi))
+    return ChiSquareTest(
+        domain=SphericalDomain(),
+        sample_func=sample,
+        pdf_func=pdf,
+        sample_dim=3,
+        sample_count=SAMPLES,
+        res=31,
+    )
+
+
+@pytest.mark.parametrize("amount", (0.0, 0.5, 1.0))
+def test_every_sample_of_a_white_surface_has_the_weight_1(mi, amount):
+    rng = np.random.default_rng(SEED)
+    bsdf = mi.load_dict(material("eon", amount, (1.0,) * 3))
+    u = mi.Float(rng.random(PAIRS)), mi.Point2f(rng.random((2, PAIRS)))
+    record, weight = bsdf.sample(mi.BSDFContext(), surface(mi, directions(rng)), *u)
+    assert np.abs(np.array(weight) - 1.0).max() <= MITSUBA_WEIGHT
+    assert np.array(record.pdf).min() > 0.0
+
+
+@pytest.mark.parametrize(("name", "lossless"), (("eon", True), ("fon", False)))
+def test_a_white_furnace_keeps_its_energy(mi, name, lossless):
+    camera = mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0])
+    film = {"type": "hdrfilm", "width": 32, "height": 32, "rfilter": {"type": "box"}}
+    picture = mi.render(
+        mi.load_dict(
+            {
+                "type": "scene",
+                "integrator": {"type": "direct", "emitter_samples": 0, "bsdf_samples": 1},
+                "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": film},
+                "sphere": {"type": "sphere", "bsdf": material(name, 1.0, (1.0,) * 3)},
+                "light": {"type": "constant", "radiance": {"type": "rgb", "value": 1.0}},
+            }
+        ),
+        spp=4,
+    )
+    off = np.abs(np.array(picture) - 1.0).max()
+    assert (off <= 2 * MITSUBA_WEIGHT) == lossless
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_gradients_are_those_of_the_model(mi, name):
+    import drjit as dr
+
+    amount, wo, wi = 0.4, np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.6, 0.64]])
+    bsdf = mi.load_dict(material(name, amount))
+    parameters = mi.traverse(bsdf)
+    for each in ("reflectance.value", f"{PARAMETERS[name]}.value"):
+        dr.enable_grad(parameters[each])
+    parameters.update()
+    value = bsdf.eval(mi.BSDFContext(), surface(mi, wo), mi.Vector3f(wi.T))
+    dr.backward(dr.sum(value))
+    step = 1e-4
+    ends = [expected(name, wo, wi, np.float64(amount) + each).sum() for each in (step, -step)]
+    slope = (ends[0] - ends[1]) / (
+        np.float64(np.float32(amount + step)) - np.float32(amount - step)
+    )
+    found = np.array(dr.grad(parameters[f"{PARAMETERS[name]}.value"])).item()
+    assert found == pytest.approx(slope, abs=1e-6)
+    assert np.array(dr.grad(parameters["reflectance.value"])).min() > 0.0
+
+
+def test_an_llvm_that_ends_the_process_is_refused_before(mi, monkeypatch):
+    monkeypatch.setattr("drjit.detail.llvm_version", lambda: (15, 0, 6))
+    with pytest.raises(NotRun, match="found LLVM 15, .* libllvm19.* DRJIT_LIBLLVM_PATH"):
+        plugins.register()
+
+
+def test_a_variant_has_to_be_set_first(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mitsuba", SimpleNamespace(variant=lambda: None))
+    with pytest.raises(NotRun, match=r"call mitsuba.set_variant\('llvm_ad_rgb'\) first"):
+        plugins.register()
+
+
+def test_mitsuba_is_named_where_it_is_missing(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mitsuba", None)
+    with pytest.raises(PackageError, match=r"pip install 'mxeon\[mitsuba\]'"):
+        plugins.register()
+
+
+def test_the_example_of_the_page_runs(mi, tmp_path, monkeypatch):
+    [block] = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(block.replace("spp=16", "spp=1"), {})
+    assert (tmp_path / "clay.png").stat().st_size > 1000
