@@ -16,7 +16,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
         F.average = fresnel_conductor_avg(ior, extinction);
         F.visible = vec3(1.0);  // without a film the environment's sum has the curve
-        microfacet_add_film(lobe, fd, lobe.closure == CLOSURE_TYPE_INDIRECT, F);
+        microfacet_add_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, 0, bsdf);
     }
     bsdf.throughput = vec3(0.0);

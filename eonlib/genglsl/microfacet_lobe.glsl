@@ -36,8 +36,29 @@
 // Compensation below which two cosines serve for F_ss.
 #define MICROFACET_LITTLE 0.005
 
+// Weights whose sums tell lobes under films apart, in one pixel: of mu_o, alpha, thickness and index of the
+// film, and of the curve's average without it and its kind.
+#define MICROFACET_LOBE_KEY vec4(1.0, 0.7320508, 0.0041421356, 0.236068)
+#define MICROFACET_CURVE_KEY vec4(0.4142136, 0.6457513, 0.1622777, 1.0)
+
 // Index of a mirror by MaterialX's curves of dielectrics and conductors.
 #define MICROFACET_MIRROR_IOR 1e8
+
+// A variable that a call leaves to the next one.
+#ifdef __SLANG__
+#define MICROFACET_STATIC static
+#else
+#define MICROFACET_STATIC
+#endif
+
+// The last two lobes under films, and their averages: every closure and every light of a pixel asks for the
+// same ones, and materials have a metal and a dielectric under one film.
+MICROFACET_STATIC vec2 microfacet_key1 = vec2(0.0);
+MICROFACET_STATIC vec2 microfacet_key2 = vec2(0.0);
+MICROFACET_STATIC vec3 microfacet_average1 = vec3(0.0);
+MICROFACET_STATIC vec3 microfacet_average2 = vec3(0.0);
+MICROFACET_STATIC vec3 microfacet_visible1 = vec3(0.0);
+MICROFACET_STATIC vec3 microfacet_visible2 = vec3(0.0);
 
 // The lobe at one direction wo: [MaterialX2026], Microfacet Model.
 struct MicrofacetLobe
@@ -156,35 +177,54 @@ vec3 microfacet_visible(int i, int count, vec3 moments)
                 count == 1 ? moments.y : MICROFACET_WIDTH * moments.y);
 }
 
-// Put a film's reflectances in the place of those without one, in one loop: of the visible facets, of the
-// cosines of the hemisphere, and of the half vector.
-void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, bool use_visible,
-                         inout MicrofacetFresnel F)
+// Put a film's reflectances in the place of those without one, in one loop: of the visible facets and of the
+// cosines of the hemisphere, unless the last lobes had them, and of the half vector.
+void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     if (fd.airy)
     {
-        F.value = vec3(0.0);
-        F.average = vec3(0.0);
-        F.visible = vec3(0.0);
+        // Look up the averages.
+        vec4 film = vec4(lobe.mu_o, lobe.alpha, fd.tf_thickness, fd.tf_ior);
+        vec2 key = vec2(dot(MICROFACET_LOBE_KEY, film),
+                        dot(MICROFACET_CURVE_KEY, vec4(F.average, float(fd.model))));
+        bool is_last = key.x == microfacet_key1.x && key.y == microfacet_key1.y;
+        bool is_known = is_last || (key.x == microfacet_key2.x && key.y == microfacet_key2.y);
+        F.average = is_last ? microfacet_average1 : microfacet_average2;
+        F.visible = is_last ? microfacet_visible1 : microfacet_visible2;
+
+        // Count the nodes.
         vec3 moments = microfacet_facets(lobe);
         int facets = moments.y < MICROFACET_ALIKE ? 1 : 4;
         int cosines = 1.0 - lobe.albedo < MICROFACET_LITTLE * lobe.albedo ? 2 : 5;
         int last = facets + cosines;
         int end = lobe.closure == CLOSURE_TYPE_REFLECTION ? last + 1 : last;
-        int i = use_visible ? 0 : facets;
-        do
+        int i = is_known ? last : 0;
+        if (i < end)
         {
-            // Cosine, weight and width of a node.
-            vec3 node = i < last ? thin_film_gauss(i - facets, cosines) : vec3(lobe.mu_h, 1.0, 0.0);
-            node = i < facets ? microfacet_visible(i, facets, moments) : node;
+            F.average = is_known ? F.average : vec3(0.0);
+            F.visible = is_known ? F.visible : vec3(0.0);
+            do
+            {
+                // Cosine, weight and width of a node.
+                vec3 node = i < last ? thin_film_gauss(i - facets, cosines) : vec3(lobe.mu_h, 1.0, 0.0);
+                node = i < facets ? microfacet_visible(i, facets, moments) : node;
 
-            // Add its share.
-            vec3 curve = node.y * thin_film_fresnel(node.x, node.z, fd);
-            F.visible += i < facets ? curve : vec3(0.0);
-            F.average += i < facets || i == last ? vec3(0.0) : curve;
-            F.value = curve;
-            i++;
-        } while (i < end);
+                // Add its share.
+                vec3 curve = node.y * thin_film_fresnel(node.x, node.z, fd);
+                F.visible += i < facets ? curve : vec3(0.0);
+                F.average += i < facets || i == last ? vec3(0.0) : curve;
+                F.value = curve;
+                i++;
+            } while (i < end);
+        }
+
+        // Keep the averages.
+        microfacet_key2 = microfacet_key1;
+        microfacet_average2 = microfacet_average1;
+        microfacet_visible2 = microfacet_visible1;
+        microfacet_key1 = key;
+        microfacet_average1 = F.average;
+        microfacet_visible1 = F.visible;
     }
 }
 

@@ -197,7 +197,8 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     float twice = 2.0e-9 * fd.tf_thickness;
     float nu = n * mu_t;
     ThinFilmWaves waves = thin_film_waves(twice * nu, twice * width * mu / max(nu, THIN_FILM_LEAST));
-    int channels = fd.model == FRESNEL_MODEL_DIELECTRIC ? 1 : 3;
+    vec3 colors = abs(re_s - re_s.x) + abs(im_s - im_s.x) + abs(re_p - re_p.x) + abs(im_p - im_p.x);
+    int channels = dot(colors, vec3(1.0)) > 0.0 ? 3 : 1;
     vec3 orders_s, orders_p;
     thin_film_sums(-r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p, waves, channels, orders_s,
                    orders_p);

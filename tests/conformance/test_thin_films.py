@@ -3,6 +3,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fits import thin_film as fit
@@ -14,6 +15,9 @@ from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.probes.thin_films import FilmProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import document_text, input_text, node_text
+from mxeon.shaders.scene import SIDE
 from tests.support.wrong_libraries import wrong_copy
 
 SUBJECTS = {subject.node: subject for subject in FILMS}
@@ -92,7 +96,7 @@ WRONG = {
         "conductor_bsdf", "clamp(0.5 * (F_s + F_p), 0.0, 1.0)", "1.1 + 0.0 * F_s", "film_energy",
     ),
     "one facet": (
-        "conductor_bsdf", "int i = use_visible ? 0 : facets;", "facets = 1; int i = 0;", "film_environment",
+        "conductor_bsdf", "int i = is_known ? last : 0;", "facets = 1; int i = 0;", "film_environment",
     ),
     "one cosine for the average": (
         "conductor_bsdf", "F.average += i < facets || i == last ? vec3(0.0) : curve;",
@@ -137,6 +141,28 @@ def test_a_wrong_line_of_a_film_fails_a_check(gl, tmp_path, name):
     probe = FilmProbe(gl, SUBJECTS[node], library, FEWER)
     result = judge_check(row, probe)
     assert result.verdict == FAILED and result.control.caught
+
+
+def test_every_lobe_of_a_pixel_has_its_own_film(gl, tmp_path):
+    whole, forgetful, mixed = (
+        picture_of_lobes(gl, wrong_copy(tmp_path / name, text, other, *FILMS_IN))
+        for name, text, other in (
+            ("whole", "is_known", "is_known"),
+            ("forgetful", "int i = is_known ? last : 0;", "is_known = false; int i = 0;"),
+            ("mixed", "dot(MICROFACET_CURVE_KEY, vec4(F.average, float(fd.model)))", "1.0"),
+        )
+    )
+    np.testing.assert_allclose(whole, forgetful, atol=1e-5)
+    assert np.abs(whole - mixed).max() > 0.01
+
+
+def picture_of_lobes(host, library):
+    """Picture of a metal beside a dielectric under one film, in a light and an environment."""
+    values = {"metallic": 0.5, "iridescence": 1.0, "iridescence_thickness": 500.0}
+    inputs = "".join(input_text(name, "float", value) for name, value in values.items())
+    document = document_text(node_text("gltf_pbr", "surfaceshader", "shading", inputs))
+    shader = generate(document, "glsl", library=library, lights=True)[0]
+    return host.picture(shader, replace(SIDE, environment=1.0, size=16))
 
 
 def test_every_check_of_a_film_has_a_shader_that_it_fails():
