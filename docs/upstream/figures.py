@@ -9,7 +9,13 @@ from scipy.optimize import brentq
 from docs.upstream import film_quantities as film
 from docs.upstream.hair_figures import OF_HAIR
 from docs.upstream.random_walk import distances, reflectance_of_h
-from docs.upstream.shader_figures import blur_error, throughput_changes
+from docs.upstream.shader_figures import (
+    acos_error,
+    blur_error,
+    mirrored_sheen,
+    refracted_angles,
+    throughput_changes,
+)
 from docs.upstream.transmission_quantities import inside_albedo
 from mxeon.models import thin_film
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
@@ -115,8 +121,8 @@ def qon_fit_figures():
 
 
 def refraction_figures():
-    """Largest index of generalized Schlick."""
-    return {"index": np.max(schlick_ior((1.0, 1.0, 1.0), "text"))}
+    """Largest index of generalized Schlick, and angles at which light is NaN."""
+    return {"index": np.max(schlick_ior((1.0, 1.0, 1.0), "text")), **refracted_angles()}
 
 
 def circle_figures():
@@ -198,7 +204,9 @@ FIGURES = {
     **OF_HAIR,
     "babylon_reflectance_floor": floor_figures,
     "genglsl_add_throughput": sum_figures,
+    "genglsl_albedo_acos": acos_error,
     "genglsl_blackbody_cold": blackbody_figures,
+    "genglsl_conty_kulla_fit": mirrored_sheen,
     "genglsl_film_choices": film_figures,
     "genglsl_ggx_fit": ggx_fit_figures,
     "genglsl_microfacet_throughput": throughput_changes,

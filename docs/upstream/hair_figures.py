@@ -4,6 +4,7 @@
 import numpy as np
 from scipy.optimize import brentq
 
+from docs.upstream.shader_figures import azimuth_errors
 from mxeon.models.hair.defects import LIMITS
 from mxeon.models.hair.parameters import chiang_hair_roughness
 from mxeon.models.microfacet.fresnel import fresnel_dielectric
@@ -49,14 +50,14 @@ def uniform_figures():
     return {"bright": 1.0 + 4.0 / 27.0 * (np.pi**2 - 1.0), "straight": (1.0 - F) * F * F}
 
 
-def sine_figures():
-    """Rounding of sqrt(1 - cos^2) beside a cosine of 1 in float32."""
+def azimuth_figures():
+    """Rounding of sqrt(1 - cos^2) beside a cosine of 1 in float32, and of the driver's arc sine."""
     near = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
-    return {"sine": np.sqrt(1.0 - near * near)}
+    return {"sine": np.sqrt(1.0 - near * near), **azimuth_errors()}
 
 
 OF_HAIR = {
-    "genglsl_hair_azimuth": sine_figures,
+    "genglsl_hair_azimuth": azimuth_figures,
     "genglsl_hair_longitudinal": longitudinal_figures,
     "genglsl_hair_roughness": roughness_figures,
     "genglsl_hair_uniform_lobe": uniform_figures,

@@ -9,7 +9,8 @@ import numpy as np
 
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.bsdf import MicrofacetProbe
-from mxeon.conformance.samples.batch import Batch
+from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_type_of
+from mxeon.conformance.samples.batch import SEED, Batch, directions, rounded
 from mxeon.hosts import open_host
 from mxeon.models.media.subsurface import diffusion_blur
 from mxeon.shaders.library import eonlib_folder
@@ -17,6 +18,74 @@ from mxeon.shaders.library import eonlib_folder
 REACHES = (0.1, 0.2, 0.6)  # of the profile; between them and beyond errors are smaller
 COSINES = np.linspace(-1.0, 1.0, 401).astype(np.float32).astype(np.float64)
 CHANGES = {"color82": 0.3, "exponent": 1.0}  # of the default node, color82 1 and exponent 5
+
+ARCS = """float mxeon_acos(float x)
+{
+    return acos(x);
+}
+float mxeon_asin(float x)
+{
+    return asin(x);
+}
+"""
+SCALE = 0.1  # of the azimuthal lobe of hair
+REFRACTED = {"smooth": 0.0001, "rough": 0.05}  # alpha, by name
+
+
+def arc_errors():
+    """Largest errors of the driver's arc cosine and arc sine, by name."""
+    x = np.linspace(-1.0, 1.0, 1 << 16).astype(np.float32).astype(np.float64)
+    with closing(open_host("gl")) as host:
+        return {
+            name: np.abs(host.execute(ARCS, f"mxeon_{name}", x)[:, 0] - exact(x)).max()
+            for name, exact in (("acos", np.arccos), ("asin", np.arcsin))
+        }
+
+
+def acos_error():
+    """Error of the driver's arc cosine."""
+    return {"acos": arc_errors()["acos"]}
+
+
+def azimuth_errors():
+    """Error of the driver's arc sine, and what a lobe of SCALE makes of it."""
+    error = arc_errors()["asin"]
+    return {"asin": error, "lobe": error / SCALE}
+
+
+def mirrored_sheen():
+    """Largest value of the Conty-Kulla sheen at roughness 1 where it is 0, in mirrored lights."""
+    with closing(open_host("gl")) as host:
+        wo = rounded(directions(np.random.default_rng(SEED), 1 << 14).T)
+        inputs = {"color": np.ones_like(wo), "roughness": np.ones(len(wo))}
+        probe = _probe(host, "sheen_bsdf, mode conty_kulla")
+        return {"mirrored": probe.direct(Batch(wo, wo * [-1.0, -1.0, 1.0], inputs)).max()}
+
+
+def refracted_angles():
+    """Largest angles with the horizon, in degrees, at which light through a dielectric is NaN."""
+    degrees, index = (
+        each.ravel()
+        for each in np.meshgrid(np.linspace(0.005, 3.0, 300), np.linspace(1.05, 4.5, 70))
+    )
+    angle = np.radians(degrees)
+    wo = rounded([np.cos(angle), 0.0 * angle, np.sin(angle)])
+    inputs = {"ior": index, "tint": np.ones_like(wo)}
+    with closing(open_host("gl")) as host:
+        probe = _probe(host, "dielectric_bsdf, scatter_mode RT")
+        light = {
+            name: probe.transmitted(
+                Batch(wo, wo, inputs | {"roughness": np.full((len(wo), 2), alpha)})
+            )
+            for name, alpha in REFRACTED.items()
+        }
+    return {name: degrees[~np.isfinite(each).all(axis=1)].max() for name, each in light.items()}
+
+
+def _probe(host, title):
+    """The probe of stock's node of a title."""
+    [subject] = [each for each in PBR_SUBJECTS if each.title == title]
+    return probe_type_of(subject, probe_type("gl"))(host, subject, "stock")
 
 
 @cache
