@@ -3,13 +3,14 @@
 
 import os
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import indent
 
 import MaterialX as mx
 
 from docs.upstream.hair_repairs import HAIR_REPAIRS, UNIFORM_LOBE
-from docs.upstream.repairs import MATERIALX, glsl, library, repair
+from docs.upstream.repairs import MATERIALX, Repair, glsl, library, repair
 
 SHEEN, LOBES = "mx_sheen_bsdf.glsl", "lib/mx_microfacet_sheen.glsl"
 COSINES, FLOATS = "NdotL, NdotV, ", "float NdotL, float NdotV, "
@@ -237,10 +238,19 @@ def installed() -> Path:
     return Path(mx.__file__).parent
 
 
-def repaired(folder: Path) -> Path:
-    """A folder for the path of Python, in which MaterialX is a tree of links with all repairs."""
+def linked(folder: Path, package: Path | None = None) -> Path:
+    """A tree of links to a package of MaterialX, in a folder for the path of Python."""
     ignored = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(installed(), folder / MATERIALX, copy_function=os.symlink, ignore=ignored)
-    for change in REPAIRS:
+    target = folder / MATERIALX
+    shutil.copytree(package or installed(), target, copy_function=os.symlink, ignore=ignored)
+    return target
+
+
+def repaired(
+    folder: Path, package: Path | None = None, changes: Sequence[Repair] = REPAIRS
+) -> Path:
+    """A folder for the path of Python, in which MaterialX is a tree of links with repairs."""
+    linked(folder, package)
+    for change in changes:
         repair(folder, change)
     return folder

@@ -6,13 +6,17 @@ A version is downloaded once and kept in `out/materialx`, which git ignores.
 
 import json
 import os
+import re
 import shutil
 import subprocess
+from hashlib import sha256
+from pathlib import Path
 from tempfile import mkdtemp
 
 import MaterialX as mx
 import pytest
 
+from docs.upstream.materialx_repairs import linked
 from tests.reliability.versions import ROOT, install, run
 from tests.support.availability import required
 
@@ -22,17 +26,22 @@ MAIN = ROOT / "tests" / "materialx_main" / "libraries.patch"
 
 
 def wheel(version):
-    """Folder of a version of MaterialX; the test is skipped where it cannot be had."""
-    folder = KEPT / version
+    """Folder of a version of MaterialX, "main" for the installed one with the data of its main branch.
+
+    The test is skipped where a version cannot be had.
+    """
     if version == mx.getVersionString():
         return ROOT  # which has none, so that the installed one is found
+    folder = KEPT / (_main_name() if version == "main" else version)
     if not folder.is_dir():
         KEPT.mkdir(parents=True, exist_ok=True)
         beside = mkdtemp(dir=KEPT)
         try:
-            install(version, beside)
+            _main(Path(beside)) if version == "main" else install(version, beside)
             os.replace(beside, folder)
         except (subprocess.CalledProcessError, OSError) as error:
+            if version == "main" and not folder.is_dir():  # which needs nothing from elsewhere
+                raise
             if not folder.is_dir() and not required():  # another worker may have been faster
                 pytest.skip(f"no wheel of MaterialX {version}: {error}")
         finally:
@@ -40,23 +49,35 @@ def wheel(version):
     return folder
 
 
+def _main_name():
+    return f"main-{sha256(MAIN.read_bytes()).hexdigest()[:12]}"
+
+
+def _main(folder):
+    """Link to the installed MaterialX, and change its data to those of main."""
+    package = linked(folder)
+    for file in re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE):
+        data = (package / file).read_bytes()
+        (package / file).unlink()  # a link
+        (package / file).write_bytes(data)
+    git(package, "apply", MAIN)
+
+
 def git(folder, *arguments):
-    """The output of git in a folder, with no settings of its user."""
-    who = (
-        "-c",
-        "user.name=tests",
-        "-c",
-        "user.email=tests@mxeon.invalid",
-        "-c",
-        "core.autocrlf=false",
-    )
-    plain = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+    """The output of git in a folder, with no settings of its user and none of a folder around it."""
+    who = {"user.name": "tests", "user.email": "tests@mxeon.invalid", "core.autocrlf": "false"}
+    options = [word for name, value in who.items() for word in ("-c", f"{name}={value}")]
+    alone = {
+        "GIT_CONFIG_GLOBAL": os.devnull,
+        "GIT_CONFIG_NOSYSTEM": "1",
+        "GIT_CEILING_DIRECTORIES": str(Path(folder).resolve().parent),
+    }
     return subprocess.run(
-        ["git", "-C", folder, *who, *arguments],
+        ["git", "-C", folder, *options, *arguments],
         check=True,
         capture_output=True,
         text=True,
-        env=os.environ | plain,
+        env=os.environ | alone,
     ).stdout
 
 
@@ -67,6 +88,6 @@ def run_with(version, module, *arguments):
     return done.stdout
 
 
-def verdicts_with(version, library):
-    """Verdicts on the microfacet nodes of a library with a version of MaterialX."""
-    return json.loads(run_with(version, "tests.support.microfacets", library))
+def verdicts_with(version, library, *nodes):
+    """Verdicts on the values of nodes of a library, or of all, with a version of MaterialX."""
+    return json.loads(run_with(version, "tests.support.every_node", library, *nodes))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Judges the microfacet nodes of a library with the MaterialX of this process.
+"""Judges the nodes of a library on gl with the MaterialX of this process, each by its values.
 
-python -m tests.support.microfacets FOLDER     prints the verdicts as JSON
+python -m tests.support.every_node LIBRARY [NODE ...]     prints the verdicts as JSON
 """
 
 import json
@@ -12,27 +12,31 @@ from dataclasses import replace
 from mxeon.conformance.checks.application import judge_subject
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.hosts import open_host
 
-NODES = ("dielectric_bsdf", "conductor_bsdf", "generalized_schlick_bsdf")
-KEYS = ("value", "film")
+KEYS = (
+    *("value", "environment", "film", "transmitted", "combination"),
+    *("radiance", "transmittance", "output"),
+)
 FEWER = {"pairs": 1 << 9, "few": 1 << 8, "albedos": 1 << 5, "materials": 32, "mirrored": 1 << 9}
 
 
-def main(library):
+def main(library, *nodes):
     quick = {"diagnose": lambda probe: Diagnosis("")}  # which takes long
     rows = [replace(row, **quick) for row in CHECKS if row.key in KEYS]
     results = []
     with closing(open_host("gl")) as host:
-        for subject in PBR_SUBJECTS:
-            if subject.node in NODES:
+        for subject in (*SUBJECTS, *PBR_SUBJECTS):
+            if not nodes or subject.node in nodes:
                 probe = probe_type_of(subject, PairProbe)(host, subject, library)
-                probe = type(probe)(host, subject, library, replace(probe.usual, **FEWER))
+                fewer = {key: value for key, value in FEWER.items() if hasattr(probe.usual, key)}
+                probe = type(probe)(host, subject, library, replace(probe.usual, **fewer))
                 results += judge_subject(probe, rows)
     print(json.dumps({f"{each.check}, {each.subject}": each.verdict for each in results}))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])
