@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fits of models to measured BRDFs, with the uncertainty of each parameter. Needs scipy.
+
+A measured BRDF is a list of pairs of directions with values, or a file of the MERL database.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from mxeon.errors import PackageError, assert_known
+from mxeon.fit.lobes import FIT_MODELS, dielectric_over_eon, openpbr_base
+from mxeon.fit.measured import MeasuredBrdf, merl_directions, read_merl
+from mxeon.models.core.arrays import Array, ArrayLike
+
+__all__ = [
+    "Fit",
+    "MeasuredBrdf",
+    "dielectric_over_eon",
+    "fit_brdf",
+    "merl_directions",
+    "openpbr_base",
+    "read_merl",
+]
+
+LEAST_SINGULAR = 1e-12  # of the largest one: below, a direction of parameters is undetermined
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Parameters of a model that fit a measured BRDF best, with their standard deviations.
+
+    Attributes
+    ----------
+    model : str
+    values, errors : dict of str to ndarray
+        By parameter: `rho` (C,), and numbers.
+    covariance : ndarray, shape (P, P)
+        Of rho's channels and then the others, in the order of `values`.
+    scatter : float
+        Root of the mean squared difference from the data, per degree of freedom: in units of `error`,
+        about 1 where model and errors are right; in 1/sr without errors.
+    """
+
+    model: str
+    values: dict[str, Array]
+    errors: dict[str, Array]
+    covariance: Array
+    scatter: float
+
+    def brdf(self, wo: ArrayLike, wi: ArrayLike) -> Array:
+        """Values of the fitted model in 1/sr, shape (N, C), for directions (N, 3)."""
+        directions = (np.asarray(w, np.float64) for w in (wo, wi))
+        return FIT_MODELS[self.model].value(*directions, **self.values)
+
+    def __str__(self) -> str:
+        rows, width = [f"{self.model}, scatter {self.scatter:.3g}"], max(map(len, self.values))
+        for name, value in self.values.items():
+            pairs = zip(np.atleast_1d(value), np.atleast_1d(self.errors[name]), strict=True)
+            rows.append(f"  {name:{width}} " + ", ".join(f"{v:.4f} +- {e:.4f}" for v, e in pairs))
+        return "\n".join(rows)
+
+
+def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
+    """Parameters of a model that fit a measured BRDF best, by least squares.
+
+    Parameters
+    ----------
+    measurement : MeasuredBrdf
+    model : str
+        "eon", with `rho` and `roughness`; "dielectric_over_eon", a GGX lobe of a dielectric layered over
+        EON, with `alpha` and `ior` besides; or "openpbr_base", mixed with a metal.
+
+    Returns
+    -------
+    Fit
+        The best one of several starts.
+
+    Raises
+    ------
+    InputError
+        If the model is unknown.
+    PackageError
+        If scipy, of the `fit` extra, is not installed.
+
+    Notes
+    -----
+    Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), with the errors of the data, or
+    times their scatter. What the data do not determine, such as the roughness of a black surface, has a
+    very large one. At an end of a parameter's range they hold on the side that is left.
+
+    Examples
+    --------
+    >>> from mxeon.models import eon_brdf
+    >>> wo, wi = np.tile([0.6, 0.0, 0.8], (2, 1)), np.array([[0.0, 0.0, 1.0], [0.8, 0.0, 0.6]])
+    >>> fitted = fit_brdf(MeasuredBrdf(wo, wi, eon_brdf(wo, wi, [0.5], 0.25)))
+    >>> fitted.values["rho"].round(6), fitted.values["roughness"].round(6)
+    (array([0.5]), np.float64(0.25))
+    """
+    assert_known("model", model, FIT_MODELS)
+    row, data = FIT_MODELS[model], measurement
+    channels, scale = data.value.shape[1], 1.0 if data.error is None else data.error
+
+    def parameters(x: Array) -> dict[str, Array]:
+        return {"rho": x[:channels], **dict(zip(row.bounds, x[channels:], strict=True))}
+
+    def residuals(x: Array) -> Array:
+        difference: Array = (row.value(data.wo, data.wi, **parameters(x)) - data.value) / scale
+        return difference.ravel()
+
+    # Search from each start, and keep the best.
+    lows, highs = zip(*([(0.0, 1.0)] * channels + list(row.bounds.values())), strict=True)
+    albedo = list(np.clip(np.pi * data.value.mean(axis=0), 0.05, 0.95))
+    starts = ([*albedo, *start] for start in product(*row.starts.values()))
+    best = min((_search(residuals, start, lows, highs) for start in starts), key=lambda s: s[1])
+    x, cost, jacobian = best
+    # Tell the uncertainty.
+    covariance = _inverse_normal(jacobian)
+    scatter = float(np.sqrt(cost / max(data.value.size - len(x), 1)))
+    covariance = covariance if data.error is not None else covariance * scatter**2
+    return Fit(model, parameters(x), parameters(np.sqrt(np.diag(covariance))), covariance, scatter)
+
+
+def _search(
+    residuals: Callable[[Array], Array],
+    start: list[float],
+    lows: tuple[float, ...],
+    highs: tuple[float, ...],
+) -> tuple[Array, float, Array]:
+    """Parameters, sum of squares, and derivatives where a search from a start ends."""
+    try:
+        from scipy.optimize import least_squares
+    except ImportError as error:
+        raise PackageError("mxeon.fit needs scipy: pip install 'mxeon[fit]'") from error
+    found = least_squares(residuals, start, bounds=(lows, highs), xtol=1e-10, ftol=1e-10)
+    return found.x, 2.0 * float(found.cost), found.jac
+
+
+def _inverse_normal(jacobian: Array) -> Array:
+    """(J^T J)^-1, with very large numbers where it has none."""
+    _, singular, rows = np.linalg.svd(jacobian, full_matrices=False)
+    kept = np.maximum(singular, max(LEAST_SINGULAR * singular[0], np.finfo(np.float64).tiny))
+    inverse: Array = (rows.T / kept**2) @ rows
+    return inverse
