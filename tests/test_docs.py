@@ -154,7 +154,13 @@ def test_a_dead_link_fails_the_build(link, home):
     assert build(home / "mkdocs.yml", home / "site").returncode != 0
 
 
-@pytest.mark.parametrize("module", [models, albedo, inversion, sampling], ids=lambda m: m.__name__)
+def test_every_public_function_of_the_models_is_on_a_page():
+    text = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs/api").glob("*.md"))
+    functions = re.findall(r"^::: mxeon\.[\w.]+\.(\w+)$", text, re.MULTILINE)
+    assert {name for name in models.__all__ if name.islower()} - set(functions) == set()
+
+
+@pytest.mark.parametrize("module", [albedo, inversion, sampling], ids=lambda m: m.__name__)
 def test_every_public_function_is_in_the_reference(module):
     name = module.__name__.rpartition(".")[2]
     text = (ROOT / "docs" / "api" / f"{name}.md").read_text(encoding="utf-8")

@@ -112,7 +112,7 @@ ANY = {
     "io": 1,
     "jobs": 35,
     "kit": 14,
-    "models": 2,
+    "models": 3,
     "report": 14,
 }
 

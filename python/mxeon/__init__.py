@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # for type checkers and the API reference, which run no code
     from mxeon.conformance.callables import brdf_test, check_brdf
     from mxeon.conformance.run import check
+    from mxeon.models.catalog import model
     from mxeon.shaders.generation import Shader, generate
     from mxeon.shaders.library import load_library
 
@@ -23,6 +24,7 @@ _HOMES = {
     "check_brdf": "mxeon.conformance.callables",
     "generate": "mxeon.shaders.generation",
     "load_library": "mxeon.shaders.library",
+    "model": "mxeon.models.catalog",
 }
 __all__ = [
     "Shader",
@@ -32,6 +34,7 @@ __all__ = [
     "check_brdf",
     "generate",
     "load_library",
+    "model",
 ]
 
 

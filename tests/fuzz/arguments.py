@@ -60,7 +60,11 @@ VALID = {
 CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for others
 PLUMBING = (
     "mxeon.models.core.arguments",
+    "mxeon.models.catalog",
     "mxeon.models.core.evaluation",
+    "mxeon.models.lobe_plot",
+    "mxeon.models.nodes.inputs",
+    "mxeon.models.shading_model",
 )  # which has no arguments of its own
 TAKEN = (bool, str, float, int)  # kinds of arguments, besides arrays, that are tried
 

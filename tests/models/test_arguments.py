@@ -15,7 +15,8 @@ from mxeon.models.transmission.refraction import refraction_direction
 from tests.fuzz import arguments
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "api"
-NO_ARRAYS = {"threads", "unchecked", "layer", "add"}  # functions on the pages that take no array
+# Functions on the pages that take no array.
+NO_ARRAYS = {"threads", "unchecked", "layer", "add", "model", "model_names"}
 
 
 @pytest.fixture(scope="module")

@@ -37,7 +37,10 @@ MESSAGES = (
         lambda: models.ggx_ndf([0.0, 0.0, -1.0], A),
         "wh must not point below the horizon (z >= 0); got z = -1.0",
     ),
-    (lambda: models.ggx_ndf(UP, 0.5), "roughness must have shape (..., 2); got shape ()"),
+    (
+        lambda: models.conductor_brdf(UP, UP, [[0.5, 0.4, 0.3]], 1.5, 3.0),
+        "write roughness[..., np.newaxis] for a number for each direction",
+    ),
     (
         lambda: models.smith_g1(UP, [0.5, 1.5]),
         "roughness must lie in [0, 1]; got 1.5 at index (1,)",
@@ -59,7 +62,7 @@ MESSAGES = (
     ),
     (
         lambda: models.generalized_schlick_brdf(UP, UP, 1.0, 1.0, 1.0, [0.5, 0.5, 0.5], 5.0),
-        "roughness must have shape (..., 2); got shape (3,)",
+        "roughness must be a number or have shape (..., 2); got shape (3,)",
     ),
     (lambda: albedo.ggx_albedo_dir(0.5, 1.5), "alpha must lie in [0, 1]; got 1.5"),
     (

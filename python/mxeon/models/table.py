@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from difflib import get_close_matches
 
 import numpy as np
 
+from mxeon.models.core.arguments import checked_choice
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse import albedo, known_defect_albedos, known_defects
@@ -81,13 +81,8 @@ def model(name: str) -> Model:
     >>> model("eon").parameter
     'roughness'
     """
-    rows = MODELS + KNOWN_DEFECTS + OTHERS + PARAMETRIZATIONS
-    for row in rows:
-        if row.name == name:
-            return row
-    names = [row.name for row in rows]
-    near = "".join(f": did you mean {each}?" for each in get_close_matches(str(name), names, 1))
-    raise ValueError(f"model must be one of {', '.join(names)}; got {name!r}{near}")
+    rows = {row.name: row for row in MODELS + KNOWN_DEFECTS + OTHERS + PARAMETRIZATIONS}
+    return rows[checked_choice("model", name, rows)]
 
 
 def _lambert_albedo_dir(mu: ArrayLike, rho: ArrayLike) -> Array:

@@ -7,6 +7,7 @@ Directions leave the surface, in a local frame with the normal +z.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from difflib import get_close_matches
 from typing import NoReturn, cast
 
 import numpy as np
@@ -144,7 +145,10 @@ def checked_count(name: str, value: int) -> int:
 def checked_choice(name: str, value: str, known: Collection[str]) -> str:
     """Argument that is one of the known words."""
     if not isinstance(value, str) or value not in known:
-        raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
+        near = "".join(
+            f": did you mean {each}?" for each in get_close_matches(str(value), known, 1)
+        )
+        raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}{near}")
     return value
 
 
@@ -224,6 +228,49 @@ def checked_pairs(name: str, value: ArrayLike) -> Numbers:
     if array.shape[-1:] != (2,):
         raise ValueError(f"{name} must have shape (..., 2); got shape {tuple(array.shape)}")
     return array
+
+
+def checked_roughness(value: ArrayLike) -> Numbers:
+    """alpha along tangent and bitangent in [0, 1], shape (..., 2); a number counts for both."""
+    return spread_pair("roughness", checked("roughness", value))
+
+
+def spread_pair(name: str, array: Numbers) -> Numbers:
+    """Array of pairs, shape (..., 2), of which a number, or a last axis of 1, counts for both.
+
+    Examples
+    --------
+    >>> spread_pair("roughness", np.array(0.3))
+    array([0.3, 0.3])
+    """
+    array = array if array.ndim else array[np.newaxis]
+    if array.shape[-1] == 1:
+        return array_namespace(array).broadcast_to(array, (*array.shape[:-1], 2))
+    if array.shape[-1] != 2:
+        raise ValueError(
+            f"{name} must be a number or have shape (..., 2); got shape {tuple(array.shape)}: "
+            f"write {name}[..., np.newaxis] for a number for each direction"
+        )
+    return array
+
+
+def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
+    """Raise ValueError for a list of N numbers beside N directions, unless it is red, green and blue.
+
+    Examples
+    --------
+    >>> refuse_ambiguous("rho", np.ones(5), (5,))
+    Traceback (most recent call last):
+    ...
+    ValueError: rho of shape (5,) beside 5 directions has two meanings: write rho[:, np.newaxis] for a number for each direction, rho[np.newaxis] for a color of 5 channels
+    """
+    if color.shape == lead and color.ndim == 1 and color.shape[0] not in (1, 3):
+        count = color.shape[0]
+        raise ValueError(
+            f"{name} of shape ({count},) beside {count} directions has two meanings: write "
+            f"{name}[:, np.newaxis] for a number for each direction, {name}[np.newaxis] for a "
+            f"color of {count} channels"
+        )
 
 
 def are_directions(components: Numbers) -> bool:

@@ -65,7 +65,7 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
     last = later
     for row in coefficients[:0:-1]:
         last, later = twice * last - later + row, last
-    return y * last - later + coefficients[0]
+    return np.asarray(y * last - later + coefficients[0])
 
 
 def _angles(count: int) -> Array:

@@ -18,6 +18,7 @@ from mxeon.models.core.arguments import (
     checked_vector,
     lead_shape,
     on_horizon,
+    refuse_ambiguous,
     refuse_direction,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
@@ -80,7 +81,8 @@ def evaluate(
     wo, wi : array_like, shape (..., 3)
         Directions, unit vectors on or above the horizon.
     rho : array_like, shape (..., C)
-        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel.
+        Reflectance per channel, dimensionless, in [0, 1]; a number is one channel. A list of N numbers
+        beside N directions is refused, unless it is red, green and blue.
     **parameter : array_like, shape (...)
         At most one, under a name of `RANGES`.
 
@@ -103,6 +105,7 @@ def evaluate(
     arguments = {"wo": checked_triples("wo", wo), "wi": checked_triples("wi", wi)}
     arguments["rho"] = checked_vector("rho", rho)
     numbers = {name: checked(name, value) for name, value in parameter.items()}
+    refuse_ambiguous("rho", arguments["rho"], lead_shape(arguments, numbers))
     if array_namespace(*arguments.values(), *numbers.values()) is not NUMPY:
         return _evaluate_whole(formula, arguments, numbers)
     # Broadcast them.

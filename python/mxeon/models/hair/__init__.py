@@ -213,7 +213,7 @@ def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
     return formulas.azimuthal(*checked_numbers(phi=phi, scale=scale))
 
 
-DEFAULTS: dict[str, ArrayLike] = {
+DEFAULTS: dict[str, float | tuple[float, ...]] = {
     **dict.fromkeys(TINTS, (1.0, 1.0, 1.0)),
     "ior": 1.55,
     "roughness_R": (0.1, 0.1),

@@ -45,8 +45,8 @@ def dielectric_brdf(
         Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
     tint : array_like, shape (..., C)
         Color per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
     ior : array_like, shape (...)
         Index of refraction relative to the exterior medium, in [0, 1e50].
     retroreflective : bool
@@ -108,8 +108,8 @@ def conductor_brdf(
     ----------
     wo, wi : array_like, shape (..., 3)
         Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
     ior, extinction : array_like, shape (..., C)
         Complex index of refraction per channel, in [0, 1e50]; a number is one channel.
     retroreflective : bool
@@ -162,8 +162,8 @@ def generalized_schlick_brdf(
     color0, color82, color90 : array_like, shape (..., C)
         Reflectance along the normal, multiplier at acos(1/7), and reflectance at grazing, per
         channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
     exponent : array_like, shape (...)
         Exponent of the Schlick curve, in [0, 1e50].
     retroreflective : bool

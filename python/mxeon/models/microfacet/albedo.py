@@ -14,7 +14,7 @@ from mxeon.models.core.arguments import (
     channel_count,
     checked,
     checked_directions,
-    checked_pairs,
+    checked_roughness,
     checked_switch,
     lead_shape,
 )
@@ -153,8 +153,8 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     ----------
     wo : array_like, shape (..., 3)
         Direction that leaves the surface, unit vector to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
 
     Returns
     -------
@@ -179,7 +179,7 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     >>> ggx_albedo_dir_anisotropic([[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]], [0.1, 0.5]).round(6)
     array([0.837774, 0.874089])
     """
-    wo, roughness = checked_directions("wo", wo), checked_pairs("roughness", roughness)
+    wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     lead_shape({"wo": wo, "roughness": roughness}, {})
     return lobe_albedo(WHITE, wo, roughness, {"tint": np.ones(1)}, {}, False)[..., 0][()]
 
@@ -193,7 +193,7 @@ def lobe_albedo(
     compensate: bool,
 ) -> Array:
     """Albedo of a lobe with this Fresnel curve, whose checked inputs `vectors` and `numbers` are."""
-    wo, roughness = checked_directions("wo", wo), checked_pairs("roughness", roughness)
+    wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     checked_switch("compensate", compensate)
 
     def value(wo: Array, roughness: Array, unseen: Array, **material: Array) -> Array:

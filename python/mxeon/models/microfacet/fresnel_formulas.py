@@ -137,7 +137,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     n, k = ior[smooth], extinction[smooth]
     groups = (slice(start, start + GROUP) for start in range(0, len(n), GROUP))
     total[smooth] = np.concatenate([np.empty(0), *(_smooth_avg(n[g], k[g]) for g in groups)])
-    rest = ~smooth
+    rest = np.logical_not(smooth)
     total[rest] = _split_avg(ior[rest], extinction[rest], n2[rest])
     return np.minimum(total, 1.0)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_directions, checked_pairs
+from mxeon.models.core.arguments import checked, checked_directions, checked_roughness
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import any_array, array_namespace
@@ -22,8 +22,8 @@ def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
     ----------
     wh : array_like, shape (..., 3)
         Microfacet normal, unit vector to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def ggx_ndf(wh: ArrayLike, roughness: ArrayLike) -> Array:
     """
     vectors = {
         "wh": checked_directions("wh", wh),
-        "roughness": checked_pairs("roughness", roughness),
+        "roughness": checked_roughness(roughness),
     }
     values = evaluate_material(
         lambda wh, roughness: formulas.ndf(wh, roughness)[np.newaxis], vectors, {}, 1
@@ -71,8 +71,8 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
     ----------
     wo : array_like, shape (..., 3)
         Direction that leaves the surface, unit vector to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
 
     Returns
     -------
@@ -90,7 +90,7 @@ def smith_g1(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """
     vectors = {
         "wo": checked_directions("wo", wo),
-        "roughness": checked_pairs("roughness", roughness),
+        "roughness": checked_roughness(roughness),
     }
 
     def value(wo: Array, roughness: Array) -> Array:
@@ -159,8 +159,8 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
     ----------
     wo, wi : array_like, shape (..., 3)
         Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
 
     Returns
     -------
@@ -184,7 +184,7 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
     vectors = {
         "wo": checked_directions("wo", wo),
         "wi": checked_directions("wi", wi),
-        "roughness": checked_pairs("roughness", roughness),
+        "roughness": checked_roughness(roughness),
     }
 
     def value(wo: Array, wi: Array, roughness: Array) -> Array:

@@ -11,8 +11,10 @@ import numpy as np
 from mxeon.models.core.arguments import (
     channel_count,
     checked_directions,
-    checked_pairs,
+    checked_roughness,
     checked_switch,
+    lead_shape,
+    refuse_ambiguous,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
@@ -126,10 +128,15 @@ def evaluate_lobe(
     retroreflective: bool = False,
 ) -> Array:
     """Values of a lobe, shape (..., C); `vectors` and `numbers` are checked inputs of the curve."""
+    # Check the arguments.
     directions = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    pairs = {"roughness": checked_pairs("roughness", roughness)}
+    pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("retroreflective", retroreflective)
+    lead = lead_shape(directions | pairs, numbers)
+    for name, color in vectors.items():
+        refuse_ambiguous(name, color, lead)
 
+    # Evaluate all blocks.
     def value(wo: Array, wi: Array, roughness: Array, **material: Array) -> Array:
         if retroreflective:
             wo = array_namespace(wo).stack([-wo[0], -wo[1], wo[2]])

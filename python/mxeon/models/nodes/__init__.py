@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from mxeon.models.core.arguments import checked_choice
 from mxeon.models.nodes.lobes import LOBE_NODES
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
 from mxeon.models.nodes.node import PbrNode
@@ -24,6 +25,4 @@ def node(name: str) -> PbrNode:
     'sheen_bsdf'
     """
     rows = {row.name: row for row in NODES}
-    if name not in rows:
-        raise ValueError(f"node must be one of {', '.join(rows)}; got {name!r}")
-    return rows[name]
+    return rows[checked_choice("node", name, rows)]

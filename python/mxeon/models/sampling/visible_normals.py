@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked_directions, checked_pairs, lead_shape
+from mxeon.models.core.arguments import checked_directions, checked_roughness, lead_shape
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.sampling.hemisphere import around, unpack_uniforms
@@ -24,8 +24,8 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
         Unit vectors on or above the horizon.
     u : array_like, shape (..., 2)
         Independent uniform random numbers, in [0, 1).
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
 
     Returns
     -------
@@ -55,9 +55,7 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     """
     u1, u2 = unpack_uniforms(u)
     vectors = {"wo": checked_directions("wo", wo), "u": np.stack([u1, u2], axis=-1)}
-    view, (u1, u2), alpha = _components(
-        vectors | {"roughness": checked_pairs("roughness", roughness)}
-    )
+    view, (u1, u2), alpha = _components(vectors | {"roughness": checked_roughness(roughness)})
     wh = visible_normal(view, u1, u2, alpha)
     wi = np.moveaxis(2.0 * np.sum(view * wh, axis=0) * wh - view, 0, -1)
     return wi, _density(view, wh, alpha)
@@ -74,8 +72,8 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     ----------
     wo, wi : array_like, shape (..., 3)
         Unit vectors on or above the horizon.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
 
     Returns
     -------
@@ -92,7 +90,7 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     0.455389
     """
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
-    vectors["roughness"] = checked_pairs("roughness", roughness)
+    vectors["roughness"] = checked_roughness(roughness)
     view, light, alpha = _components(vectors)
     return _density(view, ggx.half_vector(view, light)[0], alpha)
 

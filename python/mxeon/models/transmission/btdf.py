@@ -19,7 +19,7 @@ from mxeon.models.core.arguments import (
     channel_count,
     checked,
     checked_directions,
-    checked_pairs,
+    checked_roughness,
     checked_switch,
     checked_transmitted,
 )
@@ -49,8 +49,8 @@ def dielectric_btdf(
         wi has z <= 0.
     tint : array_like, shape (..., C)
         Color per channel, dimensionless, in [0, 1]; a number is one channel.
-    roughness : array_like, shape (..., 2)
-        alpha along tangent and bitangent, dimensionless, in [0, 1].
+    roughness : array_like, shape (..., 2) or ()
+        alpha along tangent and bitangent, dimensionless, in [0, 1]; a number is isotropic.
     ior : array_like, shape (...)
         Index of refraction of the side of wi relative to that of wo, in [0, 1e50].
     radiance : bool
@@ -112,7 +112,7 @@ def evaluate_btdf(
     """
     # Check the arguments.
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
-    pairs = {"roughness": checked_pairs("roughness", roughness)}
+    pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("radiance", radiance)
     checked_switch("anywhere", anywhere)
 

@@ -18,7 +18,7 @@ from mxeon.models.core.arguments import (
     checked_choice,
     checked_color,
     checked_directions,
-    checked_pairs,
+    checked_roughness,
     checked_switch,
     checked_transmitted,
     lead_shape,
@@ -192,7 +192,7 @@ def generalized_schlick_btdf(
     checked_switch("inside", inside)
     parts, numbers = _parts(how, color0, color82, color90), _power(exponent)
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
-    pairs = {"roughness": checked_pairs("roughness", roughness)}
+    pairs = {"roughness": checked_roughness(roughness)}
     lead_shape(directions | pairs | parts[0][1], numbers)
     channels = [
         evaluate_btdf(
@@ -255,7 +255,7 @@ def generalized_schlick_transmittance_dir(
     checked_switch("inside", inside)
     parts, numbers = _parts(how, color0, color82, color90), _power(exponent)
     directions = {"wo": checked_directions("wo", wo)}
-    pairs = {"roughness": checked_pairs("roughness", roughness)}
+    pairs = {"roughness": checked_roughness(roughness)}
     lead_shape(directions | pairs | parts[0][1], numbers)
     channels = [
         evaluate_transmittance(

@@ -17,7 +17,7 @@ from mxeon.models.core.arguments import (
     channel_count,
     checked,
     checked_directions,
-    checked_pairs,
+    checked_roughness,
     checked_switch,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
@@ -96,7 +96,7 @@ def evaluate_transmittance(
     """Transmittance, shape (..., C), of checked inputs; `numbers` has the index."""
     # Check the arguments.
     directions = {"wo": checked_directions("wo", wo)}
-    pairs = {"roughness": checked_pairs("roughness", roughness)}
+    pairs = {"roughness": checked_roughness(roughness)}
     checked_switch("shadow", shadow)
 
     # Sum what passes the facets that the view sees, and is not shadowed.

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every model by its name, as one object.
+
+Inputs have MaterialX's names, order, units and defaults, whatever the functions of `mxeon.models` have.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mxeon.models import sampling, table
+from mxeon.models.core.arguments import checked_choice
+from mxeon.models.core.arrays import Array
+from mxeon.models.core.quadrature import albedo_dir_quadrature
+from mxeon.models.nodes import NODES
+from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.node import Inputs, PbrNode
+from mxeon.models.nodes.parameters import parameter
+from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
+from mxeon.models.nodes.thin_films import FILM_NODES
+from mxeon.models.shading_model import ModelSampler, ShadingModel
+
+COSINE = ModelSampler(
+    lambda wo, u, i: sampling.cosine_sample(u), lambda wo, wi, i: sampling.cosine_pdf(wi)
+)
+EON = ModelSampler(
+    lambda wo, u, i: sampling.eon_sample(wo, u, i["roughness"], rho=i["color"].mean(axis=-1)),
+    lambda wo, wi, i: sampling.eon_pdf(wo, wi, i["roughness"], rho=i["color"].mean(axis=-1)),
+)
+ZELTNER = ModelSampler(
+    lambda wo, u, i: sampling.zeltner_sample(wo, u, i["roughness"]),
+    lambda wo, wi, i: sampling.zeltner_pdf(wo, wi, i["roughness"]),
+)
+GGX = ModelSampler(
+    lambda wo, u, i: sampling.ggx_sample(wo, u, i["roughness"]),
+    lambda wo, wi, i: sampling.ggx_pdf(wo, wi, i["roughness"]),
+)
+FACETS = ("dielectric", "conductor", "schlick")
+SAMPLERS = {
+    **dict.fromkeys(("lambert", "subsurface"), COSINE),
+    "eon": EON,
+    "zeltner": ZELTNER,
+    **dict.fromkeys((*FACETS, *(f"{name}_film" for name in FACETS)), GGX),
+}
+
+
+def model(name: str) -> ShadingModel:
+    """The model with this name: of rough diffuse nodes, a known variant of them, or a node of pbrlib.
+
+    Parameters
+    ----------
+    name : str
+        One of `model_names()`, such as "eon", "qon", "dielectric" or "zeltner".
+
+    Returns
+    -------
+    ShadingModel
+
+    Raises
+    ------
+    ValueError
+        If there is none; lists the names, and the nearest one.
+
+    Examples
+    --------
+    >>> gold = model("conductor")
+    >>> gold
+    <conductor: conductor microfacets; inputs ior, extinction, roughness; has brdf, bsdf, albedo_dir, sample, pdf>
+    >>> gold.brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], roughness=0.3).round(4)
+    array([1.4723, 1.1829, 0.5437])
+    """
+    return MODELS[checked_choice("model", name, MODELS)]
+
+
+def model_names() -> tuple[str, ...]:
+    """Names that `model` knows."""
+    return tuple(MODELS)
+
+
+def _of_node(row: PbrNode) -> ShadingModel:
+    """The model of a row of pbrlib's nodes."""
+    lights = "back" if row.transmits else "front"
+    return ShadingModel(
+        row.name,
+        row.title,
+        row.category,
+        tuple(parameter(row.category, name) for name in row.inputs),
+        row.value,
+        row.integral or row.albedo,
+        sampler=SAMPLERS.get(row.name),
+        lights="all sides" if row is HAIR_NODE else lights,
+    )
+
+
+def _of_table(row: table.Model) -> ShadingModel:
+    """The model of a row of the table of rough diffuse models."""
+    # Name its inputs.
+    node = "burley_diffuse_bsdf" if row.name.startswith("burley") else "oren_nayar_diffuse_bsdf"
+    inputs = [parameter(node, "color", "rho")]
+    if row.parameter:
+        inputs.append(parameter(node, "roughness", row.parameter))
+    names = [each.name for each in inputs]
+
+    # Give its functions the inputs in their own order.
+    def value(wo: Array, wi: Array, values: Inputs) -> Array:
+        return row.brdf(wo, wi, *(values[name] for name in names))
+
+    def albedo(wo: Array, values: Inputs) -> Array:
+        closed = row.albedo_dir or (lambda *given: albedo_dir_quadrature(row.brdf, *given))
+        return closed(np.minimum(wo[:, 2], 1.0), *(values[name] for name in names))
+
+    def average(values: Inputs) -> Array:
+        assert row.albedo_avg
+        return row.albedo_avg(*(values[name] for name in names))
+
+    known = average if row.albedo_avg else None
+    return ShadingModel(
+        row.name, row.title, node, tuple(inputs), value, albedo, known, SAMPLERS.get(row.name)
+    )
+
+
+MODELS = {
+    each.name: each
+    for each in (
+        *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
+        *map(_of_table, table.PARAMETRIZATIONS),
+        *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
+    )
+}

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Inputs of the BSDF nodes: default, range and unit, in MaterialX's names and order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mxeon.models.core.ranges import RANGES
+from mxeon.models.hair import DEFAULTS as HAIR
+
+Value = float | tuple[float, ...]
+WHITE, GRAY = (1.0,) * 3, (0.18,) * 3
+FACETS: dict[str, Value] = {
+    "roughness": (0.05, 0.05),
+    "thinfilm_thickness": 0.0,
+    "thinfilm_ior": 1.5,
+}
+# Defaults of the inputs of a lobe, in the order of the node's definition; those that select a mode, the
+# weight and the frame are left out. A test compares them with MaterialX's definitions.
+DEFAULTS: dict[str, dict[str, Value]] = {
+    "oren_nayar_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
+    "burley_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
+    "translucent_bsdf": {"color": WHITE},
+    "subsurface_bsdf": {"color": GRAY, "radius": WHITE},
+    "sheen_bsdf": {"color": WHITE, "roughness": 0.3},
+    "dielectric_bsdf": {"tint": WHITE, "ior": 1.5, **FACETS},
+    "conductor_bsdf": {
+        "ior": (0.183, 0.421, 1.373),
+        "extinction": (3.424, 2.346, 1.770),
+        **FACETS,
+    },
+    "generalized_schlick_bsdf": {
+        "color0": WHITE,
+        "color82": WHITE,
+        "color90": WHITE,
+        "exponent": 5.0,
+        **FACETS,
+    },
+    "chiang_hair_bsdf": HAIR,
+}
+UNITS = {
+    "sigma": "rad",
+    "thinfilm_thickness": "nm",
+    "absorption_coefficient": "1/radius",
+    **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), "rad^2, rad"),
+}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """An input of a model.
+
+    Attributes
+    ----------
+    name : str
+        MaterialX's name of it.
+    default : float or tuple of float
+        MaterialX's; a tuple of three for a color, of two for a pair.
+    quantity : str
+        What it is: the name that it has in functions of `mxeon.models`, which counts as well.
+    """
+
+    name: str
+    default: Value
+    quantity: str
+
+    @property
+    def channels(self) -> int:
+        """3 for a color, 2 for a pair, 0 for a number."""
+        return len(self.default) if isinstance(self.default, tuple) else 0
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Least and largest value, both allowed."""
+        low, high, _ = RANGES[self.quantity]
+        return low, high
+
+    @property
+    def unit(self) -> str:
+        """Its unit; "1" where it has none."""
+        return UNITS.get(self.quantity, "1")
+
+
+def parameter(category: str, name: str, quantity: str = "") -> Parameter:
+    """Input of a node, by its category and name."""
+    return Parameter(name, DEFAULTS[category][name], quantity or name)

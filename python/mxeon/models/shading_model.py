@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model as one object: value, albedos, samples, density, inputs, and a plot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mxeon.models import lobe_plot
+from mxeon.models.core.arguments import checked
+from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.nodes.inputs import Rows, bound_inputs, rows
+from mxeon.models.nodes.node import Inputs
+from mxeon.models.nodes.parameters import Parameter
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class ModelSampler:
+    """Samples of a model and their density, by its inputs.
+
+    Attributes
+    ----------
+    sample : callable (wo, u, inputs) -> wi, pdf
+    pdf : callable (wo, wi, inputs) -> ndarray
+    """
+
+    sample: Callable[[Array, Array, Inputs], tuple[Array, Array]]
+    pdf: Callable[[Array, Array, Inputs], Array]
+
+
+@dataclass(frozen=True, repr=False)
+class ShadingModel:
+    """A model by its name: functions of MaterialX's inputs.
+
+    Each function takes the inputs after its directions, in the order of `parameters` or by name; one
+    that is left out has MaterialX's default. Shapes broadcast, last axes of directions, colors and pairs
+    apart. A color has its channels on the last axis, or is a number; where all colors are numbers,
+    results have no channels. A pair, such as the `roughness` of microfacets, may be a number, which
+    counts for both directions. Three numbers for a color are red, green and blue.
+
+    Attributes
+    ----------
+    name, title : str
+        One word, and the name in print.
+    node : str
+        Category of the node whose inputs it has.
+    parameters : tuple of Parameter
+        Its inputs: name, default, interval, unit.
+    value : callable (wo, wi, inputs) -> ndarray, shape (N, C)
+    albedo : callable (wo, inputs) -> ndarray, shape (N, C)
+    average : callable (inputs) -> ndarray, or None
+    sampler : ModelSampler or None
+    lights : str
+        Where light comes from that it scatters: "front", "back" or "all sides".
+
+    Raises
+    ------
+    ValueError
+        By each function, if an input leaves its range, or a shape fits nothing or two things; or if
+        the model does not have the function.
+    TypeError
+        If an input is unknown or is there twice.
+    """
+
+    name: str
+    title: str
+    node: str
+    parameters: tuple[Parameter, ...]
+    value: Callable[[Array, Array, Inputs], Array]
+    albedo: Callable[[Array, Inputs], Array]
+    average: Callable[[Inputs], Array] | None = None
+    sampler: ModelSampler | None = None
+    lights: str = "front"
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """Names of the functions that it has."""
+        value = ("brdf", "bsdf") if self.lights == "front" else ("bsdf",)
+        average = ("albedo_avg",) if self.average else ()
+        return (*value, "albedo_dir", *average, *(("sample", "pdf") if self.sampler else ()))
+
+    def __repr__(self) -> str:
+        inputs = ", ".join(each.name for each in self.parameters)
+        return f"<{self.name}: {self.title}; inputs {inputs}; has {', '.join(self.functions)}>"
+
+    def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Value of a model that reflects, in 1/sr and without the cosine.
+
+        Parameters
+        ----------
+        wo, wi : array_like, shape (..., 3)
+            Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
+        *inputs, **named : array_like
+            Those of `parameters`.
+
+        Returns
+        -------
+        ndarray, shape (..., C) or (...), float64
+
+        Examples
+        --------
+        >>> import mxeon
+        >>> mxeon.model("eon").brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], 0.8, 0.5).round(6)
+        np.float64(0.310981)
+        """
+        self._need("brdf")
+        return self.bsdf(wo, wi, *inputs, **named)
+
+    def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Value of any model, as `brdf`; wi lies where its light comes from."""
+        call = self._rows({"wo": wo, "wi": wi}, inputs, named)
+        return _colors(call, self.value(call.vectors[0], call.vectors[1], call.inputs))
+
+    def albedo_dir(
+        self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
+    ) -> Array:
+        """Directional albedo: the integral of value times cosine.
+
+        Parameters
+        ----------
+        mu : array_like, shape (...)
+            Cosine of the viewer's polar angle, dimensionless, in [0, 1].
+        *inputs, **named : array_like
+            Those of `parameters`.
+        azimuth : array_like, shape (...)
+            The viewer's angle from the tangent, in radian; it counts where the model is anisotropic.
+
+        Returns
+        -------
+        ndarray, shape (..., C) or (...), float64
+
+        Examples
+        --------
+        >>> import mxeon
+        >>> mxeon.model("eon").albedo_dir(0.5, color=[0.2, 1.0], roughness=1.0).round(6)
+        array([0.177706, 1.      ])
+        """
+        cosine, phi = np.broadcast_arrays(checked("mu", mu), checked("phi", azimuth))
+        sine = np.sqrt((1.0 - cosine) * (1.0 + cosine))
+        wo = np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=-1)
+        call = self._rows({"wo": wo}, inputs, named)
+        return _colors(call, self.albedo(call.vectors[0], call.inputs))
+
+    def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Average albedo, of light from all sides alike, where a closed form is known."""
+        self._need("albedo_avg")
+        assert self.average
+        call = self._rows({}, inputs, named)
+        return _colors(call, self.average(call.inputs))
+
+    def sample(
+        self, wo: ArrayLike, u: ArrayLike, *inputs: ArrayLike, **named: ArrayLike
+    ) -> tuple[Array, Array]:
+        """Directions drawn for the model, shape (..., 3), and their density in 1/sr, shape (...).
+
+        Parameters
+        ----------
+        wo : array_like, shape (..., 3)
+            Directions to the viewer.
+        u : array_like, shape (..., 2)
+            Independent uniform random numbers, in [0, 1).
+        *inputs, **named : array_like
+            Those of `parameters`. Samples of EON are exact for the mean of the channels.
+        """
+        self._need("sample")
+        assert self.sampler
+        call = self._rows({"wo": wo, "u": u}, inputs, named)
+        wi, pdf = self.sampler.sample(call.vectors[0], call.vectors[1], call.inputs)
+        return call.shaped(wi, (3,)), call.shaped(pdf)
+
+    def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
+        """Density of `sample` at wi, in 1/sr, shape (...); inputs as those of `brdf`."""
+        self._need("pdf")
+        assert self.sampler
+        call = self._rows({"wo": wo, "wi": wi}, inputs, named)
+        return call.shaped(self.sampler.pdf(call.vectors[0], call.vectors[1], call.inputs))
+
+    def plot(self, path: str | None = None, **named: ArrayLike) -> Figure:
+        """Polar lobe, albedo over the viewer's angle, and density of samples, of one material.
+
+        Parameters
+        ----------
+        path : str, optional
+            File to write, .png, .svg or .pdf.
+        **named : array_like
+            Those of `parameters`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is missing; says how to install it.
+        """
+        return lobe_plot.draw(self, named, path)
+
+    def _need(self, function: str) -> None:
+        """Raise ValueError unless the model has this function; lists those that it has."""
+        if function not in self.functions:
+            raise ValueError(f"{self.name} has no {function}; it has {', '.join(self.functions)}")
+
+    def _rows(
+        self,
+        vectors: dict[str, ArrayLike],
+        inputs: tuple[ArrayLike, ...],
+        named: dict[str, ArrayLike],
+    ) -> Rows:
+        """Vectors and inputs of a call."""
+        return rows(self.parameters, vectors, bound_inputs(self.parameters, inputs, named))
+
+
+def _colors(call: Rows, values: Array) -> Array:
+    """Values of rows, (N, C), in the shape of the pairs; without channels where no color has any."""
+    values = call.shaped(values, values.shape[-1:])
+    return values if call.colored or values.shape[-1] != 1 else values[..., 0]

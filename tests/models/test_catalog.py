@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models by their names: inputs of MaterialX, shapes, functions, messages, figures."""
+
+import re
+import sys
+from pathlib import Path
+
+import MaterialX as mx
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import mxeon
+from mxeon import models
+from mxeon.models.catalog import MODELS
+from mxeon.models.nodes.parameters import DEFAULTS
+from mxeon.shaders.library import load_library
+from tests.support import tolerances
+
+WO, WI = np.array([0.6, 0.0, 0.8]), np.array([-0.36, 0.48, 0.8])
+MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8], WI])
+PAGES = Path(__file__).resolve().parents[2] / "docs/api"
+MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
+FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
+LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
+every_model = pytest.mark.parametrize("name", MODELS)
+
+
+@pytest.mark.parametrize("category", DEFAULTS)
+def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
+    definition = load_library("stock").getNodeDef(f"ND_{category}")
+    left = MODES | FRAME | ({"anisotropy"} if category == "subsurface_bsdf" else set())
+    ports = [port for port in definition.getActiveInputs() if port.getName() not in left]
+    assert list(DEFAULTS[category]) == [port.getName() for port in ports]
+    for port in ports:
+        numbers = [float(each) for each in port.getValueString().split(",")]
+        assert np.ravel(DEFAULTS[category][port.getName()]).tolist() == numbers
+    assert mx.getVersionString() == "1.39.5"
+
+
+@every_model
+def test_inputs_are_in_the_order_of_their_node(name):
+    row = MODELS[name]
+    order = list(DEFAULTS[row.node])
+    names = [each.name for each in row.parameters]
+    assert names == sorted(names, key=order.index)
+    for each in row.parameters:
+        low, high = each.interval
+        assert all(low <= number <= high for number in np.ravel(each.default))
+
+
+@every_model
+def test_a_model_has_the_functions_that_it_names(name):
+    row = mxeon.model(name)
+    light = LIGHT[row.lights]
+    value = row.bsdf(WO, light)
+    assert value.shape == (3,) and np.isfinite(value).all()
+    assert row.albedo_dir([0.3, 0.8]).shape == (2, 3)
+    if "brdf" in row.functions:
+        assert_array_equal(row.brdf(WO, light), value)
+    if "sample" in row.functions:
+        wi, pdf = row.sample(WO, np.full((5, 2), 0.4))
+        assert np.allclose(row.pdf(WO, wi), pdf, rtol=1e-9) and pdf.shape == (5,)
+    assert name in repr(row) and len(repr(row)) < 250
+
+
+@every_model
+def test_a_material_each_gives_the_values_of_single_calls(name):
+    row = mxeon.model(name)
+    light = LIGHT[row.lights]
+    rng = np.random.default_rng(0)
+    inputs = {each.name: _varied(each.default, rng) for each in row.parameters}
+    values = row.bsdf(WO, light, **inputs)
+    for n in range(2):
+        own = {key: value[n] for key, value in inputs.items()}
+        assert np.allclose(values[n], row.bsdf(WO, light, **own), rtol=tolerances.MICROFACET)
+
+
+def _varied(default, rng):
+    """Two values near a default, within its range."""
+    return np.asarray(default) * 0.9 + 0.1 * rng.random((2, *np.shape(default)))
+
+
+def test_inputs_go_to_the_functions_of_the_models():
+    gold = {"ior": [0.183, 1.373], "extinction": [3.424, 1.770]}
+    conductor = mxeon.model("conductor").brdf(WO, WI, *gold.values(), 0.3)
+    assert_array_equal(conductor, models.conductor_brdf(WO, WI, 0.3, **gold))
+    dielectric = mxeon.model("dielectric").brdf(WO, WI, 0.7, 1.4, [0.3, 0.2])
+    assert dielectric == models.dielectric_brdf(WO, WI, 0.7, [0.3, 0.2], 1.4)[0]
+    qon = mxeon.model("qon").brdf(WO, WI, rho=0.5, sigma=1.2)
+    assert qon == models.qon_brdf(WO, WI, 0.5, 1.2)[0]
+    assert mxeon.model("eon").albedo_dir(0.3, 0.5, 1.0) == models.eon_albedo_dir(0.3, 0.5, 1.0)[0]
+    assert mxeon.model("eon").albedo_avg(0.5, 1.0) == models.eon_albedo_avg(0.5, 1.0)[0]
+
+
+def test_an_albedo_without_a_closed_form_is_the_integral():
+    albedo = mxeon.model("oren_nayar").albedo_dir(0.4, 0.8, 0.5)
+    exact = models.albedo_dir_quadrature(models.oren_nayar_brdf, 0.4, 0.8, 0.5)
+    assert albedo == exact[0]
+
+
+def test_an_anisotropic_albedo_depends_on_the_azimuth():
+    albedo = mxeon.model("schlick").albedo_dir(0.3, roughness=[0.1, 0.5], azimuth=[0.0, np.pi / 2])
+    assert abs(albedo[0] - albedo[1]).min() > 0.01
+
+
+def test_numbers_have_no_channels_and_colors_keep_theirs():
+    eon = mxeon.model("eon")
+    assert eon.brdf(WO, WI, 0.5, 0.2).shape == ()
+    assert eon.brdf(MANY, WI, 0.5, [0.1, 0.2, 0.3, 0.4, 0.5]).shape == (5,)
+    assert eon.brdf(MANY, WI, [0.5], 0.2).shape == (5, 1)
+    assert eon.brdf(MANY[:, None], MANY, [0.5, 0.2, 0.1], 0.2).shape == (5, 5, 3)
+    assert eon.brdf(MANY, MANY, np.full((5, 1), 0.5), 0.2).shape == (5, 1)
+    assert eon.brdf(MANY[:3], WI, [0.5, 0.2, 0.1], 0.2).shape == (3, 3)
+    assert eon.brdf(MANY, WI, np.full((1, 5), 0.5), 0.2).shape == (5, 5)
+
+
+@pytest.mark.parametrize("call", ["model", "function", "microfacets"])
+def test_a_list_beside_as_many_directions_is_refused_with_the_remedy(call):
+    color = np.full(5, 0.5)
+    calls = {
+        "model": lambda: mxeon.model("eon").brdf(MANY, WI, color, 0.2),
+        "function": lambda: models.eon_brdf(MANY, WI, color, 0.2),
+        "microfacets": lambda: models.dielectric_brdf(MANY, WI, color, 0.2, 1.5),
+    }
+    with pytest.raises(ValueError, match=r"beside 5 directions has two meanings: write \w+\[:, np"):
+        calls[call]()
+
+
+@pytest.mark.parametrize(
+    ("function", "inputs"),
+    [
+        (models.conductor_brdf, (0.3, 1.5, 2.0)),
+        (models.generalized_schlick_brdf, (0.3, 1.0, 1.0, 0.3, 5.0)),
+        (models.ggx_pdf, (0.3,)),
+        (models.smith_g2_anisotropic, (0.3,)),
+    ],
+)
+def test_a_number_for_roughness_is_isotropic(function, inputs):
+    place = max(k for k, value in enumerate(inputs) if value == 0.3)
+    pair = (*inputs[:place], [0.3, 0.3], *inputs[place + 1 :])
+    assert_array_equal(function(WO, WI, *inputs), function(WO, WI, *pair))
+    each = (*inputs[:place], [[0.3], [0.3]], *inputs[place + 1 :])
+    assert_array_equal(function(WO, WI, *each)[0], function(WO, WI, *pair))
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: mxeon.model("conducter"), ValueError, "did you mean conductor?"),
+        (lambda: mxeon.model("fon").sample(WO, [0.1, 0.2]), ValueError, "fon has no sample; it has brdf"),
+        (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf; it has bsdf"),
+        (lambda: mxeon.model("eon").brdf(WO, WI, tint=1.0), TypeError, "inputs are color, roughness; got 'tint'"),
+        (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, rho=1.0), TypeError, "got 'rho' twice"),
+        (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, 1.0, 1.0), TypeError, "got 3 of them"),
+        (lambda: mxeon.model("qon").brdf(WO, WI, 1.0, 2.0), ValueError, "roughness must lie in [0, pi/2]; got 2.0"),
+        (lambda: mxeon.model("eon").brdf(MANY, MANY[:2]), ValueError, "wo (5,), wi (2,)"),
+    ],
+)  # fmt: skip
+def test_messages_say_what_there_is(call, error, message):
+    with pytest.raises(error, match=re.escape(message)):
+        call()
+
+
+def test_the_page_lists_every_model():
+    text = (PAGES / "models.md").read_text(encoding="utf-8").partition(":::")[0]
+    assert {name for name in MODELS if f"`{name}`" not in text} == set()
+
+
+def test_every_function_on_the_pages_is_in_one_namespace():
+    text = "".join(page.read_text(encoding="utf-8") for page in PAGES.glob("*.md"))
+    names = re.findall(
+        r"^::: mxeon\.(?:models|albedo|inversion|sampling)[\w.]*\.(\w+)$", text, re.M
+    )
+    assert len(names) > 90 and set(names) <= set(models.__all__) <= set(dir(models))
+    assert all(getattr(models, name) is not None for name in models.__all__)
+
+
+@pytest.mark.parametrize("name", ["eon", "conductor", "translucent", "hair"])
+def test_a_plot_has_a_lobe_an_albedo_and_the_density_of_samples(name, tmp_path):
+    row = mxeon.model(name)
+    figure = row.plot(str(tmp_path / "lobe.png"))
+    assert (tmp_path / "lobe.png").read_bytes().startswith(b"\x89PNG")
+    axes = figure.get_axes()
+    assert len(axes) == (3 if "pdf" in row.functions else 2)
+    _, lobe = axes[0].lines[0].get_data()
+    assert len(lobe) > 500 and np.isfinite(lobe).all() and lobe.max() > 0.0
+
+
+def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(ImportError, match=re.escape("pip install 'mxeon[report]'")):
+        mxeon.model("eon").plot()
