@@ -95,8 +95,8 @@ HAIR_REPAIRS: tuple[Repair, ...] = (
     glsl(
         "genglsl_black_pigment",
         HAIR,
-        "-log(eumelanin_color) + pheomelanin * -log(pheomelanin_color)",
-        "-log(max(eumelanin_color, 1e-30)) + pheomelanin * -log(max(pheomelanin_color, 1e-30))",
+        "-log(eumelanin_color) + pheomelanin * -log(pheomelanin_color), ",
+        "-log(max(eumelanin_color, 1e-30)) + pheomelanin * -log(max(pheomelanin_color, 1e-30)),",
     ),
 )
 # Pull request 2961, which follows 1.39.5, repairs it as well.

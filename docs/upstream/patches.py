@@ -242,6 +242,9 @@ def main() -> None:
     """Write the patches of all projects, remove those that there are no more, and write the index."""
     write_text(INDEX, index_text(INDEX.read_text(encoding="utf-8")))
     for project in PROJECTS:
+        if not project.root().is_dir():
+            print(f"{project.name} is not installed: its patches stay as they are")
+            continue
         folder = PATCHES / project.name
         made = patches(project)
         for path in set(folder.glob("*")) - {folder / name for name in made}:

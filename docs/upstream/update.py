@@ -15,6 +15,7 @@ from pathlib import Path
 import MaterialX as mx
 import numpy as np
 
+from docs.upstream import patches
 from docs.upstream.average_quantities import OF_AVERAGES
 from docs.upstream.figures import FIGURES, TABLES
 from docs.upstream.film_quantities import OF_FILMS
@@ -242,6 +243,7 @@ def main():
         write_text(path, head + BEGIN + text + END + rest.split(END, 1)[1])
     for path in pages():
         write_text(path, remeasured(path))
+    patches.main()  # whose messages have words and figures of the pages
 
 
 def pages():
