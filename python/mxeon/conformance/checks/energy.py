@@ -63,6 +63,7 @@ CHECKS = (
         "all light passes",
         pass_all,
         tolerances.DIP,
+        pairs=True,
         diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
@@ -73,6 +74,7 @@ CHECKS = (
         "all light passes",
         pass_all,
         tolerances.UNFITTED,
+        pairs=True,
         diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
