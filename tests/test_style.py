@@ -108,7 +108,7 @@ ANY = {
     "conformance": 3,
     "doc": 2,
     "explorer": 2,
-    "hosts": 13,
+    "hosts": 14,
     "io": 1,
     "jobs": 35,
     "kit": 14,

@@ -139,6 +139,8 @@ def test_a_host_has_the_verb_by_which_checks_ask_it(row):
         "pairs": "evaluate",
         "pictures": "picture",
         "planes": "plane",
+        "drawn pictures": "picture",
+        "half pictures": "picture",
         "native": "node",
         "exact": "node",
         "facets": "node",

@@ -292,9 +292,6 @@ SUBSURFACE_RINGS = RINGS.value
 # Energy of a sphere: the quadrature's error on the kink at the horizon, 2e-5, and float32's.
 SUBSURFACE_SPHERE = 1e-4
 
-# Hydra Storm's color is of half floats, cut off: off by up to 2^-10 of a value, and the values are below 1.
-STORM = 2.0**-10
-
 # EON, FON and QON in Mitsuba, in float32: value times cosine, at most 1/pi times some 15 roundings of 2^-24,
 # 1.1e-7 measured; and the weight of a sample, a quotient of two such values, 3.6e-7 measured.
 MITSUBA_EVAL = 3e-7

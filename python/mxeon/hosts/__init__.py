@@ -55,7 +55,8 @@ class Row:
         Module with its class `Host`; "" where only the text of the target is checked.
     probe : str
         How checks ask it: for "pairs" of directions, for "pictures" of a sphere, for pictures of
-        "planes", for pictures of "native" nodes of its own, for "exact" ones, without noise and with
+        "planes", for "drawn pictures" of a sphere whose points are exact, for "half pictures", the same
+        in half floats, for pictures of "native" nodes of its own, for "exact" ones, without noise and with
         the points of float32, for those of "facets" of a polyhedron, "coarse" ones or not,
         for these and for "facet pairs" of directions, or "" for nothing.
     needs : str
@@ -64,6 +65,8 @@ class Row:
         Lights under which it shows the materials of documents.
     surfaces : bool
         Whether surface shaders are judged on it.
+    rounding : float
+        Of the pixels of its pictures beyond float32's, relative to their values.
     front_lit : tuple of str
         Models that it has for s >= 0 alone.
     nodes : tuple of OwnNode
@@ -77,6 +80,7 @@ class Row:
     needs: str = ""
     scenes: tuple[Scene, ...] = ()
     surfaces: bool = False
+    rounding: float = 0.0
     front_lit: tuple[str, ...] = ()
     nodes: tuple[OwnNode, ...] = ()
 
@@ -99,6 +103,24 @@ HOSTS = (
     Row("vulkan", "vulkan", "mxeon.hosts.vulkan", "pairs"),
     Row("wgsl", "wgsl", "mxeon.hosts.wgsl", "pairs"),
     Row("slang", "slang", "mxeon.hosts.slang", "pairs"),
+    Row(
+        "materialx",
+        "glsl",
+        "mxeon.hosts.materialx",
+        "drawn pictures",
+        scenes=(SIDE, BACK, FURNACE),
+        surfaces=True,
+    ),
+    # Its furnace has another sum of directions for microfacets.
+    Row(
+        "storm",
+        "glsl",
+        "mxeon.hosts.storm",
+        "half pictures",
+        scenes=(SIDE, BACK),
+        surfaces=True,
+        rounding=2.0**-10,  # half floats, cut off
+    ),
     # Its environment has noise. No closure of Cycles is QON for s < 0.
     Row(
         "cycles",

@@ -171,6 +171,10 @@ class Host(Engine):
         """Why the `picture` of a shader cannot be right, in words; empty where it can."""
         return ()
 
+    def unread(self, shader: Shader) -> str:
+        """What the host does not read of a shader's document, in words; "" if it reads all."""
+        return ""
+
     def evaluate(
         self,
         shader: Shader,

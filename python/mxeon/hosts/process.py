@@ -31,25 +31,33 @@ class Worker:
     python : Path
         Interpreter that has the renderer.
     script : Path
-        It prints `{"version": ...}`, then one JSON object for each that it reads.
+        It prints `{"version": ...}`, then one JSON object for each that it reads; or `{"error": ...}`,
+        and ends.
     log : Path
         File for what the renderer prints.
     limit : float
         Seconds that a request may take; after them the process is killed.
+    *arguments : str
+        Of the script.
 
     Attributes
     ----------
     version : str or None
         The renderer's, once it has been started.
+    device : str
+        That on which it draws, if the script prints one with the version.
     """
 
-    def __init__(self, name: str, python: Path, script: Path, log: Path, limit: float) -> None:
+    def __init__(
+        self, name: str, python: Path, script: Path, log: Path, limit: float, *arguments: str
+    ) -> None:
         self._name = name
-        self._command: list[str | Path] = [python, "-I", "-W", "ignore", script]
+        self._command: list[str | Path] = [python, "-I", "-W", "ignore", script, *arguments]
         self.log = log
         self.limit = limit
         self._process: Popen[str] | None = None
         self.version: str | None = None
+        self.device = ""
 
     @property
     def pid(self) -> int | None:
@@ -57,9 +65,16 @@ class Worker:
         return self._process.pid if self._process and self._process.poll() is None else None
 
     def start(self) -> None:
-        """Start the process unless it runs; wait for its version."""
+        """Start the process unless it runs; wait for its version.
+
+        Raises
+        ------
+        NotRun
+            If it ends, or says what it lacks.
+        """
         if self.pid is not None:
             return
+        # Start it, with what it prints in the log.
         self.close()
         self._read = 0
         with self.log.open("w") as log:
@@ -72,7 +87,12 @@ class Worker:
                 errors="replace",
                 env=os.environ | {"TMPDIR": str(self.log.parent)},  # Blender leaves a folder
             )
-        self.version = self._reply()["version"]
+        # Read who it is, or what it lacks.
+        greeting = self._reply()
+        if "error" in greeting:
+            self.close()
+            raise NotRun(f"{self._name}: {greeting['error']}")
+        self.version, self.device = greeting["version"], greeting.get("device", "")
 
     def ask(self, **request: object) -> Reply:
         """The reply to a request.

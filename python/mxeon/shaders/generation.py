@@ -21,6 +21,7 @@ from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.document.sources import Sources, copied_sources
 from mxeon.shaders.document.values import Plain, plain
 from mxeon.shaders.generators import GENERATORS, TARGETS, context_of, generator_of, tokens_of
+from mxeon.shaders.library import own_folders
 from mxeon.shaders.names import shader_names
 
 __all__ = [
@@ -101,6 +102,8 @@ class Shader:
     inputs : tuple of Input
     document : MaterialX.Document
         The checked document that it was generated from, with its data library.
+    folders : tuple of str
+        Folders of that library which are loaded before MaterialX's own.
     """
 
     name: str
@@ -109,6 +112,7 @@ class Shader:
     stages: Mapping[str, str]
     inputs: tuple[Input, ...]
     document: mx.Document = field(repr=False, compare=False)
+    folders: tuple[str, ...] = ()
 
 
 def generate(
@@ -187,13 +191,14 @@ def generate(
     context = context_of(content, target, generator, lights, policy.path)
     elements = _select(checked.renderables, element)
     tokens = partial(tokens_of, target, library, profile)
+    folders = (*policy.definitions, *own_folders(library, profile))
     with copied_sources(content, context, policy, tokens) as sources:
         sources.check_limit(len(elements), checked.nodes)
         shaders = []
         for each in elements:
             source = _generate(content, each, names[each.getNamePath()], target, context, sources)
             check_closure_calls(source.getStage("pixel"), target, library, profile)
-            shaders.append(_shader(source, each.getNamePath(), target, content))
+            shaders.append(_shader(source, each.getNamePath(), target, content, folders))
     # Warn of what the shaders lack.
     warn_of_files(_files(shaders), content)
     if profile == "cycles" and target == "osl":
@@ -231,10 +236,13 @@ def _generate(
         ) from None
 
 
-def _shader(source: mx_gen.Shader, path: str, target: str, document: mx.Document) -> Shader:
+def _shader(
+    source: mx_gen.Shader, path: str, target: str, document: mx.Document, folders: tuple[str, ...]
+) -> Shader:
     stages = {stage: source.getSourceCode(stage) for stage in STAGES if source.hasStage(stage)}
     inputs = _inputs(source, document)
-    return Shader(source.getName(), path, target, MappingProxyType(stages), inputs, document)
+    text = MappingProxyType(stages)
+    return Shader(source.getName(), path, target, text, inputs, document, folders)
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:

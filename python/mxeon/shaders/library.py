@@ -113,8 +113,8 @@ def standard_folders() -> list[Path]:
     return [Path(path, name) for path in paths for name in mx.getDefaultDataLibraryFolders()]
 
 
-def _folders(library: str, profile: str | None) -> list[str]:
-    """Library folders in load order: the profile's, the library's, MaterialX's own."""
+def own_folders(library: str, profile: str | None = None) -> list[str]:
+    """Folders that are loaded before MaterialX's own, in order: the profile's, the library's."""
     library = library_name(library)
     if profile is not None:
         assert_known("profile", profile, PROFILES)
@@ -125,7 +125,7 @@ def _folders(library: str, profile: str | None) -> list[str]:
     }.get(library, [Path(library)])
     if profile is not None and has_profile(library, profile):
         folders.insert(0, profile_folder(profile, library))
-    return [str(folder) for folder in folders] + list(mx.getDefaultDataLibraryFolders())
+    return [str(folder) for folder in folders]
 
 
 def library_name(library: str | os.PathLike[str]) -> str:
@@ -206,7 +206,7 @@ def load_library(
         check_files(_documents(folder, f"definitions {folder}: must hold MaterialX documents"))
     try:
         mx.loadLibraries(
-            [*definitions, *_folders(library, profile)],
+            [*definitions, *own_folders(library, profile), *mx.getDefaultDataLibraryFolders()],
             mx.getDefaultDataSearchPath(),
             document,
             readOptions=read_options(),
@@ -299,8 +299,8 @@ def implementations(
 @cache
 def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
     """Nodedefs and targets of the implementations in eonlib's documents; "" for every target."""
-    count, document = len(mx.getDefaultDataLibraryFolders()), mx.createDocument()
-    mx.loadLibraries(_folders(library, profile)[:-count], mx.FileSearchPath(), document)
+    document = mx.createDocument()
+    mx.loadLibraries(own_folders(library, profile), mx.FileSearchPath(), document)
     elements = (*document.getImplementations(), *document.getNodeGraphs())
     pairs = ((each.getNodeDefString(), each.getTarget()) for each in elements)
     return tuple(dict.fromkeys(pair for pair in pairs if pair[0]))

@@ -110,6 +110,15 @@ def _emission(kind: str) -> Accuracy:
     return Accuracy(emission.RADIANCES[kind], integral=emission.EXITANCES[kind])
 
 
+# Values and albedos of nodes that hosts show on a mesh, by kind.
+SHOWN: Mapping[str, tuple[Tolerance, Tolerance]] = {
+    CLOSED: (bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO),
+    SHEEN: (bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO),
+    FITTED: (bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO),
+    MICROFACET: (bsdf.MICROFACET_VALUE, bsdf.MICROFACET_PICTURE),
+    SCHLICK: (bsdf.MICROFACET_VALUE, bsdf.MICROFACET_PICTURE),
+}
+
 # By kind of probe.
 ACCURACY: Mapping[str, Accuracy] = {
     "pairs": Accuracy(
@@ -122,6 +131,18 @@ ACCURACY: Mapping[str, Accuracy] = {
     ),
     "pictures": _seen(diffuse.CYCLES_RAY, diffuse.CYCLES_NOISE, diffuse.CYCLES_RAY),
     "planes": _seen(diffuse.TESTRENDER, diffuse.TESTRENDER_NOISE, diffuse.TESTRENDER),
+    "drawn pairs": _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
+    "drawn lobes": _seen(diffuse.LOBE),
+    **{
+        f"drawn {kind}": _seen(diffuse.drawn_of(value), diffuse.drawn_of(albedo))
+        for kind, (value, albedo) in SHOWN.items()
+    },
+    "half pairs": _seen(diffuse.HALF, diffuse.HALF_SURROUNDINGS, diffuse.HALF),
+    "half lobes": _seen(diffuse.HALF_LOBE),
+    **{
+        f"half {kind}": _seen(diffuse.drawn_of(value, diffuse.HALF_CUT))
+        for kind, (value, _) in SHOWN.items()
+    },
     "bsdf pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
     "bsdf planes": _seen(diffuse.BSDF_PLANE, diffuse.BSDF_PLANE_NOISE),
     "lobes": _seen(diffuse.LOBE),

@@ -119,6 +119,13 @@ MICROFACET_ENVIRONMENT = Tolerance(
     "of E_ss, 5e-4 over the least, 0.31, and of F_ss, 3.6e-4 of 0.69, and the sum, 5e-4 from alpha 0.3 "
     "on; rounded up",
 )
+MICROFACET_PICTURE = Tolerance(
+    rounded_up(COMPENSATION_ALBEDO + sum_of(256)),
+    "albedo",
+    absolute,
+    "the fits of E_ss, 5e-4 over the least, 0.31, and of F_ss, 3.6e-4 of 0.69, and the sum over 256 "
+    "directions of an environment, 6.7e-3; rounded up",
+)
 ANISOTROPIC_ALBEDO = Tolerance(
     rounded_up(COMPENSATION_ALBEDO + sum_of(1024)),
     "albedo",

@@ -16,6 +16,7 @@ from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
 HALF_ROUNDING = 2.0**-11  # of float16
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
+HALF_CUT = 2.0**-10  # relative error of float16 where digits are cut off, as llvmpipe does
 PLANE_PIXELS = 128**2  # of a picture of testrender
 FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H, see fits/
@@ -203,6 +204,29 @@ EXACT_SURROUNDINGS = Tolerance(
     "rounded up",
 )
 
+# Pictures that are kept as half floats.
+HALF = Tolerance(
+    HALF_CUT + (28 + 2 * 5 * (1.0 / RIM + 2.0)) * ROUNDING,
+    "relative",
+    relative,
+    "half floats, cut off, 2^-10; 14 roundings of float32, 2^-24 each, twice for numbers up to 2; and in "
+    "each of two cosines five more, over the smallest judged, 0.05, and twice for s",
+)
+HALF_SURROUNDINGS = Tolerance(
+    2.0 * HALF_CUT + EXACT_SURROUNDINGS.value,
+    "albedo",
+    absolute,
+    "half floats, cut off, 2^-10, in the map of irradiances and in the picture; and 21 roundings of "
+    "float32, 2^-24 each, of numbers up to 1.02",
+)
+HALF_LOBE = Tolerance(
+    4.0 * 48.0 * HALF_CUT / 2.0 + LOBE.value,
+    "pi f cos",
+    absolute,
+    "half floats, 2^-10, in four pictures, which other lobes make 48 times as large: two of them cut off "
+    "alike, so that half of it counts; and the roundings of a lobe in float32",
+)
+
 FACETS = Tolerance(
     rounded_up(8 * 2.0 * math.sqrt(3.0) * ROUNDING / NARROWEST),
     "pi f cos",
@@ -262,6 +286,20 @@ BSDF_PLANE = Tolerance(
     scaled,
     "8 times the error of a plane's picture: 5, twice over the least alpha, and 3; rounded up",
 )
+
+
+def drawn_of(value: Tolerance, cut: float = 0.0) -> Tolerance:
+    """Tolerance of a node's picture with exact points: of its value or albedo, and of the pixels."""
+    half = f"; half floats, cut off, {cut:.1e}" if cut else ""
+    return Tolerance(
+        rounded_up(value.value + LOBE_SLOPE * 2 * 5 / RIM * ROUNDING) + cut,
+        value.unit,
+        scaled,
+        f"a number within {value.value:.2g}; in each of two cosines five roundings of float32, 2^-24, over "
+        f"the smallest judged, 0.05, times 8: 5, twice over the least alpha, and 3; rounded up{half}",
+    )
+
+
 BSDF_NOISE = Tolerance(
     mean_noise(3212),
     "mean albedo",

@@ -157,7 +157,8 @@ def _judge_material(
     else:
         references = [*expected]
         cases = list(zip(scenes, images, expected, strict=True))
-        result = _judge_match(place, cases, _tolerance(shader), front_lit)
+        tolerance = _rounded(_tolerance(shader), host)
+        result = _judge_match(place, cases, tolerance, front_lit)
     return result, tuple(
         _picture(file, shader, host, library, case)
         for case in zip(scenes, images, references, strict=True)
@@ -197,13 +198,24 @@ def _picture(
 
 
 def _assert_judged(shader: Shader, host: Host) -> None:
-    """Raise NotRun where the host has closures of its own, which are judged by themselves."""
+    """Raise NotRun where the host shows another material, or closures of its own, judged by themselves."""
+    if reason := host.unread(shader):
+        raise NotRun(f"{host.name}: {reason}: the picture is shown, and only has to be finite")
     own = sorted(_categories(_inner(shader)) & set(BSDF_INPUTS))
     if own and host.language == "osl":
         raise NotRun(
             f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown, and "
             "only has to be finite"
         )
+
+
+def _rounded(tolerance: Tolerance, host: Host) -> Tolerance:
+    """Tolerance of the pictures of a host that rounds them."""
+    rounding = host_row(host.name).rounding
+    if not rounding:
+        return tolerance
+    words = f"{tolerance.derivation}; and the pixels' own rounding, {rounding:.1e}"
+    return Tolerance(tolerance.value + rounding, FITTED.unit, absolute, words)
 
 
 def _tolerance(shader: Shader) -> Tolerance:

@@ -21,6 +21,14 @@ from mxeon.conformance.probes.bsdf import (
 )
 from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe, BsdfPlaneProbe
 from mxeon.conformance.probes.diffuse_lobes import DiffuseLobePlaneProbe, DiffuseLobeProbe
+from mxeon.conformance.probes.drawn import (
+    DrawnBsdfProbe,
+    DrawnLobeProbe,
+    DrawnProbe,
+    HalfBsdfProbe,
+    HalfLobeProbe,
+    HalfProbe,
+)
 from mxeon.conformance.probes.emission import ConeProbe, EmissionProbe, NodeProbe
 from mxeon.conformance.probes.emission_pictures import EmissionPictureProbe, SurfaceEmissionProbe
 from mxeon.conformance.probes.hair import HairProbe
@@ -62,6 +70,8 @@ HOST_PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "pairs": PairProbe,
     "pictures": PictureProbe,
     "planes": PlaneProbe,
+    "drawn pictures": DrawnProbe,
+    "half pictures": HalfProbe,
     "native": NativeProbe,
     "exact": ExactProbe,
     "facets": FacetProbe,
@@ -101,6 +111,12 @@ PROBES: Mapping[type[Probe], Mapping[str, type[Probe]]] = {
         utilities.VALUES: UtilityOslProbe,
     },
     PlaneProbe: {"lobes": DiffuseLobePlaneProbe, **dict.fromkeys(BSDF_KINDS, BsdfPlaneProbe)},
+    DrawnProbe: {"lobes": DrawnLobeProbe, **dict.fromkeys(bsdf.KINDS, DrawnBsdfProbe)},
+    # Storm takes an enumerated input for its default: no node of another mode is shown there.
+    HalfProbe: {
+        "lobes": HalfLobeProbe,
+        **dict.fromkeys((bsdf.CLOSED, bsdf.FITTED, *bsdf.MICROFACET_KINDS), HalfBsdfProbe),
+    },
 }
 
 

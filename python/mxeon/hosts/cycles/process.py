@@ -12,10 +12,15 @@ from mxeon.shaders.library import data_folder
 CHECKOUT = data_folder()  # in an installed package, no folder that has an environment
 
 
-def interpreter() -> Path:
+def interpreter(name: str = "cycles") -> Path:
     """Path of the Python that has `bpy`: MXEON_CYCLES_PYTHON, or in the checkout's `.venv-cycles`.
 
     A `.venv-cycles` in the working folder is not used: anyone may have put it there.
+
+    Parameters
+    ----------
+    name : str
+        The host's, for the message.
 
     Raises
     ------
@@ -28,6 +33,6 @@ def interpreter() -> Path:
         return python
     missing = f"no interpreter {path}" if path else "no folder .venv-cycles"
     raise NotRun(
-        f"cycles: {missing}; pip install bpy==5.0.1 in an environment of Python 3.11 "
+        f"{name}: {missing}; pip install bpy==5.0.1 in an environment of Python 3.11 "
         "and name its interpreter in MXEON_CYCLES_PYTHON"
     )

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What hosts share that read documents and libraries by themselves, each in a process of its own.
+
+They generate the shader again, and draw it with their own lights and uniforms on the quads of
+`mxeon.hosts.quads`.
+"""
+
+from __future__ import annotations
+
+import inspect
+from abc import abstractmethod
+from collections.abc import Sequence
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import ClassVar
+
+import MaterialX as mx
+import numpy as np
+
+from mxeon.errors import NotRun
+from mxeon.hosts import base, raster
+from mxeon.hosts.base import Array, Identity
+from mxeon.hosts.process import Worker
+from mxeon.hosts.quads import quad_file
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import Scene, sphere
+
+# Pixels along a quad where blocks of 2 x 2 have to lie in one of its two triangles, and the place of the
+# pixel that is read: right of the diagonal and below the middle.
+BLOCK, PLACE = 4, (0.25, -0.25)
+PICTURES = 64  # that are kept: the checks of a node ask for some of them again
+
+
+class DocumentHost(base.Host):
+    """A renderer that reads documents, with a process for each library, one at a time, and a folder.
+
+    Beside the module of a host lies `worker.py`, which gets the folders of the libraries as arguments.
+
+    Parameters
+    ----------
+    limit : float
+        Seconds that one picture may take, which is to compile its shader first.
+
+    Raises
+    ------
+    NotRun
+        If the interpreter that is to have the renderer is missing.
+    """
+
+    target: ClassVar[str] = "glsl"
+
+    def __init__(self, limit: float = 300.0) -> None:
+        self._python, self._limit = self._interpreter(), limit
+        self._temporary = TemporaryDirectory(prefix=f"mxeon-{self.name}-")
+        self._folder = Path(self._temporary.name)
+        self._folders: tuple[str, ...] = ()
+        self.worker = self._worker()
+        self._picture = lru_cache(maxsize=PICTURES)(self._drawn)
+
+    def close(self) -> None:
+        """End the process and remove the temporary files."""
+        self.worker.close()
+        self._temporary.cleanup()
+
+    def identity(self) -> Identity:
+        """Versions of what reads the document, and the device that draws."""
+        self.worker.start()
+        return Identity(self.name, str(self.worker.version), self.worker.device)
+
+    def picture(self, shader: Shader, scene: Scene) -> Array:
+        """Picture of the unit sphere with a document's material on it.
+
+        Parameters
+        ----------
+        shader : Shader
+            Its document and folders are read; its text is generated again.
+        scene : Scene
+            Its environment, if any, uniform.
+
+        Returns
+        -------
+        ndarray, shape (size, size, 3), float32
+            Linear, row 0 at the top, 0 off the sphere.
+
+        Raises
+        ------
+        ShaderError
+            If the shader does not compile.
+        NotRun
+            If the environment is an image, the document cannot be read, or the process fails.
+        """
+        self.refuse_paths(scene)
+        self.refuse_shape(scene)
+        if isinstance(scene.environment, (str, Path)):
+            raise NotRun(f"{self.name}: environment must be uniform; got an image")
+        if shader.folders != self._folders:
+            self.worker.close()
+            self._folders = shader.folders
+            self.worker = self._worker()
+        blocks = self._needs_blocks(shader)
+        return self._picture(*self._document(shader), scene, self._folders, blocks)
+
+    def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
+        """What takes the place of lobes below the surface, as in all GLSL, and what is not read."""
+        return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
+
+    @abstractmethod
+    def _interpreter(self) -> Path:
+        """Path of the Python that has the renderer."""
+
+    @abstractmethod
+    def _check(self, error: str, printed: Sequence[str]) -> None:
+        """Raise NotRun or ShaderError for a reply's error or what the renderer printed."""
+
+    def _document(self, shader: Shader) -> tuple[str, str]:
+        """Text of a shader's document, and the name path of the element that is shown."""
+        return mx.writeToXmlString(shader.document), shader.element
+
+    def _needs_blocks(self, shader: Shader) -> bool:
+        """Whether a pixel has to lie in a block of pixels that one triangle covers, which takes longer."""
+        return False
+
+    def _worker(self) -> Worker:
+        """The process for the folders of a library."""
+        script, log = Path(inspect.getfile(type(self))).with_name("worker.py"), "log.txt"
+        return Worker(
+            self.name, self._python, script, self._folder / log, self._limit, *self._folders
+        )
+
+    def _drawn(
+        self, text: str, element: str, scene: Scene, folders: tuple[str, ...], blocks: bool
+    ) -> Array:
+        """Picture of an element of a document; read-only."""
+        # Write the document, by a name of its own: OpenUSD keeps what it has read.
+        document = self._folder / f"{sha256(text.encode()).hexdigest()}.mtlx"
+        document.write_text(text, encoding="utf-8")
+        # Draw it.
+        output = self._folder / "output.npy"
+        reply = self.worker.ask(
+            output=str(output),
+            mesh=str(quad_file(self._folder, scene.size, PLACE if blocks else (0.0, 0.0))),
+            document=str(document),
+            element=element,
+            size=scene.size * (BLOCK if blocks else 1),
+            light=scene.light,
+            environment=scene.environment,
+        )
+        self._check(reply.get("error", ""), self.worker.printed())
+        # Read the picture.
+        pixels = np.load(output)
+        if blocks:
+            pixels = pixels[BLOCK // 2 :: BLOCK, BLOCK // 2 :: BLOCK]
+        image = np.where(sphere(scene.size).mask[..., None], pixels, np.float32(0.0))
+        image.flags.writeable = False  # shared by all callers
+        return image

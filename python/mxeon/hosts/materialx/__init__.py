@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MaterialX's own renderer on OpenGL, `MaterialXRenderGlsl`: what MaterialXView shows.
+
+It generates the shader as `gl` does, and binds lights, environment and uniforms by itself. It needs an X
+display, and ends the process where it finds none: `worker.py` runs in one of its own, and starts Xvfb
+where DISPLAY names no display.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from mxeon.errors import ShaderError
+from mxeon.hosts.documents import DocumentHost
+
+
+class Host(DocumentHost):
+    """The GlslRenderer of this MaterialX, in float32; see `DocumentHost`."""
+
+    name = "materialx"
+
+    def _interpreter(self) -> Path:
+        return Path(sys.executable)
+
+    def _check(self, error: str, printed: Sequence[str]) -> None:
+        if error:
+            raise ShaderError(f"materialx: {error}")

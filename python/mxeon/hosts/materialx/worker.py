@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The half of the `materialx` host in which MaterialX's renderer runs, started by its path.
+
+Its arguments are the folders of the libraries. It reads one JSON object per line on standard input and
+answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
+`{"error": ...}` per request. The process ends when standard input does, and its display with it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from functools import lru_cache, partial
+from itertools import product
+from pathlib import Path
+from typing import NoReturn
+
+REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
+os.dup2(2, 1)
+
+import MaterialX as mx  # noqa: E402
+import MaterialX.PyMaterialXGenGlsl as mx_glsl  # noqa: E402
+import MaterialX.PyMaterialXGenShader as mx_gen  # noqa: E402
+import MaterialX.PyMaterialXRender as mx_render  # noqa: E402
+import MaterialX.PyMaterialXRenderGlsl as mx_render_glsl  # noqa: E402
+import numpy as np  # noqa: E402
+from numpy.typing import NDArray  # noqa: E402
+
+FAR = 1e6  # of the camera, from whose position the shader takes the view
+DIRECTIONS = 256  # over which a shader of microfacets sums its environment
+PICTURES = 8  # renderers that are kept, each with the program of a document
+ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")
+SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
+DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl
+RENDERER = 0x1F01  # of glGetString
+ERRORS = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
+
+
+def open_display() -> None:
+    """Make DISPLAY name a display: the one that there is, or an Xvfb that ends with this process."""
+    if os.environ.get("DISPLAY"):
+        return
+    # Start the server.
+    program = shutil.which("Xvfb")
+    if program is None:
+        fail(
+            "no display: DISPLAY is not set, and there is no Xvfb; on Debian: apt-get install xvfb"
+        )
+    prctl = ctypes.CDLL(None).prctl
+    read, write = os.pipe()
+    subprocess.Popen(
+        [program, "-displayfd", str(write), *SCREEN],
+        pass_fds=[write],
+        preexec_fn=lambda: prctl(DIES_WITH_PARENT, signal.SIGKILL),
+    )
+    # Read its number, which it writes when it is ready.
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        number = pipe.readline().strip()
+    if not number:
+        fail("no display: Xvfb does not start")
+    os.environ["DISPLAY"] = f":{number}"
+
+
+def fail(reason: str) -> NoReturn:
+    """Say in one line why nothing can be drawn, and end the process."""
+    print(json.dumps({"error": reason}), file=REPLIES)
+    sys.exit(1)
+
+
+class ShownElement:
+    """A renderer with the shader of one element of a document."""
+
+    def __init__(self, library: mx.Document, document: str, element: str) -> None:
+        # Read the document, and the light that its shader is to know.
+        content = mx.createDocument()
+        mx.readFromXmlFile(content, document)
+        content.setDataLibrary(library)
+        self._sun = content.addNode("directional_light", "mxeon_sun", "lightshader")
+        self._sun.setInputValue("color", mx.Color3(1.0, 1.0, 1.0))
+        self._sun.setInputValue("intensity", math.pi)
+        self._lights = mx_render.LightHandler.create()
+        self._lights.setLightSources([self._sun])
+        self._lights.setEnvSampleCount(DIRECTIONS)
+        # Generate the shader.
+        generator = viewer_generator(content, library)
+        context = mx_gen.GenContext(generator)
+        context.registerSourceCodeSearchPath(mx.getDefaultDataSearchPath())
+        context.getOptions().targetDistanceUnit = "meter"
+        context.getOptions().fileTextureVerticalFlip = True
+        self._lights.registerLights(content, [self._sun], context)
+        shader = generator.generate("shader", content.getDescendant(element), context)
+        # Open a renderer for it.
+        self._renderer, self._mesh = open_renderer(), ""
+        images = mx_render_glsl.GLTextureHandler.create(mx_render.StbImageLoader.create())
+        self._renderer.setImageHandler(images)
+        self._renderer.setLightHandler(self._lights)
+        self._renderer.setCamera(camera())
+        self._renderer.createProgram(shader)
+        self._renderer.validateInputs()
+
+    def draw(
+        self,
+        mesh: str,
+        size: int,
+        light: tuple[float, float, float] | None,
+        environment: float | None,
+    ) -> NDArray[np.float32]:
+        """Picture of the square [-1, 1]^2, seen along -z, (size, size, 3), row 0 at the top."""
+        # Take the quads in a file.
+        if mesh != self._mesh:
+            geometry = mx_render.GeometryHandler.create()
+            geometry.addLoader(mx_render.TinyObjLoader.create())
+            geometry.loadGeometry(mx.FilePath(obj_file(mesh)), False)
+            self._renderer.setGeometryHandler(geometry)
+            self._mesh = mesh
+        # Light them from a direction, or from everywhere.
+        self._lights.setDirectLighting(light is not None)
+        if light is not None:
+            self._sun.setInputValue("direction", mx.Vector3(*(-x for x in light)))
+        radiance = environment or 0.0
+        color = mx.Color4(radiance, radiance, radiance, 1.0)
+        image = mx_render.createUniformImage(2, 1, 3, mx_render.FLOAT, color)
+        self._lights.setEnvRadianceMap(image)
+        self._lights.setEnvIrradianceMap(image)
+        self._lights.setEnvSampleCount(DIRECTIONS if environment else 1)
+        # Draw.
+        self._renderer.setSize(size, size)
+        self._renderer.render()
+        return pixels(self._renderer.captureImage(None))
+
+
+def open_renderer() -> mx_render_glsl.GlslRenderer:
+    """A renderer of float32 pixels, with a context of OpenGL."""
+    renderer = mx_render_glsl.GlslRenderer.create(1, 1, mx_render.FLOAT)
+    renderer.initialize()
+    return renderer
+
+
+def viewer_generator(document: mx.Document, library: mx.Document) -> mx_gen.ShaderGenerator:
+    """MaterialX's generator with the colors and units of MaterialXView."""
+    # Colors.
+    generator = mx_glsl.GlslShaderGenerator.create()
+    target = generator.getTarget()
+    colors = mx_gen.DefaultColorManagementSystem.create(target)
+    colors.loadLibrary(library)
+    generator.setColorManagementSystem(colors)
+    # Units.
+    units, converters = mx_gen.UnitSystem.create(target), mx.UnitConverterRegistry.create()
+    for name in ("distance", "angle"):
+        definition = library.getUnitTypeDef(name)
+        converters.addUnitConverter(definition, mx.LinearUnitConverter.create(definition))
+    units.loadLibrary(library)
+    units.setUnitConverterRegistry(converters)
+    generator.setUnitSystem(units)
+    generator.registerTypeDefs(document)
+    return generator
+
+
+def load(folders: list[str]) -> mx.Document:
+    """The libraries in folders, before MaterialX's own."""
+    library = mx.createDocument()
+    folders = [*folders, *mx.getDefaultDataLibraryFolders()]
+    mx.loadLibraries(folders, mx.getDefaultDataSearchPath(), library)
+    return library
+
+
+@lru_cache(maxsize=1)
+def camera() -> mx_render.Camera:
+    """A camera that sees the square [-1, 1]^2 from far away, along -z."""
+    view = mx_render.Camera.create()
+    eye, center, up = mx.Vector3(0, 0, FAR), mx.Vector3(0, 0, 0), mx.Vector3(0, 1, 0)
+    view.setViewMatrix(mx_render.Camera.createViewMatrix(eye, center, up))
+    matrix = mx_render.Camera.createOrthographicMatrix(-1, 1, -1, 1, FAR - 4, FAR + 4)
+    view.setProjectionMatrix(matrix)
+    return view
+
+
+def obj_file(path: str) -> str:
+    """The quads in a file of NumPy as a file of Wavefront's, which MaterialX reads."""
+    data, target = np.load(path), Path(path).with_suffix(".obj")
+    lines = [
+        f"{word} {' '.join(f'{number:.9g}' for number in row)}"
+        for word, name in (("v", "position"), ("vt", "texcoord"), ("vn", "normal"))
+        for row in data[name].tolist()
+    ]
+    corners = np.arange(1, len(data["position"]) + 1).reshape(-1, 4).tolist()
+    lines += [f"f {' '.join(f'{each}/{each}/{each}' for each in quad)}" for quad in corners]
+    target.write_text("\n".join(lines) + "\n")
+    return str(target)
+
+
+def pixels(image: mx_render.Image) -> NDArray[np.float32]:
+    """Pixels of a square picture whose row 0 is at the bottom."""
+    size = image.getWidth()
+    texels = [image.getTexelColor(x, y) for y, x in product(range(size), repeat=2)]
+    rows = np.array([(each[0], each[1], each[2]) for each in texels], np.float32)
+    return rows.reshape(size, size, 3)[::-1]
+
+
+def device(renderer: mx_render_glsl.GlslRenderer) -> str:
+    """Name of what draws, by the context of a renderer."""
+    renderer.setSize(1, 1)  # which makes it the current one
+    function = ctypes.CDLL("libGL.so.1").glGetString
+    function.restype = ctypes.c_char_p
+    return str(function(RENDERER).decode())
+
+
+def main() -> None:
+    """Serve requests until standard input ends."""
+    # Say who is there.
+    library, first = load(sys.argv[1:]), open_renderer()
+    picture = lru_cache(maxsize=PICTURES)(partial(ShownElement, library))
+    version = f"MaterialX {mx.getVersionString()}"
+    print(json.dumps({"version": version, "device": device(first)}), file=REPLIES)
+    # Answer each request.
+    for line in sys.stdin:
+        request = json.loads(line)
+        output = request.pop("output")
+        try:
+            shown = picture(request.pop("document"), request.pop("element"))
+            np.save(output, shown.draw(**request))
+            reply = {}
+        except ERRORS as error:
+            reply = {"error": " ".join(str(error).split())}
+        print(json.dumps(reply), file=REPLIES)
+
+
+if __name__ == "__main__":
+    # MaterialX reads textures anisotropically, and Mesa's filter for that blurs.
+    os.environ["MESA_EXTENSION_OVERRIDE"] = " ".join(f"-{each}" for each in ANISOTROPY)
+    open_display()
+    main()

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hydra Storm, USD's own renderer.
+
+It comes with Blender's package, which has OpenUSD and MaterialX in versions of its own. This half writes
+the document, `worker.py` draws it there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import MaterialX as mx
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts.cycles.process import interpreter
+from mxeon.hosts.documents import DocumentHost
+from mxeon.shaders.generation import Shader
+
+REPORT = re.compile(r"^(?:Warning|Error)\b.*? in file .* : (.*)|^(?:Warning|Error)\b.*? -- (.*)")
+COMPILE = "Failed to compile shader"  # the beginning of such a report
+CLOSURES = ("BSDF", "EDF", "VDF")
+
+
+class Host(DocumentHost):
+    """Storm on OpenGL without a window. Its pictures are half floats; see `DocumentHost`."""
+
+    name = "storm"
+
+    def unread(self, shader: Shader) -> str:
+        """The enumerated inputs of closures, of which Storm takes the defaults."""
+        nodes = (each for each in shader.document.traverseTree() if each.isA(mx.Node))
+        names = ", ".join(name for node in nodes for name in _enumerated(node))
+        return names and f"Storm takes the default of an enumerated input, here of {names}"
+
+    def _interpreter(self) -> Path:
+        return interpreter(self.name)
+
+    def _needs_blocks(self, shader: Shader) -> bool:
+        """Whether it has textures: llvmpipe reads Storm's buffers as 0 beside a triangle.
+
+        The change of a texture coordinate from there is wrong, and by it the size of the texture.
+        """
+        return any(each.type == "filename" and each.value for each in shader.inputs)
+
+    def _document(self, shader: Shader) -> tuple[str, str]:
+        element = shader.document.getDescendant(shader.element)
+        if element.getCategory() != mx.SURFACE_MATERIAL_NODE_STRING:
+            raise NotRun(f"storm: element {shader.element!r} must be a material, as USD binds one")
+        return super()._document(shader)
+
+    def _check(self, error: str, printed: Sequence[str]) -> None:
+        reports = [each[1] or each[2] for line in printed if (each := REPORT.match(line))]
+        reason = next(iter(reports), " ".join(error.split()))
+        if reason.startswith(COMPILE):
+            raise ShaderError(f"storm: {reason}")
+        if reason:
+            raise NotRun(f"storm: {self.worker.version} cannot show the document: {reason}")
+
+
+def _enumerated(node: mx.Node) -> Iterator[str]:
+    """Names of a closure's enumerated inputs that have another value than their default."""
+    definition = node.getNodeDef()
+    if definition is None or node.getType() not in CLOSURES:
+        return
+    for each in node.getInputs():
+        default = definition.getActiveInput(each.getName())
+        enumerated = default and default.hasAttribute(mx.ValueElement.ENUM_ATTRIBUTE)
+        if enumerated and each.getValueString() != default.getValueString():
+            yield f"{node.getName()}/{each.getName()}"

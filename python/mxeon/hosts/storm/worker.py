@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The half of the `storm` host that runs in the Python that has Blender's package, started by its path.
+
+Its arguments are the folders of the libraries. It reads one JSON object per line on standard input and
+answers each with one on standard output: first `{"version": ..., "device": ...}`, then `{}` or
+`{"error": ...}` per request. What OpenUSD prints goes to standard error. The process ends when standard
+input does.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import math
+import os
+import sys
+from ctypes import byref, c_char_p, c_double, c_float, c_int, c_uint, c_void_p
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NoReturn, TypeAlias
+
+# OpenUSD prints on standard output too: that goes to standard error.
+REPLIES = os.fdopen(os.dup(1), "w", buffering=1)
+os.dup2(2, 1)
+
+import numpy as np  # noqa: E402
+from numpy.typing import NDArray  # noqa: E402
+
+Foreign: TypeAlias = Any  # an object of OpenUSD, or what a function of a library returns
+Pixels: TypeAlias = NDArray[np.float32]
+Type: TypeAlias = type[c_void_p | c_uint | c_char_p] | None  # of a function of EGL or OpenGL
+
+INSTALL, DEBIAN = "pip install bpy==5.0.1", "apt-get install libegl1 libgl1-mesa-dri"
+MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdImagingGL", "UsdLux", "UsdShade", "Vt")
+FAR = 1e6  # of the camera: Storm takes the view from its position, of an orthographic one too
+ANGLE = 0.1  # degrees, of the distant light: one of 0 is black
+# Storm sums a dome's irradiance over a right angle in 64 steps. 64 of them in float32 add up to less
+# than the angle, so that it takes a 65th, and divides by 65: a white dome gives this much light.
+WHITE_DOME = math.pi / 130.0 / math.tan(math.pi / 128.0)
+# A white pixel in Radiance's format: a dome without a texture is black.
+WHITE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81"
+
+# Names of EGL and OpenGL.
+DEVICE, DESKTOP = 0x313F, 0x30A2
+CONFIG = (c_int * 5)(0x3040, 0x0008, 0x3033, 0, 0x3038)  # OpenGL, no surface
+# OpenGL 4.5, compatibility: in a core profile Storm asks for what OpenGL no longer has.
+CONTEXT = (c_int * 7)(0x3098, 4, 0x30FB, 5, 0x30FD, 2, 0x3038)
+FRAME, BUFFER, COLOR, DEPTH = 0x8D40, 0x8D41, 0x8CE0, 0x8D00
+RGBA32F, DEPTH32F, RGBA, FLOAT = 0x8814, 0x8CAC, 0x1908, 0x1406
+BOTH, RENDERER = 0x4100, 0x1F01
+
+
+class Handle(c_void_p):
+    """An object of EGL."""
+
+
+class Canvas:
+    """Float32 pixels that OpenGL draws without a window, through EGL.
+
+    Raises
+    ------
+    OSError
+        If there is no EGL or no OpenGL 4.5.
+    """
+
+    def __init__(self) -> None:
+        # Load EGL, by which OpenGL's functions are found.
+        self._size, self._name = 0, c_uint()
+        self._egl = ctypes.CDLL("libEGL.so.1")
+        self._egl.eglGetProcAddress.restype = c_void_p
+        # Open a context on the first device, as the host `gl` does.
+        devices, config, count = (Handle * 8)(), Handle(), c_int()
+        self._call("eglQueryDevicesEXT", c_uint, 8, devices, byref(count))
+        display = self._call("eglGetPlatformDisplayEXT", Handle, DEVICE, devices[0], None)
+        self._call("eglInitialize", c_uint, display, None, None)
+        self._call("eglBindAPI", c_uint, DESKTOP)
+        self._call("eglChooseConfig", c_uint, display, CONFIG, byref(config), 1, byref(count))
+        context = self._call("eglCreateContext", Handle, display, config, None, CONTEXT)
+        if not self._call("eglMakeCurrent", c_uint, display, None, None, context):
+            raise OSError("no OpenGL 4.5")
+        self.device = self._call("glGetString", c_char_p, RENDERER).decode()
+
+    def clear(self, size: int) -> None:
+        """Make it black and `size` pixels wide and high; what is drawn next appears in it."""
+        if size != self._size:
+            self._allocate(size)
+        self._call("glBindFramebuffer", None, FRAME, self._name)
+        self._call("glClearColor", None, *[c_float(0.0)] * 4)
+        self._call("glClearDepth", None, c_double(1.0))
+        self._call("glClear", None, BOTH)
+
+    def pixels(self) -> Pixels:
+        """Its pixels, (size, size, 3), row 0 at the top."""
+        image = np.zeros((self._size, self._size, 4), np.float32)
+        self._call("glBindFramebuffer", None, FRAME, self._name)
+        memory = c_void_p(image.ctypes.data)
+        self._call("glReadPixels", None, 0, 0, self._size, self._size, RGBA, FLOAT, memory)
+        return image[::-1, :, :3]
+
+    def _allocate(self, size: int) -> None:
+        """Give it colors and depths."""
+        buffers = (c_uint * 2)()
+        self._call("glGenFramebuffers", None, 1, byref(self._name))
+        self._call("glBindFramebuffer", None, FRAME, self._name)
+        self._call("glGenRenderbuffers", None, 2, buffers)
+        for buffer, kind, place in zip(buffers, (RGBA32F, DEPTH32F), (COLOR, DEPTH), strict=True):
+            self._call("glBindRenderbuffer", None, BUFFER, buffer)
+            self._call("glRenderbufferStorage", None, BUFFER, kind, size, size)
+            self._call("glFramebufferRenderbuffer", None, FRAME, place, BUFFER, buffer)
+        self._size = size
+
+    def _call(self, name: str, result: Type, *arguments: object) -> Foreign:
+        address = self._egl.eglGetProcAddress(name.encode())
+        if not address:
+            raise OSError(f"EGL has no {name}")
+        return ctypes.CFUNCTYPE(result)(address)(*arguments)
+
+
+class Stage:
+    """A mesh, a distant light and a dome, drawn by Storm."""
+
+    def __init__(self, canvas: Canvas) -> None:
+        self._canvas, self._mesh_path = canvas, ""
+        # The mesh, with a place for its material.
+        self._stage = usd.Usd.Stage.CreateInMemory()
+        self._mesh = usd.UsdGeom.Mesh.Define(self._stage, "/mesh")
+        self._mesh.CreateSubdivisionSchemeAttr("none")
+        self._mesh.SetNormalsInterpolation("vertex")
+        kind = usd.Sdf.ValueTypeNames.TexCoord2fArray
+        self._texcoord = usd.UsdGeom.PrimvarsAPI(self._mesh).CreatePrimvar("st", kind, "vertex")
+        self._look = self._stage.OverridePrim("/look")
+        # The distant light, of irradiance pi.
+        self._sun = usd.UsdLux.DistantLight.Define(self._stage, "/sun")
+        self._sun.CreateIntensityAttr(math.pi)
+        self._sun.CreateNormalizeAttr(True)
+        self._sun.CreateAngleAttr(ANGLE)
+        self._turn = usd.UsdGeom.Xformable(self._sun).AddTransformOp()
+        # The dome, which is white.
+        white = Path(os.environ["TMPDIR"], "white.hdr")
+        white.write_bytes(WHITE)
+        self._dome = usd.UsdLux.DomeLight.Define(self._stage, "/dome")
+        self._dome.CreateTextureFileAttr(str(white))
+        # Storm.
+        self._engine = usd.UsdImagingGL.Engine()
+        self._engine.SetRendererAov("color")
+
+    def render(
+        self,
+        mesh: str,
+        document: str,
+        element: str,
+        size: int,
+        light: tuple[float, float, float] | None,
+        environment: float | None,
+    ) -> Pixels:
+        """Picture of the square [-1, 1]^2, seen along -z."""
+        self._set_mesh(mesh)
+        self._set_material(document, element)
+        self._set_lights(light, environment)
+        # Look from far away.
+        frustum = usd.Gf.Frustum()
+        frustum.projectionType = usd.Gf.Frustum.Orthographic
+        frustum.window = usd.Gf.Range2d((-1.0, -1.0), (1.0, 1.0))
+        frustum.position = usd.Gf.Vec3d(0.0, 0.0, FAR)
+        frustum.nearFar = usd.Gf.Range1d(FAR - 4.0, FAR + 4.0)
+        view, projection = frustum.ComputeViewMatrix(), frustum.ComputeProjectionMatrix()
+        self._engine.SetCameraState(view, projection)
+        self._engine.SetRenderViewport(usd.Gf.Vec4d(0.0, 0.0, size, size))
+        # Draw linear colors.
+        options = usd.UsdImagingGL.RenderParams()
+        options.colorCorrectionMode = "disabled"
+        self._canvas.clear(size)
+        self._engine.Render(self._stage.GetPseudoRoot(), options)
+        return self._canvas.pixels()
+
+    def _set_mesh(self, path: str) -> None:
+        """Take the quads in a file."""
+        if path == self._mesh_path:
+            return
+        data, self._mesh_path = np.load(path), path
+        count = len(data["position"])
+        vectors, numbers = usd.Vt.Vec3fArray.FromNumpy, usd.Vt.IntArray.FromNumpy
+        self._mesh.CreatePointsAttr(vectors(data["position"]))
+        self._mesh.CreateNormalsAttr(vectors(data["normal"]))
+        self._mesh.CreateFaceVertexCountsAttr(numbers(np.full(count // 4, 4, np.int32)))
+        self._mesh.CreateFaceVertexIndicesAttr(numbers(np.arange(count, dtype=np.int32)))
+        self._texcoord.Set(usd.Vt.Vec2fArray.FromNumpy(data["texcoord"]))
+
+    def _set_material(self, document: str, name: str) -> None:
+        """Take a material of a document."""
+        references = self._look.GetReferences()
+        references.ClearReferences()
+        references.AddReference(document, "/MaterialX")
+        prim = self._stage.GetPrimAtPath(f"/look/Materials/{name}")
+        if not prim:
+            raise LookupError(f"OpenUSD has read no material {name}")
+        binding = usd.UsdShade.MaterialBindingAPI.Apply(self._mesh.GetPrim())
+        binding.Bind(usd.UsdShade.Material(prim))
+
+    def _set_lights(
+        self, light: tuple[float, float, float] | None, environment: float | None
+    ) -> None:
+        """Light it from a direction, or from everywhere."""
+        self._sun.GetPrim().SetActive(light is not None)
+        self._dome.GetPrim().SetActive(environment is not None)
+        if light is not None:
+            turn = usd.Gf.Rotation(usd.Gf.Vec3d(0.0, 0.0, 1.0), usd.Gf.Vec3d(*light))
+            self._turn.Set(usd.Gf.Matrix4d().SetRotate(turn))
+        if environment is not None:
+            self._dome.CreateIntensityAttr(environment / WHITE_DOME)
+
+
+def import_usd(libraries: str) -> Foreign:
+    """OpenUSD of Blender's package, with libraries before MaterialX's own."""
+    # Find it without importing Blender.
+    found = find_spec("bpy")
+    if found is None or not found.submodule_search_locations:
+        raise ImportError("no package bpy")
+    package = Path(found.submodule_search_locations[0])
+    sys.path += map(str, package.glob("*/python/lib/python*/site-packages"))
+    # Tell it where its plugins and libraries lie, before it looks.
+    os.environ["PXR_PLUGINPATH_NAME"] = str(package / "lib" / "usd")
+    os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(package / "lib" / "materialx" / "libraries")
+    os.environ["PXR_MTLX_PLUGIN_SEARCH_PATHS"] = libraries
+    # Mesa's filter of an anisotropic texture blurs, and Storm shows its picture by a texture.
+    os.environ["HGI_MAX_ANISOTROPY"] = "1"
+    for name in MODULES:
+        import_module(f"pxr.{name}")
+    return import_module("pxr")
+
+
+def main() -> None:
+    """Serve requests until standard input ends."""
+    # Say who is there.
+    stage = Stage(canvas)
+    _, minor, patch = usd.Usd.GetVersion()
+    version = f"OpenUSD {minor}.{patch}, MaterialX {materialx}"
+    print(json.dumps({"version": version, "device": canvas.device}), file=REPLIES)
+    # Answer each request.
+    for line in sys.stdin:
+        request = json.loads(line)
+        output = request.pop("output")
+        try:
+            np.save(output, stage.render(**request))
+            reply = {}
+        except (LookupError, usd.Tf.ErrorException) as error:
+            reply = {"error": str(error)}
+        print(json.dumps(reply), file=REPLIES)
+
+
+def fail(reason: str) -> NoReturn:
+    """Say in one line why nothing can be drawn, and end the process."""
+    print(json.dumps({"error": reason}), file=REPLIES)
+    sys.exit(1)
+
+
+if __name__ == "__main__":
+    try:
+        canvas = Canvas()
+    except OSError as error:
+        fail(f"no OpenGL 4.5 through EGL ({error}); on Debian: {DEBIAN}")
+    try:
+        usd = import_usd(os.pathsep.join(sys.argv[1:]))
+        materialx = import_module("MaterialX").getVersionString()
+    except ImportError as error:
+        fail(f"{error}; {INSTALL} in the environment of {sys.executable}")
+    main()

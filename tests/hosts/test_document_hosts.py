@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Storm and MaterialX's own renderer: the models from all sides, the defects of stock, and what may go wrong."""
+
+import os
+import shutil
+import signal
+import sys
+from dataclasses import replace
+from threading import Timer
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.accuracy.diffuse import HALF, HALF_SURROUNDINGS
+from mxeon.conformance.checks.application import judge_check
+from mxeon.conformance.checks.table import CHECKS
+from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.nodes.bsdf import BSDFS
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
+from mxeon.conformance.pictures.document_pictures import TEXTURED, judge_document
+from mxeon.conformance.probes.families import HOST_PROBES, probe_type_of
+from mxeon.conformance.results import FAILED, PASSED
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import host_row, materialx, storm
+from mxeon.hosts.documents import PLACE
+from mxeon.hosts.quads import quads
+from mxeon.shaders.library import eonlib_folder, examples_folder
+from mxeon.shaders.nodes import OREN_NAYAR, material_text, node_text
+from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
+from tests.support.documents import lobe, material
+
+HOSTS = {"storm": storm.Host, "materialx": materialx.Host}
+DOCUMENT = examples_folder() / "eon_node.mtlx"
+SMALL = replace(FRONT, size=16)
+ROWS = {check.key: check for check in CHECKS}
+EON = SUBJECTS[0]
+# A line of eonlib and a wrong one: light from behind would be as that from the side.
+SIGN = ("float s = dot(wo, wi) - mu_o * mu_i;", "float s = abs(dot(wo, wi) - mu_o * mu_i);")
+BROKEN = (SIGN[0], "float s = no_such_function(wo);")
+
+
+@pytest.fixture(scope="module", params=HOSTS)
+def host(request, hosts):
+    return hosts(request.param)
+
+
+@pytest.fixture(scope="module")
+def on_storm(hosts):
+    return hosts("storm")
+
+
+def judged(host, key, subject=EON, library="eonlib"):
+    """Result of a check of a node on a host."""
+    probe = probe_type_of(subject, HOST_PROBES[host_row(host.name).probe])
+    return with_page(judge_check(ROWS[key], probe(host, subject, library)))
+
+
+@pytest.fixture
+def copy_of_eonlib(tmp_path):
+    """A function that makes a copy of eonlib with another line in the place of one."""
+
+    def copy(old, new):
+        folder = shutil.copytree(eonlib_folder(), tmp_path / "eonlib")
+        path = folder / "genglsl" / "oren_nayar_lobe.glsl"
+        text = path.read_text()
+        assert old in text
+        path.write_text(text.replace(old, new))
+        return str(folder)
+
+    return copy
+
+
+# --- the models --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), PLACE])
+def test_every_pixel_is_an_exact_point(place):
+    mesh, points = quads(8, place), sphere(8)
+    # Weights of the corners at the place.
+    x, y = (0.5 + 0.5 * each for each in place)
+    weights = np.array([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y])
+    for name, values in mesh.items():
+        exact = vars(points)[name][points.mask]
+        middle = (weights[:, np.newaxis] * values.reshape(-1, 4, values.shape[1])).sum(axis=1)
+        np.testing.assert_allclose(middle, exact, atol=1e-6)
+    corners = mesh["position"].reshape(-1, 4, 3)
+    np.testing.assert_allclose(np.ptp(corners[..., :2], axis=1), 2.0 / 8.0, rtol=1e-6)
+
+
+@pytest.mark.parametrize("key", ["value", "environment", "furnace", "black", "flag"])
+def test_eonlib_passes(host, key):
+    result = judged(host, key)
+    assert result.verdict == PASSED and result.control.caught
+
+
+def test_the_pairs_are_many_and_lit_from_behind(host):
+    probe = HOST_PROBES[host_row(host.name).probe](host, EON, "eonlib")
+    assert all(len(batch.wo) > 1 << 10 for batch in probe.batches)
+    assert sum(len(batch.wo) for batch in probe.batches) > 1 << 15
+    assert min((batch.wo * batch.wi).sum(axis=1).min() for batch in probe.batches) < -0.5
+
+
+@pytest.mark.parametrize("model", ["burley", "translucent", "dielectric"])
+def test_nodes_of_pbrlib_pass(host, model):
+    [subject] = [each for each in BSDFS if each.model == model]
+    assert judged(host, "value", subject).verdict == PASSED
+
+
+def test_a_surface_shader_passes(on_storm):
+    [subject] = [each for each in SURFACES if each.title == "UsdPreviewSurface"]
+    assert judged(on_storm, "lobe", subject).verdict == PASSED
+
+
+def test_a_document_is_that_of_the_reference(host, reference):
+    results, pictures, _ = judge_document(DOCUMENT, host, reference, "eonlib")
+    assert {each.verdict for each in results} == {PASSED}
+    assert len(pictures) == len(results) * len(host_row(host.name).scenes)
+
+
+def test_textures_are_those_of_the_reference(host, reference):
+    [shader] = host.compile(examples_folder() / "brick.mtlx")
+    scene = replace(SIDE, size=128)
+    difference = host.picture(shader, scene) - reference.picture(shader, scene)
+    facing = sphere(128).normal[..., 2:]
+    assert np.abs(difference * facing).max() <= TEXTURED.value + HALF.value
+
+
+def test_the_bound_of_storm_is_that_of_half_floats(on_storm):
+    probe = HOST_PROBES["half pictures"](on_storm, EON, "eonlib")
+    batch = probe.batches[0]
+    error = np.abs(probe.direct(batch) / probe.expected(batch) - 1.0).max()
+    assert 0.5 * HALF.value < error <= HALF.value
+
+
+def test_the_dome_of_storm_is_given_what_its_sum_loses(on_storm):
+    """Without that it would be darker by eight tolerances."""
+    white = material_text(OREN_NAYAR, {"color": (1.0, 1.0, 1.0), "roughness": 0.0})
+    [shader] = on_storm.compile(white)
+    picture = on_storm.picture(shader, replace(FURNACE, size=16))[sphere(16).mask]
+    assert np.abs(picture - 1.0).max() <= HALF_SURROUNDINGS.value
+    darker = replace(FURNACE, size=16, environment=0.9844)
+    assert np.abs(on_storm.picture(shader, darker)[sphere(16).mask] - 1.0).min() > 0.015
+
+
+# --- what cannot be shown ----------------------------------------------------------------------
+
+
+def test_a_later_input_is_refused_in_a_sentence(on_storm):
+    [shader] = on_storm.compile(material(lobe("dielectric_bsdf", retroreflective="true")))
+    message = "^storm: OpenUSD .*, MaterialX 1.39.3 cannot show the document: .*nodedef for 'lobe'"
+    with pytest.raises(NotRun, match=message):
+        on_storm.picture(shader, SMALL)
+
+
+def test_an_enumerated_input_is_said_not_to_be_read(on_storm, gl):
+    def unread(mode):
+        return on_storm.unread(on_storm.compile(material(lobe("sheen_bsdf", mode=mode)))[0])
+
+    assert unread("conty_kulla") == ""
+    assert unread("zeltner").endswith("of an enumerated input, here of lobe/mode")
+    [shader] = on_storm.compile(material(lobe("sheen_bsdf", mode="zeltner")))
+    other = on_storm.compile(material(lobe("sheen_bsdf", mode="conty_kulla")))[0]
+    np.testing.assert_array_equal(*(on_storm.picture(each, SMALL) for each in (shader, other)))
+    assert gl.unread(shader) == ""
+
+
+def test_a_document_with_such_an_input_has_to_be_finite(on_storm, reference):
+    velvet = examples_folder() / "velvet.mtlx"
+    results, _, notes = judge_document(velvet, on_storm, reference, "eonlib")
+    assert {(each.check, each.verdict) for each in results} == {("finite", PASSED)}
+    assert any("takes the default of an enumerated input" in text for text, _ in notes)
+
+
+def test_a_shader_without_a_material_is_shown_by_materialx_alone(hosts):
+    graph = node_text("UsdPreviewSurface", "surfaceshader", "shading", "")
+    text = f'<materialx version="1.39">{graph}<output name="out" type="surfaceshader" nodename="shading"/></materialx>'
+    for name, engine in HOSTS.items():
+        host = hosts(name)
+        [shader] = host.compile(text)
+        if engine is materialx.Host:
+            assert host.picture(shader, SMALL).any()
+        else:
+            with pytest.raises(NotRun, match="^storm: element 'out' must be a material, as USD"):
+                host.picture(shader, SMALL)
+
+
+def test_an_image_around_the_sphere_is_refused(host, tmp_path):
+    [shader, *_] = host.compile(DOCUMENT)
+    with pytest.raises(NotRun, match="environment must be uniform; got an image"):
+        host.picture(shader, replace(FURNACE, environment=tmp_path / "sky.exr"))
+
+
+# --- other libraries ---------------------------------------------------------------------------
+
+
+def test_stock_is_wrong_from_behind(host):
+    result = judged(host, "value", library="stock")
+    assert result.verdict == FAILED
+    assert "nearest known model: EON with clamped dot(wo, wi)" in result.diagnosis
+    assert result.diagnosis.endswith("; see docs/upstream/genglsl_clamped_dot.md")
+
+
+def test_a_wrong_copy_of_eonlib_fails(host, copy_of_eonlib):
+    assert judged(host, "value", library=copy_of_eonlib(*SIGN)).verdict == FAILED
+
+
+def test_a_shader_that_does_not_compile_is_a_shader_error(host, copy_of_eonlib):
+    [shader] = host.compile(material_text(OREN_NAYAR, {}), library=copy_of_eonlib(*BROKEN))
+    with pytest.raises(ShaderError, match=f"^{host.name}: .*no_such_function"):
+        host.picture(shader, SMALL)
+
+
+# --- processes ---------------------------------------------------------------------------------
+
+
+def test_the_identity_names_versions_and_a_device(host):
+    identity = host.identity()
+    assert identity.name == host.name and "MaterialX 1.39" in identity.version and identity.device
+
+
+def test_a_crash_is_not_run_and_the_next_picture_is(host):
+    [shader, *_] = host.compile(DOCUMENT)
+    host.picture(shader, SMALL)
+    os.kill(host.worker.pid, signal.SIGSTOP)  # it cannot answer before it ends
+    killer = Timer(0.2, os.kill, (host.worker.pid, signal.SIGKILL))
+    killer.start()
+    with pytest.raises(NotRun, match=f"^{host.name}: ended by SIGKILL; last output: "):
+        host.picture(shader, replace(SMALL, size=8))
+    assert host.picture(shader, replace(SMALL, size=8)).any()
+
+
+@pytest.mark.parametrize("engine", HOSTS.values(), ids=HOSTS)
+def test_nothing_is_left_behind(hosts, engine):
+    hosts(engine.name)  # or the test is skipped
+    with engine() as host:
+        host.identity()
+        pid, log = host.worker.pid, host.worker.log
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+    assert not log.exists()
+
+
+def test_a_missing_blender_is_one_line(monkeypatch):
+    monkeypatch.setenv("MXEON_CYCLES_PYTHON", "/nowhere/python")
+    with pytest.raises(NotRun, match="^storm: no interpreter /nowhere/python; pip install bpy"):
+        storm.Host()
+    monkeypatch.setenv("MXEON_CYCLES_PYTHON", sys.executable)
+    with (
+        storm.Host() as host,
+        pytest.raises(NotRun, match="^storm: no package bpy; pip install bpy==.* in the env"),
+    ):
+        host.identity()
+
+
+def test_a_missing_driver_is_one_line(hosts, monkeypatch):
+    hosts("storm")
+    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_FILENAMES", os.devnull)
+    with (
+        storm.Host() as host,
+        pytest.raises(NotRun, match="^storm: no OpenGL 4.5 through EGL .*; on Debian: apt-get"),
+    ):
+        host.identity()
+
+
+@pytest.mark.parametrize(
+    "display, message",
+    [
+        (
+            "",
+            "no display: DISPLAY is not set, and there is no Xvfb; on Debian: apt-get install xvfb$",
+        ),
+        (":4711", "(ended by|exit status) .*; last output: "),
+    ],
+)
+def test_a_missing_display_is_one_line(monkeypatch, display, message):
+    monkeypatch.setenv("DISPLAY", display)
+    monkeypatch.setenv("PATH", "/nowhere")
+    with materialx.Host() as host, pytest.raises(NotRun, match=f"^materialx: {message}") as caught:
+        host.identity()
+    assert "\n" not in str(caught.value)
