@@ -183,7 +183,11 @@ HOSTS = (
         "",
         "mxeon.hosts.polyhedron.mitsuba",
         "facet pairs",
-        nodes=(OwnNode("diffuse", "lambert", COLOR), OwnNode("principled", "burley")),
+        nodes=(
+            OwnNode("diffuse", "lambert", COLOR),
+            OwnNode("principled", "burley"),
+            *(OwnNode(f"{each} of mxeon.mitsuba", each) for each in ("eon", "fon", "qon")),
+        ),
     ),
     # Its manual has the roughness of both nodes for Cycles only.
     Row(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba's own BSDFs, in its scalar variant."""
+"""Mitsuba's own BSDFs, in its scalar variant, and those of `mxeon.mitsuba`, compiled by LLVM."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Host(PolyhedronHost):
 
     name = "mitsuba"
     samples = 64
-    device = "CPU, scalar_rgb"
+    device = "CPU, scalar_rgb; plugins llvm_ad_rgb"
     # Without specular reflection nothing but the diffuse lobe is left of the principled BSDF.
     nodes: ClassVar[Mapping[str, Material]] = {
         "diffuse": {"type": "diffuse", "reflectance": "{color}"},
@@ -32,6 +32,14 @@ class Host(PolyhedronHost):
             "base_color": "{color}",
             "roughness": "{roughness}",
             "specular": 0.0,
+        },
+        **{
+            f"{model} of mxeon.mitsuba": {
+                "type": model,
+                "reflectance": "{color}",
+                "sigma" if model == "qon" else "roughness": "{roughness}",
+            }
+            for model in ("eon", "fon", "qon")
         },
     }
 

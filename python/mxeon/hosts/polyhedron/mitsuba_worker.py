@@ -22,9 +22,21 @@ import numpy as np  # noqa: E402
 Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types are those of another variant
 Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
 
+PLUGINS = ("eon", "fon", "qon")  # of `mxeon.mitsuba`
+
+# Variants of Mitsuba's own BSDFs, and of those of `mxeon.mitsuba`, which Python is too slow for one by one.
+OWN, COMPILED = "scalar_rgb", "llvm_ad_rgb"
+
 mi: Mitsuba = import_module("mitsuba")
-mi.set_variant("scalar_rgb")
+mi.set_variant(OWN)
 mi.set_log_level(mi.LogLevel.Warn)
+
+
+def set_variant(material: Values) -> None:
+    """Set the variant of a material, with the plugins of mxeon if it is one of these."""
+    mi.set_variant(COMPILED if material["type"] in PLUGINS else OWN)
+    if material["type"] in PLUGINS:
+        import_module("mxeon.mitsuba").register()
 
 
 def bsdf(material: Values, **inputs: object) -> Values:
@@ -38,7 +50,11 @@ def bsdf(material: Values, **inputs: object) -> Values:
 
 def evaluate(material: Values, pairs: str) -> Mitsuba:
     """f cos(theta_i) of a BSDF for the pairs in a file, (N, 3)."""
+    # Evaluate all at once where that can be compiled.
     columns = np.load(pairs)
+    if mi.variant() == COMPILED:
+        return evaluate_at_once(material, columns)
+    # Else evaluate one after another.
     context, point = mi.BSDFContext(), mi.SurfaceInteraction3f()
     point.t, point.n, point.sh_frame = 1.0, [0.0, 0.0, 1.0], mi.Frame3f([0.0, 0.0, 1.0])
     rows = []
@@ -48,6 +64,29 @@ def evaluate(material: Values, pairs: str) -> Mitsuba:
         point.wi = wo  # towards the viewer, in Mitsuba's words
         rows.append(np.array(made.eval(context, point, wi)))
     return np.array(rows)
+
+
+def evaluate_at_once(material: Values, columns: Values) -> Mitsuba:
+    """The same for all pairs together, whose inputs are texels."""
+    # Put the inputs into textures of one row.
+    inputs = {
+        name: {
+            "type": "bitmap",
+            "data": mi.TensorXf(
+                columns[name].astype(np.float32).reshape(1, len(columns["wo"]), -1)
+            ),
+            "filter_type": "nearest",
+            "raw": True,
+        }
+        for name in ("color", "roughness")
+    }
+    made = mi.load_dict(bsdf(material, **inputs))
+    # Look at each texel from its direction.
+    wo, wi = (mi.Vector3f(columns[name].T.astype(np.float32)) for name in ("wo", "wi"))
+    point = mi.SurfaceInteraction3f()
+    point.wi = wo
+    point.uv = mi.Point2f((np.arange(len(columns["wo"])) + 0.5) / len(columns["wo"]), 0.5)
+    return np.array(made.eval(mi.BSDFContext(), point, wi)).T
 
 
 def render(
@@ -127,6 +166,7 @@ def main() -> None:
     for line in sys.stdin:
         request = json.loads(line)
         output = request.pop("output")
+        set_variant(request["material"])
         work = evaluate if "pairs" in request else render
         np.save(output, work(**request))
         print("{}", file=REPLIES)
