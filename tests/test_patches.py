@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from docs.upstream import ledger, patches
+from docs.upstream import ledger, patches, pictures
 from tests.support.availability import available
 from tests.support.wheels import MAIN, git
 
@@ -35,6 +35,18 @@ def test_the_index_has_the_patches():
     text = ledger.INDEX.read_text()
     assert text == patches.index_text(text)
     assert [page for page in PAGES if f"]({page}.md) | " not in text] == []
+
+
+@pytest.mark.parametrize("page", pictures.PAGES)
+def test_a_picture_is_on_its_page_with_its_figures(page):
+    text = (ledger.FOLDER / f"{page}.md").read_text()
+    [block] = pictures.BLOCK.findall(text)
+    assert f"(pictures/{page}.webp)" in block and "is white" in block
+    assert ROWS[page].patch
+
+
+def test_every_picture_is_of_a_page():
+    assert {path.stem for path in pictures.PICTURES.iterdir()} == set(pictures.PAGES)
 
 
 def test_every_folder_is_of_a_project():

@@ -207,6 +207,10 @@ def _paragraph(text: str) -> str:
     )
 
 
+# The sentence of `pictures.py`.
+CHANGE = re.compile(
+    r"which is (\S+) in the mean, of a mean radiance of (\S+), and (\S+) where it is white"
+)
 BLOCK = re.compile(r"<!-- patches (\S+) -->\n.*?<!-- end -->\n", re.DOTALL)
 
 
@@ -221,13 +225,21 @@ def index_text(text: str) -> str:
 def _table(project: Project) -> str:
     ledger = {row.page: row for row in rows()}
     numbers = {page: number for number, page in enumerate(topics(project), 1)}
-    lines = "| | patch | kind | measured | needs |\n|---|---|---|---|---|\n"
+    lines = "| | patch | kind | measured | its picture changes by | needs |\n|---|---|---|---|---|---|\n"
     for page, number in numbers.items():
         row, patch = ledger[page], _patch(ledger[page])
         kind = f"in main, #{row.pull}" if row.pull else patch.kind
         needed = ", ".join(f"{numbers[each]:04}" for each in patch.needs if each in numbers)
-        lines += f"| {number:04} | [{patch.subject}]({page}.md) | {kind} | {_measured(row)} | {needed} |\n"
+        cells = (f"[{patch.subject}]({page}.md)", kind, _measured(row), _change(page), needed)
+        lines += f"| {number:04} | {' | '.join(cells)} |\n"
     return lines
+
+
+def _change(page: str) -> str:
+    """By how much the repair changes the picture of a page; empty for one without a picture."""
+    text = " ".join((FOLDER / f"{page}.md").read_text(encoding="utf-8").split())
+    found = CHANGE.search(text)
+    return f"{found[1]} in the mean, of {found[2]}; {found[3]} at most" if found else ""
 
 
 def _measured(row: Row) -> str:
