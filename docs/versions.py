@@ -46,7 +46,8 @@ What of eonlib does not pass:
 
 {open}
 MaterialX 1.39.3 and 1.39.4 have no input `retroreflective`, and their GLSL adds what a medium passes to what the
-layer above it passes. The inputs that reach nothing there are those of their own surface shaders.
+layer above it passes. Their `gltf_pbr` has no input `dispersion`, so that `reach` cannot vary it, and
+`opacityMode` of their `UsdPreviewSurface` changes nothing that `reach` sees.
 
 ## Upstream pages
 
