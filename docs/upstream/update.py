@@ -23,6 +23,7 @@ from docs.upstream.ledger import generated
 from docs.upstream.light_quantities import light_block
 from docs.upstream.marks import filled, wrong
 from docs.upstream.pbr_quantities import OF_PBRLIB
+from docs.upstream.storm_quantities import OF_STORM
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.surface_quantities import OF_SURFACES
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
@@ -217,6 +218,7 @@ OF_QUANTITIES = {
     **OF_TRANSMISSION,
     **OF_FILMS,
     **OF_SURFACES,
+    **OF_STORM,
 }
 
 
