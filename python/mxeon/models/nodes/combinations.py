@@ -18,21 +18,33 @@ from mxeon.models.core import layering
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering, Variant
-from mxeon.models.sheen import zeltner_albedo_dir, zeltner_brdf
+from mxeon.models.sheen import (
+    conty_kulla_albedo_dir,
+    conty_kulla_brdf,
+    zeltner_albedo_dir,
+    zeltner_brdf,
+)
 
 ROUGHNESS = ("top/roughness", "base/roughness")
 COLORS = ("top/color", "base/color")
 AMOUNT = "lobe/mix"  # share of `top`, or of the sum
 AMOUNT_ABOVE = "mixed/mix"  # share of the sum in a mix that is the top of a layer
 FACTOR = "lobe/in2"  # of `top`, or of the sum
+Sheen = Callable[[Array, Array, Array, Array], Bsdf]  # of wo, wi, roughness and color
 Combine = Callable[[Bsdf, Bsdf, Inputs], Bsdf]
 Finish = Callable[[Bsdf], Bsdf]
 
 
-def _sheen(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
+def _zeltner(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
     """A Zeltner sheen."""
     albedo = zeltner_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness)
     return Bsdf(zeltner_brdf(wo, wi, color, roughness), 1.0 - albedo[:, np.newaxis] * color)
+
+
+def _conty_kulla(wo: Array, wi: Array, roughness: Array, color: Array) -> Bsdf:
+    """A Conty-Kulla sheen, whose albedo counts as 1 where it exceeds 1."""
+    albedo = np.minimum(conty_kulla_albedo_dir(np.minimum(wo[:, 2], 1.0), roughness), 1.0)
+    return Bsdf(conty_kulla_brdf(wo, wi, color, roughness), 1.0 - albedo[:, np.newaxis] * color)
 
 
 def _column(inputs: Inputs, name: str) -> Array:
@@ -41,13 +53,13 @@ def _column(inputs: Inputs, name: str) -> Array:
 
 
 def _values(
-    combine: Combine,
+    combine: Combine, sheen: Sheen = _zeltner
 ) -> tuple[Callable[[Array, Array, Inputs], Array], Callable[[Array, Inputs], Array]]:
     """Value and albedo of a combination of both lobes."""
 
     def both(wo: Array, wi: Array, inputs: Inputs) -> Bsdf:
         top, base = (
-            _sheen(wo, wi, inputs[rough], inputs.get(color, np.ones(3)))
+            sheen(wo, wi, inputs[rough], inputs.get(color, np.ones(3)))
             for rough, color in zip(ROUGHNESS, COLORS, strict=True)
         )
         return combine(top, base, inputs)
@@ -71,6 +83,7 @@ def _combined(
 ) -> PbrNode:
     """Row of a node that combines both lobes."""
     value, albedo = _values(combine)
+    other = Variant("Conty-Kulla sheens in the lobes' place", *_values(combine, _conty_kulla))
     return PbrNode(
         name,
         title,
@@ -80,7 +93,7 @@ def _combined(
         albedo,
         layerable=True,
         reciprocal=False,
-        variants=variants,
+        variants=(*variants, other),
     )
 
 

@@ -99,6 +99,11 @@ def _white(inputs: Inputs) -> dict[str, Array]:
     return {**inputs, "tint": np.ones(3)}
 
 
+def _undipped(inputs: Inputs) -> dict[str, Array]:
+    """Inputs without a dip at 82 degrees."""
+    return {**inputs, "color82": np.ones((1, 3))}
+
+
 def _schlick(inputs: Inputs) -> tuple[Array, Array, Array]:
     return inputs["color0"], inputs["color82"], inputs["color90"]
 
@@ -254,6 +259,11 @@ MICROFACET_NODES = (
         mirror=dict.fromkeys(("color0", "color82", "color90"), WHITE),
         variants=(
             *_variants(SCHLICK),
+            Variant(
+                "color82 counts as 1",
+                lambda wo, wi, inputs: SCHLICK.value(wo, wi, _undipped(inputs)),
+                lambda wo, inputs: SCHLICK.albedo(wo, isotropic(_undipped(inputs))),
+            ),
             Variant(
                 "its albedo, averaged over the channels",
                 albedo=lambda wo, inputs: averaged_channels(SCHLICK.albedo(wo, isotropic(inputs))),
