@@ -142,17 +142,6 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
     "nodes, scene, words",
     [
         (
-            """<subsurface_bsdf name="lobe" type="BSDF"/>""",
-            FRONT,
-            "no model for node 'subsurface_bsdf'",
-        ),
-        (
-            """<dielectric_bsdf name="lobe" type="BSDF">
-            <input name="scatter_mode" type="string" value="RT"/></dielectric_bsdf>""",
-            SMALL,
-            "no model for this mode of node 'dielectric_bsdf'",
-        ),
-        (
             f"""<noise2d name="bump" type="vector3"/><{EON} name="lobe" type="BSDF">
             <input name="normal" type="vector3" nodename="bump"/></{EON}>""",
             FRONT,
@@ -167,8 +156,6 @@ def test_it_evaluates_pairs_like_any_host(flag, brdf):
         (A.replace('"a"', '"lobe"'), Scene("sky", environment="sky.exr"), "must be uniform"),
     ],
     ids=[
-        "subsurface",
-        "transmission",
         "noise",
         "color space",
         "image of an environment",
@@ -422,17 +409,63 @@ def test_a_lobe_scaled_to_nothing_hides_nothing():
             OutsideModel,
             r"node 'lobe': roughness must lie in \[0, 1\]; got 1.5",
         ),
-        (
-            """<anisotropic_vdf name="fog" type="VDF"><input name="scattering" type="vector3"
-            value="0, 1, 0"/></anisotropic_vdf><sheen_bsdf name="top" type="BSDF"/>
-            <layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename="top"/>
-            <input name="base" type="VDF" nodename="fog"/></layer>""",
-            NotRun,
-            "no model for a layer over a volume",
-        ),
     ],
-    ids=["mix", "sheen", "volume"],
+    ids=["mix", "sheen"],
 )
 def test_what_lies_beyond_the_layers_is_said(nodes, error, words):
     with pytest.raises(error, match=words):
         center(material(nodes))
+
+
+GLASS = """<dielectric_bsdf name="{name}" type="BSDF"><input name="tint" type="color3"
+  value="0.2, 0.5, 0.9"/><input name="scatter_mode" type="string" value="{mode}"/></dielectric_bsdf>"""
+FOG = """<anisotropic_vdf name="fog" type="VDF"><input name="scattering" type="vector3"
+  value="0, 1, 0"/></anisotropic_vdf>"""
+HAZE = """<layer name="lobe" type="BSDF"><input name="top" type="BSDF" nodename="glass"/>
+  <input name="base" type="VDF" nodename="fog"/></layer>"""
+
+
+def lit(text, scene):
+    return Reference().picture(generate(material(text), "glsl")[0], replace(scene, size=32))
+
+
+def test_what_is_transmitted_of_a_furnace_is_what_is_not_reflected():
+    whole = GLASS.replace("0.2, 0.5, 0.9", "1, 1, 1").format(name="lobe", mode="RT")
+    assert np.allclose(lit(whole, FURNACE)[sphere(32).mask], 1.0, atol=1e-9)
+    assert not lit(GLASS.format(name="lobe", mode="T"), SIDE).any()
+
+
+def test_a_volume_dims_what_is_transmitted_and_not_what_is_reflected():
+    clear = lit(GLASS.format(name="lobe", mode="T"), FURNACE)
+    foggy = lit(GLASS.format(name="glass", mode="T") + FOG + HAZE, FURNACE)
+    assert np.allclose(foggy, clear * [1.0, np.exp(-1.0), 1.0], atol=1e-12)
+    reflected = lit(GLASS.format(name="glass", mode="R") + FOG + HAZE, FURNACE)
+    assert np.allclose(reflected, lit(GLASS.format(name="lobe", mode="R"), FURNACE))
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        GLASS.format(name="lobe", mode="RT"),
+        """<subsurface_bsdf name="lobe" type="BSDF"><input name="radius" type="color3"
+        value="0.5, 0.2, 0.05"/></subsurface_bsdf>""",
+        """<chiang_hair_bsdf name="lobe" type="BSDF"/>""",
+    ],
+    ids=["transmission", "subsurface", "hair"],
+)
+def test_lobes_below_the_surface_have_a_picture_like_gl(node, tmp_path):
+    path = tmp_path / "inner.mtlx"
+    path.write_text(material(node))
+    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "eonlib")
+    assert (result.check, result.verdict) == ("picture", "passed")
+
+
+@pytest.mark.parametrize("node", ["subsurface_bsdf", "dielectric_bsdf"])
+def test_a_wrong_lobe_below_the_surface_is_found(node, tmp_path):
+    rough = '<input name="roughness" type="vector2" value="0.8, 0.8"/></dielectric_bsdf>'
+    glass = GLASS.format(name="lobe", mode="T").replace("</dielectric_bsdf>", rough)
+    path = tmp_path / "inner.mtlx"
+    lobes = {"dielectric_bsdf": glass, "subsurface_bsdf": f'<{node} name="lobe" type="BSDF"/>'}
+    path.write_text(material(lobes[node]))
+    [result], _, _ = judge_document(path, open_host("gl"), Reference(), "stock")
+    assert (result.check, result.verdict) == ("picture", "failed")

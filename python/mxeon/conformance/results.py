@@ -94,6 +94,9 @@ class Result:
     claimed, model : str
         Titles of the model that a renderer's own node claims, and of the form of it that was judged,
         which is the one that it has where the check passes; "" for other subjects.
+    measured : tuple of str
+        Inputs of a document's nodes whose values the expected picture has from the host itself,
+        since nodes of patterns have no model; see `mxeon.conformance.reference.measured`.
 
     Raises
     ------
@@ -118,6 +121,7 @@ class Result:
     reason: str = ""
     claimed: str = ""
     model: str = ""
+    measured: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:

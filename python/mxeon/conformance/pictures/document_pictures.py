@@ -3,6 +3,7 @@
 
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -12,10 +13,14 @@ from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.accuracy import surface_shaders as surfaces
-from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, sum_of
+from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, RINGS, sum_of
+from mxeon.conformance.accuracy.utilities import BLACKBODY
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.probes.pictures import picture_pairs
+from mxeon.conformance.reference import ExpectedPicture
+from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference.measured import HostValues
 from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result
 from mxeon.conformance.samples.measurement import Measurement, Metric, absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
@@ -26,6 +31,7 @@ from mxeon.models.nodes import NODES
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
+from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.nodes import BSDF_INPUTS
 from mxeon.shaders.scene import Scene, sphere
 
@@ -33,7 +39,7 @@ from mxeon.shaders.scene import Scene, sphere
 FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
 
 Pixels: TypeAlias = NDArray[np.floating]
-Case: TypeAlias = tuple[Scene, Pixels, Pixels]  # with the host's picture and the reference's
+Case: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 UNIT = "pi f cos, times cos(theta_o)"
@@ -72,15 +78,16 @@ FINITE = "No pixel is infinite or not a number."
 
 
 def judge_document(
-    file: Path, host: Host, judge: Host, library: str, policy: Policy = DEFAULT
+    file: Path, host: Host, judge: Reference, library: str, policy: Policy = DEFAULT
 ) -> tuple[tuple[Result, ...], tuple[Picture, ...], tuple[tuple[str, str], ...]]:
     """Pictures of every material of a document on a host, judged against the reference's.
 
     Parameters
     ----------
     file : Path
-    host, judge : Host
-        The host to judge, and the reference.
+    host : Host
+        The host to judge.
+    judge : Reference
     library : str
         Name of the data library.
     policy : Policy
@@ -112,7 +119,8 @@ def judge_document(
     pictures: list[Picture] = []
     for shader in shaders:
         front_lit = shader.element in approximations
-        result, images = _judge_material(file, shader, host, judge, library, front_lit)
+        values = HostValues(host, shader, library, policy)
+        result, images = _judge_material(file, shader, host, judge, values, front_lit)
         results.append(result)
         pictures += images
     # Name the element of each approximation and limit, and the file of the rest.
@@ -128,10 +136,10 @@ def judge_document(
 
 
 def _judge_material(
-    file: Path, shader: Shader, host: Host, judge: Host, library: str, front_lit: bool
+    file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
 ) -> tuple[Result, tuple[Picture, ...]]:
     """One material; `front_lit` where the host has its model for s >= 0 only."""
-    scenes = host_row(host.name).scenes
+    scenes, library = host_row(host.name).scenes, values.library
     subject = f"{file.name}: {shader.element}"
     place: Place = {
         "check": "picture",
@@ -146,10 +154,10 @@ def _judge_material(
     except (NotRun, ShaderError) as error:
         return not_measured(place, error), ()
     # Compare them with the reference's, or ask for numbers where it has no model.
-    references: list[Pixels | None] = [None] * len(scenes)
+    references: list[ExpectedPicture | None] = [None] * len(scenes)
     try:
         _assert_judged(shader, host)
-        expected = [judge.picture(shader, scene) for scene in scenes]
+        expected = [judge.expected(shader, scene, values) for scene in scenes]
     except OutsideModel as reason:
         return not_measured(place, reason), ()
     except NotRun as reason:
@@ -160,8 +168,8 @@ def _judge_material(
         tolerance = _rounded(_tolerance(shader), host)
         result = _judge_match(place, cases, tolerance, front_lit)
     return result, tuple(
-        _picture(file, shader, host, library, case)
-        for case in zip(scenes, images, references, strict=True)
+        _picture(file, shader, host, library, scene, image, reference)
+        for scene, image, reference in zip(scenes, images, references, strict=True)
     )
 
 
@@ -177,12 +185,11 @@ def _picture(
     shader: Shader,
     host: Host,
     library: str,
-    case: tuple[Scene, Pixels, Pixels | None],
+    scene: Scene,
+    image: Pixels,
+    expected: ExpectedPicture | None,
 ) -> Picture:
     """The record of a picture, with its origin."""
-    scene, image, reference = case
-    if reference is not None:  # shown, no longer judged
-        reference = np.asarray(reference, np.float32)
     identity = host.identity()
     metadata = {
         "version": mxeon.__version__,
@@ -193,6 +200,10 @@ def _picture(
         "element": shader.element,
         "scene": scene.name,
     }
+    if expected and expected.measured:
+        metadata["from the host"] = ", ".join(expected.measured)
+    # Shown, no longer judged.
+    reference = np.asarray(expected.image, np.float32) if expected else None
     names = (file.name, shader.element, host.name, library, scene.name)
     return Picture(*names, image, reference, metadata)
 
@@ -219,7 +230,18 @@ def _rounded(tolerance: Tolerance, host: Host) -> Tolerance:
 
 
 def _tolerance(shader: Shader) -> Tolerance:
-    """Tolerance of a material's pictures."""
+    """Tolerance of a material's pictures: that of its lobes, with what else may add to it."""
+    tolerance = _lobes_tolerance(shader)
+    others = [RINGS] * (SUBSURFACE in inner_lobes(shader))
+    others += [BLACKBODY] * ("blackbody" in _categories(_inner(shader)))
+    for other in others:
+        words = f"{tolerance.derivation}; and {other.derivation}"
+        tolerance = Tolerance(tolerance.value + other.value, FITTED.unit, absolute, words)
+    return tolerance
+
+
+def _lobes_tolerance(shader: Shader) -> Tolerance:
+    """Tolerance of lobes without light below the surface."""
     if _categories(shader.document.traverseTree()) & FITTED_NODES:
         return FITTED
     if _categories(_inner(shader)) & FITTED_NODES:
@@ -278,10 +300,11 @@ def _judge_match(
     errors = [(*_worst_pixel(case, front_lit, metric), case[0].name) for case in cases]
     error, worst, scene = max(errors, key=lambda entry: entry[0])
     first, image, expected = cases[0]
+    measured = tuple(dict.fromkeys(name for case in cases for name in case[2].measured))
     brighter = image + np.float32(3.0 * tolerance.value) * np.maximum(1.0, image)
     control_error, _ = _worst_pixel((first, brighter, expected), front_lit, metric)
     words = "" if error <= tolerance.value else f"most in the picture of the scene {scene}"
-    return judge_measurements(
+    result = judge_measurements(
         place,
         tolerance,
         Measurement(error, worst),
@@ -289,16 +312,17 @@ def _judge_match(
         Measurement(control_error, {}),
         Diagnosis(words),
     )
+    return replace(result, measured=measured)
 
 
 def _worst_pixel(
     case: Case, front_lit: bool, metric: Metric
 ) -> tuple[float, dict[str, list[float]]]:
     """Largest error times cos(theta_o), and its pixel."""
-    # Errors of the pixels that show the sphere.
-    scene, image, reference = case
-    mask = sphere(scene.size).mask
-    wo, wi, _ = picture_pairs(scene)
+    # Errors of the pixels that show the sphere and were computed.
+    scene, image, (reference, mask) = case[0], case[1], (case[2].image, case[2].judged)
+    chosen = mask[sphere(scene.size).mask]
+    wo, wi = (each[chosen] for each in picture_pairs(scene)[:2])
     measured, expected = (each[mask].astype(np.float64) for each in (image, reference))
     error = metric(measured, expected) * wo[:, 2]
     if front_lit:

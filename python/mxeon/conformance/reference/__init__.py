@@ -4,24 +4,50 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
+import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon import hosts
 from mxeon.conformance.reference.graph import Graph
+from mxeon.conformance.reference.lobes import ManyMaterialsError
+from mxeon.conformance.reference.measured import LIT, PATTERNS, Elements, HostValues, Measure
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun
 from mxeon.hosts import base
 from mxeon.hosts.base import Identity
 from mxeon.shaders.generation import Shader
+from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
 SCENES = 4  # whose points are kept: the pictures of a run have as many
 
+STRIDE = 8  # of the pixels that are judged where each has a material of its own
+MOST = 2000  # pixels of which all are judged then: an integral takes about a millisecond
+
 # Any target will do: the document behind the shader is what is evaluated.
 ROW = hosts.Row("reference", target="glsl", module=__name__)
+
+
+@dataclass(frozen=True, eq=False)
+class ExpectedPicture:
+    """What a host's picture has to show.
+
+    Attributes
+    ----------
+    image : ndarray, shape (size, size, 3)
+    judged : ndarray of bool, shape (size, size)
+        Pixels that were computed; each other one has the value of one nearby.
+    measured : tuple of str
+        Inputs of nodes whose values were taken from the host.
+    """
+
+    image: NDArray[np.float64]
+    judged: NDArray[np.bool_]
+    measured: tuple[str, ...]
 
 
 class Host(base.Host):
@@ -46,10 +72,55 @@ class Host(base.Host):
         """
         self.refuse_paths(scene)
         self.refuse_shape(scene)
-        points = sphere(scene.size)
-        image = np.zeros(points.normal.shape)
-        image[points.mask] = Graph(shader.document, _shown(scene)).element(shader.element)
+        mask = sphere(scene.size).mask
+        image = np.zeros((*mask.shape, 3))
+        image[mask] = _lighted(shader, _shown(scene))[0]
         return image
+
+    def expected(self, shader: Shader, scene: Scene, values: HostValues) -> ExpectedPicture:
+        """What a host's picture has to show, some inputs of lobes being as that host has them.
+
+        Parameters
+        ----------
+        shader : Shader
+        scene : Scene
+        values : HostValues
+            Of the same host and shader.
+
+        Raises
+        ------
+        NotRun
+            As `picture` does.
+        """
+        try:
+            return self._expected(shader, scene, values, 1)
+        except ManyMaterialsError:
+            return self._expected(shader, scene, values, STRIDE)
+
+    def _expected(
+        self, shader: Shader, scene: Scene, values: HostValues, stride: int
+    ) -> ExpectedPicture:
+        """The same at the pixels of every so many rows and columns."""
+        # Choose the pixels.
+        mask = sphere(scene.size).mask
+        chosen = mask & _lattice(scene.size, stride)
+        points = _shown(scene, stride)
+
+        def measure(elements: Elements, kind: str, output: str) -> NDArray[np.float64]:
+            return values(scene.size, elements, kind, output)[chosen]
+
+        # Light them, and show each in place of those around it.
+        image = np.zeros((*mask.shape, 3))
+        try:
+            image[chosen], measured = _lighted(shader, points, measure)
+        except NotRun:
+            if (output := _pattern(shader)) is None:
+                raise
+            if output.getType() in PATTERNS:
+                image = values.emitted(scene.size, output)
+            return ExpectedPicture(image, mask, (output.getName(),))
+        middle = (np.arange(scene.size) // stride * stride + stride // 2).clip(max=scene.size - 1)
+        return ExpectedPicture(image[np.ix_(middle, middle)], chosen, measured)
 
     def evaluate(
         self,
@@ -83,17 +154,53 @@ class Host(base.Host):
         return np.array(np.broadcast_to(values, wo.shape), np.float64)
 
 
-@lru_cache(maxsize=SCENES)
-def _shown(scene: Scene) -> ShadingPoints:
+def _lighted(
+    shader: Shader, points: ShadingPoints, measure: Measure | None = None
+) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Values of a shader's element at points, and the inputs that were measured for them."""
+    graph = Graph(shader.document, points, measure=measure)
+    values = graph.element(shader.element)
+    if points.wi is None and TRANSMISSION in inner_lobes(shader):
+        behind = Graph(shader.document, replace(points, behind=True), measure=measure)
+        values = values + behind.element(shader.element)
+    return values, tuple(graph.measured)
+
+
+def _pattern(shader: Shader) -> mx.Output | None:
+    """The output that a shader shows, unless it is a material.
+
+    A host draws the color that a surface emits of it, and black where its type is none.
+    """
+    element = shader.document.getDescendant(shader.element)
+    return element if element.isA(mx.Output) and element.getType() not in LIT else None
+
+
+def _lattice(size: int, stride: int) -> NDArray[np.bool_]:
+    """Pixels in the middle of squares of so many rows and columns."""
+    chosen = np.arange(size) % stride == stride // 2
+    return np.asarray(np.logical_and.outer(chosen, chosen), np.bool_)
+
+
+@lru_cache(maxsize=2 * SCENES)
+def _shown(scene: Scene, stride: int = 0) -> ShadingPoints:
     """The points that a picture shows, and the light at them.
+
+    Parameters
+    ----------
+    scene : Scene
+    stride : int
+        Of the rows and columns; 0 for all pixels, whatever their number.
 
     Raises
     ------
     NotRun
         If the light is an image.
     """
+    # Choose the points.
     points = sphere(scene.size)
-    normal, texcoord = points.normal[points.mask], points.texcoord[points.mask]
+    mask = points.mask & _lattice(scene.size, max(stride, 1))
+    normal, texcoord = points.normal[mask], points.texcoord[mask]
+    # Choose the light at them.
     if scene.light is not None:
         wi, strength = np.broadcast_to(scene.light, normal.shape), np.pi
     elif isinstance(scene.environment, float):
@@ -101,4 +208,5 @@ def _shown(scene: Scene) -> ShadingPoints:
     else:
         raise NotRun("reference: environment must be uniform; got an image")
     wo = np.broadcast_to(VIEW, normal.shape)
-    return ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord)
+    most = MOST if stride == 1 else np.inf
+    return ShadingPoints(wo, wi, strength, normal, tangents(normal), texcoord, most, True)

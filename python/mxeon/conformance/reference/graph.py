@@ -18,7 +18,9 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.images import looked_up
+from mxeon.conformance.reference.images import lookup
+from mxeon.conformance.reference.inner import VOLUMES, over_volume
+from mxeon.conformance.reference.measured import CLOSURES, DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
@@ -53,6 +55,18 @@ SURFACES: dict[bool, Operation] = {
     True: (("bsdf", "edf", "opacity"), lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity),
     False: (("bsdf",), lambda bsdf: bsdf.value),
 }
+# Operations in which hosts differ: ties, and the arc functions of drivers. They are measured.
+HOSTS_OWN = ("round", "asin", "acos")
+# A surface that only emits.
+UNLIT: Operation = (
+    ("emission", "emission_color", "opacity"),
+    lambda emission, color, opacity: emission * color * opacity,
+)
+# The same for light that is transmitted alone.
+TRANSMITTED: dict[str, Operation] = {
+    "surface": (("bsdf", "opacity"), lambda bsdf, opacity: bsdf.value * opacity),
+    "surface_unlit": ((), lambda: np.zeros(3)),
+}
 
 
 class Graph:
@@ -67,6 +81,14 @@ class Graph:
         of the document's.
     emits : bool
         Whether emission and opacity count.
+    measure : callable or None
+        Values of nodes, where one comes from a node without a function; see
+        `mxeon.conformance.reference.measured`. None where such a node is NotRun.
+
+    Attributes
+    ----------
+    measured : dict of str to None
+        Names of the inputs whose values were measured, each behind the name of its node.
 
     Notes
     -----
@@ -80,15 +102,20 @@ class Graph:
         points: ShadingPoints,
         inputs: Mapping[str, ArrayLike] | None = None,
         emits: bool = True,
+        measure: Measure | None = None,
     ) -> None:
+        # Keep what is asked for.
         self._document = document
         self._points = points
         self._inputs = inputs or {}
         self._emits = emits
+        self._measure = measure
+        self.measured: dict[str, None] = {}
+        # Prepare what is found on the way.
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
         self._hiding: set[Path] = set()  # and those of what they are made of
-        self._elements: dict[Path, mx.Element] = {}
+        self._elements: dict[Path, mx.Element] = {(): document}
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Values:
@@ -100,14 +127,18 @@ class Graph:
             If the graph holds a node that is none of the above.
         """
         element = self._document.getDescendant(name_path)
-        root = element.getConnectedNode() if element.isA(mx.Output) else element
+        graph = element.getParent()
+        around = self._inner((), graph) if graph.isA(mx.NodeGraph) else ()
         with np.errstate(
             divide="ignore", invalid="ignore"
         ):  # of values that another node leaves out
-            path = self._inner((), root)
+            if element.isA(mx.Output):
+                path = self._connected(around, element)
+            else:
+                path = self._inner(around, element)
             self._parts([path])
             self._hiding.update(self._parts(self._tops))
-            return np.asarray(self._evaluate(path), np.float64)
+            return np.asarray(fitted("color3", self._evaluate(path)), np.float64)
 
     def _parts(self, roots: Iterable[Path]) -> dict[Path, tuple[Path, ...]]:
         return reachable(roots, lambda path: self._step(path)[1])
@@ -131,8 +162,8 @@ class Graph:
             return self._combination(path, node)
         # Numbers, colors and surfaces.
         if category == "image":
-            return partial(looked_up, node, self._points.texcoord, self._linear), ()
-        if category in self._operations:
+            return lookup(node, self._points.texcoord, self._linear), ()
+        if category in self._operations and not (self._measure and category in HOSTS_OWN):
             ports, operation = self._operations[category]
             return partial(_computed, kind, operation), self._sources(path, ports)
         # A nodegraph that defines the node, or nothing of what has no weight.
@@ -147,8 +178,14 @@ class Graph:
     @cached_property
     def _operations(self) -> dict[str, Operation]:
         """Nodes that compute numbers or colors, some of them by the points."""
-        surface = {"surface": SURFACES[self._emits], "surfacematerial": (("surfaceshader",), _same)}
-        return {**OPERATIONS, **UTILITIES, **emissions(self._points), **surface}
+        surfaces: dict[str, Operation] = {
+            "surface": SURFACES[self._emits],
+            "surface_unlit": UNLIT,
+            "surfacematerial": (("surfaceshader",), _same),
+        }
+        if self._points.behind:
+            surfaces |= TRANSMITTED
+        return {**OPERATIONS, **UTILITIES, **VOLUMES, **emissions(self._points), **surfaces}
 
     def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path | None:
         """Path of what an output of a node has in its nodegraph; None if that is none."""
@@ -190,7 +227,10 @@ class Graph:
         if category == "layer":
             self._tops.append(self._source(path, "top"))
             if definition(node).getActiveInput("base").getType() != "BSDF":
-                self._assert_empty(path)
+                if self._points.behind:
+                    return over_volume, self._sources(path, ports)
+                if not self._points.round:
+                    self._assert_empty(path)
                 return _same, self._sources(path, ("top",))
         return partial(combined, node.getNamePath(), operation), self._sources(path, ports)
 
@@ -209,6 +249,8 @@ class Graph:
 
     def _source(self, path: Path, name: str) -> Path:
         """Path of an input's value: of the node connected to it, or of a constant."""
+        # Follow the interfaces around the node outwards.
+        owner = path
         while not self._is_given(path, name):
             port = self._port(path, name)
             if not port.hasInterfaceName():
@@ -216,9 +258,17 @@ class Graph:
             path, name = path[:-1], port.getInterfaceName()
         else:
             return self._constant(path, name, self._given(path, name))
+        # Take what is connected, or else the value.
         if port.getConnectedNode():
-            return self._connected(path[:-1], port)
+            shown = f"{port.getParent().getName()}.{name}" if self._lights(owner, path) else ""
+            return self._connected(path[:-1], port, shown)
         return self._constant(path, name, self._value(path, name, port))
+
+    def _lights(self, path: Path, outer: Path) -> bool:
+        """Whether a node, or one around it up to another path, scatters light or combines what does."""
+        ends = range(len(outer), len(path) + 1)
+        nodes = (self._elements.get(path[:end]) for end in ends)
+        return any(node is not None and node.getType() in CLOSURES for node in nodes)
 
     def _is_given(self, path: Path, name: str) -> bool:
         """Whether one of the inputs that were handed in takes the place of a node's."""
@@ -235,19 +285,37 @@ class Graph:
         value = np.asarray(self._inputs[name])
         return np.reshape(value, (-1, 1)) if number else value
 
-    def _connected(self, around: Path, port: mx.PortElement) -> Path:
-        """Path of what an input or output within another path is connected to."""
+    def _connected(self, around: Path, port: mx.PortElement, shown: str = "") -> Path:
+        """Path of what an input or output within another path is connected to.
+
+        Where a value comes from a node without a function, and is an input that has a name as
+        `shown`, all of it is measured.
+        """
         # Find the node, inside this path or in a graph of the document.
         node, source = port.getConnectedNode(), port
         graph, scope = node.getParent(), port.getParent()
-        if port.getNodeGraphString():
+        if not port.getNodeName():
             source = port.getConnectedOutput()
         if port.isA(mx.Input):
             scope = scope.getParent()
         if graph.getNamePath() != scope.getNamePath():
             around = self._inner((), graph)
         path, output = self._inner(around, node), source.getOutputString()
-        # Of several outputs pick the one that is connected.
+        # Measure what cannot be computed.
+        kind = port.getType()
+        if not (shown and self._measure and kind in DRAWN):
+            return self._output(path, output)
+        try:
+            found = self._output(path, output)
+            self._parts([found])
+        except NotRun:
+            self.measured[shown] = None
+            return self._measurement(path, kind, output)
+        return found
+
+    def _output(self, path: Path, output: str) -> Path:
+        """Path of an output of a node: of several outputs, the one of that name."""
+        node = self._elements[path]
         if node.getType() != "multioutput":
             return path
         if node.getCategory() in UTILITIES:
@@ -258,12 +326,20 @@ class Graph:
             return inner
         raise NotRun(f"reference: there is no model for node {node.getCategory()!r}")
 
+    def _measurement(self, path: Path, kind: str, output: str) -> Path:
+        """Path of a node's value as the host has it."""
+        assert self._measure is not None
+        elements = [self._elements[path[:end]] for end in range(1, len(path) + 1)]
+        part = (*path, f"={output}")
+        self._steps[part] = partial(self._measure, elements, kind, output), ()
+        return part
+
     def _value(self, path: Path, name: str, port: mx.Input) -> Value:
         """Value of an input without a connection, in the document's color space."""
         # A vector of the surface, if the definition says so.
         element = self._elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
-        declared = nodedef.getActiveInput(name) if nodedef else None
+        declared = nodedef.getActiveInput(name) if nodedef else port
         if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
             return self._points.geometry(declared.getDefaultGeomPropString())
         # The value that is written, or else the default.
@@ -280,7 +356,7 @@ class Graph:
     def _port(self, path: Path, name: str) -> mx.Input:
         """Input of a node, or else of its nodedef."""
         element = self._elements.get(path)
-        nodedef = element.getNodeDef() if element else None
+        nodedef = element.getNodeDef() if element and path else None
         port = element and element.getInput(name)
         port = port or (nodedef and nodedef.getActiveInput(name))
         if not port:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import MaterialX as mx
 import numpy as np
@@ -12,13 +13,14 @@ from mxeon.conformance.reference.operations import Values
 from mxeon.errors import NotRun
 from mxeon.hosts.textures import read_texture
 
+FILES = 16  # of which the values at the points of a picture are kept
 CHANNELS = {"float": 1, "color3": 3}  # of an image, by the type that it is read as
 
 
-def looked_up(
+def lookup(
     node: mx.Node, texcoord: Values | None, linear: Callable[[mx.Element, Values], Values]
-) -> Values:
-    """Values of an image node: texel centers at half-integers, v = 0 at the bottom.
+) -> Callable[[], Values]:
+    """Function that reads an image node: texel centers at half-integers, v = 0 at the bottom.
 
     Parameters
     ----------
@@ -39,16 +41,23 @@ def looked_up(
     file = node.getInput("file")
     if not file or not file.getValueString():
         raise NotRun("reference: an image must name its file itself")
-    # Read the texels, and as many channels as the type has.
-    texels = read_texture(file.getValueString()).astype(np.float64)
+    # Read as many channels as the type has, in a color space that has a transform.
     channels = CHANNELS.get(node.getType(), 0)
-    if not 0 < channels <= texels.shape[-1]:
+    values = _texels(file.getValueString(), texcoord.tobytes())
+    if not 0 < channels <= values.shape[-1]:
         raise NotRun(
             f"reference: {file.getValueString()}: must be read as float, or as color3 from an "
-            f"image of 3 channels; got {node.getType()} from {texels.shape[-1]}"
+            f"image of 3 channels; got {node.getType()} from {values.shape[-1]}"
         )
-    value = _bilinear(texels[..., :channels], texcoord)
-    return linear(file, value) if channels == 3 else value
+    value = linear(file, values[:, :channels]) if channels == 3 else values[:, :channels]
+    return lambda: value
+
+
+@lru_cache(maxsize=FILES)
+def _texels(path: str, texcoord: bytes) -> Values:
+    """Values of all channels of an image at points, (N, channels)."""
+    where = np.frombuffer(texcoord).reshape(-1, 2)
+    return _bilinear(read_texture(path).astype(np.float64), where)
 
 
 def _bilinear(texels: Values, texcoord: Values) -> Values:

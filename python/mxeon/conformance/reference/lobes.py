@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from mxeon.conformance.reference.inner import AROUND, PASSED
 from mxeon.errors import NotRun
 from mxeon.models import table
 from mxeon.models.core.layering import Bsdf, throughput
@@ -44,34 +45,50 @@ def diffuse(name: str, category: str) -> PbrNode:
     )
 
 
-def lit(wo: Values, wi: Values, irradiance: float) -> Lobe:
-    """Lobe under a distant light: its irradiance times f |cos(theta_i)|, 0 on the dark side."""
+class ManyMaterialsError(Exception):
+    """More points with a material of their own than may be integrated one by one."""
+
+
+def lit(wo: Values, wi: Values, irradiance: float, most: float = np.inf) -> Lobe:
+    """Lobe under a distant light: its irradiance times f |cos(theta_i)|, 0 on the dark side.
+
+    Where materials of more than `most` points have albedos without a closed form, it raises
+    ManyMaterialsError.
+    """
     above = wo[:, 2] > 0.0
 
     def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
         # The value, on the side to which the node scatters.
         value = np.zeros(wo.shape)
-        shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
-        f = node.value(wo[shown], wi[shown], _at(inputs, shown))
-        value[shown] = irradiance * f * np.abs(wi[shown, 2:])
+        if around := AROUND.get(node.category):
+            value[above] = irradiance * around(wo[above], wi[above], _at(inputs, above))
+        else:
+            shown = above & ((wi[:, 2] < 0.0) if node.transmits else (wi[:, 2] > 0.0))
+            f = node.value(wo[shown], wi[shown], _at(inputs, shown))
+            value[shown] = irradiance * f * np.abs(wi[shown, 2:])
         # The light that it leaves to what lies below.
         left = np.zeros(wo.shape)
         if layered and node.layerable:
-            left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above))
+            left[above] = throughput(_albedo(node.albedo, node, wo[above], inputs, above, most))
         return Bsdf(value, left)
 
     return lobe
 
 
-def furnace(wo: Values, radiance: float) -> Lobe:
-    """Lobe in a uniform environment: its directional albedo."""
+def furnace(wo: Values, radiance: float, most: float = np.inf, behind: bool = False) -> Lobe:
+    """Lobe in a uniform environment: its directional albedo, or the share that it transmits.
+
+    `most` is as that of `lit`.
+    """
 
     def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
         every = np.ones(len(wo), bool)
-        value = _albedo(node.integral or node.albedo, node, wo, inputs, every)
-        left = np.zeros(wo.shape)
+        value = left = np.zeros(wo.shape)
+        share = PASSED.get(node.name) if behind else node.integral or node.albedo
+        if share:
+            value = _albedo(share, node, wo, inputs, every, most)
         if layered and node.layerable:
-            left = throughput(_albedo(node.albedo, node, wo, inputs, every))
+            left = throughput(_albedo(node.albedo, node, wo, inputs, every, most))
         return Bsdf(radiance * value, left)
 
     return lobe
@@ -95,12 +112,20 @@ def _at(inputs: Inputs, points: NDArray[np.bool_]) -> dict[str, Values]:
 
 
 def _albedo(
-    albedo: Albedo, node: PbrNode, wo: Values, inputs: Inputs, points: NDArray[np.bool_]
+    albedo: Albedo,
+    node: PbrNode,
+    wo: Values,
+    inputs: Inputs,
+    points: NDArray[np.bool_],
+    most: float,
 ) -> Values:
     """Albedo at `points`, of which `wo` are the directions."""
     # What is computed fast, or for other materials at each point, needs no series.
     closed = not node.fitted and node.integral is None
-    if closed or len(wo) < FEW or any(len(value) > 1 for value in inputs.values()):
+    varied = any(len(value) > 1 for value in inputs.values())
+    if varied and not closed and len(wo) > most:
+        raise ManyMaterialsError
+    if closed or varied or len(wo) < FEW:
         return albedo(wo, _at(inputs, points))
     material = tuple((name, tuple(value.ravel().tolist())) for name, value in inputs.items())
     turns = _turns(inputs)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 import MaterialX as mx
 import numpy as np
 
+from mxeon.conformance.reference.inner import INNER_NODES
 from mxeon.conformance.reference.lobes import diffuse, weighted
 from mxeon.conformance.reference.operations import Values
 from mxeon.conformance.reference.points import ShadingPoints
@@ -19,11 +20,13 @@ from mxeon.models.nodes.node import PbrNode
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
-COMPONENTS = {"color3": 3, "vector2": 2}
+MATRICES = (mx.Matrix33, mx.Matrix44)
+COMPONENTS = {"color3": 3, "vector2": 2, "vector3": 3}
 DIFFUSE = {False: diffuse("qon", OREN_NAYAR), True: diffuse("eon", EON)}
+ROWS = (*NODES, *INNER_NODES)
 LOBES = {
-    category: tuple(row for row in NODES if row.category == category)
-    for category in (*DIFFUSE_NODES, *(row.category for row in NODES))
+    category: tuple(row for row in ROWS if row.category == category)
+    for category in (*DIFFUSE_NODES, *(row.category for row in ROWS))
 }
 
 FILM = ("thinfilm_thickness", "thinfilm_ior")  # of microfacets, where the thickness is not 0
@@ -60,7 +63,7 @@ def node_lobe(
     """
     # A lobe without a weight scatters nothing.
     name = f"reference: node {node.getNamePath()!r}"
-    weight = np.reshape(inputs["weight"], (-1, 1))
+    weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has none
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
         raise OutsideModel(f"{name}: weight must lie in [0, 1]; got {beyond[0]:g}")
     if not weight.any():
@@ -68,6 +71,8 @@ def node_lobe(
         return Bsdf(np.zeros(3), np.full(3, 1.0 if layerable else 0.0))
     # The model, its arguments, and its value.
     row = _row(node, inputs)
+    if row in INNER_NODES and not points.round:
+        raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
     _assert_known(node, row, inputs)
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _shaped(node, port, inputs[port]) for port in (*row.inputs, *film)}
@@ -75,7 +80,8 @@ def node_lobe(
         # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
-    lobe = points.lobe(inputs["normal"], inputs.get("tangent", points.tangent))
+    tangent = inputs.get("tangent", inputs.get("curve_direction", points.tangent))
+    lobe = points.lobe(inputs["normal"], tangent)
     try:
         values = lobe(row, arguments, layered)
     except ValueError as error:
@@ -110,7 +116,16 @@ def _row(node: mx.Node, inputs: Mapping[str, Values]) -> PbrNode:
 def _assert_known(node: mx.Node, row: PbrNode, inputs: Mapping[str, Values]) -> None:
     """Raise NotRun if an input that the model does not have differs from its default."""
     for port, value in inputs.items():
-        if port in ("weight", "normal", "tangent", FLAG, *FILM, *row.inputs, *row.fixed):
+        if port in (
+            "weight",
+            "normal",
+            "tangent",
+            "curve_direction",
+            FLAG,
+            *FILM,
+            *row.inputs,
+            *row.fixed,
+        ):
             continue
         if not np.array_equal(
             value, np.asarray(plain(definition(node).getActiveInput(port).getValue()))
@@ -141,7 +156,9 @@ def combined(name: str, operation: Callable[..., Bsdf], *values: Bsdf | Values) 
 
 
 def plain(value: Plain) -> Values | bool | str | None:
-    """A MaterialX value as a bool, a string, an array or None."""
+    """A MaterialX value as a bool, a string, an array or None; NotRun for a matrix."""
     if value is None or isinstance(value, (bool, str)):
         return value
+    if isinstance(value, MATRICES):
+        raise NotRun("reference: no node computes with a matrix here")
     return np.asarray(value if isinstance(value, (int, float)) else tuple(value), dtype=np.float64)

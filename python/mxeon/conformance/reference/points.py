@@ -29,6 +29,12 @@ class ShadingPoints:
     normal, tangent : ndarray, shape (N, 3)
         Of the surface, orthogonal unit vectors in world space.
     texcoord : ndarray, shape (N, 2), or None
+    most : float
+        Points with materials of their own whose albedos are integrated; see `lobes.lit`.
+    round : bool
+        Whether these are points of the unit sphere.
+    behind : bool
+        Whether light that is transmitted is asked for, and no other.
     """
 
     wo: Values
@@ -37,6 +43,9 @@ class ShadingPoints:
     normal: Values
     tangent: Values
     texcoord: Values | None = None
+    most: float = np.inf
+    round: bool = False
+    behind: bool = False
 
     def lobe(self, normal: Values, tangent: Values) -> Lobe:
         """Lobe whose frame has a normal, turned to the viewer, and a tangent.
@@ -85,8 +94,8 @@ class ShadingPoints:
         axes = self._axes(side * normal, tangent)
         wo = _within(axes, self.wo)
         if self.wi is None:
-            return furnace(wo, self.strength)
-        return lit(wo, _within(axes, self.wi), self.strength)
+            return furnace(wo, self.strength, self.most, self.behind)
+        return lit(wo, _within(axes, self.wi), self.strength, self.most)
 
     def _axes(self, z: Values, tangent: Values) -> Values:
         """Axes of a frame, orthogonal unit vectors, as rows (N, 3, 3)."""

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Documents whose patterns the reference does not know: the host's own values feed its lobes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference.measured import HostValues
+from mxeon.hosts import open_host
+from mxeon.io.images import write_exr
+from mxeon.shaders.document.policy import DEFAULT
+from mxeon.shaders.nodes import SURFACE, document_text
+from mxeon.shaders.scene import FURNACE
+
+LOBE = """<oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
+  <input name="color" type="color3" nodename="pattern"/>
+  <input name="roughness" type="float" value="1"/>
+  <input name="energy_compensation" type="boolean" value="true"/>
+</oren_nayar_diffuse_bsdf>"""
+NOISE = """<cellnoise2d name="noise" type="float">
+  <input name="texcoord" type="vector2" nodename="placed"/>
+</cellnoise2d>
+<place2d name="placed" type="vector2">
+  <input name="texcoord" type="vector2" nodename="where"/>
+  <input name="scale" type="vector2" value="0.1, 0.1"/>
+</place2d>
+<texcoord name="where" type="vector2"/>
+<convert name="pattern" type="color3"><input name="in" type="float" nodename="noise"/></convert>"""
+TILED = """<tiledimage name="pattern" type="color3">
+  <input name="file" type="filename" value="checks.exr"/>
+  <input name="uvtiling" type="vector2" value="3, 2"/>
+</tiledimage>"""
+# A surface shader of the document's own, with a pattern inside and one outside.
+INSIDE = """<nodedef name="ND_speckled" node="speckled">
+  <input name="color" type="color3" value="1, 1, 1"/>
+  <input name="scale" type="float" value="1"/>
+  <output name="out" type="surfaceshader"/>
+</nodedef>
+<nodegraph name="NG_speckled" nodedef="ND_speckled">
+  <cellnoise3d name="speckles" type="float"/>
+  <multiply name="scaled" type="float">
+    <input name="in1" type="float" nodename="speckles"/>
+    <input name="in2" type="float" interfacename="scale"/>
+  </multiply>
+  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF">
+    <input name="weight" type="float" nodename="scaled"/>
+    <input name="color" type="color3" interfacename="color"/>
+  </oren_nayar_diffuse_bsdf>
+  <surface name="shading" type="surfaceshader">
+    <input name="bsdf" type="BSDF" nodename="lobe"/>
+  </surface>
+  <output name="out" type="surfaceshader" nodename="shading"/>
+</nodegraph>
+<speckled name="speckled1" type="surfaceshader">
+  <input name="color" type="color3" nodename="pattern"/>
+  <input name="scale" type="float" value="0.5"/>
+</speckled>
+<surfacematerial name="look" type="material">
+  <input name="surfaceshader" type="surfaceshader" nodename="speckled1"/>
+</surfacematerial>"""
+
+
+@pytest.fixture(scope="module")
+def host():
+    with open_host("gl") as engine:
+        yield engine
+
+
+def judged(host, tmp_path, text, library="eonlib"):
+    path = tmp_path / "pattern.mtlx"
+    path.write_text(text)
+    return judge_document(path, host, Reference(), library)
+
+
+def test_the_color_of_a_noise_comes_from_the_host(host, tmp_path):
+    [result], pictures, _ = judged(host, tmp_path, document_text(NOISE + LOBE + SURFACE))
+    assert (result.check, result.verdict) == ("picture", "passed")
+    assert result.measured == ("lobe.color",)
+    assert {picture.metadata["from the host"] for picture in pictures} == {"lobe.color"}
+    assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is there
+
+
+def test_a_wrong_lobe_behind_a_measured_input_is_found(host, tmp_path):
+    [result], _, _ = judged(host, tmp_path, document_text(NOISE + LOBE + SURFACE), "stock")
+    assert (result.check, result.verdict, result.measured) == ("picture", "failed", ("lobe.color",))
+    assert result.error > 100 * result.tolerance
+
+
+def test_an_image_with_a_transform_comes_from_the_host(host, tmp_path):
+    checks = np.indices((8, 8)).sum(axis=0)[..., np.newaxis] % 2 * np.array([0.8, 0.4, 0.2])
+    write_exr(tmp_path / "checks.exr", checks.astype(np.float32), {})
+    [result], _, _ = judged(host, tmp_path, document_text(TILED + LOBE + SURFACE))
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("lobe.color",))
+
+
+def test_patterns_inside_of_a_nodes_graph_and_around_it_are_measured(host, tmp_path):
+    [result], _, _ = judged(host, tmp_path, document_text(NOISE + INSIDE))
+    assert (result.check, result.verdict) == ("picture", "passed")
+    assert set(result.measured) == {"lobe.weight", "speckled1.color"}
+
+
+def test_a_pattern_alone_is_what_a_surface_emits_of_it(host, tmp_path):
+    shown = '<output name="shown" type="float" nodename="noise"/>'
+    text = f'<materialx version="1.39">{NOISE}{shown}</materialx>'
+    [result], _, _ = judged(host, tmp_path, text)
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("shown",))
+
+
+def test_what_the_reference_knows_is_not_measured(host, tmp_path):
+    known = '<constant name="pattern" type="color3"/>'
+    [result], pictures, _ = judged(host, tmp_path, document_text(known + LOBE + SURFACE))
+    assert (result.verdict, result.measured) == ("passed", ())
+    assert "from the host" not in pictures[0].metadata
+
+
+def test_materials_that_vary_are_judged_at_some_of_the_pixels(host):
+    lobe = """<conductor_bsdf name="lobe" type="BSDF">
+      <input name="roughness" type="vector2" nodename="rough"/>
+    </conductor_bsdf>
+    <convert name="rough" type="vector2"><input name="in" type="float" nodename="noise"/></convert>"""
+    [shader] = host.compile(document_text(NOISE + lobe + SURFACE))
+    values = HostValues(host, shader, "eonlib", DEFAULT)
+    expected = Reference().expected(shader, replace(FURNACE, size=128), values)
+    assert 100 < expected.judged.sum() < 300
+    assert (expected.image[~expected.judged] > 0.0).any()  # the others are like their neighbors
