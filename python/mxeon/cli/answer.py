@@ -9,11 +9,13 @@ from pathlib import Path
 
 from mxeon.conformance.known_issues import PAGE, link, pages_of
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Result, Run, counted
+from mxeon.conformance.run.documents import causes, document_verdicts
 from mxeon.conformance.run.survey import model_of
 from mxeon.errors import one_line
 
 LINES = 10  # of an answer, where nothing has to be said twice
 NODES = 5  # of a document, beside the number of the others that passed
+MANY = 20  # documents, more of which are told by their causes
 FEWEST = 3  # lines that failures have in any case
 NAMED = 3  # nodes in a line of failures, beside the number of the others
 FULL = "--full prints everything"
@@ -26,8 +28,9 @@ def answer(run: Run) -> list[str]:
     lines = [one_line(run.summary.sentence), *_not_run(run)]
     failures, notes = list(_failures(run)), new_notes(run)
     room = LINES - len(lines) - min(len(failures), FEWEST)
-    documents = _documents(run, room)
-    told = documents[: max(room, NODES)]
+    many = len(run.contents) + len(run.errors) > MANY
+    documents = summary_by_cause(run) if many else _documents(run, room)
+    told = documents if many else documents[: max(room, NODES)]
     lines += told
     # What failed and why, and notes.
     kept = max(FEWEST, LINES - len(lines))
@@ -36,6 +39,20 @@ def answer(run: Run) -> list[str]:
     lines += [one_line(f"note: {note}") for note in notes[:left]]
     if len(documents) > len(told) or len(failures) > kept or len(notes) > left:
         lines.append(f"there is more: {FULL}")
+    return lines
+
+
+def summary_by_cause(run: Run) -> list[str]:
+    """A line for each cause of a verdict: how many documents have it, and the first of them."""
+    verdicts = document_verdicts(run)
+    every = {each.document for each in verdicts}
+    referenced = len(every - {each.document for each in verdicts if not each.referenced})
+    lines = [
+        f"{counted(len(every), 'document')}: {referenced} have reference pictures in all materials"
+    ]
+    for (verdict, cause), documents in causes(verdicts).items():
+        more = f" and {len(documents) - 1} more" if len(documents) > 1 else ""
+        lines.append(one_line(f"  {len(documents):4} {verdict}: {cause} ({documents[0]}{more})"))
     return lines
 
 
@@ -127,7 +144,8 @@ def _cell(results: Sequence[Result]) -> str:
 def _words(result: Result, count: int) -> str:
     """What a subject is that passed."""
     if result.check == "picture":
-        return f"{count} as the reference's"
+        names = ", ".join(result.measured[:NAMED])
+        return f"{count} as the reference's" + (f", {names} from the host" if names else "")
     if result.check in PICTURES:
         return "finite" if result.check == "finite" else "shaders generated"
     return model_of(result.subject)

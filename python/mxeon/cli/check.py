@@ -22,7 +22,8 @@ def add_parser(commands: arguments.Commands) -> None:
         "files",
         nargs="*",
         metavar="FILE",
-        help="MaterialX documents, whose nodes are judged; none: the library, with the examples",
+        help="MaterialX documents, whose nodes are judged, or folders of them; none: the library, "
+        "with the examples",
     )
     command.add_argument(
         "--host",

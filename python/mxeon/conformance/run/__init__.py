@@ -9,6 +9,7 @@ from pathlib import Path
 
 from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Run
+from mxeon.conformance.run.documents import documents_in
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run
 from mxeon.conformance.run.plan import Findings, Plan, Task, make_plan
@@ -50,7 +51,8 @@ def check(
     Parameters
     ----------
     files : sequence of path-like
-        MaterialX documents; none for the bundled examples.
+        MaterialX documents, and folders, which stand for all documents in them and below them; none
+        for the bundled examples.
     hosts : sequence of str
         Hosts to judge; `mxeon.hosts.host_names` lists them.
     libraries : sequence of str
@@ -95,6 +97,7 @@ def check(
     """
     # Read the documents before any other work.
     assert_known_names(hosts, nodes)
+    files = documents_in(files)
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     _check_work(workers, timeout)
     survey = survey_documents(list(map(str, files)), libraries, policy, workers, timeout)

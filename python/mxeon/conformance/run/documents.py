@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The documents of a run: those of a folder, the verdict on each, and the documents of each cause."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mxeon.conformance.pictures.documents import CHECK as DOCUMENT
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
+from mxeon.errors import InputError
+
+REFUSED = "refused"
+FROM_HOST = "as the reference's, with inputs that the host computed"
+WHOLE = "as the reference's"
+VERDICTS = (FAILED, NOT_RUN, REFUSED, DIFFERS, PASSED)  # the first decides about a document
+QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
+CHECKS = ("picture", "finite", DOCUMENT)
+
+
+@dataclass(frozen=True)
+class DocumentVerdict:
+    """What a run says of one document.
+
+    Attributes
+    ----------
+    document : str
+        Its path.
+    host, library : str
+        "" where the document was refused.
+    verdict : str
+        One of VERDICTS.
+    cause : str
+        Why, in words that documents share.
+    referenced : bool
+        Whether all of its pictures have a reference.
+    measured : tuple of str
+        Inputs whose values these take from the host.
+    """
+
+    document: str
+    host: str
+    library: str
+    verdict: str
+    cause: str
+    referenced: bool = False
+    measured: tuple[str, ...] = ()
+
+
+def documents_in(files: Iterable[str | os.PathLike[str]]) -> tuple[str, ...]:
+    """Files, and in the place of a folder the documents in it and below it, in order.
+
+    Raises
+    ------
+    ValueError
+        If a folder holds no document.
+    """
+    documents: list[str] = []
+    for file in files:
+        inside = [os.fspath(file)]
+        if os.path.isdir(file):
+            inside = sorted(map(str, Path(file).rglob("*.mtlx")))
+        if not inside:
+            raise InputError(f"{file}: must hold MaterialX documents (*.mtlx); there is none")
+        documents += inside
+    return tuple(dict.fromkeys(documents))
+
+
+def document_verdicts(run: Run) -> tuple[DocumentVerdict, ...]:
+    """The verdict on each of a run's documents, on each host with each library."""
+    # Sort the results by document, host and library.
+    results: dict[tuple[str, str, str], list[Result]] = {}
+    for each in run.results:
+        if each.check in CHECKS:
+            name = each.subject.split(": ")[0]
+            results.setdefault((name, each.host, each.library), []).append(each)
+    # Judge each document.
+    verdicts = []
+    for document in map(str, run.contents):
+        keys = [key for key in results if key[0] in (Path(document).name, document)]
+        verdicts += [_verdict(document, key, results[key]) for key in keys]
+    return (*verdicts, *map(_refused, run.errors))
+
+
+def causes(verdicts: Sequence[DocumentVerdict]) -> dict[tuple[str, str], tuple[str, ...]]:
+    """Documents by their verdict and its cause, the worst first, and those of most documents."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for each in verdicts:
+        groups.setdefault((each.verdict, each.cause), []).append(each.document)
+    order = sorted(groups, key=lambda key: (VERDICTS.index(key[0]), -len(groups[key])))
+    return {key: tuple(groups[key]) for key in order}
+
+
+def _verdict(
+    document: str, key: tuple[str, str, str], results: Sequence[Result]
+) -> DocumentVerdict:
+    """The verdict on a document with results, by the worst of them."""
+    worst = min(results, key=lambda each: (VERDICTS.index(each.verdict), each.check != "finite"))
+    measured = tuple(dict.fromkeys(name for each in results for name in each.measured))
+    return DocumentVerdict(
+        document,
+        *key[1:],
+        worst.verdict,
+        _cause(worst, measured),
+        all(each.check == "picture" and each.error is not None for each in results),
+        measured,
+    )
+
+
+def _cause(result: Result, measured: Sequence[str]) -> str:
+    """Why a document has its verdict, by the result that decides."""
+    if result.verdict == PASSED and result.check == "picture":
+        return FROM_HOST if measured else WHOLE
+    if result.verdict == PASSED and result.check == DOCUMENT:
+        return "shaders are generated"
+    reason = result.reason or result.diagnosis
+    return QUOTED.sub("...", reason.removeprefix("reference: ")) or result.excess
+
+
+def _refused(error: str) -> DocumentVerdict:
+    """The verdict on a document that could not be used, by the line that says so."""
+    document, _, reason = error.partition(": ")
+    return DocumentVerdict(document, "", "", REFUSED, QUOTED.sub("...", reason))

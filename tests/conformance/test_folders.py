@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A folder of documents: one verdict for each, and a summary by cause."""
+
+import shutil
+
+import pytest
+
+from mxeon.cli import main
+from mxeon.cli.answer import MANY, summary_by_cause
+from mxeon.conformance.results import FAILED, PASSED, Identity, Result, Run
+from mxeon.conformance.run.documents import causes, document_verdicts, documents_in
+from mxeon.errors import MISUSE, InputError
+from tests.support.command import CLAY
+
+NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")
+
+
+def result(name, check="picture", verdict=PASSED, **fields):
+    return Result(check, "claim", name, "gl", "eonlib", verdict, error=0.0, tolerance=1.0, **fields)
+
+
+RUN = Run(
+    "1",
+    {},
+    (Identity("gl", "4.5", "cpu"),),
+    (
+        result("clay.mtlx: look"),
+        result("clay.mtlx: other"),
+        result("glass.mtlx: look", "finite", diagnosis="reference: there is no model for 'x/y'"),
+        result("noise.mtlx: look", measured=("lobe.color",)),
+        result("noise.mtlx: node", "value", verdict=FAILED),
+    ),
+    contents=dict.fromkeys(NAMES[:3], ()),
+    errors=('light.mtlx: must contain a renderable element; got "a"',),
+)
+
+
+def test_a_folder_stands_for_the_documents_in_it_and_below_it(tmp_path):
+    for name in ("b.mtlx", "sub/a.mtlx", "notes.txt"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("")
+    single = str(tmp_path / "b.mtlx")
+    expected = (single, str(tmp_path / "sub" / "a.mtlx"))
+    assert documents_in([tmp_path, single]) == expected
+
+
+def test_a_folder_without_documents_is_misuse(tmp_path, capsys):
+    with pytest.raises(InputError, match="must hold MaterialX documents"):
+        documents_in([tmp_path])
+    assert main(["check", str(tmp_path)]) == MISUSE
+    assert "must hold MaterialX documents" in capsys.readouterr().err
+
+
+def test_each_document_has_one_verdict():
+    verdicts = {each.document: each for each in document_verdicts(RUN)}
+    assert list(verdicts) == list(NAMES)
+    assert [each.referenced for each in verdicts.values()] == [True, False, True, False]
+    assert verdicts["b/noise.mtlx"].measured == ("lobe.color",)
+    assert verdicts["light.mtlx"].verdict == "refused"
+
+
+def test_causes_count_documents_the_worst_first():
+    groups = causes(document_verdicts(RUN))
+    assert [verdict for verdict, _ in groups] == ["refused", PASSED, PASSED, PASSED]
+    assert ("refused", "must contain a renderable element; got ...") in groups
+    assert (PASSED, "there is no model for ...") in groups
+    assert "4 documents: 2 have reference pictures" in summary_by_cause(RUN)[0]
+
+
+def test_a_bad_document_of_a_folder_is_one_line_and_the_run_goes_on(tmp_path, capsys):
+    for number in range(MANY):
+        (tmp_path / f"bad{number}.mtlx").write_text("<materialx")
+    shutil.copy(CLAY, tmp_path)
+    options = ["--workers", "0", "--node", "sheen_bsdf", "--host", "slang"]
+    assert main(["check", str(tmp_path), *options]) == MISUSE
+    output, error = capsys.readouterr()
+    assert len(error.splitlines()) == MANY
+    assert f"{MANY + 1} documents" in output and f"{MANY} refused" in output
