@@ -64,6 +64,12 @@ def mean_error(measured: Array, expected: Array) -> Array:
     return np.broadcast_to(absolute(np.mean(measured - expected, axis=0), 0.0), len(measured))
 
 
+def mean_scaled(measured: Array, expected: Array) -> Array:
+    """Mean of the differences of all rows, each relative to its largest expected value above 1."""
+    scale = np.maximum(1.0, _largest(np.abs(expected)))[..., np.newaxis]
+    return mean_error(measured / scale, expected / scale)
+
+
 def root_mean_square(measured: Array, expected: Array) -> Array:
     """Root mean square of the largest differences of all rows, for every row.
 
