@@ -12,6 +12,7 @@ from fits import thin_film as fit
 from mxeon.conformance.checks.film_measures import SMOOTH
 from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.probes import thin_films as probes
+from mxeon.conformance.samples.batch import SEED
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 
 SETS = 64
@@ -49,7 +50,7 @@ def largest(errors, count, ranges, sets=SETS):
     return {
         subject.node: max(
             float(np.sqrt(np.mean(errors(*films(subject, count, ranges, seed)) ** 2)))
-            for seed in range(probes.SEED + 1, probes.SEED + 1 + sets)
+            for seed in range(SEED + 1, SEED + 1 + sets)
         )
         for subject in FILMS
     }

@@ -3,7 +3,6 @@
 
 import os
 import re
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -60,17 +59,13 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 
 @cache
 def _tasks(host: str) -> tuple[Task, ...]:
-    """All tasks of a host with eonlib: the first of each subject, the second of each, and so on.
+    """All tasks of a host with eonlib: subject by subject, since each has a shader to compile.
 
     The last subjects come first: those of films and of transmission, which need most of a source.
     """
-    ranks: Counter[str] = Counter()
-    tasks = []
-    for task in make_plan((), [host], ["eonlib"], nodes=["all"]).tasks:
-        place = -TITLES.index(task.subject) if task.subject in TITLES else 0
-        tasks.append((task.check in LATE, ranks[task.subject], place, task))
-        ranks[task.subject] += 1
-    return tuple(task for *_, task in sorted(tasks, key=lambda each: each[:3]))
+    places = {title: -place for place, title in enumerate(TITLES)}
+    tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
+    return tuple(sorted(tasks, key=lambda task: (task.check in LATE, places.get(task.subject, 0))))
 
 
 @cache

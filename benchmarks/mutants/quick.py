@@ -115,6 +115,7 @@ SHARED = (
     "integrals",
     "albedos",
     "stretched",
+    "films",
 )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from fits import thin_film as fit
 from fits import thin_film_sets as sets
-from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
+from mxeon.conformance.accuracy import thin_films as tolerances
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.thin_films import CHECKS
 from mxeon.conformance.diagnosis.candidates import Diagnosis
@@ -66,19 +66,19 @@ STOCK = {
 }
 # Largest errors by their names in `fits.thin_film`.
 STATED = {
-    "orders": bsdf_tolerances.FILM_ORDERS,
-    "orders of curves": bsdf_tolerances.FILM_SHARP_ORDERS,
-    "slope of curves": bsdf_tolerances.FILM_SLOPE,
-    "waves of curves": bsdf_tolerances.FILM_WAVES,
-    "F_ss": bsdf_tolerances.FILM_AVERAGE,
-    "visible facets": bsdf_tolerances.FILM_VISIBLE,
+    "orders": tolerances.FILM_ORDERS,
+    "orders of curves": tolerances.FILM_SHARP_ORDERS,
+    "slope of curves": tolerances.FILM_SLOPE,
+    "waves of curves": tolerances.FILM_WAVES,
+    "F_ss": tolerances.FILM_AVERAGE,
+    "visible facets": tolerances.FILM_VISIBLE,
 }
 # Largest of sets by their names in `fits.thin_film_sets`.
 SETS = {
-    "all orders": bsdf_tolerances.FILM_ALL_ORDERS,
-    "F_ss": bsdf_tolerances.FILM_MEAN,
-    "compensation in two cosines": bsdf_tolerances.FILM_SMOOTH_MEAN,
-    "visible facets": bsdf_tolerances.FILM_STEEP,
+    "all orders": tolerances.FILM_ALL_ORDERS,
+    "F_ss": tolerances.FILM_MEAN,
+    "compensation in two cosines": tolerances.FILM_SMOOTH_MEAN,
+    "visible facets": tolerances.FILM_STEEP,
 }
 FILMS_IN = ("eonlib/genglsl/thin_film.glsl", "eonlib/genglsl/microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
@@ -112,6 +112,10 @@ WRONG = {
     "half of the film": (
         "generalized_schlick_bsdf", "F.visible += i < facets ? curve",
         "F.visible += i < facets ? 0.5 * curve", "film_throughput",
+    ),
+    "one average for all curves": (
+        "conductor_bsdf", "dot(MICROFACET_CURVE_KEY, vec4(F.average, float(fd.model)))", "1.0",
+        "film_sum",
     ),
     "not a number": (
         "dielectric_bsdf", "clamp(0.5 * (F_s + F_p), 0.0, 1.0)", "F_s / step(1.0, fd.tf_ior)", "film_finite",

@@ -5,7 +5,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from mxeon.conformance.accuracy import bsdf, diffuse, emission, hair, surface_shaders, utilities
+from mxeon.conformance.accuracy import (
+    bsdf,
+    diffuse,
+    emission,
+    hair,
+    surface_shaders,
+    thin_films,
+    utilities,
+)
 from mxeon.conformance.nodes import emission as emissions
 from mxeon.conformance.nodes.bsdf import (
     CLOSED,
@@ -181,7 +189,7 @@ ACCURACY: Mapping[str, Accuracy] = {
     HAIR: _lobe(HAIR, hair.HAIR_VALUE, hair.HAIR_ALBEDO, hair.HAIR_FRAME, mean=hair.HAIR_MEAN),
     COMBINED: Accuracy(bsdf.COMBINED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
     NESTED: Accuracy(bsdf.NESTED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
-    FILM_PAIRS: Accuracy(bsdf.FILM_VALUE, bsdf.FILM_ALBEDO, bsdf.FILM_ALBEDO),
+    FILM_PAIRS: Accuracy(thin_films.FILM_VALUE, thin_films.FILM_ALBEDO, thin_films.FILM_ALBEDO),
     TRANSMITTED: Accuracy(bsdf.MICROFACET_ALBEDO, light=bsdf.clear_of(bsdf.MICROFACET_ALBEDO)),
     SCHLICK_TRANSMITTED: Accuracy(
         bsdf.SCHLICK_THROUGHPUT, light=bsdf.clear_of(bsdf.SCHLICK_THROUGHPUT)

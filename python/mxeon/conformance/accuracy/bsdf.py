@@ -4,7 +4,7 @@
 import math
 
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED
-from mxeon.conformance.samples.measurement import absolute, mean_error, root_mean_square, scaled
+from mxeon.conformance.samples.measurement import absolute, mean_error, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 
 LEAST_ALPHA = 0.05  # of values whose tangent is turned: what rounds is divided by it
@@ -14,7 +14,6 @@ LEAST_COSINE = 0.1  # of the same
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
 FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
-LAYER_FIT = 1.9e-3  # the same of exponent 5, and of indices from 1.05 to 2.5
 DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
 CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
 SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
@@ -201,81 +200,6 @@ NESTED_VALUE = Tolerance(
     "three values, of which a throughput of two albedos multiplies one",
 )
 FACTOR = Tolerance(ROUNDING, SCALED, scaled, "the same products, of a factor that is exact")
-# Largest errors of the shader's thin film, for cosines from 0.1 on: fits/thin_film.py searches for each.
-FILM_ORDERS = 8.2e-3  # six orders and a geometric series, relative to the largest channel
-FILM_AVERAGE = 1.1e-2  # F_ss in five cosines
-FILM_VISIBLE = 4.9e-2  # mean over the visible facets in four cosines
-FILM_SHARP_ORDERS = 6.2e-6  # six orders of films from 200 nm and cosines from 0.3 on
-FILM_SLOPE = 9.1  # slope of their curves in the logarithm of the path difference
-FILM_WAVES = 1.8  # slope of the same curves in the cosines and sines of their phases, of any signs
-FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
-FILM_HEIGHTS = 1.3e-3  # sum of the sensitivities' heights, of five digits, over 1
-FILM_VALUE = Tolerance(
-    rounded_up(ESS_FIT * SEEN_ESS + FILM_AVERAGE * (SEEN_ESS - 1.0) + FILM_ORDERS),
-    SCALED,
-    scaled,
-    "the sum of six orders, 8.2e-3 of the film's reflectance, and the fit of E_ss, 5e-4, and F_ss in "
-    "five cosines, 1.1e-2, as they enter a value, the first with 1.58 and the second with 0.58. Few films come near to it: thin metals at grazing have the first, "
-    "indices far apart the second; `film_orders` and `film_average` judge them by themselves; rounded up",
-)
-FILM_ALBEDO = Tolerance(
-    rounded_up(FILM_VISIBLE + FILM_AVERAGE * (1.0 - LEAST_ESS) + ESS_FIT),
-    "albedo",
-    absolute,
-    "the mean over visible facets in four cosines, 4.9e-2, and F_ss in five, 1.1e-2, times the light that "
-    "is lost, at most 0.69; and the fit of E_ss, 5e-4. The first is of films of 1000 nm, whose fringes "
-    "few cosines do not see; `film_visible` judges it where they do; rounded up",
-)
-FILM_ALL_ORDERS = Tolerance(
-    6.2e-4,
-    "reflectance, rms",
-    root_mean_square,
-    "six orders and a geometric series of 1024 films of 40 to 100 nm at cosines of 0.1 to 0.2: the "
-    "largest of 64 sets, by fits/thin_film_sets.py",
-)
-FILM_MEAN = Tolerance(
-    2e-3,
-    "reflectance, rms",
-    root_mean_square,
-    "F_ss in five cosines of 64 films of 50 to 1000 nm: the largest of 64 sets, by "
-    "fits/thin_film_sets.py",
-)
-FILM_SMOOTH_MEAN = Tolerance(
-    2e-5,
-    "reflectance, rms",
-    root_mean_square,
-    "F_ss of the same films in two cosines, times what a lobe of alpha 0.04 loses: the largest of 64 "
-    "sets, by fits/thin_film_sets.py, and roundings",
-)
-FILM_STEEP = Tolerance(
-    7.3e-4,
-    "reflectance, rms",
-    root_mean_square,
-    "the mean over visible facets in four cosines of 64 films of 50 to 100 nm on rough lobes: the "
-    "largest of 64 sets, by fits/thin_film_sets.py",
-)
-FILM_CURVE = Tolerance(
-    rounded_up(FILM_SHARP_ORDERS + (10 * FILM_SLOPE + 16) * ROUNDING),
-    "reflectance",
-    absolute,
-    "the sum of six orders under films from 200 nm and cosines from 0.3 on, 6.2e-6; ten roundings of "
-    "float32, 2^-24 each, in a phase, times the slope of the curve in its logarithm, 9.1; and 16 "
-    "beside them; rounded up; and 1.8 times the error of the engine's own cosine and sine",
-)
-FILM_LIMIT = Tolerance(
-    rounded_up(FILM_HEIGHTS + FRESNEL_FIT * (SEEN_ESS - 1.0)),
-    SCALED,
-    scaled,
-    "the sensitivities, whose heights add up to 1 within 1.3e-3, and the fit of F_ss without a film, "
-    "3.6e-4, as it enters a value, with 0.58; E_ss is the same with a film and without; rounded up",
-)
-FILM_ENERGY = Tolerance(
-    MICROFACET_VALUE.value,
-    SCALED,
-    scaled,
-    "the fits of the compensation, of which a mirror has another share than a film",
-)
-
 WHITE_FURNACE = Tolerance(
     4e-3,
     "light",

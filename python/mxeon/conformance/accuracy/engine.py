@@ -6,8 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.conformance.accuracy.bsdf import FILM_PHASE, FILM_WAVES
 from mxeon.conformance.accuracy.diffuse import power_of
+from mxeon.conformance.accuracy.thin_films import FILM_PHASE, FILM_WAVES
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN

@@ -21,6 +21,7 @@ TURNED = (-1.0, -1.0, 1.0)
 ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
 SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
 RIGHT = "every value is right by itself"  # of an explanation that found nothing
+FILM_INPUTS = ("thinfilm_thickness", "thinfilm_ior")
 LEAST_F = 0.01  # of a curve by which its averages are divided
 THIN_LIMIT = 1e-3  # thickness in nm of a film that changes nothing
 RARE = 0.5  # index of a film that MaterialX counts as vacuum
@@ -43,12 +44,12 @@ def film_limit(probe: Probe) -> Iterable[Case]:
 
 def film_curve(probe: Probe) -> Iterable[Case]:
     """A film's curve at one cosine, of which the first orders count alone."""
-    return [_curves(probe, probe.sharp)]
+    return [_curves(probe, probe.films.sharp)]
 
 
 def film_orders(probe: Probe) -> Iterable[Case]:
     """The same at grazing and of thin films, of which all orders count."""
-    return [_curves(probe, probe.ordered)]
+    return [_curves(probe, probe.films.ordered)]
 
 
 def _curves(probe: Probe, batch: Batch) -> Case:
@@ -62,9 +63,21 @@ def _curves(probe: Probe, batch: Batch) -> Case:
     return Case(batch, measured / mirror, expected / white)
 
 
+def film_sum(probe: Probe) -> Iterable[Case]:
+    """Sums of two lobes in one pixel against both by themselves: one film, another lobe or substrate."""
+    batch: Batch = probe.films.steep
+    substrate = tuple(name for name in batch.inputs if name not in (*FILM_INPUTS, "roughness"))
+    cases = []
+    for names in (("roughness",), substrate):
+        other = batch.altered(**{name: np.roll(batch.inputs[name], 1, axis=0) for name in names})
+        alone = probe.direct(batch) + probe.direct(other)
+        cases.append(Case(batch, probe.summed(batch, other), alone))
+    return cases
+
+
 def film_average(probe: Probe) -> Iterable[Case]:
     """F_ss of a film, from values at two roughnesses, against that of the equations."""
-    return [average_case(probe, probe.fringed)]
+    return [average_case(probe, probe.films.fringed)]
 
 
 def film_smooth(probe: Probe) -> Iterable[Case]:
@@ -72,7 +85,7 @@ def film_smooth(probe: Probe) -> Iterable[Case]:
 
     F and k are the host's, and F_ss that of the equations.
     """
-    batch: Batch = probe.fringed
+    batch: Batch = probe.films.fringed
     F, F_ss = _averages(probe, probe.expected, batch)
     (first, k), (second, other_k) = (
         _parts(probe, probe.direct, batch.altered(roughness=(alpha, alpha))) for alpha in SMOOTH
@@ -91,7 +104,7 @@ def average_case(probe: Probe, batch: Batch) -> Case:
 
 def film_visible(probe: Probe) -> Iterable[Case]:
     """A film's mean over the visible facets, from its albedo, against that of the equations."""
-    batch: Batch = probe.steep
+    batch: Batch = probe.films.steep
     albedos = (
         lambda each: probe.albedo(each) / probe.albedo(_mirror(probe, each)),
         probe.expected_albedo,
@@ -106,7 +119,7 @@ def film_visible(probe: Probe) -> Iterable[Case]:
 
 def diagnose_average(probe: Probe) -> Diagnosis:
     """Whether F at one cosine stands in the place of its average."""
-    batch, measured, expected = average_case(probe, probe.fringed)
+    batch, measured, expected = average_case(probe, probe.films.fringed)
     direct, model = _sides(probe)
     slanted = replace(batch, wo=view_at(2.0 / 3.0, batch), wi=view_at(2.0 / 3.0, batch) * TURNED)
     others = {

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of microfacets under a thin film."""
 
-from mxeon.conformance.accuracy import bsdf as bsdf_tolerances
 from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.accuracy import thin_films as film_tolerances
 from mxeon.conformance.accuracy.engine import widen_for_waves
 from mxeon.conformance.checks import measures
 from mxeon.conformance.checks.check import Check
@@ -17,6 +17,7 @@ from mxeon.conformance.checks.film_measures import (
     film_limit,
     film_orders,
     film_smooth,
+    film_sum,
     film_visible,
     thicker,
 )
@@ -43,7 +44,7 @@ CHECKS = (
         film_curve,
         "the film is a quarter thicker",
         thicker,
-        bsdf_tolerances.FILM_CURVE,
+        film_tolerances.FILM_CURVE,
         open=True,
         adapt=widen_for_waves,
     ),
@@ -54,7 +55,7 @@ CHECKS = (
         film_orders,
         "the film is a quarter thicker",
         thicker,
-        bsdf_tolerances.FILM_ALL_ORDERS,
+        film_tolerances.FILM_ALL_ORDERS,
         open=True,
     ),
     Check(
@@ -64,7 +65,7 @@ CHECKS = (
         film_limit,
         "every film has an index of 1.5",
         with_inputs(thinfilm_ior=1.5),
-        bsdf_tolerances.FILM_LIMIT,
+        film_tolerances.FILM_LIMIT,
         open=True,
     ),
     Check(
@@ -74,7 +75,7 @@ CHECKS = (
         film_energy,
         "values are 100 times as large",
         brighter,
-        bsdf_tolerances.FILM_ENERGY,
+        film_tolerances.FILM_ENERGY,
     ),
     Check(
         "film_environment",
@@ -94,7 +95,7 @@ CHECKS = (
         film_average,
         "the film is a quarter thicker",
         thicker,
-        bsdf_tolerances.FILM_MEAN,
+        film_tolerances.FILM_MEAN,
         diagnose=diagnose_average,
         open=True,
     ),
@@ -105,7 +106,7 @@ CHECKS = (
         film_smooth,
         "the film is a quarter thicker",
         thicker,
-        bsdf_tolerances.FILM_SMOOTH_MEAN,
+        film_tolerances.FILM_SMOOTH_MEAN,
         diagnose=diagnose_average,
         open=True,
     ),
@@ -116,9 +117,18 @@ CHECKS = (
         film_visible,
         "the film is a quarter thicker",
         thicker,
-        bsdf_tolerances.FILM_STEEP,
+        film_tolerances.FILM_STEEP,
         diagnose=diagnose_visible,
         open=True,
+    ),
+    Check(
+        "film_sum",
+        "A lobe under a film has its own averages beside another lobe.",
+        FILM_MODELS,
+        film_sum,
+        "the film is a quarter thicker",
+        thicker,
+        film_tolerances.FILM_SUM,
     ),
     Check(
         "film_throughput",

@@ -19,7 +19,7 @@ from mxeon.models.nodes.combinations import (
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 
 
-def _node(category: str, name: str = "lobe", value: str = "", **lobes: str) -> str:
+def node_over(category: str, name: str = "lobe", value: str = "", **lobes: str) -> str:
     """XML of a node over other nodes, by port; a value is what an evaluation sets."""
     ports = "".join(
         f'    <input name="{port}" type="BSDF" nodename="{lobe}" />\n'
@@ -29,24 +29,24 @@ def _node(category: str, name: str = "lobe", value: str = "", **lobes: str) -> s
 
 
 TOP, BASE = (lobe_text("sheen_bsdf", {"mode": "zeltner"}, name) for name in ("top", "base"))
-SUM = TOP + BASE + _node("add", "sum", in1="top", in2="base")
+SUM = TOP + BASE + node_over("add", "sum", in1="top", in2="base")
 HALF, ONE = input_text("mix", "float", 0.5), input_text("in2", "float", 1.0)
 WHITE = input_text("in2", "color3", (1.0, 1.0, 1.0))
 NODES = {  # XML of each row
-    "layer": TOP + BASE + _node("layer", top="top", base="base"),
-    "mix": TOP + BASE + _node("mix", value=HALF, fg="top", bg="base"),
-    "add": TOP + BASE + _node("add", in1="top", in2="base"),
-    "multiply_float": TOP + _node("multiply", value=ONE, in1="top"),
-    "multiply_color3": TOP + _node("multiply", value=WHITE, in1="top"),
-    "multiply_sum": SUM + _node("multiply", value=WHITE, in1="sum"),
-    "mix_sum": SUM + _node("mix", value=HALF, fg="sum", bg="top"),
+    "layer": TOP + BASE + node_over("layer", top="top", base="base"),
+    "mix": TOP + BASE + node_over("mix", value=HALF, fg="top", bg="base"),
+    "add": TOP + BASE + node_over("add", in1="top", in2="base"),
+    "multiply_float": TOP + node_over("multiply", value=ONE, in1="top"),
+    "multiply_color3": TOP + node_over("multiply", value=WHITE, in1="top"),
+    "multiply_sum": SUM + node_over("multiply", value=WHITE, in1="sum"),
+    "mix_sum": SUM + node_over("mix", value=HALF, fg="sum", bg="top"),
     "layer_sum": SUM
-    + _node("mix", "mixed", HALF, fg="sum", bg="top")
-    + _node("layer", top="mixed", base="base"),
+    + node_over("mix", "mixed", HALF, fg="sum", bg="top")
+    + node_over("layer", top="mixed", base="base"),
     "mix_layer": SUM
-    + _node("layer", "layered", top="sum", base="base")
-    + _node("mix", value=HALF, fg="layered", bg="top"),
-    "layer_colored": SUM + _node("layer", top="sum", base="base"),
+    + node_over("layer", "layered", top="sum", base="base")
+    + node_over("mix", value=HALF, fg="layered", bg="top"),
+    "layer_colored": SUM + node_over("layer", top="sum", base="base"),
 }
 TITLES = {
     "multiply_float": "multiply, in2 float",

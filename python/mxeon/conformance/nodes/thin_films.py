@@ -6,9 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import FILM_PAIRS, BsdfSubject
-from mxeon.conformance.samples.batch import Array
+from mxeon.conformance.nodes.combinations import node_over
+from mxeon.conformance.samples.batch import Array, Values
 from mxeon.models.nodes.thin_films import FILM_NODES
+from mxeon.shaders.nodes import SURFACE, document_text, input_types, lobe_text
 
+SUMMED = ("first", "second")  # names of lobes
 THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
 
 
@@ -43,6 +46,18 @@ class FilmSubject(BsdfSubject):
         if "tint" not in inputs:
             return inputs
         return {**inputs, "ior": np.maximum(inputs["ior"], 1.0)}
+
+
+@dataclass(frozen=True)
+class FilmSum(FilmSubject):
+    """Two lobes of a node in one pixel, `first` and `second`, each under a film."""
+
+    def document(self, inputs: Values | None = None) -> str:
+        """MaterialX text of a material that is their sum."""
+        types = {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
+        lobes = (lobe_text(self.node, self.row.fixed, name, types) for name in SUMMED)
+        both = node_over("add", in1=SUMMED[0], in2=SUMMED[1])
+        return document_text("".join(lobes) + both + SURFACE)
 
 
 FILMS = tuple(FilmSubject(row) for row in FILM_NODES)

@@ -10,7 +10,15 @@ from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import LobeSubject, Subject, ValuedSubject
 from mxeon.conformance.results import Claims
-from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Counts, Values
+from mxeon.conformance.samples.batch import (
+    Array,
+    Batch,
+    Candidate,
+    Changes,
+    Counts,
+    FilmViews,
+    Values,
+)
 from mxeon.hosts.base import Host
 
 
@@ -111,24 +119,13 @@ class Probe:
         self._lacks("stretched")
 
     @property
-    def steep(self) -> Batch:
-        """Views of rough films, of which masking takes the facets whose curve is another."""
-        self._lacks("steep")
+    def films(self) -> FilmViews:
+        """Views of films for the checks of one term each."""
+        self._lacks("films")
 
-    @property
-    def fringed(self) -> Batch:
-        """The same under films of up to many fringes."""
-        self._lacks("fringed")
-
-    @property
-    def ordered(self) -> Batch:
-        """Views at grazing of films so thin that all orders count."""
-        self._lacks("ordered")
-
-    @property
-    def sharp(self) -> Batch:
-        """Views of smooth lobes under films, in which their curve is seen at one cosine."""
-        self._lacks("sharp")
+    def summed(self, first: Batch, second: Batch) -> Array:
+        """Values of the sum of two lobes with the inputs of two batches of the same pairs."""
+        self._lacks("summed")
 
     @property
     def spheres(self) -> tuple[Batch, ...]:

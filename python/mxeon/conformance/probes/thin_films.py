@@ -9,17 +9,25 @@ from typing import ClassVar
 import numpy as np
 
 from mxeon.conformance.nodes.bsdf import BsdfSubject
-from mxeon.conformance.nodes.thin_films import THICK
+from mxeon.conformance.nodes.thin_films import SUMMED, THICK, FilmSum
 from mxeon.conformance.probes.bsdf import MicrofacetProbe, simple
 from mxeon.conformance.probes.pictures import Mask
-from mxeon.conformance.samples.batch import SEED, Batch, Counts, directions, rounded
+from mxeon.conformance.samples.batch import (
+    SEED,
+    Array,
+    Batch,
+    Counts,
+    FilmViews,
+    directions,
+    rounded,
+)
 from mxeon.conformance.samples.edge_cases import special_directions
 
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
-STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `steep`
-FRINGED = {**STEEP, "thickness": (50.0, 1000.0)}  # see `fringed`
-SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `sharp`
-ORDERED = {"alpha": (1e-3, 1e-3), "mu": (0.1, 0.2), "thickness": (40.0, 100.0)}  # see `ordered`
+STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `FilmViews`
+FRINGED = {**STEEP, "thickness": (50.0, 1000.0)}  # see `FilmViews`
+SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `FilmViews`
+ORDERED = {"alpha": (1e-3, 1e-3), "mu": (0.1, 0.2), "thickness": (40.0, 100.0)}  # see `FilmViews`
 # Films whose errors have one mean: fits/thin_film_sets.py bounds it for sets of these sizes.
 FILMS, CURVES = 1 << 6, 1 << 10
 LEAST_OIL = 1.2  # index of these films, or there is none to see
@@ -61,24 +69,27 @@ class FilmProbe(MicrofacetProbe):
         return easy, film_views(self.subject, self.counts.albedos, HARD)
 
     @cached_property
-    def steep(self) -> Batch:
-        """Views of rough lobes under films of few fringes."""
-        return film_views(self.subject, FILMS, STEEP)
+    def films(self) -> FilmViews:
+        return FilmViews(
+            *(
+                film_views(self.subject, count, ranges)
+                for count, ranges in (
+                    (FILMS, STEEP),
+                    (FILMS, FRINGED),
+                    (CURVES, ORDERED),
+                    (FILMS, SHARP),
+                )
+            )
+        )
+
+    def summed(self, first: Batch, second: Batch) -> Array:
+        """Values of the sum of two lobes with the inputs of two batches of the same pairs."""
+        inputs = {f"{SUMMED[1]}/{name}": value for name, value in second.inputs.items()}
+        return self._sum.direct(replace(first, inputs={**first.inputs, **inputs}))
 
     @cached_property
-    def fringed(self) -> Batch:
-        """The same under films of up to many fringes."""
-        return film_views(self.subject, FILMS, FRINGED)
-
-    @cached_property
-    def ordered(self) -> Batch:
-        """Views at grazing of films so thin that all orders count."""
-        return film_views(self.subject, CURVES, ORDERED)
-
-    @cached_property
-    def sharp(self) -> Batch:
-        """Views of lobes that lose nothing, under films whose first orders count alone."""
-        return film_views(self.subject, 4 * self.counts.materials, SHARP)
+    def _sum(self) -> "FilmProbe":
+        return FilmProbe(self.host, FilmSum(self.subject.row), self.library)
 
     @cached_property
     def edges(self) -> Batch:

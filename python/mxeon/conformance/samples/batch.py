@@ -3,7 +3,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -186,3 +186,24 @@ def rounded_roughness(roughness: Array, row: Model) -> Array:
 def rounded(columns: Iterable[Array]) -> Array:
     """Columns as rows of float32 numbers in float64."""
     return np.stack(list(columns), axis=-1).astype(np.float32).astype(np.float64)
+
+
+class FilmViews(NamedTuple):
+    """Views of lobes under thin films, in mirrored lights, each for one term.
+
+    Attributes
+    ----------
+    steep : Batch
+        Rough lobes under films of few fringes, of which masking takes the facets whose curve is another.
+    fringed : Batch
+        The same under films of up to many fringes.
+    ordered : Batch
+        Smooth lobes at grazing under films so thin that all orders count.
+    sharp : Batch
+        Smooth lobes, in which a film's curve is seen at one cosine, under films whose first orders count.
+    """
+
+    steep: Batch
+    fringed: Batch
+    ordered: Batch
+    sharp: Batch
