@@ -100,7 +100,8 @@ def sampled(function):
             arrays[name] = directions(rng, value[2] < 0.0)
         else:
             low, high, _ = RANGES[name]
-            high, shape = HIGH.get(name, high), (ROWS, *np.shape(value))
+            pairs = name == "roughness" and "microfacet" in function.__module__
+            high, shape = HIGH.get(name, high), (ROWS, 2) if pairs else (ROWS, *np.shape(value))
             inside = low + (high - low) * rng.uniform(0.2, 0.95, shape)
             ends = rng.choice([low, 1.0, high], shape)
             arrays[name] = np.where(rng.random(shape) < 0.25, ends, inside)
@@ -244,6 +245,14 @@ def test_values_are_checked_wherever_there_are_any(library):
         dielectric_brdf(up, up, rho, library.array([0.5, 0.5]), 1.5)
     with unchecked():
         assert library.numpy(lambert_brdf(up, -up, 2.0 * rho)) == 1.0 / np.pi
+
+
+def test_a_number_for_the_roughness_stands_for_both(library):
+    wo, wi, ior = [0.6, 0.0, 0.8], [0.0, 0.6, 0.8], library.array(1.5)
+    both = dielectric_brdf(wo, wi, 1.0, library.array([0.4, 0.4]), ior, compensate=False)
+    for roughness in (0.4, library.array(0.4)):
+        one = dielectric_brdf(wo, wi, 1.0, roughness, ior, compensate=False)
+        assert library.numpy(one) == library.numpy(both)
 
 
 def test_precision_is_that_of_the_arrays(library):
