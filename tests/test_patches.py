@@ -19,8 +19,8 @@ of_each_project = pytest.mark.parametrize("project", patches.PROJECTS, ids=lambd
 
 def made(project):
     """The patches of a project as its pages and changes have them now."""
-    host = "gl" if project.name in ("materialx", "openpbr") else project.name.removesuffix(".js")
-    with available(host):
+    hosts = {"materialx": "gl", "openpbr": "gl", "three.js": "three", "blender": "cycles"}
+    with available(hosts.get(project.name, project.name)):
         return patches.patches(project)
 
 

@@ -23,7 +23,16 @@ from textwrap import fill
 from docs.upstream.ledger import FOLDER, INDEX, Patch, Row, rows
 from docs.upstream.marks import MODULES
 from docs.upstream.materialx_repairs import REPAIRS, installed
-from docs.upstream.repairs import PATHTRACER, PATHTRACER_REPAIRS, THREE, THREE_REPAIRS, Repair
+from docs.upstream.repairs import (
+    CYCLES_REPAIRS,
+    PATHTRACER,
+    PATHTRACER_REPAIRS,
+    THREE,
+    THREE_REPAIRS,
+    Repair,
+    kernel,
+)
+from mxeon.errors import NotRun
 from mxeon.io.files import write_text
 
 PATCHES = Path(__file__).parents[2] / "patches"
@@ -41,7 +50,7 @@ class Project:
     name : str
         Of it, and of its folder in `patches/`.
     root : callable () -> Path
-        Folder of the texts that are changed, as the release has them.
+        Folder of the texts that are changed, as the release has them; raises NotRun if there is none.
     changes : sequence of Repair
     path : callable (str) -> str
         Path of a file in the project's repository.
@@ -54,7 +63,12 @@ class Project:
 
 
 def _modules(package: str) -> Callable[[], Path]:
-    return lambda: MODULES / package
+    def folder() -> Path:
+        if not (MODULES / package).is_dir():
+            raise NotRun(f"no folder {MODULES / package}")
+        return MODULES / package
+
+    return folder
 
 
 PROJECTS = (
@@ -67,6 +81,7 @@ PROJECTS = (
     ),
     Project("three.js", _modules(THREE), THREE_REPAIRS),
     Project("three-gpu-pathtracer", _modules(PATHTRACER), PATHTRACER_REPAIRS),
+    Project("blender", kernel, CYCLES_REPAIRS, lambda file: f"intern/cycles/kernel/{file}"),
 )
 
 
@@ -254,11 +269,12 @@ def main() -> None:
     """Write the patches of all projects, remove those that there are no more, and write the index."""
     write_text(INDEX, index_text(INDEX.read_text(encoding="utf-8")))
     for project in PROJECTS:
-        if not project.root().is_dir():
-            print(f"{project.name} is not installed: its patches stay as they are")
-            continue
         folder = PATCHES / project.name
-        made = patches(project)
+        try:
+            made = patches(project)
+        except NotRun as reason:
+            print(f"{project.name}: its patches stay as they are: {reason}")
+            continue
         for path in set(folder.glob("*")) - {folder / name for name in made}:
             path.unlink()
         for name, text in made.items():

@@ -6,6 +6,7 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from mxeon.errors import NotRun
 from mxeon.hosts.browser import packages_folder
 
 
@@ -122,6 +123,34 @@ PATHTRACER_REPAIRS = (
         "float sinTheta = sqrt( max( 0.0, 1.0 - cosTheta * cosTheta ) );",
     ),
 )
+
+
+# Blender's kernel, whose sources lie in its module.
+CYCLES_REPAIRS = (
+    Repair(
+        "cycles_rho_cubed",
+        "cycles",
+        "closure/bsdf_oren_nayar.h",
+        "M_1_PI_F * sqr(albedo) *",
+        "M_1_PI_F * albedo *",
+    ),
+)
+
+
+def kernel() -> Path:
+    """Folder of the sources of Cycles' kernel in Blender's module.
+
+    Raises
+    ------
+    NotRun
+        If it is not installed beside this checkout.
+    """
+    beside = Path(__file__).parents[2] / ".venv-cycles"
+    folder = "lib/*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel"
+    found = list(beside.glob(folder))
+    if not found:
+        raise NotRun(f"no folder {beside / folder}")
+    return found[0]
 
 
 def library(page: str, file: str, old: str, new: str) -> Repair:

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The repair of Cycles' kernel: its header, compiled with a few types of ours, is EON with it."""
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from docs.upstream.patches import changed
+from docs.upstream.repairs import CYCLES_REPAIRS, kernel
+from mxeon.models import eon_brdf
+from tests import support
+from tests.support.availability import available
+
+PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
+FLOAT32 = 2e-6  # of values up to 1: the arc cosine in G, and ten roundings
+PAIRS = 500
+
+
+@pytest.fixture(scope="module")
+def values(tmp_path_factory):
+    """A function of changes: pi f cos of random pairs by the header with them, and by the model."""
+    with available("cycles"):
+        folder = kernel()
+    rng = np.random.default_rng(5)
+    mu, phi = rng.uniform(0.01, 1.0, (2, PAIRS)), rng.uniform(0.0, 2.0 * np.pi, (2, PAIRS))
+    sine = np.sqrt(1.0 - mu * mu)
+    wo, wi = np.stack([sine * np.cos(phi), sine * np.sin(phi), mu], axis=-1)
+    rho, roughness = rng.uniform(size=(PAIRS, 3)), rng.uniform(size=(PAIRS, 1))
+    lines = "\n".join(" ".join(map(str, row)) for row in np.hstack([wo, wi, rho, roughness]))
+    right = np.pi * wi[:, 2:] * eon_brdf(wo, wi, rho, roughness[:, 0])
+
+    def run(changes):
+        target = tmp_path_factory.mktemp("kernel")
+        for name in ("types.h", "sample/mapping.h"):  # whose types and functions the program has
+            (target / "kernel" / name).parent.mkdir(parents=True, exist_ok=True)
+            (target / "kernel" / name).touch()
+        file = CYCLES_REPAIRS[0].file
+        (target / file).parent.mkdir()
+        (target / file).write_text(changed((folder / file).read_text(), changes))
+        command = ["g++", "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
+        subprocess.run(command, check=True)
+        done = subprocess.run(
+            [target / "program"], input=lines, capture_output=True, text=True, check=True
+        )
+        return np.array(done.stdout.split(), float).reshape(PAIRS, 3), right
+
+    return run
+
+
+def test_the_header_has_one_power_of_the_color_too_many(values):
+    found, right = values([])
+    assert np.abs(found - right).max() > 0.01
+
+
+def test_the_repaired_header_is_eon(values):
+    found, right = values(CYCLES_REPAIRS)
+    assert np.abs(found - right).max() < FLOAT32
