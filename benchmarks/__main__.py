@@ -18,7 +18,7 @@ from benchmarks import page, record
 from mxeon.errors import NotRun
 
 GROUPS = (
-    "shaders", "noise", "materials", "instructions", "registers", "cycles", "models", "tool", "check",
+    "shaders", "noise", "materials", "instructions", "registers", "cycles", "models", "values", "tool", "check",
     "parts",
 )  # fmt: skip
 QUICK = {
@@ -29,6 +29,7 @@ QUICK = {
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
+    "values": {"rounds": 2, "pairs": 100_000, "calls": 200},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
     "check": {"rounds": 1, "field": False},
     "parts": {"rounds": 1},

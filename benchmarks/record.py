@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.rounds import Check, Figure, Group
 
-PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "numba")
+PACKAGES = ("mxeon", "MaterialX", "numpy", "moderngl", "numba", "mitsuba")
 
 
 def machine():

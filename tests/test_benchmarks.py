@@ -64,6 +64,7 @@ SMALLEST = {
     "registers": {"nodes": ("oren_nayar",)},
     "cycles": {"rounds": 1, "size": 32, "samples": (64,)},
     "models": {"rounds": 1, "pairs": (1000,)},
+    "values": {"rounds": 1, "pairs": 1000, "calls": 20},
     "tool": {"rounds": 1, "counts": (1, 2), "documents": 1},
 }  # fmt: skip
 
