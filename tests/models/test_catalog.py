@@ -13,6 +13,7 @@ from numpy.testing import assert_array_equal
 import mxeon
 from mxeon import models
 from mxeon.models.catalog import MODELS
+from mxeon.models.nodes import NODES
 from mxeon.models.nodes.parameters import DEFAULTS
 from mxeon.shaders.library import load_library
 from tests.support import tolerances
@@ -61,7 +62,30 @@ def test_a_model_has_the_functions_that_it_names(name):
     if "sample" in row.functions:
         wi, pdf = row.sample(WO, np.full((5, 2), 0.4))
         assert np.allclose(row.pdf(WO, wi), pdf, rtol=1e-9) and pdf.shape == (5,)
-    assert name in repr(row) and len(repr(row)) < 250
+
+
+def test_the_words_of_a_model_show_its_inputs_with_ranges_and_units():
+    words = repr(mxeon.model("qon")).splitlines()
+    assert words[0].startswith("qon: qualitative Oren-Nayar (QON); brdf, bsdf, albedo_dir")
+    assert words[1:] == [
+        "  color = (0.18, 0.18, 0.18), in [0, 1]",
+        "  roughness = 0.0, in [0, pi/2] rad",
+    ]
+
+
+def test_the_node_of_eonlib_is_eon():
+    assert mxeon.model("eon_diffuse_bsdf") is mxeon.model("eon")
+
+
+@pytest.mark.parametrize("category", DEFAULTS)
+def test_a_node_gives_the_model_of_its_default_mode(category):
+    row = mxeon.model(category)
+    assert row.node == category
+    ports = load_library("stock").getNodeDef(f"ND_{category}").getActiveInputs()
+    modes = {port.getName(): port.getValueString() for port in ports if port.getName() in MODES}
+    own = {each.name: each.fixed for each in NODES}.get(row.name, {})
+    assert own.items() <= modes.items()
+    assert modes.get("energy_compensation") in (None, "false") or row.name == "eon"
 
 
 @every_model
@@ -148,6 +172,8 @@ def test_a_number_for_roughness_is_isotropic(function, inputs):
     ("call", "error", "message"),
     [
         (lambda: mxeon.model("conducter"), ValueError, "did you mean conductor?"),
+        (lambda: mxeon.model("conductor_bdsf"), ValueError, "did you mean conductor_bsdf?"),
+        (lambda: mxeon.model(["eon"]), ValueError, "got ['eon']"),
         (lambda: mxeon.model("fon").sample(WO, [0.1, 0.2]), ValueError, "fon has no sample; it has brdf"),
         (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf; it has bsdf"),
         (lambda: mxeon.model("eon").brdf(WO, WI, tint=1.0), TypeError, "inputs are color, roughness; got 'tint'"),

@@ -44,13 +44,29 @@ SAMPLERS = {
 }
 
 
+# The model of each node in its default mode.
+NODES_BY_CATEGORY = {
+    "oren_nayar_diffuse_bsdf": "qon",
+    "eon_diffuse_bsdf": "eon",
+    "burley_diffuse_bsdf": "burley",
+    "translucent_bsdf": "translucent",
+    "subsurface_bsdf": "subsurface",
+    "sheen_bsdf": "conty_kulla",
+    "dielectric_bsdf": "dielectric",
+    "conductor_bsdf": "conductor",
+    "generalized_schlick_bsdf": "schlick",
+    "chiang_hair_bsdf": "hair",
+}
+
+
 def model(name: str) -> ShadingModel:
     """The model with this name: of rough diffuse nodes, a known variant of them, or a node of pbrlib.
 
     Parameters
     ----------
     name : str
-        One of `model_names()`, such as "eon", "qon", "dielectric" or "zeltner".
+        One of `model_names()`, such as "eon", "qon", "dielectric" or "zeltner", or the category of a
+        node, such as "conductor_bsdf", which is the model of its default mode.
 
     Returns
     -------
@@ -65,11 +81,15 @@ def model(name: str) -> ShadingModel:
     --------
     >>> gold = model("conductor")
     >>> gold
-    <conductor: conductor microfacets; inputs ior, extinction, roughness; has brdf, bsdf, albedo_dir, sample, pdf>
+    conductor: conductor microfacets; brdf, bsdf, albedo_dir, sample, pdf
+      ior = (0.183, 0.421, 1.373), in [0, 1e50]
+      extinction = (3.424, 2.346, 1.77), in [0, 1e50]
+      roughness = (0.05, 0.05), in [0, 1]
     >>> gold.brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], roughness=0.3).round(4)
     array([1.4723, 1.1829, 0.5437])
     """
-    return MODELS[checked_choice("model", name, MODELS)]
+    checked_choice("model", name, (*MODELS, *NODES_BY_CATEGORY))
+    return MODELS[NODES_BY_CATEGORY.get(name, name)]
 
 
 def model_names() -> tuple[str, ...]:

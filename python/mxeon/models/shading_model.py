@@ -86,8 +86,8 @@ class ShadingModel:
         return (*value, "albedo_dir", *average, *(("sample", "pdf") if self.sampler else ()))
 
     def __repr__(self) -> str:
-        inputs = ", ".join(each.name for each in self.parameters)
-        return f"<{self.name}: {self.title}; inputs {inputs}; has {', '.join(self.functions)}>"
+        inputs = "".join(f"\n  {each!r}" for each in self.parameters)
+        return f"{self.name}: {self.title}; {', '.join(self.functions)}{inputs}"
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of a model that reflects, in 1/sr and without the cosine.

@@ -46,7 +46,7 @@ UNITS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Parameter:
     """An input of a model.
 
@@ -74,6 +74,10 @@ class Parameter:
         """Least and largest value, both allowed."""
         low, high, _ = RANGES[self.quantity]
         return low, high
+
+    def __repr__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.name} = {self.default}, in {RANGES[self.quantity][2]}{unit}"
 
     @property
     def unit(self) -> str:
