@@ -64,14 +64,22 @@ def _curves(probe: Probe, batch: Batch) -> Case:
 
 
 def film_sum(probe: Probe) -> Iterable[Case]:
-    """Sums of two lobes in one pixel against both by themselves: one film, another lobe or substrate."""
+    """Sums of two lobes in one pixel against both by themselves, of which one thing is another.
+
+    In an environment that is the roughness, by which the visible facets are others.
+    """
     batch: Batch = probe.films.steep
     substrate = tuple(name for name in batch.inputs if name not in (*FILM_INPUTS, "roughness"))
     cases = []
-    for names in (("roughness",), substrate):
+    for output, names in (
+        ("direct", FILM_INPUTS[:1]),
+        ("direct", FILM_INPUTS[1:]),
+        ("direct", substrate),
+        ("albedo", ("roughness",)),
+    ):
         other = batch.altered(**{name: np.roll(batch.inputs[name], 1, axis=0) for name in names})
-        alone = probe.direct(batch) + probe.direct(other)
-        cases.append(Case(batch, probe.summed(batch, other), alone))
+        first, second = (getattr(probe, output)(each) for each in (batch, other))
+        cases.append(Case(batch, probe.summed(batch, other, output), first + second))
     return cases
 
 

@@ -123,8 +123,8 @@ class Probe:
         """Views of films for the checks of one term each."""
         self._lacks("films")
 
-    def summed(self, first: Batch, second: Batch) -> Array:
-        """Values of the sum of two lobes with the inputs of two batches of the same pairs."""
+    def summed(self, first: Batch, second: Batch, output: str) -> Array:
+        """`direct` or `albedo` of two lobes with the inputs of two batches of the same pairs."""
         self._lacks("summed")
 
     @property

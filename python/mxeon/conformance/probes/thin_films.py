@@ -82,10 +82,11 @@ class FilmProbe(MicrofacetProbe):
             )
         )
 
-    def summed(self, first: Batch, second: Batch) -> Array:
-        """Values of the sum of two lobes with the inputs of two batches of the same pairs."""
+    def summed(self, first: Batch, second: Batch, output: str) -> Array:
         inputs = {f"{SUMMED[1]}/{name}": value for name, value in second.inputs.items()}
-        return self._sum.direct(replace(first, inputs={**first.inputs, **inputs}))
+        both = replace(first, inputs={**first.inputs, **inputs})
+        values: Array = getattr(self._sum, output)(both)
+        return values
 
     @cached_property
     def _sum(self) -> "FilmProbe":
