@@ -23,6 +23,7 @@ from fits import (
     thin_film_nodes,
 )
 from fits.minimax import least_largest, mp
+from mxeon.conformance.accuracy import bsdf
 from mxeon.models.diffuse import inversion
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import eon as shipped
@@ -118,6 +119,13 @@ def test_the_albedo_of_ggx_has_the_error_that_stands_beside_it():
     assert ggx_albedo.largest_error(coefficients) <= tolerances.FIT_GGX
     wrong = (coefficients[0] + 1e-2, *coefficients[1:])
     assert ggx_albedo.largest_error(wrong, 61, 41) > tolerances.FIT_GGX
+
+
+def test_the_albedo_of_smooth_ggx_has_the_error_that_its_tolerance_states():
+    mu = np.linspace(0.05, 1.0, 400)
+    fitted = ggx_albedo.fitted(mu, np.full_like(mu, 1e-6), shipped_in("ggx_albedo", "GGX_ALBEDO"))
+    error = np.abs(1.0 - fitted).max()
+    assert 0.9 * bsdf.SMOOTH_ESS_FIT < error <= bsdf.SMOOTH_ESS_FIT
 
 
 def test_the_quadrature_of_the_fit_is_that_of_the_models():

@@ -12,11 +12,14 @@ LEAST_COSINE = 0.1  # of the same
 
 # Largest errors of the fits that shaders are held to, each found by its script in fits/.
 ESS_FIT = 5e-4  # ggx_albedo.py: albedo of GGX where every facet reflects everything, E_ss
+SMOOTH_ESS_FIT = 5.3e-5  # the same of smooth lobes, from a cosine of 0.05 on
 FRESNEL_FIT = 3.6e-4  # fresnel_average.py: mean of a Fresnel curve, F_ss
 LOBE_FIT = 3.2e-3  # ggx_cosine.py: albedo of GGX with a Fresnel curve
 DIP_FIT = 5.9e-3  # ggx_cosine.py: what a full dip at 82 degrees adds to it
 CONTY_KULLA_FIT = 1.5e-3  # conty_kulla_albedo.py: albedo of the Conty-Kulla sheen
 SUM_OF_DIRECTIONS = 1.7  # error of a sum over N directions of an environment, times N: see sum_of
+# Largest slope of a Fresnel curve in the cosine, 0.05 from a critical angle: at index 1.02, cosine 0.05.
+FRESNEL_SLOPE = 7.3
 LEAST_ESS = 1.0 - math.log(2.0)  # E_ss at alpha 1 along the normal
 # Largest v / E_ss, v the value pi f cos of facets that reflect everything, or 1 if that is less, as
 # errors of a compensation count: at alpha 0.58 and a cosine of 0.6.
@@ -109,6 +112,13 @@ UNFITTED = Tolerance(
     "albedo",
     absolute,
     "the largest error of a cosine that is fitted to indices from 1.03 on, as docs/loading.md has it",
+)
+SMOOTH_PASSED = Tolerance(
+    rounded_up(SMOOTH_ESS_FIT + (4 * FRESNEL_SLOPE + 16) * ROUNDING),
+    "albedo",
+    absolute,
+    "the fit of E_ss of smooth lobes, 5.3e-5; four roundings of a cosine, 2^-24 each, times the largest "
+    "slope of a Fresnel curve, 7.3; and 16 beside them; rounded up",
 )
 MICROFACET_ENVIRONMENT = Tolerance(
     rounded_up(max(sum_of(1024), COMPENSATION_ALBEDO + ROUGH_SUM)),

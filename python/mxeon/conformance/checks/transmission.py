@@ -109,7 +109,7 @@ CHECKS = (
         measures.critical,
         "the index is another",
         with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
-        "value",
+        tolerances.SMOOTH_PASSED,
         diagnose=diagnose_transmitted,
     ),
     Check(
