@@ -55,10 +55,11 @@ class Row:
         Module with its class `Host`; "" where only the text of the target is checked.
     probe : str
         How checks ask it: for "pairs" of directions, for "pictures" of a sphere, for pictures of
-        "planes", for "drawn pictures" of a sphere whose points are exact, for "half pictures", the same
-        in half floats, for pictures of "native" nodes of its own, for "exact" ones, without noise and with
-        the points of float32, for those of "facets" of a polyhedron, "coarse" ones or not,
-        for these and for "facet pairs" of directions, or "" for nothing.
+        "planes", for the "closures" of a shader, for "drawn pictures" of a sphere whose points are exact,
+        for "half pictures", the same in half floats, for pictures of "native" nodes of its own, for
+        "exact" ones, without noise and with the points of float32, for those of "facets" of a
+        polyhedron, "coarse" ones or not, for these and for "facet pairs" of directions, or "" for
+        nothing.
     needs : str
         What running it would take, where only its text is checked.
     scenes : tuple of Scene
@@ -103,6 +104,7 @@ HOSTS = (
     Row("vulkan", "vulkan", "mxeon.hosts.vulkan", "pairs"),
     Row("wgsl", "wgsl", "mxeon.hosts.wgsl", "pairs"),
     Row("slang", "slang", "mxeon.hosts.slang", "pairs"),
+    Row("osl", "osl", "mxeon.hosts.osl", "closures"),
     Row(
         "materialx",
         "glsl",

@@ -18,6 +18,7 @@ from mxeon.shaders.scene import Paths, Scene
 if TYPE_CHECKING:
     import MaterialX as mx
 
+    from mxeon.hosts.osl.trees import TreeRows
     from mxeon.io.files import AnyPath
     from mxeon.shaders.generation import Shader
 
@@ -222,6 +223,32 @@ class Host(Engine):
             If the host's compiler refuses the shader.
         """
         raise self._unsupported("values for pairs of directions", "gl")
+
+    def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
+        """Trees of the closures that a shader makes, with their arguments and weights.
+
+        Parameters
+        ----------
+        shader : Shader
+            Of the target "osl".
+        wo : ndarray, shape (N, 3)
+            Directions to the viewer.
+        inputs : mapping of str to array
+            As in `evaluate`.
+
+        Returns
+        -------
+        tuple of mxeon.hosts.osl.trees.TreeRows
+            TreeRows whose closures differ in numbers alone share one tree.
+
+        Raises
+        ------
+        Unsupported
+            If the host has no such verb.
+        ShaderError
+            If the shader does not compile, or makes a closure that OSL does not document.
+        """
+        raise self._unsupported("trees of closures", "osl")
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of a function that a text defines.

@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias
 
 from mxeon.conformance.accuracy import (
     bsdf,
+    closures,
     diffuse,
     emission,
     hair,
@@ -28,6 +29,7 @@ from mxeon.conformance.nodes.bsdf import (
     SHEEN,
     SUBSURFACE,
 )
+from mxeon.conformance.nodes.closures import SCATTERING, closure_kind
 from mxeon.conformance.nodes.surface_shaders import WHOLE
 from mxeon.conformance.nodes.transmission import SCHLICK_TRANSMITTED, TRANSMITTED
 from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES
@@ -67,6 +69,8 @@ class Accuracy:
         Of values that have no roughness.
     pairs : bool
         Whether its host evaluates any pairs of directions, those at the edges of the domain too.
+    lit : bool
+        Whether the host itself finds light and lets it pass, or tells closures alone.
     """
 
     value: Tolerance | None = None
@@ -78,6 +82,7 @@ class Accuracy:
     reciprocity: Tolerance | None = None
     lambert: Tolerance | None = None
     pairs: bool = True
+    lit: bool = True
 
     @property
     def difference(self) -> Tolerance | None:
@@ -127,8 +132,8 @@ SHOWN: Mapping[str, tuple[Tolerance, Tolerance]] = {
     SCHLICK: (bsdf.MICROFACET_VALUE, bsdf.MICROFACET_PICTURE),
 }
 
-# By kind of probe.
-ACCURACY: Mapping[str, Accuracy] = {
+# By kind of probe on a host that lights what it shows or evaluates.
+LIT: dict[str, Accuracy] = {
     "pairs": Accuracy(
         diffuse.VALUE,
         diffuse.ENVIRONMENT,
@@ -204,4 +209,19 @@ ACCURACY: Mapping[str, Accuracy] = {
     VALUES: Accuracy(utilities.ALPHA),  # each output has its own
     OSL_VALUES: _seen(utilities.ALPHA),
     WHOLE: Accuracy(surface_shaders.VALUE, surface_shaders.ALBEDO),
+}
+
+
+def _of_closures(shown: Accuracy, value: Tolerance) -> Accuracy:
+    """Accuracy of closures, by that of a host that evaluates: frames are turned in float32."""
+    light = value if shown.throughput else None
+    return Accuracy(value, value, light, shown.frame, lambert=shown.lambert and value, lit=False)
+
+
+# By kind of probe.
+ACCURACY: Mapping[str, Accuracy] = LIT | {
+    closure_kind(kind): _of_closures(
+        LIT[kind], closures.GRAPH if kind == WHOLE else closures.ARGUMENTS
+    )
+    for kind in SCATTERING
 }

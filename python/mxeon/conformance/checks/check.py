@@ -35,6 +35,8 @@ class Check:
         where it is the same for all.
     pairs : bool
         Whether it asks for pairs of directions that not every host shows.
+    lit : bool
+        Whether it asks how light is found, summed or let through, which no closure tells.
     applies : callable (subject, host) -> bool
         Whether the check can be asked about a subject of those models on the host of a name.
     diagnose : callable (probe) -> Diagnosis
@@ -53,6 +55,7 @@ class Check:
     control: Control
     allowed: Quantity | Tolerance
     pairs: bool = False
+    lit: bool = False
     applies: Callable[[Subject, str], bool] = lambda subject, host: True
     diagnose: Callable[[Probe], Diagnosis] = diagnosis.diagnose_value
     open: bool = False
@@ -68,6 +71,6 @@ class Check:
     def tolerance(self, kind: str) -> Tolerance | None:
         """The tolerance for a kind of probe, or None where it cannot be asked."""
         accuracy = ACCURACY[kind]
-        if self.pairs and not accuracy.pairs:
+        if (self.pairs and not accuracy.pairs) or (self.lit and not accuracy.lit):
             return None
         return self.allowed if isinstance(self.allowed, Tolerance) else accuracy.of(self.allowed)

@@ -64,6 +64,7 @@ CHECKS = (
         pass_all,
         tolerances.DIP,
         pairs=True,
+        lit=True,
         diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
@@ -75,6 +76,7 @@ CHECKS = (
         pass_all,
         tolerances.UNFITTED,
         pairs=True,
+        lit=True,
         diagnose=diagnosis.diagnose_throughput,
     ),
     Check(

@@ -65,6 +65,7 @@ CHECKS = tuple(
         "the normal is turned about the fiber by a tenth",
         without_offset,
         HAIR_REGION,
+        lit=True,
         diagnose=_diagnose(key),
         open=True,
     )

@@ -194,6 +194,7 @@ CHECKS = (
         with_inputs(normal=(0.0, 0.0, 1.0)),
         tolerances.SURROUNDINGS,
         pairs=True,
+        lit=True,
         diagnose=input_diagnosis.diagnose_surroundings,
     ),
     Check(
@@ -204,6 +205,7 @@ CHECKS = (
         "the mean free path is 0.3 in every channel",
         with_inputs(radius=(0.3, 0.3, 0.3)),
         bsdf_tolerances.RINGS,
+        lit=True,
         diagnose=diagnose_sphere,
     ),
     Check(
@@ -214,6 +216,7 @@ CHECKS = (
         "the mean free path is 0.3 in every channel",
         with_inputs(radius=(0.3, 0.3, 0.3)),
         bsdf_tolerances.RINGS_MEAN,
+        lit=True,
         diagnose=diagnose_sphere,
     ),
     Check(
@@ -225,6 +228,7 @@ CHECKS = (
         take_response,
         tolerances.OPAQUE,
         pairs=True,
+        lit=True,
         diagnose=input_diagnosis.diagnose_throughput,
     ),
     Check(

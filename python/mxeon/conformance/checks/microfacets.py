@@ -62,6 +62,7 @@ CHECKS = (
         isotropic,
         tolerances.ANISOTROPIC_ALBEDO,
         pairs=True,
+        lit=True,
         diagnose=input_diagnosis.diagnose_stretched,
     ),
 )

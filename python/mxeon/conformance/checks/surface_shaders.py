@@ -144,6 +144,7 @@ CHECKS = (
         "every value is a hundredth lower",
         scale(0.99),
         MEAN,
+        lit=True,
         diagnose=diagnose_sum,
     ),
     Check(
@@ -154,6 +155,7 @@ CHECKS = (
         "every value is a tenth lower",
         scale(0.9),
         "albedo",
+        lit=True,
         diagnose=diagnose_sum,
     ),
     Check(
@@ -164,6 +166,7 @@ CHECKS = (
         "every value is half as high again",
         scale(1.5),
         "albedo",
+        lit=True,
         diagnose=diagnose_sum,
     ),
     Check(

@@ -120,6 +120,7 @@ CHECKS = (
         "the index is another",
         with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
         SURROUNDINGS,
+        lit=True,
         diagnose=unknown,
     ),
     Check(
@@ -140,6 +141,7 @@ CHECKS = (
         "every change is dropped",
         drop_changes,
         count_of("inputs"),
+        lit=True,
         diagnose=diagnose_inputs,
     ),
 )

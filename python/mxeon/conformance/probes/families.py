@@ -20,6 +20,7 @@ from mxeon.conformance.probes.bsdf import (
     TransmissionProbe,
 )
 from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe, BsdfPlaneProbe
+from mxeon.conformance.probes.closures import closures_of
 from mxeon.conformance.probes.diffuse_lobes import DiffuseLobePlaneProbe, DiffuseLobeProbe
 from mxeon.conformance.probes.drawn import (
     DrawnBsdfProbe,
@@ -65,9 +66,11 @@ PBR_SUBJECTS: tuple[Subject, ...] = (
 )
 ALL_SUBJECTS: tuple[Subject, ...] = (*SUBJECTS, *PBR_SUBJECTS, *SURFACES)
 
+ClosureProbe = closures_of(PairProbe)
 # By the word of a host's row for how it is asked.
 HOST_PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "pairs": PairProbe,
+    "closures": ClosureProbe,
     "pictures": PictureProbe,
     "planes": PlaneProbe,
     "drawn pictures": DrawnProbe,
@@ -85,24 +88,30 @@ IN_THE_DARK: Mapping[str, type[Probe]] = {
     emission.SURFACES: SurfaceEmissionProbe,
     emission.ABSENT: NodeProbe,
 }
+PICTURED = ("lobes", emission.SURFACES)  # kinds whose probes ask for pictures
+# On a host that evaluates pairs of directions.
+EVALUATED: Mapping[str, type[Probe]] = {
+    "lobes": DiffuseLobeProbe,
+    **dict.fromkeys((bsdf.CLOSED, bsdf.SHEEN), BsdfProbe),
+    bsdf.FITTED: FittedProbe,
+    **dict.fromkeys(bsdf.MICROFACET_KINDS, MicrofacetProbe),
+    **dict.fromkeys((bsdf.COMBINED, bsdf.NESTED), CombinedProbe),
+    bsdf.HAIR: HairProbe,
+    bsdf.SUBSURFACE: SubsurfaceProbe,
+    bsdf.FILM_PAIRS: FilmProbe,
+    **dict.fromkeys(transmission.KINDS, TransmissionProbe),
+    **dict.fromkeys(emission.KINDS, EmissionProbe),
+    emission.CONE: ConeProbe,
+    **IN_THE_DARK,
+    utilities.VALUES: UtilityProbe,
+    WHOLE: SurfaceShaderProbe,
+}
 # By the class of a host's own probes, then by the kind of a node. A picture of a solid shows light that
 # enters and leaves it, which no equation of a node that transmits has.
 PROBES: Mapping[type[Probe], Mapping[str, type[Probe]]] = {
-    PairProbe: {
-        "lobes": DiffuseLobeProbe,
-        **dict.fromkeys((bsdf.CLOSED, bsdf.SHEEN), BsdfProbe),
-        bsdf.FITTED: FittedProbe,
-        **dict.fromkeys(bsdf.MICROFACET_KINDS, MicrofacetProbe),
-        **dict.fromkeys((bsdf.COMBINED, bsdf.NESTED), CombinedProbe),
-        bsdf.HAIR: HairProbe,
-        bsdf.SUBSURFACE: SubsurfaceProbe,
-        bsdf.FILM_PAIRS: FilmProbe,
-        **dict.fromkeys(transmission.KINDS, TransmissionProbe),
-        **dict.fromkeys(emission.KINDS, EmissionProbe),
-        emission.CONE: ConeProbe,
-        **IN_THE_DARK,
-        utilities.VALUES: UtilityProbe,
-        WHOLE: SurfaceShaderProbe,
+    PairProbe: EVALUATED,
+    ClosureProbe: {
+        kind: closures_of(probe) for kind, probe in EVALUATED.items() if kind not in PICTURED
     },
     PictureProbe: {
         **dict.fromkeys(BSDF_KINDS, BsdfPictureProbe),

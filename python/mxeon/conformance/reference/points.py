@@ -87,15 +87,25 @@ class ShadingPoints:
         return self._turned(self.normal, self.tangent)
 
     def _turned(self, normal: Values, tangent: Values) -> Lobe:
+        wo, wi = self.directions(normal, tangent)
+        if wi is None:
+            return furnace(wo, self.strength, self.most, self.behind)
+        return lit(wo, wi, self.strength, self.most)
+
+    def directions(self, normal: Values, tangent: Values) -> tuple[Values, Values | None]:
+        """Directions to the viewer and to the light in a frame, whose normal is turned to the viewer.
+
+        Raises
+        ------
+        OutsideModel
+            If a normal is no unit vector.
+        """
         length = np.linalg.norm(normal, axis=-1)
         if (wrong := np.ravel(length)[np.ravel(~(np.abs(length - 1.0) <= UNIT))]).size:
             raise OutsideModel(f"reference: normal must have the length 1; got {wrong[0]:g}")
         side = np.where((self.wo * normal).sum(axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
         axes = self._axes(side * normal, tangent)
-        wo = _within(axes, self.wo)
-        if self.wi is None:
-            return furnace(wo, self.strength, self.most, self.behind)
-        return lit(wo, _within(axes, self.wi), self.strength, self.most)
+        return _within(axes, self.wo), None if self.wi is None else _within(axes, self.wi)
 
     def _axes(self, z: Values, tangent: Values) -> Values:
         """Axes of a frame, orthogonal unit vectors, as rows (N, 3, 3)."""

@@ -251,8 +251,8 @@ def _on_host(
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
-        closure = each.closure and _is_renderers(row.target, library)
-        if not closure and _is_judged(each, library):
+        left = each.closure and row.probe != "closures" and _is_renderers(row.target, library)
+        if not left and _is_judged(each, library):
             yield from _checks_of(each, probe, host, library)
     if row.surfaces:
         for surface in SURFACES:

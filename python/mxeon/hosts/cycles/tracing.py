@@ -32,7 +32,7 @@ class SceneParts(TypedDict):
     radius: float
     light: tuple[float, float, float] | None
     environment: float | Path | None
-    mesh: bool
+    body: str
 
 
 FEWEST_SAMPLES = 16  # below the surface, less is noise rather than a picture
@@ -55,7 +55,7 @@ def request(scene: Scene, lobes: Sequence[str]) -> SceneParts:
         "radius": 1.0,
         "light": scene.light,
         "environment": scene.environment,
-        "mesh": bool(lobes),
+        "body": "mesh" if lobes else "points",
     }
 
 

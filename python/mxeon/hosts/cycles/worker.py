@@ -112,6 +112,17 @@ def add_mesh(scene: Blender, radius: float, material: Blender) -> None:
     scene.collection.objects.link(bpy.data.objects.new("sphere", mesh))
 
 
+def add_plane(scene: Blender, radius: float, material: Blender) -> None:
+    """Add one triangle that fills the picture, at z = 0, with `material` on it."""
+    mesh = bpy.data.meshes.new("plane")
+    mesh.from_pydata([(-3.0, -1.0, 0.0), (3.0, -1.0, 0.0), (0.0, 5.0, 0.0)], [], [(0, 1, 2)])
+    mesh.materials.append(material)
+    scene.collection.objects.link(bpy.data.objects.new("plane", mesh))
+
+
+BODIES = {"points": add_sphere, "mesh": add_mesh, "plane": add_plane}
+
+
 def script_material(shader: str) -> Blender:
     """A material whose surface is the output of the compiled OSL file `shader`."""
     material, script = surface_material("ShaderNodeScript")
@@ -171,11 +182,11 @@ def render(
     radius: float,
     light: tuple[float, float, float] | None,
     environment: float | None,
-    mesh: bool,
+    body: str,
     shader: str | None = None,
     native: Values | None = None,
 ) -> dict[str, str]:
-    """Render the OSL file `shader`, or a node of Blender's, on a sphere; return the reply."""
+    """Render the OSL file `shader`, or a node of Blender's, on one of BODIES; return the reply."""
     # Compile the shader.
     if shader:
         compiled = os.path.splitext(shader)[0] + ".oso"
@@ -186,7 +197,7 @@ def render(
     set_output(scene, output, size)
     set_sampling(scene, samples, bounces, osl=native is None)
     material = native_material(**native) if native else script_material(compiled)
-    (add_mesh if mesh else add_sphere)(scene, radius, material)
+    BODIES[body](scene, radius, material)
     if light:
         add_light(scene, light)
     if environment:

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Probes of nodes on a host that tells closures: those of a host that evaluates, over the closures' values."""
+
+from functools import cached_property
+from typing import TypeVar, cast
+
+import numpy as np
+
+from mxeon.conformance.nodes.closures import closure_kind
+from mxeon.conformance.nodes.subject import Subject
+from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.reference.closures import evaluated
+from mxeon.conformance.samples.batch import SEED, Batch, Counts
+from mxeon.hosts.base import Host
+
+P = TypeVar("P", bound=Probe)
+# The closures are few, and their values are those of the models: more pairs would tell the models apart.
+USUAL = Counts(1 << 12, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
+SOME = 1 << 8  # pairs of every kind but the random ones
+
+
+class ClosureSamples(Probe):
+    """What a probe of closures has in common: its host's values, and fewer samples."""
+
+    def __init__(
+        self, host: Host, subject: Subject, library: str, counts: Counts | None = None
+    ) -> None:
+        super().__init__(evaluated(host), subject, library, counts)
+
+    @classmethod
+    def kind_of(cls, subject: Subject) -> str:
+        return closure_kind(super().kind_of(subject))
+
+    @cached_property
+    def batches(self) -> tuple[Batch, ...]:
+        """The same pairs with weights of at least 0: OSL multiplies a closure by any number."""
+        random, *others = map(_weighed, super().batches)
+        return (random, *(batch.first(SOME) for batch in others))
+
+    @cached_property
+    def few(self) -> tuple[Batch, ...]:
+        """Few of each."""
+        return tuple(batch.first(self.counts.few) for batch in self.batches)
+
+    @cached_property
+    def turned(self) -> Batch:
+        """Some of the pairs."""
+        return super().turned.first(SOME)
+
+    @cached_property
+    def edges(self) -> Batch:
+        """Some of the edges, of every kind."""
+        edges = super().edges
+        return edges.where(np.random.default_rng(SEED).permutation(len(edges.wo))[:SOME])
+
+
+def closures_of(probe: type[P]) -> type[P]:
+    """The class of the same probes on a host that tells closures."""
+    usual = probe.usual if probe.usual.pairs < USUAL.pairs else USUAL
+    return cast(
+        type[P], type(f"Closure{probe.__name__}", (ClosureSamples, probe), {"usual": usual})
+    )
+
+
+def _weighed(batch: Batch) -> Batch:
+    if "weight" not in batch.inputs:
+        return batch
+    return batch.altered(weight=np.maximum(batch.inputs["weight"], 0.0))

@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Closures that a shader makes, evaluated by the models: what OSL's documentation says that they are.
+
+`evaluated` makes a host that evaluates of one that only tells closures, so that what is asked of
+generated GLSL is asked of generated OSL by the same probes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.reference.lobes import Values, diffuse
+from mxeon.conformance.reference.points import ShadingPoints
+from mxeon.errors import OutsideModel
+from mxeon.hosts.base import Array, Host, Identity, Inputs
+from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
+from mxeon.hosts.osl.trees import ClosureTree, TreeRows
+from mxeon.models import table
+from mxeon.models.core import layering
+from mxeon.models.core.layering import Bsdf
+from mxeon.models.media.volume import transmittance
+from mxeon.models.nodes import node
+from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.media import METER
+from mxeon.models.nodes.node import PbrNode
+from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
+from mxeon.models.nodes.transmissions import TRANSMISSIONS
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.nodes import EON, OREN_NAYAR
+
+if TYPE_CHECKING:
+    import MaterialX as mx
+
+    from mxeon.io.files import AnyPath
+
+Arguments: TypeAlias = Mapping[str, Values]
+THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
+ONE = np.ones((1, 1))
+LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
+KEPT = 16  # runs whose closures are kept
+UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+NOTHING = Bsdf(np.zeros(3), np.ones(3))
+HAIR_LOBES = ("R", "TT", "TRT")
+EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", "chiang_hair_bsdf"
+LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
+MICROFACETS = {
+    "dielectric_bsdf": node("dielectric"),
+    "conductor_bsdf": node("conductor"),
+    "generalized_schlick_bsdf": node("schlick"),
+}
+ROWS = {
+    "burley_diffuse_bsdf": node("burley"),
+    "translucent_bsdf": node("translucent"),
+    "subsurface_bssrdf": SUBSURFACE_NODE,
+    HAIR: HAIR_NODE,
+    **MICROFACETS,
+}
+# By a keyword, 0 unless given, that picks the model.
+FLAGGED = {
+    "oren_nayar_diffuse_bsdf": (
+        "energy_compensation",
+        (diffuse("qon", OREN_NAYAR), diffuse("eon", EON)),
+    ),
+    "sheen_bsdf": ("mode", (node("conty_kulla"), node("zeltner"))),
+}
+
+
+@dataclass(frozen=True)
+class Views:
+    """Directions at some points, and the light whose way is followed.
+
+    Attributes
+    ----------
+    wo, wi : ndarray, shape (N, 3)
+    occlusion : ndarray, shape (N or 1, 1)
+        Share of a light that reaches the surface from above.
+    branch : str
+        As in `mxeon.hosts.base.Host.evaluate`.
+    """
+
+    wo: Values
+    wi: Values
+    occlusion: Values
+    branch: str
+
+    def bsdf(self, tree: ClosureTree | None, layered: bool) -> Bsdf:
+        """Value of closures, and their throughput if something may lie below them."""
+        # Closures that scatter no light, and single ones.
+        if tree is None or tree.name in LIGHTLESS:
+            return NOTHING
+        if tree.name not in OPERATIONS:
+            return self._flagged(tree, layered)
+        # Combinations of two.
+        first, second = (*tree.parts, None)[:2]
+        factor = _column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
+        if tree.name == LAYER:
+            return self._layer(first, second, layered)
+        if tree.name == MIX:
+            return _mixed(
+                partial(self.bsdf, first, layered), partial(self.bsdf, second, layered), factor
+            )
+        if tree.name == SUM:
+            return layering.add(self.bsdf(first, layered), self.bsdf(second, layered))
+        # A multiple; what has no weight is not evaluated.
+        if not np.any(factor):
+            return NOTHING
+        scaled = self.bsdf(first, layered)
+        return Bsdf(factor * scaled.value, 1.0 - factor * (1.0 - scaled.throughput))
+
+    def _layer(self, top: ClosureTree | None, base: ClosureTree | None, layered: bool) -> Bsdf:
+        """A lobe over another, or over a medium, which dims what passes the surface."""
+        medium = _coefficient(base, "extinction", MEDIUM)
+        if medium is None or _names(base) != {MEDIUM}:
+            return layering.layer(self.bsdf(top, True), self.bsdf(base, layered))
+        passed, surface = transmittance(medium, 0.0, METER), self.bsdf(top, layered)
+        value = surface.value * (passed if self.branch == THROUGH else 1.0)
+        return Bsdf(value, surface.throughput * passed)
+
+    def _flagged(self, closure: ClosureTree, layered: bool) -> Bsdf:
+        """A lobe whose model a keyword may pick, which is 0 unless it is given."""
+        if closure.name not in FLAGGED:
+            return self._lobe(closure, ROWS[closure.name], layered)
+        keyword, (first, second) = FLAGGED[closure.name]
+        flag = np.asarray(closure.arguments.get(keyword, 0.0), np.float64)
+        return _mixed(
+            partial(self._lobe, closure, first, layered),
+            partial(self._lobe, closure, second, layered),
+            _column(np.where(flag == 0.0, 0.0, 1.0)),
+        )
+
+    def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
+        """A lobe in its frame; stdosl.h lets through a layer what its top does not reflect."""
+        wo, wi = self._directions(closure)
+        inputs = _inputs(closure, row)
+        try:
+            value = self._value(closure, row, wo, wi, inputs)
+            left = 1.0 - row.albedo(_ended(wo), inputs) if layered else NOTHING.throughput
+        except ValueError as error:
+            raise OutsideModel(f"osl: {closure.name}: {error}") from None
+        return Bsdf(value, left)
+
+    def _value(
+        self, closure: ClosureTree, row: PbrNode, wo: Values, wi: Values, inputs: Arguments
+    ) -> Values:
+        """Light that a lobe sends to the viewer, times the cosine, (N, 3)."""
+        # Light of an environment.
+        if self.branch == THROUGH:
+            return _transmitted(closure, wo, inputs)
+        if self.branch != "direct":
+            return np.asarray((row.integral or row.albedo)(_ended(wo), inputs))
+        # A distant light, on the side from which the lobe scatters it.
+        if row is HAIR_NODE:  # which light meets from all sides
+            return self.occlusion * row.value(wo, wi, inputs)
+        side = np.where((wi[:, 2:] < 0.0) == row.transmits, 1.0, -1.0)
+        above = np.concatenate([wi[:, :2], side * wi[:, 2:]], axis=1)
+        lit = np.where(side < 0.0, 0.0, np.clip(np.abs(wi[:, 2:]), 0.0, 1.0))
+        shade = ONE if row.transmits else self.occlusion
+        return np.asarray(shade * row.value(wo, above, inputs) * lit)
+
+    def _directions(self, closure: ClosureTree) -> tuple[Values, Values]:
+        """Directions in the frame of a closure; those of the surface's own frame stay as they are."""
+        names = ("normal", "curve_direction" if closure.name == HAIR else "tangent")
+        axes = tuple(
+            np.broadcast_to(closure.arguments.get(name, axis), self.wo.shape)
+            for name, axis in zip(names, (UP, ALONG), strict=True)
+        )
+        above = bool(np.all(self.wo[:, 2] >= 0.0))
+        if above and np.all(axes[0] == UP) and np.all(axes[1] == ALONG):
+            return self.wo, self.wi
+        wo, wi = ShadingPoints(self.wo, self.wi, 1.0, *axes).directions(*axes)
+        assert wi is not None
+        return wo, wi
+
+
+def radiance(tree: ClosureTree | None) -> Values:
+    """What closures emit, (N or 1, 3)."""
+    emitted = _coefficient(tree, "color", EMISSION)
+    return np.zeros((1, 3)) if emitted is None else emitted
+
+
+def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Values | None:
+    """An argument of the closures of a name, by which light depends linearly on them; None without any."""
+    # A closure, or none.
+    if tree is None:
+        return None
+    if tree.name == name:
+        return np.asarray(tree.arguments[argument], np.float64)
+    parts = [_coefficient(part, argument, name) for part in tree.parts]
+    if all(part is None for part in parts):
+        return None
+    # What is combined.
+    known = [np.zeros((1, 3)) if part is None else part for part in parts]
+    factor = _column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
+    if tree.name == MIX:
+        return np.asarray((1.0 - factor) * known[0] + factor * known[1])
+    return np.asarray(factor * sum(known))
+
+
+def _names(tree: ClosureTree | None) -> set[str]:
+    """Names of the closures of a tree, but those that combine others."""
+    if tree is None or tree.name not in OPERATIONS:
+        return set() if tree is None else {tree.name}
+    return set().union(*map(_names, tree.parts))
+
+
+def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Values) -> Bsdf:
+    """A share of the second of two lobes beside the first; what has none is not evaluated."""
+    if not np.any(share):
+        return first()
+    return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
+
+
+def _transmitted(closure: ClosureTree, wo: Values, inputs: Arguments) -> Values:
+    """Light of a uniform environment through the surface, (N, 3)."""
+    if closure.name not in TRANSMISSIONS:
+        return np.zeros(wo.shape)
+    tint = closure.arguments["transmission_tint"]
+    white = {**inputs, "tint": np.ones((1, 3))}
+    return np.asarray(tint * TRANSMISSIONS[closure.name].passed(wo, white, True))
+
+
+def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
+    """Arguments of a closure by the names of the models' inputs."""
+    # Values by their own names.
+    given = {key: value for key, value in closure.arguments.items() if not isinstance(value, str)}
+    if closure.name == "oren_nayar_diffuse_bsdf":
+        given["roughness"] = np.minimum(given["roughness"], table.model(row.name).largest)
+    # Those that the models have together.
+    if closure.name == HAIR:
+        for lobe in HAIR_LOBES:
+            rough = np.stack([given[f"variance_{lobe}"], given[f"scale_{lobe}"]], axis=-1)
+            given[f"roughness_{lobe}"] = np.clip(rough, LEAST_HAIR, None)
+    if closure.name in MICROFACETS:
+        # OpenPBR stretches a lobe beyond 1, and shaders take 1.
+        alphas = np.stack([given["roughness_x"], given["roughness_y"]], axis=-1)
+        given["roughness"] = np.clip(alphas, 0.0, 1.0)
+        given["tint"] = given.get("reflection_tint", np.ones((1, 3)))
+        given.setdefault("color82", np.ones((1, 3)))
+        given.setdefault("thinfilm_ior", np.full(1, 1.5))
+        if not np.any(given.get("thinfilm_thickness", 0.0)):
+            given.pop("thinfilm_thickness", None)
+    return given
+
+
+def _ended(directions: Values) -> Values:
+    """Directions whose cosine a rounding has not made larger than 1."""
+    return np.minimum(directions, 1.0)
+
+
+def _column(values: ArrayLike) -> Values:
+    """Numbers as (N, 1), colors as they are."""
+    array = np.asarray(values, np.float64)
+    return array if array.ndim == 2 else array.reshape(-1, 1)
+
+
+class Evaluated(Host):
+    """A host that tells closures, with their values by the models.
+
+    Parameters
+    ----------
+    host : Host
+    """
+
+    def __init__(self, host: Host) -> None:
+        self.name, self._host = host.name, host
+        self._kept: dict[int, tuple[TreeRows, ...]] = {}
+        self.target, self.profile, self.language = host.target, host.profile, host.language  # type: ignore[misc]
+
+    def identity(self) -> Identity:
+        """That of the host."""
+        return self._host.identity()
+
+    def compile(
+        self,
+        document: AnyPath | mx.Document,
+        element: str | None = None,
+        *,
+        library: str = "eonlib",
+        policy: Policy = DEFAULT,
+    ) -> tuple[Shader, ...]:
+        """Shaders of a document; see `mxeon.hosts.base.Host`."""
+        return self._host.compile(document, element, library=library, policy=policy)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+        """Values of a function; see `mxeon.hosts.base.Host`."""
+        return self._host.execute(source, function, *arguments)
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: Array | None = None,
+    ) -> Array:
+        """Values of the closures of a shader; see `mxeon.hosts.base.Host`.
+
+        Raises
+        ------
+        Unsupported
+            If the environment is not uniform: closures look none up.
+        """
+        # Ask for the closures.
+        if irradiance is not None:
+            raise self._unsupported("uneven environment", "gl")
+        values = np.zeros((len(wo), 3))
+        occlusion = np.broadcast_to(_column(inputs.get("occlusion", 1.0)), (len(wo), 1))
+        # Evaluate those of each shape.
+        for points in self._trees(shader, wo, inputs):
+            rows = points.rows
+            if output == "radiance" or branch == GRAPH:
+                values[rows] = radiance(points.tree)
+                continue
+            view, light = (np.asarray(each, np.float64)[rows] for each in (wo, wi))
+            views = Views(view, light, occlusion[rows], branch)
+            bsdf = views.bsdf(points.tree, output == "throughput")
+            values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
+        return values
+
+    def _trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
+        """Closures at some points; the checks of a node ask for the same ones."""
+        parts = [shader.stages["pixel"], *sorted(inputs), wo.tobytes()]
+        parts += [np.asarray(inputs[name], np.float64).tobytes() for name in sorted(inputs)]
+        key = hash(tuple(parts))
+        if key not in self._kept:
+            while len(self._kept) >= KEPT:
+                self._kept.pop(next(iter(self._kept)))
+            self._kept[key] = self._host.trees(shader, wo, inputs)
+        return self._kept[key]
+
+
+@lru_cache(maxsize=4)
+def evaluated(host: Host) -> Evaluated:
+    """The one host that evaluates the closures of another."""
+    return Evaluated(host)

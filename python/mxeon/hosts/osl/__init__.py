@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OSL without a renderer: generated OSL is compiled and run by a real OSL, which prints its closures.
+
+    generated text --carriers--> labels in place of closures --Blender's OSL--> a line for each point
+    --trees--> one tree of arrays --`mxeon.conformance.reference.closures`--> values by the models
+
+So what MaterialX's text says is judged, whatever a renderer makes of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import MaterialX as mx
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.errors import InputError, NotRun
+from mxeon.hosts import base
+from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.osl.blender import Blender
+from mxeon.hosts.osl.carriers import prelude
+from mxeon.hosts.osl.points import TYPES, Column, row, statements
+from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+
+LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, and its text
+VERSION = "float version(float x)\n{\n    return OSL_VERSION;\n}\n"
+# What a shader finds in the place of the surface. I points to the surface, as OSL has it; it is read
+# by functions, which local variables do not reach.
+SURFACE = {"N": ("normal", (0.0, 0.0, 1.0)), "dPdu": ("vector", (1.0, 0.0, 0.0))}
+NAMES = {"N": "normal", "dPdu": "tangent"}
+VIEW = """
+vector mxeon_view()
+{{
+    {read}
+    return -view;
+}}
+#define I mxeon_view()
+"""
+ROOT = "root"
+PRINT = '    printf("mxeon %d {root} %s\\n", MXEON_ROW, {text});\n'
+
+
+class Host(base.Host):
+    """Blender's OSL, with a process and a temporary folder.
+
+    Raises
+    ------
+    NotRun
+        If no interpreter with Blender is found.
+    """
+
+    name = "osl"
+    target = "osl"
+    language = "osl"
+
+    def __init__(self) -> None:
+        self._engine = Blender()
+
+    def close(self) -> None:
+        """End the process and remove its files."""
+        self._engine.close()
+
+    def identity(self) -> Identity:
+        """Version of OSL, as its compiler knows it, and of Blender."""
+        number = int(self.execute(VERSION, "version", 0.0)[0, 0])
+        version = f"OSL {number // 10000}.{number // 100 % 100}.{number % 100}"
+        return Identity(self.name, f"{version} in {self._engine.version}", "CPU")
+
+    def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
+        """Closures that a generated shader makes; see `mxeon.hosts.base.Host`."""
+        count = len(wo)
+        with self._engine.folder() as name:
+            folder = Path(name)
+            # Values of its inputs and of its surface, as local variables that hide them.
+            columns = {
+                each: Column(kind, inputs.get(NAMES[each], value))
+                for each, (kind, value) in SURFACE.items()
+            }
+            block = _indented(statements({**columns, **_inputs(shader, inputs)}, folder, count))
+            [view] = statements({"view": Column("vector", wo)}, folder, count)
+            # The shader in that block, after the carriers.
+            head, brace, body = _with_header(shader.stages["pixel"]).rpartition("\n)\n{\n")
+            main, end, _ = body.rpartition("}")
+            last = _print("mxeon_text(out)") + "    out = 0;\n"
+            text = f"{VIEW.format(read=view)}{head}{brace}{{\n{block}{main}{last}}}\n{end}\n"
+            rows = self._printed(folder, text, count)
+        return read_trees([whole_label(each, ROOT) for each in rows])
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+        """Values of an OSL function; see `mxeon.hosts.base.Host`."""
+        # Bring the arguments into columns.
+        parameters = functions.parameters(source, function)
+        if len(parameters) != len(arguments):
+            raise InputError(f"{function} takes {len(parameters)} arguments; got {len(arguments)}")
+        columns = {
+            f"argument{n}": Column(kind, value)
+            for n, ((kind, _), value) in enumerate(zip(parameters, arguments, strict=True))
+        }
+        count = max((len(column.rows) for column in columns.values()), default=1)
+        # Run a shader that prints its value.
+        with self._engine.folder() as name:
+            block = _indented(statements(columns, Path(name), count))
+            last = _print(f"mxeon_text((color) {function}({', '.join(columns)}))")
+            text = f"{source}\nshader call(output closure color out = 0)\n{{\n{block}{last}}}\n"
+            rows = self._printed(Path(name), text, count)
+        return np.array([row[ROOT].split() for row in rows], np.float32)
+
+    def _printed(self, folder: Path, text: str, count: int) -> list[dict[str, str]]:
+        """What a shader says at each of so many points, by the label of each line.
+
+        Raises
+        ------
+        NotRun
+            If it says nothing of one of them.
+        """
+        rows: list[dict[str, str]] = [{} for _ in range(count)]
+        lines = self._engine.printed(folder, f"{row(count)}{prelude(text)}{text}", count)
+        for match in map(LINE.match, lines):
+            if match and int(match[1]) < count:
+                rows[int(match[1])][match[2]] = match[3]
+        if missing := sum(ROOT not in each for each in rows):
+            raise NotRun(f"osl: {missing} of {count} points were not printed")
+        return rows
+
+
+def _inputs(shader: Shader, inputs: Inputs) -> Mapping[str, Column]:
+    """Columns of the inputs that a shader has, by the names of its variables."""
+    columns = {}
+    for port in shader.inputs:
+        key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
+        if key in inputs:
+            columns[port.name] = Column(TYPES.get(port.type, port.type), inputs[key])
+    return columns
+
+
+def _print(text: str) -> str:
+    return PRINT.format(root=ROOT, text=text)
+
+
+def _indented(lines: Iterable[str]) -> str:
+    return "".join(f"    {line}\n" for line in lines)
+
+
+def _with_header(text: str) -> str:
+    """A generated text with the path of its include."""
+    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
+    return text.replace('"mx_funcs.h"', f'"{header.asString()}"')

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The OSL inside Blender: it compiles a shader and runs it once for each pixel of a plane."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from mxeon.errors import ShaderError
+from mxeon.hosts.cycles import tracing
+from mxeon.hosts.cycles.process import interpreter
+from mxeon.hosts.osl.points import side
+from mxeon.hosts.process import Worker
+from mxeon.shaders.scene import Scene
+
+DARK = Scene("dark")
+SECONDS = 300.0  # for one run
+TROUBLE = ("ERROR", "WARNING")  # first words of what the engine has to say
+
+
+class Blender:
+    """A process of Blender, started by the first run.
+
+    Raises
+    ------
+    NotRun
+        If no interpreter with Blender is found.
+    """
+
+    def __init__(self) -> None:
+        python = interpreter()
+        self._temporary = TemporaryDirectory(prefix="mxeon-osl-")
+        script = Path(tracing.__file__).with_name("worker.py")
+        log = Path(self._temporary.name, "log.txt")
+        self._worker = Worker("osl", python, script, log, SECONDS)
+
+    @property
+    def version(self) -> str:
+        """Version of Blender."""
+        self._worker.start()
+        return f"Blender {self._worker.version}"
+
+    def folder(self) -> TemporaryDirectory[str]:
+        """Folder for the files of one run."""
+        return TemporaryDirectory(dir=self._temporary.name)
+
+    def printed(self, folder: Path, text: str, count: int) -> list[str]:
+        """Lines that a shader prints, run once for each of so many points.
+
+        Raises
+        ------
+        ShaderError
+            If OSL's compiler refuses the shader, or its engine warns of it.
+        NotRun
+            If the process fails.
+        """
+        # Compile the shader and run it.
+        shader = folder / "shader.osl"
+        shader.write_text(text, encoding="utf-8")
+        frame = tracing.request(DARK, ()) | {"body": "plane", "size": side(count)}
+        reply = self._worker.ask(output=str(folder / "output.exr"), shader=str(shader), **frame)
+        lines = self._worker.printed()
+        # Raise what the compiler or the engine says of it.
+        if "error" in reply:
+            raise ShaderError(f"osl: the shader does not compile: {' | '.join(lines[:4])}")
+        for line in lines:
+            if line.startswith(TROUBLE) or "Assertion" in line:
+                raise ShaderError(f"osl: {line.partition(', called from')[0]}")
+        return lines
+
+    def close(self) -> None:
+        """End the process and remove its files."""
+        self._worker.close()
+        self._temporary.cleanup()

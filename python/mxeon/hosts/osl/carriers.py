@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OSL text that stands before a generated shader and makes every closure of it a label that can be printed.
+
+OSL prints a closure with six digits, and only what a renderer has a closure for. Here every closure of
+MaterialX, and every operation on closures, is a function that returns a `holdout` whose label is its
+text, with nine digits, from which a float32 is read back exactly. The shader itself stays as it is.
+
+    layer<mul<0.5|sheen_bsdf<0 0 1|1 1 1|0.300000012>>|burley_diffuse_bsdf<0 0 1|1 1 1|0>>
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import product
+
+MULTIPLE, SUM, MIX, LAYER = OPERATIONS = ("mul", "add", "mix", "layer")
+PAIRS = 2  # keywords with which a closure may be called
+WORDS = ("float", "string")  # types of their values; an int is passed as a float
+
+
+@dataclass(frozen=True)
+class Signature:
+    """Arguments of a closure, as OSL's stdosl.h documents them.
+
+    Attributes
+    ----------
+    arguments : mapping of str to str
+        OSL's type of each by its name, in their order.
+    keywords : tuple of str
+        Names of the optional ones. `label`, which every closure has, changes no light.
+    """
+
+    arguments: Mapping[str, str]
+    keywords: tuple[str, ...] = field(default=())
+
+
+FRAME = {"normal": "normal", "tangent": "vector"}
+TINTS = {"reflection_tint": "color", "transmission_tint": "color"}
+ALPHAS = {"roughness_x": "float", "roughness_y": "float"}
+ROUGH = {"normal": "normal", "color": "color", "roughness": "float"}
+DISTRIBUTION = {"distribution": "string"}
+FILM = ("thinfilm_thickness", "thinfilm_ior")
+# `energy_compensation` came with OSL 1.14.1, `mode` with OSL 1.13; stdosl.h names neither.
+CLOSURES = {
+    "oren_nayar_diffuse_bsdf": Signature(ROUGH, ("energy_compensation",)),
+    "burley_diffuse_bsdf": Signature(ROUGH),
+    "sheen_bsdf": Signature(ROUGH, ("mode",)),
+    "translucent_bsdf": Signature({"normal": "normal", "color": "color"}),
+    "subsurface_bssrdf": Signature(
+        {"normal": "normal", "color": "color", "radius": "color", "anisotropy": "float"}
+    ),
+    "dielectric_bsdf": Signature(
+        FRAME | TINTS | ALPHAS | {"ior": "float"} | DISTRIBUTION,
+        FILM,
+    ),
+    "conductor_bsdf": Signature(
+        FRAME | ALPHAS | {"ior": "color", "extinction": "color"} | DISTRIBUTION,
+        FILM,
+    ),
+    "generalized_schlick_bsdf": Signature(
+        FRAME
+        | TINTS
+        | ALPHAS
+        | {"color0": "color", "color90": "color", "exponent": "float"}
+        | DISTRIBUTION,
+        FILM,
+    ),
+    "chiang_hair_bsdf": Signature(
+        {"normal": "normal", "curve_direction": "vector"}
+        | {f"tint_{lobe}": "color" for lobe in ("R", "TT", "TRT")}
+        | {"ior": "float"}
+        | {f"variance_{lobe}": "float" for lobe in ("R", "TT", "TRT")}
+        | {f"scale_{lobe}": "float" for lobe in ("R", "TT", "TRT")}
+        | {"cuticle_angle": "float", "absorption_coefficient": "color"}
+    ),
+    "uniform_edf": Signature({"color": "color"}),
+    "anisotropic_vdf": Signature({"albedo": "color", "extinction": "color", "anisotropy": "float"}),
+    "transparent": Signature({}),
+}
+
+# OSL cuts what it formats of a closure after 1024 characters, and Blender a line. So each closure is
+# printed where it is made, and its label is the hash of its text.
+BEFORE, AFTER = '(1, 1, 1) * holdout ("label", "', '")'
+LABELS = f"""\
+closure color mxeon_label(string text)
+{{
+    string label = format("@%d", hash(text));
+    printf("mxeon %d %s %s\\n", MXEON_ROW, label, text);
+    return holdout("label", label);
+}}
+string mxeon_text(float x) {{ return format("%.9g", x); }}
+string mxeon_text(color x) {{ return format("%.9g %.9g %.9g", x[0], x[1], x[2]); }}
+string mxeon_text(vector x) {{ return mxeon_text((color) x); }}
+string mxeon_text(normal x) {{ return mxeon_text((color) x); }}
+string mxeon_text(string x) {{ return format("'%s'", x); }}
+string mxeon_text(closure color x)
+{{
+    string label = format("%s", x);
+    return startswith(label, "{BEFORE.replace('"', chr(92) + '"')}")
+        ? substr(label, {len(BEFORE)}, strlen(label) - {len(BEFORE) + len(AFTER)}) : label;
+}}
+"""
+
+
+def prelude(text: str) -> str:
+    """OSL that turns the closures of CLOSURES that a text names, and OPERATIONS on them, into labels."""
+    names = [name for name in CLOSURES if name in text]  # others take the compiler time
+    closure = "closure color"
+    lines = [
+        LABELS,
+        _function("mxeon_layer", LAYER, closure, closure),
+        _function("__operator__add__", SUM, closure, closure),
+    ]
+    # Weights and shares; stdosl.h has a body for `mix`, which this one hides.
+    for kind in ("float", "color"):
+        lines += [
+            "#pragma osl nowarn",
+            _function("mix", MIX, closure, closure, kind),
+            _function("__operator__mul__", MULTIPLE, closure, kind),
+            _function("__operator__mul__", MULTIPLE, kind, closure),
+        ]
+    # Closures, with as many keywords as anyone may write, so that an unknown one is told as well.
+    for name in names:
+        lines += [_function(f"mxeon_{name}", name, *kinds) for kinds in _forms(CLOSURES[name])]
+    # What is built in cannot be hidden, but renamed.
+    lines += [f"#define {name} mxeon_{name}" for name in (*names, "layer")]
+    return "\n".join([*lines, ""])
+
+
+def _forms(signature: Signature) -> Iterator[tuple[str, ...]]:
+    """Types of the arguments of a closure with no keyword, one, and up to PAIRS of them."""
+    for count in range(PAIRS + 1 if signature.arguments else 1):
+        for kinds in product(WORDS, repeat=count):
+            pairs = (each for kind in kinds for each in ("string", kind))
+            yield *signature.arguments.values(), *pairs
+
+
+def _function(name: str, label: str, *kinds: str) -> str:
+    """OSL function that returns a label with the texts of its arguments."""
+    declared = ", ".join(f"{kind} a{n}" for n, kind in enumerate(kinds))
+    texts = "".join(f", mxeon_text(a{n})" for n in range(len(kinds)))
+    pattern = f'"{label}<{"|".join(["%s"] * len(kinds))}>"'
+    return f"closure color {name}({declared}) {{ return mxeon_label(format({pattern}{texts})); }}"

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values for each point of a run: images with a pixel for each, and OSL statements that read them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.io.images import write_image
+
+LEAST_SIZE = 4  # Blender renders no smaller picture.
+TYPES = {
+    "color3": "color",
+    "vector3": "vector",
+    "boolean": "int",
+    "integer": "int",
+}  # by MaterialX's
+WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
+# The row of a point, from its place in the picture.
+ROW = """#define MXEON_ROW \\
+    ((int) floor({size} * (0.5 - 0.5 * P[1])) * {size} + (int) floor({size} * (0.5 + 0.5 * P[0])))
+"""
+READ = (
+    'texture("{image}", 0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1], 0.0, 0.0, 0.0, 0.0, '
+    '"interp", "closest")'
+)
+
+
+@dataclass(frozen=True)
+class Column:
+    """Values of one variable.
+
+    Attributes
+    ----------
+    kind : str
+        OSL's type.
+    values : array_like
+        One for each point, or one for all.
+    """
+
+    kind: str
+    values: ArrayLike
+
+    @property
+    def rows(self) -> NDArray[np.float32]:
+        """The values, (N or 1, components)."""
+        return np.asarray(self.values, np.float32).reshape(-1, WIDTHS.get(self.kind, 1))
+
+
+def side(count: int) -> int:
+    """Pixels on a side of the square picture that has so many points."""
+    return max(LEAST_SIZE, math.isqrt(count - 1) + 1)
+
+
+def row(count: int) -> str:
+    """OSL that defines MXEON_ROW, the row of a point of so many."""
+    return ROW.format(size=side(count))
+
+
+def statements(columns: Mapping[str, Column], folder: Path, count: int) -> Iterator[str]:
+    """OSL declarations of variables that have a value for each point; their images are written.
+
+    Each float of a variable is exact: an image of float32, read without a filter.
+    """
+    for name, column in columns.items():
+        # One row for each point: write them, and read them where the shader runs.
+        rows = np.broadcast_to(column.rows, (count, column.rows.shape[1]))
+        # A vector2 and an int are made of floats, as textures have neither.
+        if column.kind == "vector2":
+            for axis, part in zip("xy", rows.T, strict=True):
+                yield f"float {name}_{axis} = {_read(folder, f'{name}_{axis}', part)};"
+            yield f"vector2 {name} = vector2({name}_x, {name}_y);"
+        elif column.kind == "int":
+            yield f"float {name}_float = {_read(folder, name, rows)};"
+            yield f"int {name} = (int) {name}_float;"
+        # A normal is read as a vector.
+        else:
+            kind = "vector" if column.kind == "normal" else column.kind
+            yield f"{kind} {name} = {_read(folder, name, rows)};"
+
+
+def _read(folder: Path, name: str, rows: NDArray[np.float32]) -> str:
+    """OSL that reads the rows of an image, which is written."""
+    size, image = side(len(rows)), folder / f"{name}.exr"
+    channels = rows.size // len(rows)
+    pixels = np.zeros((size * size, channels), np.float32)
+    pixels[: len(rows)] = rows.reshape(-1, channels)
+    write_image(image, pixels.reshape(size, size, channels), {})
+    return READ.format(image=image.as_posix())

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Printed labels of closures as trees: rows that differ in numbers alone share one tree of arrays."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts.osl.carriers import CLOSURES, MIX, MULTIPLE, OPERATIONS
+
+Values: TypeAlias = NDArray[np.float64]
+Argument: TypeAlias = "Values | str | ClosureTree | None"  # None is the closure without light
+
+DEEPEST = 200  # closures inside each other
+LONGEST = 1 << 20  # characters of a label with all that it names
+LABEL = re.compile(r"@-?\d+")
+NUMBER = re.compile(r"(?<=[<| ])-?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|nan|inf)(?=[>| ])")
+TOKEN = re.compile(r"(\w+)<|(#(?: #)*)|'([^'<>|]*)'|([|>])")
+
+
+@dataclass(frozen=True)
+class ClosureTree:
+    """A closure, or an operation on closures, at some points.
+
+    Attributes
+    ----------
+    name : str
+        In CLOSURES or in OPERATIONS.
+    parts : tuple of ClosureTree or None
+        What an operation combines.
+    arguments : mapping of str to ndarray or str
+        Values by name, (N,) or (N, 3); of an operation its `factor` alone.
+    """
+
+    name: str
+    parts: tuple[ClosureTree | None, ...] = ()
+    arguments: Mapping[str, Values | str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class TreeRows:
+    """The points at which a shader makes closures of one shape.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (N,)
+    tree : ClosureTree or None
+    """
+
+    rows: NDArray[np.intp]
+    tree: ClosureTree | None
+
+
+def whole_label(texts: Mapping[str, str], root: str) -> str:
+    """Text of a label in which every label has its own text in its place.
+
+    Raises
+    ------
+    NotRun
+        If it grows too long or too deep.
+    """
+    text = texts[root]
+    for _ in range(DEEPEST):
+        if not LABEL.search(text):
+            return text
+        text = LABEL.sub(lambda match: texts[match[0]], text)
+        if len(text) > LONGEST:
+            break
+    raise NotRun(f"osl: closures must be less than {DEEPEST} deep and {LONGEST} characters long")
+
+
+def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
+    """Trees of labels, one for each shape that occurs.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        One for each point; see `mxeon.hosts.osl.carriers`.
+
+    Raises
+    ------
+    ShaderError
+        If a label holds a closure or a keyword that OSL does not document.
+    """
+    shapes: dict[str, list[int]] = {}
+    numbers = []
+    for row, label in enumerate(labels):
+        shapes.setdefault(NUMBER.sub("#", label), []).append(row)
+        numbers.append(NUMBER.findall(label))
+    return tuple(
+        TreeRows(np.array(rows), _tree(shape, _exact([numbers[row] for row in rows])))
+        for shape, rows in shapes.items()
+    )
+
+
+def _exact(numbers: Sequence[Sequence[str]]) -> Values:
+    """Float32 numbers that nine digits tell, in float64, (N, numbers)."""
+    return np.array(numbers, np.float32).astype(np.float64)
+
+
+def _tree(shape: str, numbers: Values) -> ClosureTree | None:
+    """Tree of a label whose numbers are signs, of which each point has its own."""
+    columns = iter(range(numbers.shape[1])) if numbers.size else count()
+    stack: list[tuple[str, list[Argument]]] = [("", [])]
+    expected = "closure"
+    position = 0
+    while position < len(shape):
+        # Read a name, numbers, a text, or the end of an argument.
+        token = TOKEN.match(shape, position)
+        if token is None:
+            raise ShaderError(_unreadable(shape[position:]))
+        name, values, text, mark = token.groups()
+        position = token.end()
+        if name:
+            stack.append((name, []))
+            expected = "closure"
+        elif values:
+            stack[-1][1].append(_rows(numbers, columns, values.count("#")))
+            expected = ""
+        elif text is not None:
+            stack[-1][1].append(text)
+            expected = ""
+        # An argument that is empty is the closure without light.
+        elif (
+            mark
+            and expected
+            and not (mark == ">" and not stack[-1][1] and stack[-1][0] in CLOSURES)
+        ):
+            stack[-1][1].append(None)
+        if mark == "|":
+            expected = "closure"
+        if mark == ">":
+            name, arguments = stack.pop()
+            stack[-1][1].append(_closure(name, arguments))
+            expected = ""
+    [root] = stack[0][1] or [None]
+    assert root is None or isinstance(root, ClosureTree)
+    return root
+
+
+def _rows(numbers: Values, columns: Iterator[int], width: int) -> Values:
+    """The next numbers of every point, (N,) or (N, width)."""
+    rows = numbers[:, [next(columns) for _ in range(width)]]
+    return rows[:, 0] if width == 1 else rows
+
+
+def _closure(name: str, values: Iterable[Argument]) -> ClosureTree:
+    """ClosureTree or operation with its arguments by name."""
+    # An operation and what it combines.
+    values = list(values)
+    if name in OPERATIONS:
+        factor = [each for each in values if isinstance(each, np.ndarray)]
+        parts = tuple(each for each in values if each is None or isinstance(each, ClosureTree))
+        assert bool(factor) == (name in (MIX, MULTIPLE))
+        return ClosureTree(name, parts, {"factor": factor[0]} if factor else {})
+    if name not in CLOSURES:
+        raise ShaderError(_unreadable(name))
+    # A closure: its arguments in their order, then pairs of keywords and values.
+    signature = CLOSURES[name]
+    plain = [each for each in values if isinstance(each, (np.ndarray, str))]
+    arguments = dict(zip(signature.arguments, plain, strict=False))
+    pairs = plain[len(signature.arguments) :]
+    for keyword, value in zip(pairs[::2], pairs[1::2], strict=True):
+        assert isinstance(keyword, str)
+        if keyword not in (*signature.keywords, "label"):
+            known = ", ".join((*signature.keywords, "label"))
+            raise ShaderError(f"osl: keyword of {name} must be one of {known}; got {keyword!r}")
+        arguments[keyword] = value
+    return ClosureTree(name, (), arguments)
+
+
+def _unreadable(text: str) -> str:
+    return f"osl: closure must be one of {', '.join(CLOSURES)}; got {text[:60]!r}"

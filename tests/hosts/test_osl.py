@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OSL as a host: its labels, their trees, and what its compiler and its engine say."""
+
+import re
+
+import numpy as np
+import pytest
+
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts.osl import LINE, carriers, trees
+from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import document_text, lobe_text, material_text, node_text
+
+WO = np.tile([0.6, 0.0, 0.8], (5, 1))
+COLORS = np.linspace(0.0, 1.0, 15).reshape(5, 3).astype(np.float32).astype(np.float64)
+SHEEN = "sheen_bsdf<0 0 1|1 1 1|{}>"
+
+
+def shader(node="burley_diffuse_bsdf", **inputs):
+    [made] = generate(material_text(node, inputs, node), "osl")
+    return made
+
+
+def names(tree):
+    return (
+        [] if tree is None else [tree.name, *(each for part in tree.parts for each in names(part))]
+    )
+
+
+@pytest.fixture
+def host(hosts):
+    return hosts("osl")
+
+
+def test_it_names_the_versions_of_osl_and_of_blender(host):
+    version = host.identity().version
+    assert re.fullmatch(r"OSL 1\.\d+\.\d+ in Blender 5\.\d+\.\d+", version)
+
+
+def test_the_arguments_of_a_closure_are_those_of_the_document_to_the_last_bit(host):
+    inputs = {"color": COLORS, "roughness": np.float32(0.1), "weight": np.float32(1.0 / 3.0)}
+    [points] = host.trees(shader(), WO, inputs)
+    assert names(points.tree) == [
+        "add",
+        "mul",
+        "add",
+        "mul",
+        "burley_diffuse_bsdf",
+        "mul",
+        "transparent",
+    ]
+    weighed = points.tree.parts[0].parts[0].parts[0]
+    assert np.array_equal(weighed.arguments["factor"], np.full(5, np.float32(1.0 / 3.0)))
+    assert np.array_equal(weighed.parts[0].arguments["color"], COLORS)
+    assert np.array_equal(weighed.parts[0].arguments["roughness"], np.full(5, np.float32(0.1)))
+
+
+def test_points_whose_closures_differ_have_trees_of_their_own(host):
+    many = host.trees(shader("dielectric_bsdf"), WO, {"ior": np.array([0.0, 1.5, 1.5, 0.0, 1.5])})
+    rows = {names(points.tree)[4]: points.rows.tolist() for points in many}
+    assert rows == {"generalized_schlick_bsdf": [0, 3], "dielectric_bsdf": [1, 2, 4]}
+
+
+def test_a_tree_of_any_size_is_told(host):
+    lobes = lobe_text("sheen_bsdf", {}, "lobe0")
+    for n in range(40):
+        ports = "".join(
+            f'    <input name="{p}" type="BSDF" nodename="lobe{n}" />\n' for p in ("in1",)
+        )
+        ports += '    <input name="in2" type="float" value="0.9" />\n'
+        lobes += node_text("multiply", "BSDF", f"lobe{n + 1}", ports)
+    surface = node_text(
+        "surface",
+        "surfaceshader",
+        "shading",
+        '    <input name="bsdf" type="BSDF" nodename="lobe40" />\n',
+    )
+    [made] = generate(document_text(lobes + surface), "osl")
+    [points] = host.trees(made, WO, {})
+    assert names(points.tree).count("mul") == 43
+
+
+def test_a_function_is_called_with_every_kind_of_argument(host):
+    source = "color f(color c, float x, int n)\n{\n    return n * c + x;\n}\n"
+    values = host.execute(source, "f", COLORS, np.arange(5.0), 2)
+    assert np.allclose(values, 2.0 * COLORS + np.arange(5.0)[:, np.newaxis], rtol=1e-6)
+
+
+def altered(made, old, new):
+    from dataclasses import replace
+
+    text = made.stages["pixel"]
+    assert old in text
+    return replace(made, stages={"pixel": text.replace(old, new)})
+
+
+@pytest.mark.parametrize(
+    ("new", "message"),
+    [
+        (
+            'lobe_roughness, "film", 1.0)',
+            "keyword of burley_diffuse_bsdf must be one of label; got 'film'",
+        ),
+        ("lobe_roughness, 1.0)", "does not compile: .*No matching function call"),
+        (
+            "lobe_roughness) + diffuse(N)",
+            r"closure must be one of .*; got '\(1, 1, 1\) \* diffuse",
+        ),
+    ],
+)
+def test_what_no_closure_takes_fails_with_its_words(host, new, message):
+    with pytest.raises(ShaderError, match=message):
+        host.trees(altered(shader(), "lobe_roughness)", new), WO, {})
+
+
+def test_what_the_engine_says_of_a_text_fails(host):
+    wrong = altered(shader(), "BSDF lobe_out", 'error("out of range"); BSDF lobe_out')
+    with pytest.raises(ShaderError, match="osl: ERROR: out of range|osl: ERROR: .*out of range"):
+        host.trees(wrong, WO, {})
+
+
+def test_a_line_is_a_row_a_label_and_its_text():
+    assert LINE.match("mxeon 7 @-12 sheen_bsdf<0 0 1>").groups() == (
+        "7",
+        "@-12",
+        "sheen_bsdf<0 0 1>",
+    )
+
+
+def test_labels_that_differ_in_numbers_alone_share_a_tree():
+    [points] = trees.read_trees([SHEEN.format(0.5), SHEEN.format("1e-05")])
+    assert points.rows.tolist() == [0, 1]
+    assert points.tree.arguments["roughness"].tolist() == [0.5, float(np.float32(1e-5))]
+    assert points.tree.arguments["normal"].tolist() == [[0.0, 0.0, 1.0]] * 2
+
+
+def test_a_closure_without_light_and_one_without_arguments_are_told():
+    [points] = trees.read_trees(["add<|transparent<>>"])
+    assert points.tree.parts[0] is None
+    assert points.tree.parts[1] == trees.ClosureTree("transparent")
+    [empty] = trees.read_trees([""])
+    assert empty.tree is None
+
+
+def test_what_is_not_a_number_is_told():
+    [points] = trees.read_trees([SHEEN.format("-nan"), SHEEN.format("inf")][1:])
+    assert np.isinf(points.tree.arguments["roughness"]).all()
+
+
+def test_keywords_are_told_by_name():
+    [points] = trees.read_trees(["sheen_bsdf<0 0 1|1 1 1|0.5|'mode'|1>"])
+    assert points.tree.arguments["mode"].tolist() == [1.0]
+
+
+def test_closures_that_lie_too_deep_are_not_run():
+    texts = {
+        "root": "@0",
+        **{f"@{n}": f"mul<1|@{n + 1}>" for n in range(300)},
+        "@300": "transparent<>",
+    }
+    with pytest.raises(NotRun, match="must be less than 200 deep"):
+        trees.whole_label(texts, "root")
+
+
+def test_a_prelude_has_the_closures_that_a_text_names():
+    text = carriers.prelude("sheen_bsdf(N)")
+    assert "#define sheen_bsdf mxeon_sheen_bsdf" in text
+    assert "conductor" not in text
