@@ -191,11 +191,11 @@ class Changed(Host):
         return self._host.execute(source, function, *arguments)
 
 
-def probe_of(host: Host, title: str) -> Probe:
+def probe_of(host: Host, title: str, library: str = "eonlib") -> Probe:
     probe = probe_type_of(SUBJECTS[title], ClosureProbe)
     assert probe
     counts = None if SUBJECTS[title].kind == WHOLE else FEW
-    return probe(host, SUBJECTS[title], "eonlib", counts)
+    return probe(host, SUBJECTS[title], library, counts)
 
 
 def first_case(probe: Probe) -> list[Case]:
@@ -238,3 +238,12 @@ def test_a_wrong_frame_is_noticed(hosts, title, old, new):
     host = hosts("osl")
     assert excess(probe_of(host, title), host, frame_cases, "frame") <= 1.0
     assert excess(probe_of(Changed(host, old, new), title), host, frame_cases, "frame") > 1.0
+
+
+@pytest.mark.parametrize("title", ("sheen_bsdf, mode zeltner", "sheen_bsdf, mode conty_kulla"))
+def test_the_repair_on_its_page_gives_a_sheen_its_mode(hosts, title):
+    host = hosts("osl")
+    mode = Changed(host, "lobe_roughness)", 'lobe_roughness, "mode", lobe_mode == "zeltner")')
+    stock = excess(probe_of(host, title, "stock"), host)
+    assert (stock > 1.0) == title.endswith("zeltner")
+    assert excess(probe_of(mode, title, "stock"), host) <= 1.0
