@@ -19,7 +19,11 @@ cd "$folder"
 folder=$PWD
 
 sources() { # FOLDER TAG URL
-    [ -d "$1" ] || git -c advice.detachedHead=false clone --quiet --depth 1 --branch "$2" "$3" "$1"
+    # A clone that was cut off leaves its folder, so that it gets its name when it is whole.
+    [ -d "$1" ] && return
+    rm -rf "$1.part"
+    git -c advice.detachedHead=false clone --quiet --depth 1 --branch "$2" "$3" "$1.part"
+    mv "$1.part" "$1"
 }
 sources osl "$osl" https://github.com/AcademySoftwareFoundation/OpenShadingLanguage
 sources oiio "v$oiio" https://github.com/AcademySoftwareFoundation/OpenImageIO

@@ -14,6 +14,7 @@ from mxeon.conformance.nodes.combinations import COMBINED_NODES, SINGLE
 from mxeon.conformance.probes.bsdf import CombinedProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.models.core.layering import Bsdf, add, layer, multiply, throughput
+from mxeon.shaders.generation import generate
 from tests.support.wrong_libraries import copy_of_eonlib, replace_text
 
 PAGES = Path(__file__).resolve().parents[2] / "docs" / "upstream"
@@ -114,3 +115,13 @@ def test_the_pages_print_what_each_reading_reflects_in_a_white_furnace():
     for name in ("multiply", "add"):
         words = " ".join(printed(f"genglsl_{name}_throughput.md").split())
         assert f"reflects {made:.2g}" in words.replace("reflect ", "reflects ")
+
+
+@pytest.mark.parametrize("subject", COMBINED_NODES, ids=lambda subject: subject.title)
+def test_the_document_of_a_combination_has_the_inputs_asked_for(subject):
+    inputs = {
+        port.name: 0.25 if port.kind == "float" else (0.25, 0.5, 0.75) for port in subject.ports
+    }
+    [shader] = generate(subject.document(inputs), "osl")
+    values = {port.path: port.value for port in shader.inputs}
+    assert {name: values[name] for name in inputs} == inputs

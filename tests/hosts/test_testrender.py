@@ -56,6 +56,15 @@ def test_a_missing_program_is_not_run_and_names_the_remedy(replay, monkeypatch, 
         testrender.Host()
 
 
+@pytest.mark.parametrize("line", ("ERROR: lobes are lost", "a.h:7: Assertion 'ok' failed"))
+def test_what_a_program_reports_and_goes_on_after_is_not_run(tmp_path, line):
+    program = tmp_path / "testrender"
+    program.write_text(f'#!/bin/sh\necho "{line}"\n')
+    program.chmod(0o755)
+    with pytest.raises(NotRun, match=line):
+        programs.output([str(program)])
+
+
 def test_a_program_without_a_version_is_not_run(replay):
     (replay / "oslc").write_text("#!/bin/sh\necho another compiler\n")
     with pytest.raises(NotRun, match="must be OSL's compiler; its help names no version"):

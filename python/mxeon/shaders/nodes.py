@@ -148,6 +148,16 @@ def node_text(category: str, kind: str, name: str, inputs: str = "") -> str:
     return f'  <{category} name="{name}" type="{kind}">\n{inputs}  </{category}>\n'
 
 
+def with_input(nodes: str, node: str, name: str, kind: str, value: ArrayLike) -> str:
+    """XML of nodes in which an input of one of them has a value, in the place of another if it has one."""
+    begin = nodes.index(f'name="{node}" type=')
+    begin = nodes.index("\n", begin) + 1
+    end = nodes.index("  </", begin)
+    inputs = nodes[begin:end].splitlines(keepends=True)
+    kept = [line for line in inputs if f'name="{name}"' not in line]
+    return nodes[:begin] + "".join(kept) + input_text(name, kind, value) + nodes[end:]
+
+
 def lobe_text(
     category: str,
     inputs: Mapping[str, ArrayLike],

@@ -16,7 +16,14 @@ from mxeon.models.nodes.combinations import (
     FACTOR,
     ROUGHNESS,
 )
-from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
+from mxeon.shaders.nodes import (
+    SURFACE,
+    document_text,
+    input_text,
+    lobe_text,
+    node_text,
+    with_input,
+)
 
 
 def node_over(category: str, name: str = "lobe", value: str = "", **lobes: str) -> str:
@@ -91,7 +98,12 @@ class CombinedSubject(BsdfSubject):
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this node over sheens."""
-        return document_text(NODES[self.model] + SURFACE)
+        text = NODES[self.model]
+        kinds = {port.name: port.kind for port in self.drawn}
+        for path in kinds.keys() & (inputs or {}).keys():
+            node, name = path.split("/")
+            text = with_input(text, node, name, kinds[path], (inputs or {})[path])
+        return document_text(text + SURFACE)
 
 
 COMBINED_NODES = tuple(CombinedSubject(row) for row in COMBINATIONS)

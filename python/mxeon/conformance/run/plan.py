@@ -9,6 +9,7 @@ import os
 import platform
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import MaterialX as mx
@@ -24,7 +25,12 @@ from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_type_of
+from mxeon.conformance.probes.families import (
+    ALL_SUBJECTS,
+    PBR_SUBJECTS,
+    probe_type,
+    probe_type_of,
+)
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
@@ -38,7 +44,7 @@ from mxeon.conformance.run.selection import (
     unmeasured,
 )
 from mxeon.conformance.run.survey import Survey
-from mxeon.hosts import host_row
+from mxeon.hosts import HOSTS, host_row
 from mxeon.hosts.base import Identity
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
@@ -196,7 +202,7 @@ def make_plan(
     for host in hosts:
         tasks += _native(host)
     # Keep those that are asked for, and say where nothing would be measured.
-    tasks = selected(tasks, list(map(str, files)), nodes, survey)
+    tasks = selected(tasks, list(map(str, files)), nodes, survey, partial(_elsewhere, nodes))
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in unmeasured(tasks, hosts)]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
         documents = []
@@ -210,6 +216,21 @@ def make_plan(
         options=_options(policy),
         files=_files(documents, policy, libraries) if resumable else {},
     )
+
+
+def _elsewhere(nodes: Sequence[str]) -> str:
+    """Words on the libraries and hosts with which nodes are judged; "" for none."""
+    titles = {subject.title for subject in ALL_SUBJECTS if subject.node in nodes}
+    words = []
+    for library in LIBRARIES:
+        names = [
+            row.name
+            for row in HOSTS
+            if any(task.subject in titles for task in _on_host(row.name, library, (), PBR_SUBJECTS))
+        ]
+        if names:
+            words.append(f"with --library {library} on {', '.join(names)}")
+    return f", judged {'; '.join(words)}" if words else ""
 
 
 def _files(documents: Iterable[str], policy: Policy, libraries: Iterable[str]) -> dict[str, str]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from mxeon.conformance.pictures.documents import CHECK as DOCUMENT
@@ -34,7 +34,11 @@ def node_names() -> tuple[str, ...]:
 
 
 def selected(
-    tasks: Sequence[Task], files: Sequence[str], nodes: Sequence[str], survey: Survey
+    tasks: Sequence[Task],
+    files: Sequence[str],
+    nodes: Sequence[str],
+    survey: Survey,
+    elsewhere: Callable[[], str] = str,
 ) -> list[Task]:
     """The tasks that are asked for, those of the user's documents first.
 
@@ -44,6 +48,8 @@ def selected(
     files, nodes : sequence of str
         As those of `mxeon.conformance.run.plan.make_plan`.
     survey : Survey
+    elsewhere : callable () -> str
+        Words on where the nodes are judged, if not on these hosts.
 
     Raises
     ------
@@ -66,7 +72,9 @@ def selected(
     ]
     if nodes and not chosen:
         hosts = ", ".join(dict.fromkeys(task.host for task in tasks if task.host != "source"))
-        raise InputError(f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}")
+        raise InputError(
+            f"node must be judged on one of the hosts {hosts}; got {', '.join(nodes)}{elsewhere()}"
+        )
     return sorted(chosen, key=lambda task: task.subject not in files)
 
 

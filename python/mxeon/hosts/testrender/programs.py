@@ -36,7 +36,8 @@ def find_program(name: str) -> str:
     path = shutil.which(program)
     if path is None:
         raise NotRun(
-            f"testrender: no program {program!r}; build Open Shading Language and name it in {variable}"
+            f"testrender: no program {program!r}; build Open Shading Language, as docs/build_testrender.sh "
+            f"does on Debian 12, and name it in {variable}"
         )
     return os.path.abspath(path)
 
@@ -83,8 +84,12 @@ def output(
         raise failure(
             f"testrender: {program}: exit status {process.returncode}; last output: {last}"
         )
+    # Raise what it reports and goes on after: it has lost lobes then.
+    for line in lines:
+        if line.startswith("ERROR") or "Assertion" in line:
+            raise failure(f"testrender: {program}: {line}")
     # Pass its warnings on.
     for line in dict.fromkeys(lines):
-        if line.startswith(("WARNING", "ERROR")):
+        if line.startswith("WARNING"):
             warnings.warn(f"{program}: {line}", RendererWarning, stacklevel=2)
     return process.stdout
