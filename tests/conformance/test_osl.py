@@ -8,17 +8,33 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.accuracy.accuracy import ACCURACY
+from mxeon.conformance.accuracy.closures import GRAPH
 from mxeon.conformance.accuracy.emission import widen_for_functions
 from mxeon.conformance.nodes.surface_shaders import WHOLE
 from mxeon.conformance.probes.cases import frame_cases, value_cases
 from mxeon.conformance.probes.families import ALL_SUBJECTS, ClosureProbe, probe_type_of
 from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.closures import evaluated
-from mxeon.conformance.samples.batch import Counts
+from mxeon.conformance.samples.batch import Counts, directions
 from mxeon.conformance.samples.measurement import Case
 from mxeon.errors import ShaderError
 from mxeon.hosts.base import Host
+from mxeon.shaders.generation import Shader, generate
+from mxeon.shaders.library import examples_folder
 
+# Bundled documents without images, which the reference reads on a sphere alone.
+EXAMPLES = (
+    "brushed_metal_wedge.mtlx",
+    "layered_white_furnace.mtlx",
+    "mixed_lobes.mtlx",
+    "openpbr_rough_base.mtlx",
+    "plaster.mtlx",
+    "standard_surface_rough_base.mtlx",
+    "tempered_steel.mtlx",
+    "velvet.mtlx",
+)
+COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")  # which no closure carries
 FEW = Counts(48, 48, albedos=4, mirrored=48)
 SUBJECTS = {each.title: each for each in ALL_SUBJECTS}
 WEIGHT = ("weight * ", "")
@@ -247,3 +263,20 @@ def test_the_repair_on_its_page_gives_a_sheen_its_mode(hosts, title):
     stock = excess(probe_of(host, title, "stock"), host)
     assert (stock > 1.0) == title.endswith("zeltner")
     assert excess(probe_of(mode, title, "stock"), host) <= 1.0
+
+
+def shown(name: str) -> list[tuple[Shader, Shader]]:
+    """Shaders of a bundled document for OSL, each with one for the reference."""
+    file = examples_folder() / name
+    return list(zip(generate(file, "osl"), generate(file, "glsl"), strict=True))
+
+
+@pytest.mark.parametrize("file", EXAMPLES, ids=str)
+def test_an_example_is_what_its_document_says(hosts, file):
+    host = evaluated(hosts("osl"))
+    wo, wi = (directions(np.random.default_rng(seed), 16) for seed in (1, 2))
+    for osl, other in shown(file):
+        told = np.pi * host.evaluate(osl, wo, wi, {}, "direct")
+        expected = np.pi * Reference().evaluate(other, wo, wi, {}, "direct")
+        error = GRAPH.metric(told, expected).max()
+        assert (error <= GRAPH.value) == (osl.name not in COLOR82)

@@ -2,6 +2,7 @@
 """OSL as a host: its labels, their trees, and what its compiler and its engine say."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +20,12 @@ SHEEN = "sheen_bsdf<0 0 1|1 1 1|{}>"
 def shader(node="burley_diffuse_bsdf", **inputs):
     [made] = generate(material_text(node, inputs, node), "osl")
     return made
+
+
+def altered(made, old, new):
+    text = made.stages["pixel"]
+    assert old in text
+    return replace(made, stages={"pixel": text.replace(old, new)})
 
 
 def names(tree):
@@ -61,6 +68,15 @@ def test_points_whose_closures_differ_have_trees_of_their_own(host):
     assert rows == {"generalized_schlick_bsdf": [0, 3], "dielectric_bsdf": [1, 2, 4]}
 
 
+def test_a_shader_may_call_its_output_as_it_likes(host):
+    made = shader()
+    named = altered(
+        altered(made, "MATERIAL out = 0", "MATERIAL look = 0"), "    out = ", "    look = "
+    )
+    [points] = host.trees(named, WO, {})
+    assert "burley_diffuse_bsdf" in names(points.tree)
+
+
 def test_a_tree_of_any_size_is_told(host):
     lobes = lobe_text("sheen_bsdf", {}, "lobe0")
     for n in range(40):
@@ -84,14 +100,6 @@ def test_a_function_is_called_with_every_kind_of_argument(host):
     source = "color f(color c, float x, int n)\n{\n    return n * c + x;\n}\n"
     values = host.execute(source, "f", COLORS, np.arange(5.0), 2)
     assert np.allclose(values, 2.0 * COLORS + np.arange(5.0)[:, np.newaxis], rtol=1e-6)
-
-
-def altered(made, old, new):
-    from dataclasses import replace
-
-    text = made.stages["pixel"]
-    assert old in text
-    return replace(made, stages={"pixel": text.replace(old, new)})
 
 
 @pytest.mark.parametrize(

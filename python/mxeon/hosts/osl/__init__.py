@@ -28,6 +28,7 @@ from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
 LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, and its text
+OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")  # of a shader
 VERSION = "float version(float x)\n{\n    return OSL_VERSION;\n}\n"
 # What a shader finds in the place of the surface. I points to the surface, as OSL has it; it is read
 # by functions, which local variables do not reach.
@@ -86,7 +87,8 @@ class Host(base.Host):
             # The shader in that block, after the carriers.
             head, brace, body = _with_header(shader.stages["pixel"]).rpartition("\n)\n{\n")
             main, end, _ = body.rpartition("}")
-            last = _print("mxeon_text(out)") + "    out = 0;\n"
+            output = OUTPUT.findall(head)[-1]
+            last = _print(f"mxeon_text({output})") + f"    {output} = 0;\n"
             text = f"{VIEW.format(read=view)}{head}{brace}{{\n{block}{main}{last}}}\n{end}\n"
             rows = self._printed(folder, text, count)
         return read_trees([whole_label(each, ROOT) for each in rows])
