@@ -15,7 +15,7 @@ import pytest
 
 from docs import arrays as table
 from mxeon.albedo import fon_albedo_dir, fon_loss
-from mxeon.models import dielectric_brdf, eon_brdf, lambert_brdf, unchecked
+from mxeon.models import conductor_brdf, dielectric_brdf, eon_brdf, lambert_brdf, unchecked
 from mxeon.models.core import edges
 from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.ranges import RANGES
@@ -35,6 +35,11 @@ PORTABLE = {
     for name, function in arguments.functions().items()
     if inspect.unwrap(function) is not function
 }
+COMPENSATED = ("dielectric_brdf", "generalized_schlick_brdf")
+CASES = [
+    *((name, False) for name in PORTABLE),
+    *((name, True) for name in PORTABLE if name.endswith(COMPENSATED)),
+]
 OTHERS = sorted(set(arguments.functions()) - set(PORTABLE))
 HIGH = {"exponent": 8.0, "ior": 3.0, "extinction": 4.0}  # ends for tests, where a range has none
 
@@ -152,8 +157,19 @@ def differences(function, arrays, switches, name, component):
 
 @pytest.mark.parametrize("name", PORTABLE)
 def test_gradients_are_finite_and_those_of_differences(library, name):
+    assert_gradients(library, name, False)
+
+
+@pytest.mark.parametrize("name", [name for name, compensate in CASES if compensate])
+def test_gradients_of_the_compensation_are_those_of_differences(name):
+    assert_gradients(pytorch(), name, True)  # JAX compiles its polynomials for seconds
+
+
+def assert_gradients(library, name, compensate):
+    """Compare the gradients by every array with differences, where these can be relied on."""
     function = PORTABLE[name]
     arrays, switches = sampled(function)
+    switches |= {"compensate": True} if compensate else {}
     found = library.gradients(lambda values: scalar(function(**values, **switches)).sum(), arrays)
     for argument, gradient in found.items():
         assert np.isfinite(gradient).all(), argument
@@ -174,10 +190,11 @@ def test_gradients_are_finite_and_those_of_differences(library, name):
         assert judged >= COMPARED * columns.size, argument
 
 
-@pytest.mark.parametrize("name", PORTABLE)
-def test_values_are_those_of_numpy(library, name):
+@pytest.mark.parametrize(("name", "compensate"), CASES)
+def test_values_are_those_of_numpy(library, name, compensate):
     function = PORTABLE[name]
     arrays, switches = sampled(function)
+    switches |= {"compensate": True} if compensate else {}
     expected = function(**arrays, **switches)
     other = {name: library.array(value) for name, value in arrays.items()}
     result = function(**other, **switches)
@@ -197,6 +214,7 @@ def test_numpy_gets_its_own_functions_to_the_last_bit():
         (edges.trimmed(x, 0.5), np.minimum(x, 0.5)),
         (edges.at_least_0(x - 0.5), np.maximum(x - 0.5, 0.0)),
         (edges.root(x), np.sqrt(x)),
+        (edges.cube_root(x), x ** (1.0 / 3.0)),
         (edges.hypot(x, y), np.hypot(x, y)),
         (edges.power(x, y), x**y),
         (edges.except_at_1(np.cos, x, 0.0), np.cos(x)),
@@ -242,7 +260,7 @@ def test_values_are_checked_wherever_there_are_any(library):
     with pytest.raises(ValueError, match="^roughness must be real numbers"):
         eon_brdf(up, up, rho, "rough")
     with pytest.raises(ValueError, match="^compensate must be False for arrays of"):
-        dielectric_brdf(up, up, rho, library.array([0.5, 0.5]), 1.5)
+        conductor_brdf(up, up, [0.5, 0.5], rho, rho)
     with unchecked():
         assert library.numpy(lambert_brdf(up, -up, 2.0 * rho)) == 1.0 / np.pi
 

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.namespaces import array_namespace
 
 
 def chebyshev_nodes(count: int) -> Array:
@@ -43,12 +46,7 @@ def chebyshev_polynomials(x: Array, count: int) -> Array:
            [-1. ,  0.5],
            [ 1. , -0.5]])
     """
-    rows = np.empty((count, *np.shape(x)))
-    rows[0] = 1.0
-    rows[1:2] = 2.0 * x - 1.0
-    for k in range(2, count):
-        rows[k] = 2.0 * rows[1] * rows[k - 1] - rows[k - 2]
-    return rows
+    return array_namespace(x).stack(list(_recurrence(x, count)))
 
 
 def chebyshev_sum(coefficients: Array, x: Array) -> Array:
@@ -61,11 +59,20 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
     """
     y = 2.0 * x - 1.0
     twice = 2.0 * y
-    later = np.zeros(np.broadcast_shapes(coefficients.shape[1:], np.shape(x)))
-    last = later
-    for row in coefficients[:0:-1]:
-        last, later = twice * last - later + row, last
-    return np.asarray(y * last - later + coefficients[0])
+    last = later = 0.0 * y
+    for k in range(len(coefficients) - 1, 0, -1):
+        last, later = twice * last - later + coefficients[k], last
+    total: Array = y * last - later + coefficients[0]
+    return total
+
+
+def _recurrence(x: Array, count: int) -> Iterator[Array]:
+    """The polynomials of `chebyshev_polynomials`, one after another."""
+    y = 2.0 * x - 1.0
+    this, after = 0.0 * y + 1.0, y
+    for _ in range(count):
+        yield this
+        this, after = after, 2.0 * y * after - this
 
 
 def _angles(count: int) -> Array:

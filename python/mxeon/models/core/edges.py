@@ -91,6 +91,15 @@ def power(base: Array, exponent: Array) -> Array:
     return xp.where(steep, flat, xp.where(steep, 1.0, base) ** exponent)
 
 
+def cube_root(x: Array) -> Array:
+    """Cube root; where x is 0 its derivative counts as 0."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return x ** (1.0 / 3.0)
+    positive = x > 0.0
+    return xp.where(positive, xp.where(positive, x, 1.0) ** (1.0 / 3.0), 0.0)
+
+
 def guarded(x: Array, valid: Numbers, inside: float) -> Array:
     """x, and a number where it is not valid and what follows counts for nothing."""
     xp = array_namespace(x, valid)

@@ -47,6 +47,7 @@ class Namespace(Protocol):
     square: Callable[..., Array]
     stack: Callable[..., Array]
     sum: Callable[..., Array]
+    tensordot: Callable[..., Array]
     where: Callable[..., Array]
     finfo: Callable[..., np.finfo[np.float64]]
     isdtype: Callable[..., bool]

@@ -12,7 +12,7 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.edges import hypot, power, root, trimmed
-from mxeon.models.core.namespaces import NUMPY, array_namespace
+from mxeon.models.core.namespaces import NUMPY, array_namespace, library
 
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
@@ -130,6 +130,12 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     F has square roots at c^2 = 1 - n^2, next to the real axis for weakly absorbing media, and, for
     strong ones, a pole as near to grazing as 1 / |n|.
     """
+    # Refuse arrays that cannot be written into.
+    if name := library(ior):
+        raise ValueError(
+            f"compensate must be False for arrays of {name}: its average takes NumPy's"
+        )
+    # Average smooth curves by one rule, and the others by one that is split.
     ior, extinction = np.broadcast_arrays(ior, extinction)
     n2 = (ior + 1j * extinction) ** 2
     smooth = _is_smooth(n2)

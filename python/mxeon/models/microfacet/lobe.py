@@ -18,7 +18,7 @@ from mxeon.models.core.arguments import (
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
-from mxeon.models.core.namespaces import array_namespace, library
+from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.missing import missing_light
@@ -83,8 +83,6 @@ def visibility(pair: Pair) -> Array:
 
 def missing(mu_o: Array, roughness: Array) -> Array:
     """(1 - E_ss) / E_ss at alpha = sqrt(alpha_x alpha_y), to 1e-10."""
-    if name := library(mu_o):
-        raise ValueError(f"compensate must be False for arrays of {name}: its table takes NumPy's")
     return missing_light(mu_o, ggx.mean_alpha(roughness))
 
 

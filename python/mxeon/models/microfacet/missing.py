@@ -19,7 +19,9 @@ from mxeon.models.core.chebyshev import (
     chebyshev_polynomials,
     chebyshev_sum,
 )
+from mxeon.models.core.edges import at_most, cube_root, root
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.microfacet.ggx_albedo import quadrature
 
 # Nodes in the cube root of s and in the square root of alpha, panels for one of the quadrature that
@@ -43,12 +45,16 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
 def _interpolated(mu: Array, alpha: Array) -> Array:
     """Sum of the table's polynomials, those of alpha first."""
-    powers = chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
-    rows = np.einsum("ij,j...->i...", _table(), powers)
+    xp = array_namespace(mu, alpha)
+    powers, table = chebyshev_polynomials(root(alpha), NODES_ALPHA), _table()
+    if xp is NUMPY:
+        rows = np.einsum("ij,j...->i...", table, powers)
+    else:
+        rows = xp.tensordot(xp.asarray(table, dtype=powers.dtype), powers, axes=1)
     rough = alpha > 0.0
-    s = mu / np.where(rough, mu + alpha, 1.0) * (1.0 + alpha)
-    value = chebyshev_sum(rows, np.minimum(s, 1.0) ** (1.0 / 3.0))
-    return np.where(rough, np.maximum(value, 0.0), 0.0)  # a mirror misses nothing
+    s = mu / xp.where(rough, mu + alpha, 1.0) * (1.0 + alpha)
+    value = chebyshev_sum(rows, cube_root(at_most(s, 1.0)))
+    return xp.where(rough, xp.maximum(value, 0.0), 0.0)  # a mirror misses nothing
 
 
 @lru_cache(maxsize=1)
