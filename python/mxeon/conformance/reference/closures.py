@@ -167,14 +167,15 @@ class Views:
     def _directions(self, closure: ClosureTree) -> tuple[Values, Values]:
         """Directions in the frame of a closure; those of the surface's own frame stay as they are."""
         names = ("normal", "curve_direction" if closure.name == HAIR else "tangent")
-        axes = tuple(
+        normal, tangent = (
             np.broadcast_to(closure.arguments.get(name, axis), self.wo.shape)
             for name, axis in zip(names, (UP, ALONG), strict=True)
         )
         above = bool(np.all(self.wo[:, 2] >= 0.0))
-        if above and np.all(axes[0] == UP) and np.all(axes[1] == ALONG):
+        if above and np.all(normal == UP) and np.all(tangent == ALONG):
             return self.wo, self.wi
-        wo, wi = ShadingPoints(self.wo, self.wi, 1.0, *axes).directions(*axes)
+        points = ShadingPoints(self.wo, self.wi, 1.0, normal, tangent)
+        wo, wi = points.directions(normal, tangent)
         assert wi is not None
         return wo, wi
 
