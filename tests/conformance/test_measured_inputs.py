@@ -83,6 +83,15 @@ def test_the_color_of_a_noise_comes_from_the_host(host, tmp_path):
     assert np.ptp(pictures[0].reference[128]) > 0.5  # the pattern is there
 
 
+def test_a_look_does_not_keep_a_value_from_being_measured(host, tmp_path):
+    look = '<look name="day"><materialassign name="all" material="look1" geom="/"/></look>'
+    text = document_text(NOISE + LOBE + SURFACE).replace("</materialx>", look + "</materialx>")
+    assert "surfacematerial" in text
+    name = text.split('<surfacematerial name="')[1].split('"')[0]
+    [result], _, _ = judged(host, tmp_path, text.replace("look1", name))
+    assert (result.check, result.measured) == ("picture", ("lobe.color",))
+
+
 def test_a_wrong_lobe_behind_a_measured_input_is_found(host, tmp_path):
     [result], _, _ = judged(host, tmp_path, document_text(NOISE + LOBE + SURFACE), "stock")
     assert (result.check, result.verdict, result.measured) == ("picture", "failed", ("lobe.color",))

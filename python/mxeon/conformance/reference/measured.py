@@ -175,6 +175,8 @@ def _without_closures(document: mx.Document) -> mx.Document:
     copy.copyContentFrom(document)
     copy.setSourceUri(document.getSourceUri())
     copy.setDataLibrary(document.getDataLibrary())
+    for each in (*copy.getLooks(), *copy.getLookGroups()):  # which name materials
+        copy.removeChild(each.getName())
     for scope in (copy, *copy.getNodeGraphs()):
         if not (scope.isA(mx.NodeGraph) and scope.getNodeDef()):
             _drop_closures(scope)

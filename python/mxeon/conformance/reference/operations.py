@@ -142,7 +142,7 @@ OPERATIONS: dict[str, Operation] = {
     "combine3": (("in1", "in2", "in3"), _combine),
     "combine4": (("in1", "in2", "in3", "in4"), _combine),
     "extract": (("in", "index"), _extract),
-    "luminance": (("in", "lumacoeffs"), _dot),
+    "luminance": (("in", "lumacoeffs"), lambda value, weights: _dot(value[..., :3], weights)),
     "mix": (("fg", "bg", "mix"), lambda fg, bg, mix: fg * mix + bg * (1.0 - mix)),
     "ifgreater": (COMPARED, _when(np.greater)),
     "ifgreatereq": (COMPARED, _when(np.greater_equal)),

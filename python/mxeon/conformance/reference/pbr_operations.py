@@ -51,7 +51,7 @@ def _values(row: utilities.UtilityNode, *values: Values) -> Values | Mapping[str
     }
     numbers = {name: each[:, 0] if each.shape[1] == 1 else each for name, each in inputs.items()}
     outputs = row.value(numbers)
-    return outputs["out"] if set(outputs) == {"out"} else outputs
+    return next(iter(outputs.values())) if len(outputs) == 1 else outputs
 
 
 # Category -> its inputs, and the function of them; of several outputs, a value for each name.

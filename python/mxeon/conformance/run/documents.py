@@ -14,9 +14,17 @@ from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, 
 from mxeon.errors import InputError
 
 REFUSED = "refused"
+NO_REFERENCE = "no reference"  # whose pixels are numbers
 FROM_HOST = "as the reference's, with inputs that the host computed"
 WHOLE = "as the reference's"
-VERDICTS = (FAILED, NOT_RUN, REFUSED, DIFFERS, PASSED)  # the first decides about a document
+VERDICTS = (
+    FAILED,
+    NOT_RUN,
+    REFUSED,
+    DIFFERS,
+    NO_REFERENCE,
+    PASSED,
+)  # the first decides about a document
 QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
 CHECKS = ("picture", "finite", DOCUMENT)
 
@@ -99,11 +107,12 @@ def _verdict(
 ) -> DocumentVerdict:
     """The verdict on a document with results, by the worst of them."""
     worst = min(results, key=lambda each: (VERDICTS.index(each.verdict), each.check != "finite"))
+    finite = worst.check == "finite" and worst.verdict == PASSED
     measured = tuple(dict.fromkeys(name for each in results for name in each.measured))
     return DocumentVerdict(
         document,
         *key[1:],
-        worst.verdict,
+        NO_REFERENCE if finite else worst.verdict,
         _cause(worst, measured),
         all(each.check == "picture" and each.error is not None for each in results),
         measured,
