@@ -25,7 +25,9 @@ def write(file: Path, mutants: Sequence[Mutant], trials: Mapping[str, Any]) -> N
     environment.filters |= {"cell": cell, "code": code}
     rows = [(mutant, trials[mutant.name]) for mutant in mutants if mutant.name in trials]
     template = environment.get_template("mutants.md.jinja")
-    untried = [mutant for mutant in mutants if mutant.name not in trials]
+    untried = [
+        mutant for mutant in mutants if trials.get(mutant.name, {}).get("digest") != mutant.digest
+    ]
     parts = {name: counted_by(rows, name) for name in ("group", "file")}
     write_text(
         file,
