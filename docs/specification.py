@@ -33,6 +33,7 @@ HOSTS = {
     "vulkan": "Vulkan GLSL",
     "wgsl": "WGSL's GLSL",
     "slang": "Slang",
+    "osl": "OSL, its closures by the models",
     "cycles": "OSL",
 }
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the page and its summaries

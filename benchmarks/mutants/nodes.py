@@ -22,7 +22,11 @@ DOCUMENTS = (
     "profiles/cycles/eonlib_genosl_impl.mtlx",
 )
 INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
-HOSTS = {"genglsl": "gl", "genosl": "cycles"}  # that run the text of a target
+HOSTS = (
+    ("genglsl", "gl"),
+    ("genosl", "osl"),
+    ("genosl", "cycles"),
+)  # that run the text of a target
 # Checks that take longest.
 LATE = ("inputs", "transmitted_inputs", "integral", "energy")
 TITLES = tuple(subject.title for subject in PBR_SUBJECTS)
@@ -45,7 +49,7 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
     changed = changed_nodes(mutant)
     if any(target == "genosl" for target, _ in changed):
         yield SOURCE, [Task(SOURCE, EVERY_NODE, SOURCE, path)]
-    for target, host in HOSTS.items():
+    for target, host in HOSTS:
         titles = {title for each, title in changed if each == target}
         yield (
             host,
