@@ -100,6 +100,11 @@ def test_the_pairs_are_many_and_lit_from_behind(host):
     assert min((batch.wo * batch.wi).sum(axis=1).min() for batch in probe.batches) < -0.5
 
 
+def test_an_environment_lights_a_node_that_transmits(hosts):
+    [subject] = [each for each in BSDFS if each.model == "translucent"]
+    assert judged(hosts("materialx"), "environment", subject).verdict == PASSED
+
+
 @pytest.mark.parametrize("model", ["burley", "translucent", "dielectric"])
 def test_nodes_of_pbrlib_pass(host, model):
     [subject] = [each for each in BSDFS if each.model == model]

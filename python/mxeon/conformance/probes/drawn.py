@@ -46,7 +46,7 @@ class DrawnBsdfProbe(DrawnProbe, BsdfPictureProbe):
 
     def points(self, scene: Scene) -> Pairs:
         wo, wi, mask = super().points(scene)
-        if self.subject.row.transmits:
+        if self.subject.row.transmits and scene.light is not None:
             mask = (wo[:, 2] >= RIM) & (wi[:, 2] <= -RIM)
         return wo, wi, mask
 
