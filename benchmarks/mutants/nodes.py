@@ -22,11 +22,8 @@ DOCUMENTS = (
     "profiles/cycles/eonlib_genosl_impl.mtlx",
 )
 INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
-HOSTS = (
-    ("genglsl", "gl"),
-    ("genosl", "osl"),
-    ("genosl", "cycles"),
-)  # that run the text of a target
+# Targets, and hosts that run their text, cheap hosts first.
+HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
 # Checks that take longest.
 LATE = ("inputs", "transmitted_inputs", "integral", "energy")
 TITLES = tuple(subject.title for subject in PBR_SUBJECTS)
@@ -102,7 +99,7 @@ def _sources(file: str) -> frozenset[str]:
 
 
 def _entries(document: str, text: str) -> set[tuple[str, ...]]:
-    """Definition, target, file, function and name of each implementation; none where unreadable."""
+    """Definition, target, file, function, name and text of implementations; none where unreadable."""
     try:
         elements = ElementTree.fromstring(text).iter("implementation")
     except ElementTree.ParseError:
@@ -114,6 +111,7 @@ def _entries(document: str, text: str) -> set[tuple[str, ...]]:
             os.path.normpath(Path(document).parent / each.get("file", "")),
             each.get("function", ""),
             each.get("name", ""),
+            each.get("sourcecode", ""),
         )
         for each in elements
     }

@@ -5,7 +5,9 @@ What does not depend on the library is computed once: pairs, quadratures, and th
 Neither controls nor diagnoses are asked for, since a check that fails is judged already.
 """
 
+import re
 from dataclasses import replace
+from tempfile import gettempdir
 from typing import Any
 
 import numpy as np
@@ -23,6 +25,7 @@ from mxeon.errors import MxeonError
 from mxeon.hosts import open_host
 from mxeon.hosts.base import Host
 
+FOLDER = re.compile(rf"{re.escape(gettempdir())}/\S*/")  # of a file that a compiler names
 ROWS = {check.key: check for check in CHECKS}
 SUBJECTS = {subject.title: subject for subject in PBR_SUBJECTS}
 
@@ -81,7 +84,7 @@ class Quick:
             with renderer_warnings():
                 excess = exceeds(row, probe)
         except MxeonError as error:
-            excess = str(error).strip().partition("\n")[0]
+            excess = FOLDER.sub("", str(error).strip().partition("\n")[0])
         return (task.check, excess) if excess else None
 
     def _probe(self, task: Task) -> Any:
