@@ -69,11 +69,11 @@ def conductor_average(ior, extinction):
     )
 
 
-def fitted_albedo(exact, node, wo, inputs, points):
+def fitted_albedo(exact, node, wo, inputs, points, most):
     """Albedo of a lobe that lies over others as the shader takes it; that of others is exact."""
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
-        return EXACT(exact, node, wo, inputs, points)
+        return EXACT(exact, node, wo, inputs, points, most)
     return np.broadcast_to(fit(wo[:, 2], lobes._at(inputs, points)), (len(wo), 3))
 
 
