@@ -19,9 +19,14 @@ from mxeon.conformance.functions.shader_functions import (
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.pictures import document_pictures as image
-from mxeon.conformance.probes.families import ALL_SUBJECTS, COMMON_SUBJECTS, PBR_SUBJECTS
+from mxeon.conformance.probes.families import (
+    ALL_SUBJECTS,
+    COMMON_SUBJECTS,
+    HOST_PROBES,
+    PBR_SUBJECTS,
+    probe_type_of,
+)
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, SHADER_FUNCTIONS
 from mxeon.conformance.run import check, judge, plan
 from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
@@ -125,13 +130,15 @@ def test_every_check_says_what_it_allows_and_what_it_must_catch(row):
         assert tolerance.value >= 0.0 and tolerance.unit and tolerance.derivation
 
 
-def kinds(probe):
-    """Kinds that a class of probes and those derived from it have for every subject."""
-    return {probe.shown}.union(*map(kinds, probe.__subclasses__()))
-
-
 def test_every_kind_of_probe_has_one_accuracy():
-    assert {each.kind for each in ALL_SUBJECTS} | kinds(Probe) - {""} == set(ACCURACY)
+    probes = {
+        probe.kind_of(subject)
+        for host_probe in HOST_PROBES.values()
+        for subject in ALL_SUBJECTS
+        if (probe := probe_type_of(subject, host_probe))
+    }
+    assert probes <= set(ACCURACY)
+    assert set(ACCURACY) - probes == set()
 
 
 # --- eonlib on OpenGL ---------------------------------------------------------------------------

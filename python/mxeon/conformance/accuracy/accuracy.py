@@ -155,6 +155,7 @@ LIT: dict[str, Accuracy] = {
     **{
         f"half {kind}": _seen(diffuse.drawn_of(value, diffuse.HALF_CUT))
         for kind, (value, _) in SHOWN.items()
+        if kind != SHEEN  # Storm takes the mode's default
     },
     "bsdf pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
     "bsdf planes": _seen(diffuse.BSDF_PLANE, diffuse.BSDF_PLANE_NOISE),
