@@ -16,7 +16,7 @@ import pytest
 from docs import arrays as table
 from mxeon.albedo import fon_albedo_dir, fon_loss
 from mxeon.models import conductor_brdf, dielectric_brdf, eon_brdf, lambert_brdf, unchecked
-from mxeon.models.core import edges
+from mxeon.models.core import edges, namespaces
 from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse import formulas
@@ -329,3 +329,9 @@ def test_the_examples_of_the_page_run(name):
     blocks = re.findall(r"```python\n(.*?)```", table.PAGE.read_text(encoding="utf-8"), re.DOTALL)
     [block] = [each for each in blocks if f"import {name}\n" in each]
     exec(block, {})
+
+
+def test_functions_of_dr_jit_have_the_names_of_the_standard():
+    drjit = pytest.importorskip("drjit")
+    namespaces._drjit.cache_clear()
+    assert namespaces._drjit().where is drjit.select

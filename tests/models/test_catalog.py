@@ -12,7 +12,7 @@ from numpy.testing import assert_array_equal
 
 import mxeon
 from mxeon import models
-from mxeon.models.catalog import MODELS
+from mxeon.models.catalog import MODELS, model_names
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.parameters import DEFAULTS
 from mxeon.shaders.library import load_library
@@ -217,3 +217,7 @@ def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=re.escape("pip install 'mxeon[report]'")):
         mxeon.model("eon").plot()
+
+
+def test_every_name_that_is_listed_is_that_of_a_model():
+    assert [mxeon.model(name).name for name in model_names()] == list(model_names())

@@ -27,6 +27,7 @@ CORES = ("Haswell", "SkylakeX", "Zen", "Prescott")
 FILES = (
     "albedo",
     "callable",
+    "catalog",
     "errors_models",
     "errors_sampling",
     "fits",
@@ -61,11 +62,13 @@ COARSE = (
     "inversion_nodes",
     "kit",
     "library",
+    "mitsuba_plugins",
     "paths",
     "specular",
     "subsurface_blur",
     "tracer",
     "upstream",
+    "version_table",
 )
 
 # What a process that is told so says of itself.

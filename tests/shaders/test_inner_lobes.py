@@ -91,7 +91,7 @@ def test_a_weight_that_a_graph_computes_counts_as_any():
 @pytest.mark.parametrize("scene, samples", [(SIDE, 1), (FURNACE, tracing.ENVIRONMENT_SAMPLES)])
 def test_without_such_lobes_cycles_samples_as_before(scene, samples):
     request = tracing.request(scene, ())
-    assert (request["samples"], request["bounces"], request["mesh"]) == (samples, 1, False)
+    assert (request["samples"], request["bounces"], request["body"]) == (samples, 1, "points")
     assert not tracing.approximations(replace(scene, paths=Paths(1, 1)), ())
 
 

@@ -123,7 +123,8 @@ def test_a_formula_takes_the_same_arguments_in_python_and_in_the_shaders(name):
 
 
 def test_the_formulas_of_python_have_the_names_of_the_shaders():
-    own = {"cosines", "oren_nayar_interreflection"}  # no function of their own in a shader
+    # No functions of their own in a shader.
+    own = {"cosines", "oren_nayar_interreflection", "_fon_loss", "fon_brdf_mu"}
     defined = {
         name
         for name, each in vars(formulas).items()
