@@ -9,7 +9,7 @@ from importlib import import_module
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-from mxeon.shaders.library import load_library
+from mxeon.shaders.library import LOADED, load_library
 from mxeon.shaders.targets import CLASSES
 
 GENERATORS: dict[str, type[mx_gen.ShaderGenerator]] = {}
@@ -66,7 +66,7 @@ def _new_generator(
     return generator
 
 
-_library_generator = lru_cache(maxsize=None)(_new_generator)
+_library_generator = lru_cache(maxsize=LOADED)(_new_generator)
 
 
 def context_of(

@@ -12,7 +12,7 @@ import os
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import MaterialX as mx
@@ -31,6 +31,7 @@ REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerT
 # eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
 LIBRARIES = ("eonlib", "diffuse", "stock")
 PROFILES = ("cycles",)
+LOADED = 16  # libraries that a process keeps, of some 10 MB each
 
 # Targets of generators; 1.39.5 alone has all.
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
@@ -160,7 +161,7 @@ def _sources(library: str) -> list[Path]:
     ]
 
 
-@cache
+@lru_cache(maxsize=LOADED)
 def load_library(
     library: str = "eonlib", profile: str | None = None, definitions: tuple[str, ...] = ()
 ) -> mx.Document:
