@@ -213,6 +213,11 @@ def test_a_plot_has_a_lobe_an_albedo_and_the_density_of_samples(name, tmp_path):
     assert len(lobe) > 500 and np.isfinite(lobe).all() and lobe.max() > 0.0
 
 
+def test_a_plot_says_in_its_title_what_it_shows():
+    figure = mxeon.model("eon").plot(color=[0.8, 0.4, 0.1], roughness=1.0)
+    assert figure.get_suptitle().endswith(", color 0.8 0.4 0.1, roughness 1")
+
+
 def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=re.escape("pip install 'mxeon[report]'")):
