@@ -15,7 +15,7 @@ from mxeon.conformance.probes.cases import frame_cases, value_cases
 from mxeon.conformance.probes.families import ALL_SUBJECTS, ClosureProbe, probe_type_of
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.reference.closures import evaluated
+from mxeon.conformance.reference.evaluated import evaluated
 from mxeon.conformance.samples.batch import Counts, directions
 from mxeon.conformance.samples.measurement import Case
 from mxeon.errors import ShaderError

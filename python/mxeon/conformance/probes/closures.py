@@ -9,7 +9,7 @@ import numpy as np
 from mxeon.conformance.nodes.closures import closure_kind
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.reference.closures import evaluated
+from mxeon.conformance.reference.evaluated import evaluated
 from mxeon.conformance.samples.batch import SEED, Batch, Counts
 from mxeon.hosts.base import Host
 

@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Closures that a shader makes, evaluated by the models: what OSL's documentation says that they are.
-
-`evaluated` makes a host that evaluates of one that only tells closures, so that what is asked of
-generated GLSL is asked of generated OSL by the same probes.
-"""
+"""Closures that a shader makes, evaluated by the models: what OSL's documentation says that they are."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache, partial
-from typing import TYPE_CHECKING, TypeAlias
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,9 +14,8 @@ from numpy.typing import ArrayLike
 from mxeon.conformance.reference.lobes import Values, diffuse
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
-from mxeon.hosts.base import Array, Host, Identity, Inputs
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
-from mxeon.hosts.osl.trees import ClosureTree, TreeRows
+from mxeon.hosts.osl.trees import ClosureTree
 from mxeon.models import table
 from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
@@ -31,20 +26,12 @@ from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.node import PbrNode
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 from mxeon.models.nodes.transmissions import TRANSMISSIONS
-from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.generation import Shader
 from mxeon.shaders.nodes import EON, OREN_NAYAR
-
-if TYPE_CHECKING:
-    import MaterialX as mx
-
-    from mxeon.io.files import AnyPath
 
 Arguments: TypeAlias = Mapping[str, Values]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
 LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
-KEPT = 16  # runs whose closures are kept
 UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 NOTHING = Bsdf(np.zeros(3), np.ones(3))
 HAIR_LOBES = ("R", "TT", "TRT")
@@ -99,7 +86,7 @@ class Views:
             return self._flagged(tree, layered)
         # Combinations of two.
         first, second = (*tree.parts, None)[:2]
-        factor = _column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
+        factor = column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
         if tree.name == LAYER:
             return self._layer(first, second, layered)
         if tree.name == MIX:
@@ -132,7 +119,7 @@ class Views:
         return _mixed(
             partial(self._lobe, closure, first, layered),
             partial(self._lobe, closure, second, layered),
-            _column(np.where(flag == 0.0, 0.0, 1.0)),
+            column(np.where(flag == 0.0, 0.0, 1.0)),
         )
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
@@ -198,7 +185,7 @@ def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Values |
         return None
     # What is combined.
     known = [np.zeros((1, 3)) if part is None else part for part in parts]
-    factor = _column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
+    factor = column(tree.arguments["factor"]) if "factor" in tree.arguments else ONE
     if tree.name == MIX:
         return np.asarray((1.0 - factor) * known[0] + factor * known[1])
     return np.asarray(factor * sum(known))
@@ -255,92 +242,7 @@ def _ended(directions: Values) -> Values:
     return np.minimum(directions, 1.0)
 
 
-def _column(values: ArrayLike) -> Values:
+def column(values: ArrayLike) -> Values:
     """Numbers as (N, 1), colors as they are."""
     array = np.asarray(values, np.float64)
     return array if array.ndim == 2 else array.reshape(-1, 1)
-
-
-class Evaluated(Host):
-    """A host that tells closures, with their values by the models.
-
-    Parameters
-    ----------
-    host : Host
-    """
-
-    def __init__(self, host: Host) -> None:
-        self.name, self._host = host.name, host
-        self._kept: dict[int, tuple[TreeRows, ...]] = {}
-        self.target, self.profile, self.language = host.target, host.profile, host.language  # type: ignore[misc]
-
-    def identity(self) -> Identity:
-        """That of the host."""
-        return self._host.identity()
-
-    def compile(
-        self,
-        document: AnyPath | mx.Document,
-        element: str | None = None,
-        *,
-        library: str = "eonlib",
-        policy: Policy = DEFAULT,
-    ) -> tuple[Shader, ...]:
-        """Shaders of a document; see `mxeon.hosts.base.Host`."""
-        return self._host.compile(document, element, library=library, policy=policy)
-
-    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Values of a function; see `mxeon.hosts.base.Host`."""
-        return self._host.execute(source, function, *arguments)
-
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: Array,
-        wi: Array,
-        inputs: Inputs,
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: Array | None = None,
-    ) -> Array:
-        """Values of the closures of a shader; see `mxeon.hosts.base.Host`.
-
-        Raises
-        ------
-        Unsupported
-            If the environment is not uniform: closures look none up.
-        """
-        # Ask for the closures.
-        if irradiance is not None:
-            raise self._unsupported("uneven environment", "gl")
-        values = np.zeros((len(wo), 3))
-        occlusion = np.broadcast_to(_column(inputs.get("occlusion", 1.0)), (len(wo), 1))
-        # Evaluate those of each shape.
-        for points in self._trees(shader, wo, inputs):
-            rows = points.rows
-            if output == "radiance" or branch == GRAPH:
-                values[rows] = radiance(points.tree)
-                continue
-            view, light = (np.asarray(each, np.float64)[rows] for each in (wo, wi))
-            views = Views(view, light, occlusion[rows], branch)
-            bsdf = views.bsdf(points.tree, output == "throughput")
-            values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
-        return values
-
-    def _trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
-        """Closures at some points; the checks of a node ask for the same ones."""
-        parts = [shader.stages["pixel"], *sorted(inputs), wo.tobytes()]
-        parts += [np.asarray(inputs[name], np.float64).tobytes() for name in sorted(inputs)]
-        key = hash(tuple(parts))
-        if key not in self._kept:
-            while len(self._kept) >= KEPT:
-                self._kept.pop(next(iter(self._kept)))
-            self._kept[key] = self._host.trees(shader, wo, inputs)
-        return self._kept[key]
-
-
-@lru_cache(maxsize=4)
-def evaluated(host: Host) -> Evaluated:
-    """The one host that evaluates the closures of another."""
-    return Evaluated(host)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A host that evaluates, made of one that only tells closures.
+
+So what is asked of generated GLSL is asked of generated OSL by the same probes.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.reference.closures import GRAPH, Views, column, radiance
+from mxeon.hosts.base import Array, Host, Identity, Inputs
+from mxeon.hosts.osl.trees import TreeRows
+from mxeon.shaders.document.policy import DEFAULT, Policy
+from mxeon.shaders.generation import Shader
+
+if TYPE_CHECKING:
+    import MaterialX as mx
+
+    from mxeon.io.files import AnyPath
+
+KEPT = 16  # runs whose closures are kept
+
+
+class Evaluated(Host):
+    """A host that tells closures, with their values by the models.
+
+    Parameters
+    ----------
+    host : Host
+    """
+
+    def __init__(self, host: Host) -> None:
+        self.name, self._host = host.name, host
+        self._kept: dict[int, tuple[TreeRows, ...]] = {}
+        self.target, self.profile, self.language = host.target, host.profile, host.language  # type: ignore[misc]
+
+    def identity(self) -> Identity:
+        """That of the host."""
+        return self._host.identity()
+
+    def compile(
+        self,
+        document: AnyPath | mx.Document,
+        element: str | None = None,
+        *,
+        library: str = "eonlib",
+        policy: Policy = DEFAULT,
+    ) -> tuple[Shader, ...]:
+        """Shaders of a document; see `mxeon.hosts.base.Host`."""
+        return self._host.compile(document, element, library=library, policy=policy)
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+        """Values of a function; see `mxeon.hosts.base.Host`."""
+        return self._host.execute(source, function, *arguments)
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: Array | None = None,
+    ) -> Array:
+        """Values of the closures of a shader; see `mxeon.hosts.base.Host`.
+
+        Raises
+        ------
+        Unsupported
+            If the environment is not uniform: closures look none up.
+        """
+        # Ask for the closures.
+        if irradiance is not None:
+            raise self._unsupported("uneven environment", "gl")
+        values = np.zeros((len(wo), 3))
+        occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))
+        # Evaluate those of each shape.
+        for points in self._trees(shader, wo, inputs):
+            rows = points.rows
+            if output == "radiance" or branch == GRAPH:
+                values[rows] = radiance(points.tree)
+                continue
+            view, light = (np.asarray(each, np.float64)[rows] for each in (wo, wi))
+            views = Views(view, light, occlusion[rows], branch)
+            bsdf = views.bsdf(points.tree, output == "throughput")
+            values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
+        return values
+
+    def _trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
+        """Closures at some points; the checks of a node ask for the same ones."""
+        parts = [shader.stages["pixel"], *sorted(inputs), wo.tobytes()]
+        parts += [np.asarray(inputs[name], np.float64).tobytes() for name in sorted(inputs)]
+        key = hash(tuple(parts))
+        if key not in self._kept:
+            while len(self._kept) >= KEPT:
+                self._kept.pop(next(iter(self._kept)))
+            self._kept[key] = self._host.trees(shader, wo, inputs)
+        return self._kept[key]
+
+
+@lru_cache(maxsize=4)
+def evaluated(host: Host) -> Evaluated:
+    """The one host that evaluates the closures of another."""
+    return Evaluated(host)
