@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is computed and read back when a view rests, so that it holds no picture up.
 
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useMemo, useState } from "preact/hooks";
 import type { ModelName } from "./data";
 import { is_other, type Pair, values } from "./probe";
 import type { Stage } from "./stage";
@@ -34,28 +34,30 @@ export function useRest(
   return rest;
 }
 
-/** Values of the shaders for a pair, asked when the picture is done; null until they are there. */
+/** Values of the shaders for a pair, asked when the picture is done; null until they are there.
+ *
+ * They are kept with what they are of, so that no frame shows those of another view. */
 export function useMeasured(
   stage: Stage | null | undefined,
   pair: Pair,
   state: State,
   moving: boolean,
 ): Measured | null {
-  const [measured, setMeasured] = useState<Measured | null>(null);
+  const [measured, setMeasured] = useState<{ of: Pair; values: Measured | null } | null>(null);
+  const of = useMemo(() => ({ ...pair }), [stage, pair.wo.join(), pair.wi.join(), state, moving]);
   useEffect(() => {
-    setMeasured(null);
     if (!stage || moving) return;
     let timer = 0;
     const ask = (): void => {
       const free = state.paths || stage.isSettled(state); // paths take long
-      const read = free ? stage.evaluate({ wo: [...pair.wo], wi: [...pair.wi] }, state) : null;
-      setMeasured(read);
+      const read = free ? stage.evaluate({ wo: [...of.wo], wi: [...of.wi] }, state) : null;
+      setMeasured({ of, values: read });
       if (!read?.left || !read.right) timer = window.setTimeout(ask, RETRY);
     };
     timer = window.setTimeout(ask, MEASURE_DELAY);
     return () => clearTimeout(timer);
-  }, [stage, pair.wo.join(), pair.wi.join(), state, moving]);
-  return measured;
+  }, [of]);
+  return measured?.of === of ? measured.values : null;
 }
 
 /** Errors of shaders against the tables of their references, by the id of their source. */

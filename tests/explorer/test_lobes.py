@@ -127,13 +127,20 @@ def test_no_verdict_moves_the_page(page):
     assert len(places) == 1
 
 
+# What the page shows at once, before anything is measured.
+TURNED = f"""async () => {{
+    mxeon.show({{...mxeon.state(), azimuth: 20}});
+    await null;
+    return [document.querySelector('.values').innerText, {PLACES}];
+}}"""
+
+
 def test_a_measured_value_is_as_high_as_one_that_is_not(page):
     until(page, "document.querySelector('.values').innerText.includes('float32')")
     before = page.evaluate(PLACES)
-    page.evaluate("mxeon.show({...mxeon.state(), azimuth: 20})")
-    until(page, "document.querySelector('.values').innerText.includes('measuring')")
+    text, now = page.evaluate(TURNED)
+    assert "measuring…" in text
     # Borders of a table are rounded to pixels; a line has eighteen.
-    now = page.evaluate(PLACES)
     sizes = [[float(part) for part in each.split(",")[1:]] for each in (*now, *before)]
     assert np.abs(np.subtract(*np.split(np.array(sizes), 2))).max() < 1.0
 

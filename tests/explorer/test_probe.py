@@ -50,12 +50,25 @@ def copied(page, side, what):
 
 
 def test_the_python_line_runs_and_gives_the_value(page):
+    rows = values_read(page)
     for column, side in enumerate("AB"):
         line = copied(page, side, "Python")
         command = [sys.executable, "-c", line]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
-        shown = numbers(values_read(page)[0][column])
-        assert np.allclose([float(word) for word in done.stdout.split()], shown, atol=SHADER)
+        found = [float(word) for word in done.stdout.split()]
+        assert np.allclose(found, numbers(rows[0][column]), atol=SHADER)
+
+
+CHANGED = """async () => {
+    mxeon.show({...mxeon.state(), roughness: 0.3});
+    await null;  // the page is drawn anew by then
+    return [...document.querySelectorAll('.values tbody tr:first-child td')].map(e => e.innerText);
+}"""
+
+
+def test_a_value_of_another_view_is_never_shown(page):
+    values_read(page)
+    assert page.evaluate(CHANGED) == ["measuring…", "measuring…"]
 
 
 def test_the_copied_document_is_the_material_in_sight(page):

@@ -216,7 +216,7 @@ function Numbers({ values }: { readonly values: Triple }) {
 }
 
 /** Buttons that copy, for each side what it has. */
-function Copies({ data, sources, state, pair }: ProbeProps) {
+function Copies({ data, sources, state, calm, pair }: ProbeProps) {
   const [said, say] = useState("");
   const take = (what: string, text: string): void => {
     void copy(text).then((done) =>
@@ -227,11 +227,11 @@ function Copies({ data, sources, state, pair }: ProbeProps) {
     <div class="copies">
       {SIDES.map((name) => {
         const source = source_of(sources, state[name]);
-        const of = actual_model(source, state[name], state);
+        const of = actual_model(source_of(sources, calm[name]), calm[name], calm);
         const texts: [string, string | null][] = [
           ["MaterialX", material_x(state, sources, source, state[name])],
           ["GLSL", shader_text(data, source)],
-          ["Python", of && python_line(of, pair, state)],
+          ["Python", of && python_line(of, pair, calm)], // of the values in sight
         ];
         return (
           <p key={name} role="group" aria-label={`Copy from ${LETTER[name]}`}>
