@@ -17,7 +17,7 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis.verdicts import renderer_warnings
 from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_type_of
 from mxeon.conformance.results import PASSED
-from mxeon.conformance.run.plan import SOURCE, Task
+from mxeon.conformance.run.tasks import SOURCE, Task
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Metric
 from mxeon.conformance.text.entries import check_entries

@@ -31,7 +31,9 @@ from mxeon.conformance.known_issues import ISSUES, RENDERERS
 from mxeon.conformance.known_issues.issue import STOCK
 from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import ALL, SOURCE, make_plan
+from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.run.selection import ALL
+from mxeon.conformance.run.tasks import SOURCE
 from mxeon.io.files import write_text
 from mxeon.models.diffuse import albedo, formulas
 from mxeon.models.diffuse import brdf as models

@@ -18,7 +18,8 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.run import check
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.plan import Task, make_plan
+from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.run.tasks import Task
 from mxeon.conformance.text.closures import check_closures
 from mxeon.conformance.text.definitions import check_definitions
 from mxeon.conformance.text.entries import check_entries

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.records import read_record
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, Picture, Result, Run
+from mxeon.conformance.results.records import read_record
 from mxeon.hosts.base import Identity
 from mxeon.report import to_json, write
 from mxeon.report.diff import BETTER, OTHER, WORSE, Change, Report, compare

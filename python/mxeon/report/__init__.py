@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mxeon.conformance.known_issues import page_file, pages_of
-from mxeon.conformance.records import make_converter
 from mxeon.conformance.results import Picture, Run, image_names
+from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError
 from mxeon.io.files import replacing, write_text
 from mxeon.io.images import difference, write_exr, write_png

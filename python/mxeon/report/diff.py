@@ -10,8 +10,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from mxeon.conformance.records import ERRORS, read_record, spelled
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, VERDICTS, Result
+from mxeon.conformance.results.records import ERRORS, read_record, spelled
 from mxeon.errors import InputError
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular

@@ -12,9 +12,10 @@ from mxeon.conformance.results import Run
 from mxeon.conformance.run.documents import documents_in
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run
-from mxeon.conformance.run.plan import Findings, Plan, Task, make_plan
+from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.selection import assert_known_names
 from mxeon.conformance.run.survey import survey_documents
+from mxeon.conformance.run.tasks import Findings, Plan, Task
 from mxeon.errors import InputError, NotRun
 from mxeon.jobs import dask as cluster
 from mxeon.jobs import pool

@@ -23,7 +23,7 @@ import numpy as np
 from filelock import FileLock, Timeout
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.records import StoredImage, make_converter
+from mxeon.conformance.results.records import StoredImage, make_converter
 from mxeon.conformance.run.journal_lines import (
     FORMAT,
     NAME,
@@ -31,7 +31,7 @@ from mxeon.conformance.run.journal_lines import (
     read_lines,
     to_line,
 )
-from mxeon.conformance.run.plan import Findings, Plan
+from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import replacing
 

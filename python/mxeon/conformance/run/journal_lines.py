@@ -13,8 +13,8 @@ from typing import cast
 
 import cattrs
 
-from mxeon.conformance.records import ERRORS, StoredImage, make_converter
-from mxeon.conformance.run.plan import Findings, Plan
+from mxeon.conformance.results.records import ERRORS, StoredImage, make_converter
+from mxeon.conformance.run.tasks import Findings, Plan
 from mxeon.errors import InputError
 from mxeon.io.files import regular
 

@@ -21,7 +21,8 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Picture, Result
-from mxeon.conformance.run.plan import (
+from mxeon.conformance.run.plan import subjects
+from mxeon.conformance.run.tasks import (
     CURVE,
     DEFINITION,
     DOCUMENT,
@@ -32,7 +33,6 @@ from mxeon.conformance.run.plan import (
     SOURCE,
     Findings,
     Task,
-    subjects,
 )
 from mxeon.conformance.text import check_definitions, check_texts
 from mxeon.errors import DocumentError, ImageError, InterfaceError, NotRun, ShaderError

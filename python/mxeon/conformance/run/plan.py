@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A run as independent tasks, each a check of one subject on one host with one library.
-
-A task is a few words and its findings are plain data, so both travel to other processes and
-machines.
-"""
+"""The plan of a run: which tasks are to be done for some documents, hosts, libraries and nodes."""
 
 import os
 import platform
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -34,7 +29,7 @@ from mxeon.conformance.probes.families import (
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
-from mxeon.conformance.results import SHADER_FUNCTIONS, AlbedoCurve, Picture, Result
+from mxeon.conformance.results import SHADER_FUNCTIONS
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.selection import (
     ALL,
@@ -44,8 +39,20 @@ from mxeon.conformance.run.selection import (
     unmeasured,
 )
 from mxeon.conformance.run.survey import Survey
+from mxeon.conformance.run.tasks import (
+    CURVE,
+    DEFINITION,
+    DOCUMENT,
+    EVERY_NODE,
+    FUNCTIONS,
+    HOST,
+    INVERSION,
+    PICTURE,
+    SOURCE,
+    Plan,
+    Task,
+)
 from mxeon.hosts import HOSTS, host_row
-from mxeon.hosts.base import Identity
 from mxeon.shaders.document.policy import DEFAULT, LIMITS, Policy
 from mxeon.shaders.functions import has_functions
 from mxeon.shaders.library import (
@@ -56,92 +63,7 @@ from mxeon.shaders.library import (
 )
 from mxeon.shaders.nodes import INVERSIONS
 
-HOST, DEFINITION, SOURCE = "host", "definition", "source"
-CURVE, PICTURE = "curve", "picture"
-FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
 EMPTY = Survey()
-EVERY_NODE = "every node"
-
-
-@dataclass(frozen=True)
-class Task:
-    """One independent piece of a run: a check of one subject on one host with one library.
-
-    Attributes
-    ----------
-    check : str
-        Key of a row of `mxeon.conformance.checks.table`, or HOST, DEFINITION, SOURCE, CURVE,
-        PICTURE, FUNCTIONS, INVERSION or DOCUMENT.
-    subject : str
-        Title of a node, path of a document, or SHADER_FUNCTIONS.
-    host, library : str
-    """
-
-    check: str
-    subject: str
-    host: str
-    library: str
-
-    def __str__(self) -> str:
-        return f"{self.host}, {self.check}, {self.subject}, {self.library}"
-
-
-@dataclass(frozen=True)
-class Plan:
-    """The tasks of a run and all that they depend on; equal plans are equal runs.
-
-    Attributes
-    ----------
-    version : str
-        Of mxeon.
-    software : dict of str to str
-        Versions of the packages that take part (Python, NumPy, MaterialX, ...).
-    tasks : tuple of Task
-    documents : tuple of str
-        Their paths.
-    options : dict of str to str
-        The policy for documents, by the option of the command.
-    files : dict of str to str
-        SHA-256 of each file that the findings depend on, by path; "" where it cannot be read.
-        Empty where the run is not kept.
-    contents : dict of str to tuple of str
-        Titles of the nodes of each document, by its path.
-    refused : tuple of str
-        One line for each document that cannot be read.
-    """
-
-    version: str
-    software: dict[str, str]
-    tasks: tuple[Task, ...]
-    documents: tuple[str, ...]
-    options: dict[str, str] = field(default_factory=dict)
-    files: dict[str, str] = field(default_factory=dict)
-    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    refused: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Findings:
-    """The outcome of one task; see Run for the fields."""
-
-    results: tuple[Result, ...] = ()
-    pictures: tuple[Picture, ...] = ()
-    curves: tuple[AlbedoCurve, ...] = ()
-    notes: tuple[tuple[str, str], ...] = ()
-    errors: tuple[str, ...] = ()
-    hosts: tuple[Identity, ...] = ()
-
-    def answer(self, task: Task) -> bool:
-        """Whether these are findings of a task: there are some, and all are of its host."""
-        records: list[Result | Picture | AlbedoCurve] = [
-            *self.results,
-            *self.pictures,
-            *self.curves,
-        ]
-        location = (task.host, task.library)
-        return bool(records or self.errors) and all(
-            (record.host, record.library) == location for record in records
-        )
 
 
 def make_plan(

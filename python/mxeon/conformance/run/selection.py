@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tasks of a run that are asked for: by nodes, by the documents' nodes, or for an audit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING
 
-from mxeon.conformance.pictures.documents import CHECK as DOCUMENT
 from mxeon.conformance.probes.families import ALL_SUBJECTS, COMMON_SUBJECTS, PBR_SUBJECTS
 from mxeon.conformance.run.survey import Survey
+from mxeon.conformance.run.tasks import DOCUMENT, Task
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts import host_names, host_row
 from mxeon.shaders.library import check_version
-
-if TYPE_CHECKING:
-    from mxeon.conformance.run.plan import Task
 
 ALL, COMMON = "all", "common"  # in place of the nodes' names
 

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything that one `mxeon check` measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from mxeon.conformance.results.pictures import AlbedoCurve, Picture, image_names
+from mxeon.conformance.results.result import Result
+from mxeon.conformance.results.summary import Summary, summarize
+from mxeon.hosts.base import Identity
+
+
+@dataclass(frozen=True)
+class Run:
+    """Everything that one `mxeon check` measured.
+
+    Attributes
+    ----------
+    version : str
+        Of mxeon.
+    software : dict of str to str
+        Versions of what took part (Python, NumPy, MaterialX, ...).
+    hosts : tuple of Identity
+    results : tuple of Result
+    pictures : tuple of Picture
+    curves : tuple of Curve
+    notes : tuple of str
+        Warnings a reader has to see, e.g. what a host cannot express.
+    errors : tuple of str
+        One line for each document that could not be judged.
+    documents : tuple of Path
+    contents : dict of str to tuple of str
+        Titles of the nodes of each document that the user gave, by its path.
+    missing : tuple of str
+        Tasks that are not done yet, where the run was interrupted.
+    """
+
+    version: str
+    software: dict[str, str]
+    hosts: tuple[Identity, ...]
+    results: tuple[Result, ...]
+    pictures: tuple[Picture, ...] = ()
+    curves: tuple[AlbedoCurve, ...] = ()
+    notes: tuple[str, ...] = ()
+    errors: tuple[str, ...] = ()
+    documents: tuple[Path, ...] = ()
+    contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    missing: tuple[str, ...] = ()
+
+    @cached_property
+    def summary(self) -> Summary:
+        """The verdict on this run."""
+        return summarize(self.results, self.missing, self.errors)
+
+    @cached_property
+    def image_names(self) -> tuple[str, ...]:
+        """File names for the pictures, without suffix: ASCII, and different whatever the case."""
+        return image_names(self.pictures)
