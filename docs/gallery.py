@@ -18,7 +18,8 @@ from PIL import Image
 from mxeon.errors import DocumentError
 from mxeon.hosts import open_host
 from mxeon.hosts.points import visible
-from mxeon.io.images import srgb_encoded, write_exr
+from mxeon.io.images import write_exr
+from mxeon.io.srgb import srgb_encoded
 from mxeon.shaders.scene import BACK, FURNACE
 
 DOCS = Path(__file__).resolve().parent

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.hosts.gl import Host
 from mxeon.io.files import replacing, write_text
-from mxeon.io.images import srgb_encoded, write_exr
+from mxeon.io.images import write_exr
+from mxeon.io.srgb import srgb_encoded
 from paper.tracer import Trace, trace
 
 # Distinguishable with color blindness: after Okabe and Ito.

@@ -22,7 +22,7 @@ from docs.upstream.materialx_repairs import REPAIRS, installed, repaired
 from mxeon.hosts import open_host
 from mxeon.hosts.points import visible
 from mxeon.io.files import write_text
-from mxeon.io.images import srgb_encoded
+from mxeon.io.srgb import srgb_encoded
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text, node_text
 from mxeon.shaders.scene import SCENES
 from tests.reliability.versions import run

@@ -7,7 +7,7 @@ import pytest
 
 from mxeon.explorer import page, page_data
 from mxeon.io.files import write_text
-from mxeon.io.images import srgb_encoded
+from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
 from tests.explorer.stage import (
     CLOCK,

@@ -9,7 +9,8 @@ import pytest
 
 from mxeon.errors import ImageError
 from mxeon.hosts.textures import read_latlong, read_texture
-from mxeon.io.images import ImageWarning, read_image, srgb_decoded, srgb_encoded, write_image
+from mxeon.io.images import ImageWarning, read_image, write_image
+from mxeon.io.srgb import srgb_decoded, srgb_encoded
 
 PIXELS = np.arange(24.0, dtype=np.float32).reshape(2, 4, 3)
 

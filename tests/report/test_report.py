@@ -32,7 +32,8 @@ from mxeon.conformance.results import (
     summarize,
 )
 from mxeon.hosts.base import Identity
-from mxeon.io.images import difference_scale, srgb_encoded
+from mxeon.io.images import difference_scale
+from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
 from mxeon.report import html, to_json, to_junit, write
 from mxeon.report.plots import SHOWN_SIZE, difference_pixels

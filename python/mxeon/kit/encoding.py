@@ -7,7 +7,7 @@ They are determined on Lambert under a distant light, whose values every model s
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.io.images import srgb_decoded
+from mxeon.io.srgb import srgb_decoded
 from mxeon.kit.expected import Expected
 from mxeon.kit.noise import tiles
 

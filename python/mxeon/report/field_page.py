@@ -14,7 +14,8 @@ from markupsafe import Markup
 
 import mxeon
 from mxeon.conformance.results import Result
-from mxeon.io.images import difference, difference_scale, read_image, srgb_encoded
+from mxeon.io.images import difference, difference_scale, read_image
+from mxeon.io.srgb import srgb_encoded
 from mxeon.report.field import CHECKS, Entry
 from mxeon.report.page import LOOKS, number, share, vector
 from mxeon.report.plots import difference_gradient, difference_pixels, picture_uri

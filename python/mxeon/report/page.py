@@ -29,7 +29,8 @@ from mxeon.conformance.results import (
     Result,
     Run,
 )
-from mxeon.io.images import difference, difference_scale, srgb_encoded
+from mxeon.io.images import difference, difference_scale
+from mxeon.io.srgb import srgb_encoded
 from mxeon.report.plots import albedo_plot, difference_gradient, difference_pixels, picture_uri
 from mxeon.report.threads import in_threads
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from mxeon.conformance.results import AlbedoCurve
-from mxeon.io.images import NOT_FINITE
+from mxeon.io.srgb import NOT_FINITE
 
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
 SHOWN_SIZE = 256

@@ -35,7 +35,7 @@ from mxeon.conformance.reference.pbr_operations import UTILITIES, emissions
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.conformance.reference.walk import evaluated
 from mxeon.errors import NotRun
-from mxeon.io.images import srgb_decoded
+from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
 from mxeon.shaders.document.graphs import reachable
 

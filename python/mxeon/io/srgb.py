@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Linear values and code values of sRGB."""
+
+from __future__ import annotations
+
+from functools import cache, reduce
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+Codes = NDArray[np.uint8]
+
+STEPS = 2**13  # of [0, 1], in each of which two codes of sRGB meet at most
+NOT_FINITE = (255, 0, 255)  # code values of a pixel that is not a finite number
+
+
+def srgb_decoded(image: ArrayLike) -> Floats:
+    """Linear values of sRGB values in [0, 1].
+
+    References
+    ----------
+    IEC 61966-2-1, the encoding of sRGB.
+
+    Examples
+    --------
+    >>> srgb_decoded([0.0, 0.5, 1.0]).round(3).tolist()
+    [0.0, 0.214, 1.0]
+    """
+    image = np.asarray(image, np.float64)
+    return np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
+
+
+def srgb_encoded(image: ArrayLike) -> Codes:
+    """Eight-bit sRGB code values of a linear image.
+
+    Parameters
+    ----------
+    image : array_like, shape (..., 3)
+        Linear, with the Rec. 709 primaries.
+
+    Returns
+    -------
+    ndarray of uint8, shape (..., 3)
+        Clipped to [0, 1] before encoding; magenta where a channel is not finite.
+
+    References
+    ----------
+    IEC 61966-2-1, the encoding of sRGB.
+
+    Examples
+    --------
+    >>> srgb_encoded([0.0, 0.18, 1.0]).tolist()
+    [0, 118, 255]
+    """
+    image = np.asarray(image, dtype=np.float32)
+    finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
+    linear = np.clip(np.where(finite[..., np.newaxis], image, np.float32(0.0)), 0.0, 1.0)
+    # Take the least code of each step, or the next one above its threshold.
+    thresholds, least = _codes()
+    codes = least[(linear * np.float32(STEPS)).astype(np.intp)]
+    codes += linear >= thresholds[codes]
+    codes[~finite] = NOT_FINITE
+    return codes
+
+
+@cache
+def _codes() -> tuple[NDArray[np.float32], Codes]:
+    """Linear values from which each code of sRGB ends, and the least code of each of STEPS steps.
+
+    No step holds the ends of two codes: at 0, where they are closest, the curve has the slope 12.92.
+    """
+    ends = srgb_decoded((np.arange(255) + 0.5) / 255.0).astype(np.float32)
+    least = np.searchsorted(
+        ends, np.arange(STEPS + 1, dtype=np.float32) / np.float32(STEPS), "right"
+    )
+    return np.append(ends, np.float32(np.inf)), least.astype(np.uint8)
