@@ -27,11 +27,11 @@ def on_page_markdown(markdown, page, **_):
     """Make links relative to `docs/`, and leave out the column of a section where there is none."""
     if page.parent is None:
         page.meta["hide"] = ["navigation"]
-    if page.file.src_uri not in OUTSIDE:
-        return markdown
+    is_outside = page.file.src_uri in OUTSIDE
+    root = "" if is_outside else "../"
     for page_name, name in OUTSIDE.items():
-        markdown = markdown.replace(f"]({name})", f"]({page_name})")
-    return markdown.replace("](docs/", "](")
+        markdown = markdown.replace(f"]({root}{name}", f"]({page_name}")
+    return markdown.replace("](docs/", "](") if is_outside else markdown
 
 
 def on_page_content(html, page, **_):

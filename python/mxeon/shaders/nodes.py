@@ -107,8 +107,8 @@ FRAME = ("normal", "tangent", "curve_direction")  # inputs that are vectors of t
 
 
 def input_types(category: str) -> Mapping[str, str]:
-    """Type of each input of a BSDF node, by name."""
-    return BSDF_INPUTS.get(category, INPUT_TYPES)
+    """Type of each input of a BSDF node, by name; none for a node that is not known."""
+    return INPUT_TYPES if category in DIFFUSE_NODES else BSDF_INPUTS.get(category, {})
 
 
 def types_of(name: str) -> frozenset[str]:

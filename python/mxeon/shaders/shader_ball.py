@@ -14,7 +14,7 @@ from mxeon.io.images import Floats
 from mxeon.shaders.scene import VisiblePoints
 
 CENTER, RADIUS = np.array([0.0, 0.2, 0.0]), 0.72
-BELT_HEIGHT, BELT_RADIUS = 0.13, 0.7  # half of its height; a little inside of the ball
+BELT_HEIGHT = 0.13  # half of it
 GROOVE, FILLET = 0.035, 0.02  # radius of the grooves beside the belt, and of rounded edges
 FOOT_HEIGHT, FOOT_RADIUS = 0.1, 0.5
 TILT, ROLL = np.radians(20.0), np.radians(-24.0)  # of the view, and of the belt

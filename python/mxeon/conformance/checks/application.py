@@ -30,7 +30,7 @@ def judge_subject(probe: Probe, checks: Sequence[Check] = CHECKS) -> tuple[Resul
 
     Parameters
     ----------
-    probe : PairProbe, PictureProbe or CallableProbe
+    probe : Probe
     checks : sequence of Check
         Rows of the table.
 
@@ -54,7 +54,7 @@ def judge_curve(probe: Probe) -> tuple[AlbedoCurve, ...]:
 
     Returns
     -------
-    tuple of Curve
+    tuple of AlbedoCurve
     """
     measured, expected = integrated(probe, CURVE_COSINES, CURVE_COLOR, CURVE_ROUGHNESS)
     return (

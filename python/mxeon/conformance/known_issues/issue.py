@@ -29,7 +29,7 @@ class Issue:
     implied : tuple of (str, str)
         Key and subject of other results that fail for it, on those hosts or in the text.
     library : str
-        The library that has it; OWN for a renderer's own nodes.
+        The library that has it; RENDERER_NODES for a renderer's own nodes.
     """
 
     page: str

@@ -156,9 +156,14 @@ class BsdfSubject(RowSubject[Scattering]):
         """Whether the roughness has a direction."""
         return any(port.name == "roughness" and port.kind == "vector2" for port in self.ports)
 
+    @property
+    def types(self) -> dict[str, str]:
+        """Type of each input by name, those that select a mode among them."""
+        return {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
+
     def document(self, inputs: Values | None = None) -> str:
-        types = {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
-        return material_text(self.node, {**(inputs or {}), **self.row.fixed}, self.node, types)
+        values = {**(inputs or {}), **self.row.fixed}
+        return material_text(self.node, values, self.node, self.types)
 
     def values(self, function: Scattering, batch: Batch) -> Array:
         """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 on the other side."""
@@ -179,12 +184,6 @@ class BsdfSubject(RowSubject[Scattering]):
     def sky(self, batch: Batch) -> Array:
         """Mean of the uneven sky that it scatters, (N, 3): of the side from which light comes."""
         return sky(-batch.normal if self.row.transmits else batch.normal)
-
-    def passed(self, batch: Batch) -> Array:
-        """Throughput, (N, 3): the share of the light from below that passes."""
-        if not self.row.layerable:
-            return np.zeros((len(batch.wo), 3))
-        return np.maximum(1.0 - self.albedo(batch), 0.0)
 
     @property
     def others(self) -> tuple[Candidate, ...]:

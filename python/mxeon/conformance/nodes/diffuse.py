@@ -60,10 +60,6 @@ class ModelSubject:
         """Mean of the uneven sky that it scatters, (N, 3): of the viewer's side."""
         return sky(batch.normal)
 
-    def passed(self, batch: Batch) -> Array:
-        """Throughput, (N, 3): an opaque node lets nothing through."""
-        return np.zeros((len(batch.wo), 3))
-
     @property
     def _others(self) -> tuple[Model, ...]:
         """Models beside the common ones that it may have."""

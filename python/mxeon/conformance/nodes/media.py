@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects and probes of the VDF nodes: a medium below a surface that lets light through."""
+"""Subjects of the VDF nodes: a medium below a surface that lets light through."""
 
 from dataclasses import dataclass, replace
 from typing import ClassVar

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subjects of the checks: surface shaders, each with all of its lobes."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -9,7 +8,7 @@ import numpy as np
 
 from mxeon.conformance.nodes.ports import draw
 from mxeon.conformance.nodes.surface_inputs import GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs
-from mxeon.conformance.samples.batch import Array, Candidate, Changes, Values
+from mxeon.conformance.samples.batch import Array, Values
 from mxeon.shaders.nodes import document_text, node_text
 
 WHOLE = "surface pairs"  # kind of probe
@@ -62,23 +61,6 @@ class SurfaceShader:
     def every_input(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values of all inputs of its lobes."""
         return draw(rng, count, (*self.table.judged, *self.table.others))
-
-    @property
-    def changes(self) -> Mapping[str, Changes]:
-        """None: `changed` of its probe shows all inputs at once."""
-        return {}
-
-    @property
-    def black(self) -> Values:
-        """None: no input takes all lobes away."""
-        return {}
-
-    @property
-    def value_candidates(self) -> tuple[Candidate, ...]:
-        """None: a sum of so many lobes is explained by the checks of each."""
-        return ()
-
-    albedo_candidates = value_candidates
 
 
 SHADERS = (

@@ -9,7 +9,7 @@ from mxeon.conformance.nodes.bsdf import FILM_PAIRS, BsdfSubject
 from mxeon.conformance.nodes.combinations import node_over
 from mxeon.conformance.samples.batch import Array, Values
 from mxeon.models.nodes.thin_films import FILM_NODES
-from mxeon.shaders.nodes import SURFACE, document_text, input_types, lobe_text
+from mxeon.shaders.nodes import SURFACE, document_text, lobe_text
 
 SUMMED = ("first", "second")  # names of lobes
 THICK = (0.0, 1.0, 100.0, 1e4)  # thicknesses at the edges of the domain
@@ -54,8 +54,7 @@ class FilmSum(FilmSubject):
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is their sum."""
-        types = {**input_types(self.node), **{port.name: port.kind for port in self.ports}}
-        lobes = (lobe_text(self.node, self.row.fixed, name, types) for name in SUMMED)
+        lobes = (lobe_text(self.node, self.row.fixed, name, self.types) for name in SUMMED)
         both = node_over("add", in1=SUMMED[0], in2=SUMMED[1])
         return document_text("".join(lobes) + both + SURFACE)
 

@@ -68,7 +68,7 @@ def throughput_cases(probe: Probe, branch: str) -> Iterator[Case]:
 
 
 def dead_inputs(probe: Probe) -> list[str]:
-    """The inputs of `inputs`."""
+    """Names of the inputs whose change does not show in the values."""
     batch = probe.few[0]
     plain = probe.direct(batch)  # most changes are of the batch as it is
     dead = []

@@ -26,7 +26,7 @@ class Run:
     hosts : tuple of Identity
     results : tuple of Result
     pictures : tuple of Picture
-    curves : tuple of Curve
+    curves : tuple of AlbedoCurve
     notes : tuple of str
         Warnings a reader has to see, e.g. what a host cannot express.
     errors : tuple of str

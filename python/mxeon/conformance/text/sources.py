@@ -12,7 +12,6 @@ from mxeon.conformance.results import Result
 from mxeon.conformance.text.counts import Claim, counted
 from mxeon.hosts import HOSTS
 from mxeon.shaders.generation import TARGETS, ApproximationWarning, generate
-from mxeon.shaders.nodes import input_types
 
 # Targets whose text holds the BSDF itself; the others call a closure of their renderer.
 WITH_BSDF = tuple(target for target in TARGETS if target not in ("osl", "mdl"))
@@ -93,7 +92,7 @@ def _checks_of_text(
 def _uses_inputs(subject: DiffuseSubject | BsdfSubject, target: str, library: str) -> Result:
     """Check that every input of the node occurs in the source beyond its declaration."""
     text = source(subject, target, library)
-    names = tuple(input_types(subject.node)) if isinstance(subject, BsdfSubject) else subject.inputs
+    names = tuple(subject.types) if isinstance(subject, BsdfSubject) else subject.inputs
     unused = _unused(text, names)
     noticed = [name for name in names if name in _unused(_without_use(text, name), names)]
     control = len(noticed) if len(noticed) == len(names) else 0
