@@ -20,7 +20,8 @@ from tests.support.command import CLAY, PLASTER
 from tests.support.plans import keep_checks
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-PAGE = "docs/upstream/genglsl_clamped_dot.md"
+NAME = "genglsl_clamped_dot"
+PAGE = f"docs/upstream/{NAME}.md"
 
 
 def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", **fields):
@@ -50,7 +51,7 @@ def test_an_answer_has_the_verdict_then_each_node_with_model_error_and_bound():
 
 def test_two_libraries_stand_beside_each_other_and_failures_have_a_sentence_and_a_link():
     wrong = [
-        made(FAILED, key, library="stock", diagnosis=f"nearest known model: X; see {PAGE}")
+        made(FAILED, key, library="stock", diagnosis="nearest known model: X", pages=(NAME,))
         for key in ("value", "albedo")
     ]
     picture = replace(PICTURE, library="stock", verdict=FAILED, error=0.1)
@@ -66,7 +67,7 @@ def test_the_link_is_that_of_the_site_where_the_package_has_its_address(monkeypa
     urls = {"Documentation": "https://example.org/mxeon/"}
     known_issues._site.cache_clear()
     monkeypatch.setattr(known_issues, "metadata", lambda _: Metadata(urls))
-    (issue,) = known_issues.pages_of(f"see {PAGE}")
+    (issue,) = known_issues.issues_of(made(FAILED, pages=(NAME,)))
     try:
         assert known_issues.link(issue) == (
             "https://example.org/mxeon/upstream/genglsl_clamped_dot.html"

@@ -8,7 +8,7 @@ from fits import surface_shaders as fit
 from mxeon.conformance.accuracy import surface_shaders as tolerances
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.known_issues import with_pages
 from mxeon.conformance.nodes.surface_inputs import FREE_PATHS
 from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
 from mxeon.conformance.probes.families import COMMON_SUBJECTS
@@ -36,7 +36,7 @@ def judged(host, shader, library, keys=tuple(ROWS)):
     """Results of checks of a surface shader."""
     probe = SurfaceShaderProbe(host, shader, library)
     assert all(applies(ROWS[key], shader, WHOLE, host.name) for key in keys)
-    return {key: with_page(judge_check(ROWS[key], probe)) for key in keys}
+    return {key: with_pages(judge_check(ROWS[key], probe)) for key in keys}
 
 
 def test_eonlib_passes_every_check_of_a_surface_shader(gl):
@@ -54,7 +54,7 @@ def test_stock_has_its_known_departures_and_no_others(gl):
     results = judged(gl, SHORT, "stock")
     failed = {key for key, result in results.items() if result.verdict == FAILED}
     assert failed == STOCK
-    assert all("genglsl_microfacet_throughput" in results[key].diagnosis for key in failed)
+    assert all("genglsl_microfacet_throughput" in results[key].pages for key in failed)
 
 
 def test_two_thousandths_of_light_that_every_layer_gains_are_seen_in_the_mean(gl, tmp_path):

@@ -141,7 +141,7 @@ def verdicts(library, subject, keys):
         chosen = [task for task in tasks if (task.subject, task.check) in product([subject], keys)]
         results = [result for task in chosen for result in judge.work(task).results]
     assert len(results) == len(keys)
-    return {result.check: (result.verdict, result.diagnosis) for result in results}
+    return {result.check: (result.verdict, result.explanation) for result in results}
 
 
 @real

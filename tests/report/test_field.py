@@ -54,14 +54,10 @@ def portrait(scene, offset, host="gl"):
 
 
 WRONG = (
-    made(
-        "value",
-        0.4,
-        diagnosis="nearest known model: QON (rms 1e-9), then FON; see docs/upstream/a.md",
-    ),
+    made("value", 0.4, diagnosis="nearest known model: QON (rms 1e-9), then FON", pages=("a",)),
     made("environment", 1e-7),
     made("furnace", 1e-7),
-    made("albedo", 0.3, diagnosis="see docs/upstream/a.md; see docs/upstream/b.md"),
+    made("albedo", 0.3, pages=("a", "b")),
     made("black", 0.0),
     made("flag", 0.2),
     made("value", 0.4, subject="sheen_bsdf, mode zeltner"),  # claims no rough diffuse model

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from mxeon.conformance.known_issues import PAGE, link, pages_of
+from mxeon.conformance.known_issues import issues_of, link
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Result, Run, counted
 from mxeon.conformance.run.documents import causes, document_verdicts
 from mxeon.conformance.run.survey import model_of
@@ -180,8 +180,8 @@ def _failures(run: Run) -> Iterator[str]:
     groups: dict[tuple[str, str], list[Result]] = {}
     for each in run.results:
         if each.verdict == FAILED:
-            pages = " ".join(page.page for page in pages_of(each.diagnosis))
-            groups.setdefault((each.location, pages or each.explanation), []).append(each)
+            reason = " ".join(each.pages) or each.explanation
+            groups.setdefault((each.location, reason), []).append(each)
     # Pictures are wrong because nodes are, where some are.
     places = {place for (place, _), each in groups.items() if any(map(_is_of_node, each))}
     for (place, _), results in groups.items():
@@ -204,7 +204,7 @@ def _sentence(results: Sequence[Result]) -> str:
     where = subjects[0] if len(subjects) == 1 else ", ".join(nodes[:NAMED]) + more
     about = f"{where} ({keys})"
     # The sentence of its page, and where that is.
-    if pages := pages_of(first.diagnosis):
-        links = ", ".join(map(link, pages))
-        return f"{about}: {'; '.join(page.title for page in pages)}: {links}"
-    return f"{about}: {PAGE.sub('', first.explanation)}"
+    if issues := issues_of(first):
+        links = ", ".join(map(link, issues))
+        return f"{about}: {'; '.join(issue.title for issue in issues)}: {links}"
+    return f"{about}: {first.explanation}"

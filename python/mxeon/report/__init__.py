@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mxeon.conformance.known_issues import page_file, pages_of
+from mxeon.conformance.known_issues import issues_of, page_file
 from mxeon.conformance.results import Picture, Run, image_names
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError
@@ -150,7 +150,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     for _ in in_threads(_write_picture, zip(pictures, stems, strict=True)):
         pass
     # Write the pages on the defects beside it, for a site that has no address.
-    for issue in {each for one in run.results for each in pages_of(one.diagnosis)}:
+    for issue in {each for one in run.results for each in issues_of(one)}:
         text = page_file(issue).read_text(encoding="utf-8")
         write_text(folder / PAGES / f"{issue.page}.md", text)
     # Write the page, piece by piece.

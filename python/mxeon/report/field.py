@@ -30,7 +30,6 @@ CHECKS = {
     "flag": ("flag",),
 }
 NEAREST = re.compile(r"nearest known model: (.+?) \(rms")
-PAGE = re.compile(r"docs/upstream/(\w+)\.md")
 
 
 @dataclass(frozen=True)
@@ -230,5 +229,4 @@ def _back_lit(direct: Result, error: float) -> Result:
 
 
 def _pages(results: Iterable[Result]) -> tuple[str, ...]:
-    pages = (page for result in results for page in PAGE.findall(result.diagnosis))
-    return tuple(dict.fromkeys(pages))
+    return tuple(dict.fromkeys(page for result in results for page in result.pages))

@@ -88,7 +88,8 @@ def _add_case(suite: ElementTree.Element, result: Result) -> None:
         failure = ElementTree.SubElement(
             case, "failure", type=_xml(result.check), message=_xml(message)
         )
-        failure.text = _xml(f"{result.diagnosis}\nworst point: {result.worst}")
+        words = "; ".join(filter(None, (result.diagnosis, result.references)))
+        failure.text = _xml(f"{words}\nworst point: {result.worst}")
 
 
 def _xml(text: object) -> str:

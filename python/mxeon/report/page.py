@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup, escape
+from markupsafe import Markup
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.conformance.known_issues import PAGE, link, pages_of
+from mxeon.conformance.known_issues import issues_of, link
 from mxeon.conformance.known_issues.issue import Issue
 from mxeon.conformance.results import (
     DIFFERS,
@@ -85,12 +85,13 @@ class CheckResults:
         return max(ran, key=share, default=None)
 
     @property
-    def diagnoses(self) -> dict[str, list[str]]:
-        """Subjects that failed or differ, by diagnosis."""
-        subjects: dict[str, list[str]] = {}
+    def diagnoses(self) -> dict[Markup, list[str]]:
+        """Subjects that failed or differ, by what explains that."""
+        subjects: dict[Markup, list[str]] = {}
         for one in self.results:
             if one.verdict in (FAILED, DIFFERS):
-                words = one.diagnosis if one.error is None or share(one) > 1.0 else one.explanation
+                within = one.error is not None and share(one) <= 1.0
+                words = linked(one, one.excess if within else "")
                 subjects.setdefault(words, []).append(one.subject)
         return subjects
 
@@ -128,12 +129,11 @@ def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, f
     return [(title, distance, distance / largest) for title, distance in rows]
 
 
-def linked(diagnosis: str) -> Markup:
-    """A diagnosis as HTML, in which the pages of known issues are links."""
-    text = escape(PAGE.sub("", diagnosis))
-    for issue in pages_of(diagnosis):
-        text += Markup('; see <a href="{}">{}</a>').format(page_address(issue), issue.title)
-    return text
+def linked(result: Result, excess: str = "") -> Markup:
+    """What explains a result, as HTML: words, its diagnosis, and links to its known issues."""
+    see = Markup('see <a href="{}">{}</a>')
+    links = [see.format(page_address(issue), issue.title) for issue in issues_of(result)]
+    return Markup("; ").join([each for each in (excess, result.diagnosis, *links) if each])
 
 
 def page_address(issue: Issue) -> str:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Known issues of stock MaterialX and of renderers: the page of `docs/upstream/` on each failing check."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -22,13 +21,9 @@ RENDERERS = {
 ISSUES = read_issues(Path(__file__).with_name("issues.json").read_text(encoding="utf-8"))
 
 
-PAGE = re.compile(r"(?:; )?see docs/upstream/(\w+)\.md")
-
-
-def pages_of(diagnosis: str) -> tuple[Issue, ...]:
-    """The known issues whose pages a diagnosis names."""
-    names = PAGE.findall(diagnosis)
-    return tuple({issue.page: issue for issue in ISSUES if issue.page in names}.values())
+def issues_of(result: Result) -> tuple[Issue, ...]:
+    """The known issues on whose pages the defects are that a result shows."""
+    return tuple({issue.page: issue for issue in ISSUES if issue.page in result.pages}.values())
 
 
 def link(issue: Issue) -> str:
@@ -57,10 +52,9 @@ def _site() -> str:
     return str(named.get("Documentation", "")).rstrip("/")
 
 
-def with_page(result: Result) -> Result:
-    """A result whose diagnosis ends with the page of the issue that explains it, if one does."""
-    pages = [f"see docs/upstream/{issue.page}.md" for issue in _issues(result)]
-    return replace(result, diagnosis="; ".join(filter(None, (result.diagnosis, *pages))))
+def with_pages(result: Result) -> Result:
+    """A result with the pages of the issues that explain it, if any do."""
+    return replace(result, pages=tuple(issue.page for issue in _issues(result)))
 
 
 def repaired(results: Sequence[Result], software: Mapping[str, str]) -> tuple[tuple[str, str], ...]:

@@ -87,6 +87,8 @@ class Result:
     measured : tuple of str
         Inputs of a document's nodes whose values the expected picture has from the host itself,
         since nodes of patterns have no model; see `mxeon.conformance.reference.measured`.
+    pages : tuple of str
+        Names of the pages of `docs/upstream/` on the defects that it shows.
 
     Raises
     ------
@@ -112,6 +114,7 @@ class Result:
     claimed: str = ""
     model: str = ""
     measured: tuple[str, ...] = ()
+    pages: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
@@ -144,8 +147,13 @@ class Result:
 
     @property
     def explanation(self) -> str:
-        """The reason for a failure: the excess and the diagnosis."""
-        return "; ".join(filter(None, (self.excess, self.diagnosis)))
+        """The reason for a failure: the excess, the diagnosis, and where the defect is described."""
+        return "; ".join(filter(None, (self.excess, self.diagnosis, self.references)))
+
+    @property
+    def references(self) -> str:
+        """Where the defects that it shows are described, in words; "" for none."""
+        return "; ".join(f"see docs/upstream/{page}.md" for page in self.pages)
 
 
 def in_words(number: float) -> str:

@@ -10,7 +10,7 @@ from mxeon.conformance.checks.application import judge_curve, judge_subject
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.functions.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
-from mxeon.conformance.known_issues import with_page
+from mxeon.conformance.known_issues import with_pages
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
@@ -203,7 +203,7 @@ def _unread(path: Path, error: DocumentError | ImageError) -> Findings:
 
 def _with_pages(findings: Findings) -> Findings:
     """Findings whose failures name the pages of their known issues."""
-    return replace(findings, results=tuple(map(with_page, findings.results)))
+    return replace(findings, results=tuple(map(with_pages, findings.results)))
 
 
 def _probe(host: Host | RendererHost, title: str, library: str) -> Probe:
