@@ -14,7 +14,7 @@ import MaterialX.PyMaterialXGenShader as mx_gen
 from benchmarks.models import peak_memory, reset_memory
 from benchmarks.rounds import Check, Group, figure, interleave, less, ratio, scaled
 from mxeon.shaders.generation import GENERATORS, TARGETS, generate
-from mxeon.shaders.library import examples_folder, load_library
+from mxeon.shaders.library import examples_folder, load_library, read_library
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 DOCUMENTS = (1, 10, 100, 1000)
@@ -127,8 +127,9 @@ def growing(counts):
 
 def loading(rounds):
     """Figures of loading the library anew."""
-    fresh = load_library.__wrapped__
-    seconds = interleave({"eonlib": fresh, "stock": partial(fresh, "stock")}, rounds)
+    fresh = partial(read_library.__wrapped__, profile=None, definitions=())
+    work = {name: partial(fresh, name) for name in ("eonlib", "stock")}
+    seconds = interleave(work, rounds)
     return [
         scaled("library load, eonlib", "ms", seconds["eonlib"], 1e3),
         ratio("library load, eonlib / stock", seconds["eonlib"], seconds["stock"]),

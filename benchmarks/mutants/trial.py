@@ -107,7 +107,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
         try:
             yield str(Path(base, "eonlib"))
         finally:
-            library.load_library.cache_clear()
+            library.read_library.cache_clear()
             generators._library_generator.cache_clear()
 
 

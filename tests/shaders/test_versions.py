@@ -21,7 +21,7 @@ from tests.support.plans import keep_checks
 
 EXAMPLE = str(library.examples_folder() / "plaster.mtlx")
 CACHES = (
-    load_library,
+    library.read_library,
     generators._library_generator,
     closure_calls._functions,
     closure_calls._signatures,

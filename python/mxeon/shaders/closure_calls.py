@@ -55,13 +55,18 @@ def check_closure_calls(
 def _functions(library: str, profile: str | None) -> Mapping[str, list[tuple[str, str]]]:
     """Nodedefs and functions of each source of a library, but for MaterialX's own."""
     functions: dict[str, list[tuple[str, str]]] = defaultdict(list)
-    standard = set(standard_folders())
     for each in load_library(library, profile).getImplementations():
-        document = Path(each.getActiveSourceUri())
-        if each.hasFile() and each.hasFunction() and standard.isdisjoint(document.parents):
-            file = os.path.normpath(document.parent / each.getFile())
+        uri = each.getActiveSourceUri()
+        if each.hasFile() and each.hasFunction() and not _is_standard(uri):
+            file = os.path.normpath(Path(uri).parent / each.getFile())
             functions[file].append((each.getNodeDefString(), each.getFunction()))
     return functions
+
+
+@cache
+def _is_standard(uri: str) -> bool:
+    """Whether a document of definitions is MaterialX's own."""
+    return not set(standard_folders()).isdisjoint(Path(uri).parents)
 
 
 @cache

@@ -161,13 +161,12 @@ def _sources(library: str) -> list[Path]:
     ]
 
 
-@lru_cache(maxsize=LOADED)
 def load_library(
     library: str = "eonlib", profile: str | None = None, definitions: tuple[str, ...] = ()
 ) -> mx.Document:
     """A MaterialX document holding the standard libraries, with eonlib in front.
 
-    Loaded once per argument pair and shared: attach it with `Document.setDataLibrary`.
+    Loaded once for the same arguments and shared: attach it with `Document.setDataLibrary`.
 
     Parameters
     ----------
@@ -198,9 +197,15 @@ def load_library(
     UntestedVersionWarning
         If this MaterialX is none of TESTED.
     """
+    return read_library(library, profile, definitions)
+
+
+@lru_cache(maxsize=LOADED)
+def read_library(library: str, profile: str | None, definitions: tuple[str, ...]) -> mx.Document:
+    """As `load_library`: the cache would take an argument that is left out for another."""
     check_version()
     if note := untested(mx.getVersionString()):
-        warnings.warn(UntestedVersionWarning(note), stacklevel=2)
+        warnings.warn(UntestedVersionWarning(note), stacklevel=3)
     # Load the folders.
     document = mx.createDocument()
     for folder in definitions:

@@ -7,6 +7,7 @@ line: MaterialX would wait, fill the memory, or give text that no one can decode
 
 import os
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import MaterialX as mx
@@ -34,11 +35,12 @@ def check_sources(document: mx.Document, library: str) -> None:
     library : str
         Its folder.
     """
-    search = mx.getDefaultDataSearchPath()
+    search, folder = mx.getDefaultDataSearchPath(), Path(library)
+    parents = cache(lambda uri: Path(uri).parents)  # of few documents, for many implementations
     waiting = [
-        (each.getFile(), Path(each.getActiveSourceUri()).parent)
+        (each.getFile(), parents(uri)[0])
         for each in document.getImplementations()
-        if each.hasFile() and Path(library) in Path(each.getActiveSourceUri()).parents
+        if each.hasFile() and folder in parents(uri := each.getActiveSourceUri())
     ]
     known = set()
     while waiting:
