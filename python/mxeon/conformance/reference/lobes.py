@@ -18,6 +18,7 @@ from mxeon.models.nodes.node import PbrNode
 Values: TypeAlias = NDArray[np.float64]
 Inputs: TypeAlias = Mapping[str, Values]
 Albedo: TypeAlias = Callable[[Values, Inputs], Values]
+Material: TypeAlias = tuple[tuple[str, tuple[float, ...]], ...]  # inputs of one value each, hashable
 
 # A lobe of weight one from its node, its inputs, each one value or one for each point, and whether
 # its throughput is asked for.
@@ -139,8 +140,7 @@ def _albedo(
     # The symmetric points of a sphere have cosines that differ by roundings.
     rounded = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
     mu, indices = np.unique(rounded, return_inverse=True)
-    every = np.ones(len(mu), bool)
-    return albedo(_directions(mu, np.zeros_like(mu)), _at(inputs, every))[indices]
+    return _albedos(albedo, material, mu.tobytes())[indices]
 
 
 def _turns(inputs: Inputs) -> bool:
@@ -171,18 +171,23 @@ def _sums(series: Values, x: Values, y: Values) -> Values:
     return np.asarray(np.concatenate(sums)[indices], np.float64)
 
 
+@lru_cache(maxsize=8)
+def _albedos(albedo: Albedo, material: Material, cosines: bytes) -> Values:
+    """Albedos of an isotropic material, which all scenes of a document ask for."""
+    mu = np.frombuffer(cosines)
+    every = np.ones(len(mu), bool)
+    return albedo(_directions(mu, np.zeros_like(mu)), _at(_inputs(material), every))
+
+
 @lru_cache(maxsize=32)
 def _series(
     albedo: Albedo,
-    material: tuple[tuple[str, tuple[float, ...]], ...],
+    material: Material,
     low: float,
     degrees: tuple[tuple[int, int], ...],
 ) -> Values | None:
     """Chebyshev coefficients of an albedo, (., ., 3), or None where they fall too slowly."""
-    inputs = {
-        name: np.array(values) if len(values) == 1 else np.array([values])
-        for name, values in material
-    }
+    inputs = _inputs(material)
     for degree, turns in degrees:
         # The albedo at Chebyshev's points.
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
@@ -197,6 +202,14 @@ def _series(
         if max(float(np.abs(tail).max()) for tail in tails) < TAIL:
             return np.asarray(series, np.float64)
     return None
+
+
+def _inputs(material: Material) -> dict[str, Values]:
+    """Inputs of a material, each one value."""
+    return {
+        name: np.array(values) if len(values) == 1 else np.array([values])
+        for name, values in material
+    }
 
 
 def _transform(points: Values) -> Values:

@@ -196,7 +196,9 @@ def lobe_albedo(
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     checked_switch("compensate", compensate)
 
-    def value(wo: Array, roughness: Array, unseen: Array, **material: Array) -> Array:
+    def value(
+        wo: Array, roughness: Array, unseen: Array, average: Array, **material: Array
+    ) -> Array:
         # Integrate the curve over the slopes.
         c, weight = slope_nodes(wo, roughness)
         spread = {
@@ -213,15 +215,19 @@ def lobe_albedo(
             E = np.where(squared > 0.0, lossless - lost, E)
         # Add what more scattering returns, and tint.
         if compensate:
-            E = E * (1.0 + curve.average(**material) * unseen)
+            E = E * (1.0 + average * unseen)
         return E * material["tint"] if "tint" in material else E
 
     arguments = {"wo": wo, "roughness": roughness, **vectors}
     lead_shape(arguments, numbers)  # refuses what does not broadcast, by the names of the arguments
     # Light that is scattered more than once, for all elements before their many slopes.
-    unseen = _unseen(wo, roughness) if compensate else np.zeros(())
-    scalars = {"unseen": unseen, **numbers}
-    return evaluate_material(value, arguments, scalars, channel_count(vectors), BLOCK)
+    channels = channel_count(vectors)
+    unseen, average = np.zeros(()), np.zeros(1)
+    if compensate:
+        unseen = _unseen(wo, roughness)
+        average = evaluate_material(curve.average, vectors, numbers, channels)
+    arguments["average"] = average
+    return evaluate_material(value, arguments, {"unseen": unseen, **numbers}, channels, BLOCK)
 
 
 def _unseen(wo: Numbers, roughness: Numbers) -> Array:
