@@ -18,7 +18,7 @@ from mxeon.conformance.functions.shader_functions import (
 )
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
-from mxeon.conformance.pictures import document_pictures as image
+from mxeon.conformance.pictures import tolerances as image
 from mxeon.conformance.probes.families import (
     ALL_SUBJECTS,
     COMMON_SUBJECTS,

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.accuracy.diffuse import ENVIRONMENT, VALUE
-from mxeon.conformance.pictures.document_pictures import PLAIN, TEXTURED
+from mxeon.conformance.pictures.tolerances import PLAIN, TEXTURED
 from mxeon.explorer import documents
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model

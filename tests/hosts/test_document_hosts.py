@@ -17,7 +17,8 @@ from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_pages
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
-from mxeon.conformance.pictures.document_pictures import TEXTURED, judge_document
+from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.pictures.tolerances import TEXTURED
 from mxeon.conformance.probes.families import HOST_PROBES, probe_type_of
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.errors import NotRun, ShaderError

@@ -6,7 +6,7 @@ Those of quantities that the conformance checks judge too are theirs.
 
 from mxeon.conformance.accuracy import diffuse as checks
 from mxeon.conformance.accuracy.bsdf import RINGS
-from mxeon.conformance.pictures.document_pictures import PLAIN
+from mxeon.conformance.pictures.tolerances import PLAIN
 
 # Unit roundoff of float64.
 ROUNDING = 2.0**-53

@@ -2,76 +2,42 @@
 """Materials from documents: their pictures on a host against the reference's, pixel by pixel."""
 
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
-import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
 import mxeon
-from mxeon.conformance.accuracy import surface_shaders as surfaces
-from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, RINGS, sum_of
-from mxeon.conformance.accuracy.utilities import BLACKBODY
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
+from mxeon.conformance.pictures.tolerances import (
+    RELATIVE,
+    categories,
+    inner_nodes,
+    rounded_by,
+    tolerance_of,
+)
 from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.reference import ExpectedPicture
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.measured import HostValues
 from mxeon.conformance.results import FAILED, PASSED, Control, Picture, Place, Result
 from mxeon.conformance.samples.measurement import Measurement, Metric, absolute, scaled
-from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
+from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
-from mxeon.models.nodes import NODES
 from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
-from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 from mxeon.shaders.nodes import BSDF_INPUTS
 from mxeon.shaders.scene import Scene, sphere
 
-# Nodes whose shaders take an albedo from a fit.
-FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
-
 Pixels: TypeAlias = NDArray[np.floating]
 Case: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
-
-# Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
-UNIT = "pi f cos, times cos(theta_o)"
-PLAIN = Tolerance(
-    48 * ROUNDING,
-    UNIT,
-    absolute,
-    "16 roundings of float32, 2^-24 each, in the position of a pixel's point, and 32 in the value",
-)
-TEXTURED = Tolerance(
-    2.0**-8,
-    UNIT,
-    absolute,
-    "a filter's weights have 8 bits after the point, the least OpenGL asks for, and texels differ "
-    "by 1 at most",
-)
-
-FITTED = Tolerance(
-    MICROFACET_MEAN.value + sum_of(256),
-    "pi f cos, relative above 1, times cos(theta_o)",
-    absolute,
-    "the error of microfacets by the fit of their albedo, and that of a sum over 256 directions of an "
-    "environment",
-)
-
-SHADED = Tolerance(
-    surfaces.ALBEDO.value + sum_of(256),
-    FITTED.unit,
-    absolute,
-    "the errors of all lobes of a surface shader, 2.3e-2, and that of a sum over 256 directions of an "
-    "environment",
-)
 
 MATCH = "The picture is the reference's in every pixel."
 FINITE = "No pixel is infinite or not a number."
@@ -165,7 +131,8 @@ def _judge_material(
     else:
         references = [*expected]
         cases = list(zip(scenes, images, expected, strict=True))
-        tolerance = _rounded(_tolerance(shader), host)
+        lobes = (lobe for each in expected for lobe in each.lobes)
+        tolerance = rounded_by(host, tolerance_of(shader, lobes))
         result = _judge_match(place, cases, tolerance, front_lit)
     return result, tuple(
         _picture(file, shader, host, library, scene, image, reference)
@@ -212,63 +179,12 @@ def _assert_judged(shader: Shader, host: Host) -> None:
     """Raise NotRun where the host shows another material, or closures of its own, judged by themselves."""
     if reason := host.unread(shader):
         raise NotRun(f"{host.name}: {reason}: the picture is shown, and only has to be finite")
-    own = sorted(_categories(_inner(shader)) & set(BSDF_INPUTS))
+    own = sorted(categories(inner_nodes(shader)) & set(BSDF_INPUTS))
     if own and host.language == "osl":
         raise NotRun(
             f"{host.name} has closures of its own for {', '.join(own)}: their picture is shown, and "
             "only has to be finite"
         )
-
-
-def _rounded(tolerance: Tolerance, host: Host) -> Tolerance:
-    """Tolerance of the pictures of a host that rounds them."""
-    rounding = host_row(host.name).rounding
-    if not rounding:
-        return tolerance
-    words = f"{tolerance.derivation}; and the pixels' own rounding, {rounding:.1e}"
-    return Tolerance(tolerance.value + rounding, FITTED.unit, absolute, words)
-
-
-def _tolerance(shader: Shader) -> Tolerance:
-    """Tolerance of a material's pictures: that of its lobes, with what else may add to it."""
-    tolerance = _lobes_tolerance(shader)
-    others = [RINGS] * (SUBSURFACE in inner_lobes(shader))
-    others += [BLACKBODY] * ("blackbody" in _categories(_inner(shader)))
-    for other in others:
-        words = f"{tolerance.derivation}; and {other.derivation}"
-        tolerance = Tolerance(tolerance.value + other.value, FITTED.unit, absolute, words)
-    return tolerance
-
-
-def _lobes_tolerance(shader: Shader) -> Tolerance:
-    """Tolerance of lobes without light below the surface."""
-    if _categories(shader.document.traverseTree()) & FITTED_NODES:
-        return FITTED
-    if _categories(_inner(shader)) & FITTED_NODES:
-        return SHADED
-    return TEXTURED if _textured(shader) else PLAIN
-
-
-def _categories(elements: Iterable[mx.Element]) -> set[str]:
-    """Categories of nodes."""
-    return {each.getCategory() for each in elements}
-
-
-def _inner(shader: Shader) -> Iterator[mx.Element]:
-    """Nodes of a shader's document, and those of the graphs that define them."""
-    waiting, seen = [shader.document], set()
-    while waiting:
-        for each in waiting.pop().traverseTree():
-            yield each
-            graph = each.getImplementation() if each.isA(mx.Node) else None
-            if graph and graph.isA(mx.NodeGraph) and graph.getNamePath() not in seen:
-                seen.add(graph.getNamePath())
-                waiting.append(graph)
-
-
-def _textured(shader: Shader) -> bool:
-    """Whether a shader reads an image."""
-    return any(port.type == "filename" and port.value for port in shader.inputs)
 
 
 def _judge_finite(place: Place, images: Sequence[Pixels], reason: str) -> Result:
@@ -296,7 +212,7 @@ def _judge_match(
     place: Place, cases: Sequence[Case], tolerance: Tolerance, front_lit: bool
 ) -> Result:
     """Result for a material that the models cover: its pixels have to be the reference's."""
-    metric = scaled if tolerance.unit == FITTED.unit else absolute
+    metric = scaled if tolerance.unit == RELATIVE else absolute
     errors = [(*_worst_pixel(case, front_lit, metric), case[0].name) for case in cases]
     error, worst, scene = max(errors, key=lambda entry: entry[0])
     first, image, expected = cases[0]

@@ -15,6 +15,7 @@ from mxeon import hosts
 from mxeon.conformance.reference.graph import Graph
 from mxeon.conformance.reference.lobes import ManyMaterialsError
 from mxeon.conformance.reference.measured import LIT, PATTERNS, Elements, HostValues, Measure
+from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun
 from mxeon.hosts import base
@@ -43,11 +44,14 @@ class ExpectedPicture:
         Pixels that were computed; each other one has the value of one nearby.
     measured : tuple of str
         Inputs of nodes whose values were taken from the host.
+    lobes : tuple of ShownLobe
+        The lobes that it shows.
     """
 
     image: NDArray[np.float64]
     judged: NDArray[np.bool_]
     measured: tuple[str, ...]
+    lobes: tuple[ShownLobe, ...] = ()
 
 
 class Host(base.Host):
@@ -112,7 +116,7 @@ class Host(base.Host):
         # Light them, and show each in place of those around it.
         image = np.zeros((*mask.shape, 3))
         try:
-            image[chosen], measured = _lighted(shader, points, measure)
+            image[chosen], measured, lobes = _lighted(shader, points, measure)
         except NotRun:
             if (output := _pattern(shader)) is None:
                 raise
@@ -120,7 +124,7 @@ class Host(base.Host):
                 image = values.emitted(scene.size, output)
             return ExpectedPicture(image, mask, (output.getName(),))
         middle = (np.arange(scene.size) // stride * stride + stride // 2).clip(max=scene.size - 1)
-        return ExpectedPicture(image[np.ix_(middle, middle)], chosen, measured)
+        return ExpectedPicture(image[np.ix_(middle, middle)], chosen, measured, lobes)
 
     def evaluate(
         self,
@@ -156,14 +160,14 @@ class Host(base.Host):
 
 def _lighted(
     shader: Shader, points: ShadingPoints, measure: Measure | None = None
-) -> tuple[NDArray[np.float64], tuple[str, ...]]:
-    """Values of a shader's element at points, and the inputs that were measured for them."""
+) -> tuple[NDArray[np.float64], tuple[str, ...], tuple[ShownLobe, ...]]:
+    """Values of a shader's element at points, the inputs that were measured for them, and the lobes."""
     graph = Graph(shader.document, points, measure=measure)
     values = graph.element(shader.element)
     if points.wi is None and TRANSMISSION in inner_lobes(shader):
         behind = Graph(shader.document, replace(points, behind=True), measure=measure)
         values = values + behind.element(shader.element)
-    return values, tuple(graph.measured)
+    return values, tuple(graph.measured), tuple(graph.lobes)
 
 
 def _pattern(shader: Shader) -> mx.Output | None:

@@ -25,6 +25,7 @@ from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
     NOTHING,
+    ShownLobe,
     combined,
     definition,
     node_lobe,
@@ -55,8 +56,8 @@ SURFACES: dict[bool, Operation] = {
     True: (("bsdf", "edf", "opacity"), lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity),
     False: (("bsdf",), lambda bsdf: bsdf.value),
 }
-# Operations in which hosts differ: ties, and the arc functions of drivers. They are measured.
-HOSTS_OWN = ("round", "asin", "acos")
+# Operations in which hosts differ: jumps and ties, and the arc functions of drivers. They are measured.
+HOSTS_OWN = ("round", "floor", "ceil", "modulo", "asin", "acos")
 # A surface that only emits.
 UNLIT: Operation = (
     ("emission", "emission_color", "opacity"),
@@ -89,6 +90,8 @@ class Graph:
     ----------
     measured : dict of str to None
         Names of the inputs whose values were measured, each behind the name of its node.
+    lobes : list of ShownLobe
+        Those that were evaluated.
 
     Notes
     -----
@@ -111,6 +114,7 @@ class Graph:
         self._emits = emits
         self._measure = measure
         self.measured: dict[str, None] = {}
+        self.lobes: list[ShownLobe] = []
         # Prepare what is found on the way.
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
@@ -209,6 +213,8 @@ class Graph:
 
         def lobe(*values: Values) -> Bsdf:
             inputs = dict(zip(names, values, strict=True))
+            if np.any(inputs.get("weight", 1.0)):
+                self.lobes.append(ShownLobe(node.getCategory(), inputs))
             return node_lobe(node, inputs, self._points, path in self._hiding)
 
         return lobe, self._sources(path, names)

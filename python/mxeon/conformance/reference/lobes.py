@@ -18,7 +18,9 @@ from mxeon.models.nodes.node import PbrNode
 Values: TypeAlias = NDArray[np.float64]
 Inputs: TypeAlias = Mapping[str, Values]
 Albedo: TypeAlias = Callable[[Values, Inputs], Values]
-Material: TypeAlias = tuple[tuple[str, tuple[float, ...]], ...]  # inputs of one value each, hashable
+Material: TypeAlias = tuple[
+    tuple[str, tuple[float, ...]], ...
+]  # inputs of one value each, hashable
 
 # A lobe of weight one from its node, its inputs, each one value or one for each point, and whether
 # its throughput is asked for.

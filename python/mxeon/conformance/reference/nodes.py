@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import MaterialX as mx
 import numpy as np
@@ -39,6 +40,22 @@ COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
     "add": (("in1", "in2"), layering.add),
     "multiply": (("in1", "in2"), layering.multiply),
 }
+
+
+@dataclass(frozen=True, eq=False)
+class ShownLobe:
+    """A lobe of a picture that has a weight.
+
+    Attributes
+    ----------
+    category : str
+        Of its node.
+    inputs : mapping of str to value
+        As `node_lobe` gets them.
+    """
+
+    category: str
+    inputs: Mapping[str, Values]
 
 
 def node_lobe(

@@ -29,6 +29,7 @@ METERS = 1e-9  # in a nanometer
 # trapezoidal rule over 6.5 standard deviations, 2^-48 of a Gaussian's height, in steps of a fifth of one.
 THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
+SAME = 2.0**-20  # relative distance of indices that are roundings of the same number
 # Weights of its nodes from the center on, and of all of them.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
@@ -74,10 +75,11 @@ def over_schlick(
 ) -> tuple[Interface, Interface]:
     """Film over a Schlick substrate whose curve is F at cos theta_t, for both polarizations.
 
-    Where a dip turns F negative there is no amplitude, and F counts as 0.
+    Where a dip turns F negative there is no amplitude, and F counts as 0. The phase jumps where both indices
+    are the same: within SAME they count as that, since color0 0.04 below a film of 1.5 is 2e-8 off in float32.
     """
     F = np.maximum(F, 0.0)
-    phi_23 = np.where(index_of(color0) < film_ior, np.pi, 0.0)
+    phi_23 = np.where(index_of(color0) < film_ior * (1.0 - SAME), np.pi, 0.0)
     p, s = (
         Interface(R12, F, phi_21 + phi_23)
         for R12, phi_21 in zip(

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of documents: what their bounds carry, and what a failure says."""
+
+import numpy as np
+import pytest
+
+from mxeon.conformance.accuracy.bsdf import UNFITTED
+from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO
+from mxeon.conformance.pictures.document_pictures import judge_document
+from mxeon.conformance.pictures.tolerances import FITTED, PLAIN, tolerance_of
+from mxeon.conformance.reference import Host as Reference
+from mxeon.conformance.reference.nodes import ShownLobe
+from mxeon.hosts import open_host
+from mxeon.shaders.generation import generate
+from mxeon.shaders.nodes import SURFACE, document_text
+
+FILM = """<generalized_schlick_bsdf name="lobe" type="BSDF">
+  <input name="color0" type="color3" value="0.04, 0.04, 0.04"/>
+  <input name="roughness" type="vector2" value="0, 0"/>
+  <input name="thinfilm_thickness" type="float" value="550"/>
+  <input name="thinfilm_ior" type="float" value="1.5"/>
+</generalized_schlick_bsdf>"""
+
+
+@pytest.fixture(scope="module")
+def host():
+    with open_host("gl") as engine:
+        yield engine
+
+
+def judged(host, tmp_path, text):
+    path = tmp_path / "shown.mtlx"
+    path.write_text(text)
+    results, _, notes = judge_document(path, host, Reference(), "eonlib")
+    [result] = results
+    return result, notes
+
+
+def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(host, tmp_path):
+    result, _ = judged(host, tmp_path, document_text(FILM + SURFACE))
+    assert result.verdict == "passed"
+    assert result.error < 1e-4  # the phase of a denser film is off by 0.17
+
+
+def tolerance(text, **inputs):
+    [shader] = generate(document_text(text + SURFACE), "glsl")
+    kind = text.split()[0].removeprefix("<")
+    return tolerance_of(shader, [ShownLobe(kind, {k: np.array(v) for k, v in inputs.items()})])
+
+
+@pytest.mark.parametrize(
+    "inputs, more",
+    [
+        ({"ior": [1.5]}, 0.0),
+        ({"ior": [1.5, 0.9]}, UNFITTED.value),
+        ({"thinfilm_thickness": [0.0, 300.0]}, FILM_ALBEDO.value),
+    ],
+)
+def test_inputs_of_lobes_add_what_their_checks_allow(inputs, more):
+    lobe = tolerance('<dielectric_bsdf name="lobe" type="BSDF"/>', **inputs)
+    assert lobe.value == pytest.approx(FITTED.value + more)
+
+
+def test_narrow_lobes_of_hair_add_more_than_wide_ones():
+    names = ("roughness_R", "roughness_TT", "roughness_TRT")
+    wide, narrow = (
+        tolerance('<chiang_hair_bsdf name="lobe" type="BSDF"/>', **{name: [v, s] for name in names})
+        for v, s in ((0.1, 0.3), (1e-3, 0.05))
+    )
+    assert PLAIN.value < wide.value < narrow.value < 1e-3
