@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of pages on pbrlib's text and on MaterialX that no check of the suite measures."""
 
+import warnings
 from xml.parsers import expat
 
 import MaterialX as mx
@@ -17,6 +18,7 @@ from mxeon.models.hair.formulas import longitudinal
 from mxeon.models.microfacet.albedo import conductor_albedo_dir, ggx_albedo_dir_anisotropic
 from mxeon.models.microfacet.fresnel import fresnel_schlick
 from mxeon.models.sheen import conty_kulla_albedo_dir
+from mxeon.shaders.document.notes import DocumentWarning
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
 from mxeon.shaders.library import load_library
@@ -43,6 +45,22 @@ STRUCT = """<?xml version="1.0"?>
   <surfacematerial name="material1" type="material">
     <input name="surfaceshader" type="surfaceshader" nodename="surface1"/>
   </surfacematerial>
+</materialx>"""
+
+# Two nodes of one name, each in a nodegraph of its own.
+NAMES = """<materialx version="1.39">
+  <nodegraph name="red"><invert name="tint" type="color3">
+    <input name="in" type="color3" value="1, 0, 0"/>
+  </invert><output name="out" type="color3" nodename="tint"/></nodegraph>
+  <nodegraph name="green"><invert name="tint" type="color3">
+    <input name="in" type="color3" value="0, 1, 0"/>
+  </invert><output name="out" type="color3" nodename="tint"/></nodegraph>
+  <mix name="both" type="color3">
+    <input name="fg" type="color3" nodegraph="red" output="out"/>
+    <input name="bg" type="color3" nodegraph="green" output="out"/>
+    <input name="mix" type="float" value="0.5"/>
+  </mix>
+  <output name="shown" type="color3" nodename="both"/>
 </materialx>"""
 
 
@@ -170,6 +188,15 @@ def struct_block():
     return _table([("members, of 1, with a type that GLSL has", right, 1)], "{}")
 
 
+def names_block():
+    """Whether two nodes of one name have their own values in a shader."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DocumentWarning)
+        [shader] = generate(NAMES, "glsl", library=STOCK, element="shown")
+    values = {port.value for port in shader.inputs if port.name.startswith("tint_in")}
+    return _table([("values, of 2, of two nodes `tint`", len(values), 2)], "{}")
+
+
 def _direction(mu, azimuth):
     """A unit vector by its cosine and azimuth."""
     radius = np.sqrt(1.0 - mu * mu)
@@ -191,6 +218,7 @@ OF_PBRLIB = {
     "pbrlib_energy": energy_block,
     "pbrlib_hair_energy": hair_block,
     "pbrlib_tables": tables_block,
+    "same_names": names_block,
     "struct_members": struct_block,
     "xml_less_than": less_than_block,
 }

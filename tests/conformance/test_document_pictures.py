@@ -11,6 +11,7 @@ from mxeon.conformance.pictures.tolerances import FITTED, PLAIN, tolerance_of
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.hosts import open_host
+from mxeon.shaders.document.notes import DocumentWarning
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import SURFACE, document_text
 
@@ -20,6 +21,33 @@ FILM = """<generalized_schlick_bsdf name="lobe" type="BSDF">
   <input name="thinfilm_thickness" type="float" value="550"/>
   <input name="thinfilm_ior" type="float" value="1.5"/>
 </generalized_schlick_bsdf>"""
+# A nodegraph with a color, by its own name and the name of its node.
+COLOR = """<nodegraph name="{graph}">
+  <multiply name="{node}" type="color3">
+    <input name="in1" type="color3" value="{color}"/>
+    <input name="in2" type="float" value="0.5"/>
+  </multiply>
+  <output name="out" type="color3" nodename="{node}"/>
+</nodegraph>"""
+SUM = """<oren_nayar_diffuse_bsdf name="lobe1" type="BSDF">
+  <input name="weight" type="float" value="0.5"/>
+  <input name="color" type="color3" nodegraph="red" output="out"/>
+</oren_nayar_diffuse_bsdf>
+<oren_nayar_diffuse_bsdf name="lobe2" type="BSDF">
+  <input name="weight" type="float" value="0.5"/>
+  <input name="color" type="color3" nodegraph="green" output="out"/>
+</oren_nayar_diffuse_bsdf>
+<add name="lobe" type="BSDF">
+  <input name="in1" type="BSDF" nodename="lobe1"/>
+  <input name="in2" type="BSDF" nodename="lobe2"/>
+</add>"""
+
+
+def colors(first, second):
+    """Two lobes with colors from two nodegraphs, whose nodes have these names."""
+    red = COLOR.format(graph="red", node=first, color="1, 0, 0")
+    green = COLOR.format(graph="green", node=second, color="0, 1, 0")
+    return document_text(red + green + SUM + SURFACE)
 
 
 @pytest.fixture(scope="module")
@@ -68,3 +96,20 @@ def test_narrow_lobes_of_hair_add_more_than_wide_ones():
         for v, s in ((0.1, 0.3), (1e-3, 0.05))
     )
     assert PLAIN.value < wide.value < narrow.value < 1e-3
+
+
+def test_nodes_of_one_name_in_two_nodegraphs_are_named(host, tmp_path):
+    result, notes = judged(host, tmp_path, colors("tint", "tint"))
+    assert result.verdict == "failed"
+    assert 'nodes "red/tint" and "green/tint" have the values of one' in result.diagnosis
+    assert any("must have different names" in text for text, _ in notes)
+
+
+def test_nodes_of_two_names_in_two_nodegraphs_pass(host, tmp_path):
+    result, notes = judged(host, tmp_path, colors("tint1", "tint2"))
+    assert (result.verdict, notes) == ("passed", ())
+
+
+def test_generation_warns_of_nodes_of_one_name():
+    with pytest.warns(DocumentWarning, match='"red/tint" and "green/tint" must have different'):
+        generate(colors("tint", "tint"), "osl")

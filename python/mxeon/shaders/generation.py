@@ -15,7 +15,7 @@ from mxeon.errors import DocumentError, assert_known
 from mxeon.io.files import AnyPath
 from mxeon.shaders.closure_calls import check_closure_calls
 from mxeon.shaders.document.labels import label
-from mxeon.shaders.document.notes import CodeWarning, warn_of_files
+from mxeon.shaders.document.notes import CodeWarning, warn_of_files, warn_of_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.document.sources import Sources, copied_sources
@@ -166,7 +166,7 @@ def generate(
     MissingFileWarning
         If a file that a shader names does not exist; the name stays as it is.
     DocumentWarning
-        As `mxeon.shaders.document.reading.read_document` does.
+        As `mxeon.shaders.document.reading.read_document` does, and if nodes take the values of another.
 
     Examples
     --------
@@ -201,6 +201,7 @@ def generate(
             shaders.append(_shader(source, each.getNamePath(), target, content, folders))
     # Warn of what the shaders lack.
     warn_of_files(_files(shaders), content)
+    warn_of_names(elements, content)
     if profile == "cycles" and target == "osl":
         _warn_of_approximation(shaders)
     return tuple(shaders)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
+import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,7 +31,7 @@ from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.errors import NotRun, OutsideModel, ShaderError
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
-from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
+from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning, same_names
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import ApproximationWarning, CodeWarning, Shader
 from mxeon.shaders.nodes import BSDF_INPUTS
@@ -40,6 +41,7 @@ Pixels: TypeAlias = NDArray[np.floating]
 Case: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's picture
 
 MATCH = "The picture is the reference's in every pixel."
+SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_names.md"
 FINITE = "No pixel is infinite or not a number."
 
 
@@ -134,10 +136,16 @@ def _judge_material(
         lobes = (lobe for each in expected for lobe in each.lobes)
         tolerance = rounded_by(host, tolerance_of(shader, lobes))
         result = _judge_match(place, cases, tolerance, front_lit)
+        if result.verdict == FAILED and (names := same_names(_element(shader))):
+            result = replace(result, diagnosis=SAME_NAMES.format(names[0]))
     return result, tuple(
         _picture(file, shader, host, library, scene, image, reference)
         for scene, image, reference in zip(scenes, images, references, strict=True)
     )
+
+
+def _element(shader: Shader) -> mx.Element:
+    return shader.document.getDescendant(shader.element)
 
 
 def _picture_notes(shader: Shader, host: Host) -> tuple[str, ...]:

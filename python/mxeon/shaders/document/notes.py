@@ -85,6 +85,44 @@ def warn_of_files(inputs: Iterable[tuple[str, str]], document: mx.Document) -> N
     _warn(MissingFileWarning, texts)
 
 
+def same_names(element: mx.Element) -> tuple[str, ...]:
+    """Nodes behind an element that have one name in several nodegraphs, and other inputs, two in a text.
+
+    MaterialX gives all of them the values of the first: a name of a shader's input has no nodegraph in it.
+    """
+    nodes = [element, *(edge.getUpstreamElement() for edge in element.traverseGraph())]
+    first: dict[tuple[str, str], mx.Node] = {}
+    pairs = {}
+    for node in nodes:
+        if node.isA(mx.Node):
+            other = first.setdefault((node.getCategory(), node.getName()), node)
+            if other.getNamePath() != node.getNamePath() and _inputs(other) != _inputs(node):
+                pairs[f'"{other.getNamePath()}" and "{node.getNamePath()}"'] = None
+    return tuple(pairs)
+
+
+def _inputs(node: mx.Node) -> set[tuple[str, str]]:
+    """Inputs of a node that have a value, with it."""
+    return {
+        (port.getName(), port.getValueString())
+        for port in node.getInputs()
+        if port.hasValueString()
+    }
+
+
+def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None:
+    """Warn of nodes whose inputs are taken for those of another.
+
+    Warns
+    -----
+    DocumentWarning
+        Once.
+    """
+    pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
+    rule = "must have different names; MaterialX gives both the values of one"
+    _warn(DocumentWarning, [f"{label(document)}: nodes {pair} {rule}" for pair in pairs])
+
+
 def _warn(kind: type[Warning], texts: Sequence[str]) -> None:
     """Warn with the first of similar texts and the number of the others: there may be thousands.
 
