@@ -211,6 +211,20 @@ def test_a_lobe_of_no_weight_adds_nothing_whatever_it_is():
     assert not center(material(node)).any()
 
 
+def test_inputs_that_are_no_numbers_where_a_lobe_has_no_weight_do_no_harm():
+    shader = generate(document_text('<gltf_pbr name="shading" type="surfaceshader"/>'), "glsl")[0]
+    wo, wi = np.array([[0.6, 0.0, 0.8]] * 2), np.array([[0.0, -0.8, 0.6]] * 2)
+    colors = np.array([[0.0, 0.0, 0.0], [0.5, 0.2, 0.1]])
+    both, black = (
+        Reference().evaluate(
+            shader, wo[:count], wi[:count], {"sheen_color": colors[:count]}, "direct"
+        )
+        for count in (2, 1)
+    )
+    assert np.isfinite(both).all()
+    assert np.array_equal(both[:1], black)
+
+
 def test_emission_is_scaled_by_the_opacity():
     text = document_text("""<uniform_edf name="lamp" type="EDF">
       <input name="color" type="color3" value="2, 4, 6"/></uniform_edf>

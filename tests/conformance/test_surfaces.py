@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surface shaders as a whole: what eonlib keeps, what stock MaterialX does not, and dead inputs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -16,6 +18,7 @@ from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.selection import node_names
+from mxeon.errors import NotRun
 from mxeon.shaders.library import load_library
 from tests.support.wrong_libraries import wrong_copy
 
@@ -91,6 +94,12 @@ def test_every_input_of_a_shader_is_asked_for_or_of_no_lobe(shader):
     words = ("emiss", "opacity", "alpha", "occlusion")
     rest = names - set(shader.inputs) - set(FREE_PATHS)
     assert all(any(word in name for word in words) for name in rest)
+
+
+def test_an_input_that_a_shader_lacks_is_named(gl):
+    table = replace(SHORT.table, more={**SHORT.table.more, "glow": 0.5})
+    with pytest.raises(NotRun, match="has no input glow, which is to change"):
+        _ = SurfaceShaderProbe(gl, replace(SHORT, table=table), "eonlib").changed
 
 
 def test_they_are_judged_where_they_are_named():

@@ -13,6 +13,7 @@ from mxeon.conformance.probes.bsdf import LEAST_VIEW, reflected
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions
+from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.generation import Shader, generate
@@ -81,6 +82,10 @@ class SurfaceShaderProbe(PairProbe):
         few = batch.first(CHANGED)
         defaults = self._defaults
         names = sorted({name for row in rows for name in row})
+        if missing := [name for name in names if name not in defaults]:
+            raise NotRun(
+                f"{self.subject.node} of this MaterialX has no input {', '.join(missing)}, which is to change"
+            )
         inputs = {
             name: np.repeat(
                 [np.asarray(row.get(name, defaults[name]), float) for row in rows], CHANGED, 0
@@ -92,7 +97,11 @@ class SurfaceShaderProbe(PairProbe):
     @property
     def _defaults(self) -> Mapping[str, Plain]:
         """Values of the inputs that a document does not set."""
-        vectors = {name: TANGENT if "tangent" in name else NORMAL for name in self.subject.inputs}
+        vectors = {
+            name: TANGENT if "tangent" in name else NORMAL
+            for name in self.subject.inputs
+            if name.endswith(("normal", "tangent"))
+        }
         ports = {port.path.rsplit("/", 1)[-1]: port.value for port in self._shader.inputs}
         return {**vectors, **ports}
 

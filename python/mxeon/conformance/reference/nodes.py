@@ -92,7 +92,10 @@ def node_lobe(
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
     _assert_known(node, row, inputs)
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
-    arguments = {port: _shaped(node, port, inputs[port]) for port in (*row.inputs, *film)}
+    arguments = {
+        port: _where_shown(_shaped(node, port, inputs[port]), weight)
+        for port in (*row.inputs, *film)
+    }
     if row.name == "qon":
         # MaterialX keeps float32, in which pi / 2 is above pi / 2: that alone is lowered to it.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
@@ -162,6 +165,16 @@ def _shaped(node: mx.Node, port: str, value: Values) -> Values:
     return np.broadcast_to(
         array, (len(array), COMPONENTS[definition(node).getActiveInput(port).getType()])
     )
+
+
+def _where_shown(value: Values, weight: Values) -> Values:
+    """Values of an input with another point's where its lobe has no weight: there it may be no number."""
+    idle = weight[:, 0] == 0.0
+    if len(value) != len(idle) or not idle.any():
+        return value
+    shown = value.copy()
+    shown[idle] = value[int(idle.argmin())]
+    return shown
 
 
 def combined(name: str, operation: Callable[..., Bsdf], *values: Bsdf | Values) -> Bsdf:
