@@ -17,7 +17,7 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
 from mxeon.errors import InterfaceError
-from mxeon.shaders.generators import context_of, generator_of
+from mxeon.shaders.generators import context_of, generated, generator_of
 from mxeon.shaders.library import load_library, standard_folders
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
@@ -84,7 +84,7 @@ def _call(target: str, library: str, profile: str | None, nodedef: str, function
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)
     context = context_of(document, target, generator, False, ())
-    text = generator.generate(NODE, _surface(document, nodedef), context).getSourceCode("pixel")
+    text = generated(generator, NODE, _surface(document, nodedef), context).getSourceCode("pixel")
     calls = list(re.finditer(rf"(?<!void )\b{function}\(", text))
     return _arguments(text, calls[-1].end()) if calls else []
 

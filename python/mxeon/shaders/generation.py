@@ -20,7 +20,14 @@ from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.document.sources import Sources, copied_sources
 from mxeon.shaders.document.values import Plain, plain
-from mxeon.shaders.generators import GENERATORS, TARGETS, context_of, generator_of, tokens_of
+from mxeon.shaders.generators import (
+    GENERATORS,
+    TARGETS,
+    context_of,
+    generated,
+    generator_of,
+    tokens_of,
+)
 from mxeon.shaders.library import own_folders
 from mxeon.shaders.names import shader_names
 
@@ -227,7 +234,7 @@ def _generate(
 ) -> mx_gen.Shader:
     path, generator = element.getNamePath(), context.getShaderGenerator()
     try:
-        return generator.generate(name, element, context)
+        return generated(generator, name, element, context)
     except (mx.Exception, LookupError) as error:
         reason = sources.in_words(str(error).strip().splitlines()[0])
         if "nodedef" in reason:

@@ -2,13 +2,14 @@
 """MaterialX's shader generators, set up for a target, a data library and a document."""
 
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from functools import cache, lru_cache
 from importlib import import_module
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenShader as mx_gen
 
+from mxeon.io.words import lines_left_out
 from mxeon.shaders.library import LOADED, load_library
 from mxeon.shaders.targets import CLASSES
 
@@ -17,6 +18,8 @@ for _target, (_module, _name) in CLASSES.items():
     with suppress(ModuleNotFoundError, AttributeError):
         GENERATORS[_target] = getattr(import_module(f"MaterialX.PyMaterialX{_module}"), _name)
 TARGETS = tuple(GENERATORS)
+
+BOOLEANS = "WGSL does not allow boolean types"  # printed for each, though the text has an integer
 
 
 def generator_of(
@@ -103,6 +106,15 @@ def context_of(
     return context
 
 
+def generated(
+    generator: mx_gen.ShaderGenerator, name: str, element: mx.Element, context: mx_gen.GenContext
+) -> mx_gen.Shader:
+    """Shader of an element, without what MaterialX prints of a text that it mends itself."""
+    wordy = isinstance(generator, GENERATORS.get("wgsl", ()))
+    with lines_left_out(BOOLEANS) if wordy else nullcontext():
+        return generator.generate(name, element, context)
+
+
 @cache
 def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
     """Words of includes, and the names that a generator has in their place: known once it has run."""
@@ -110,5 +122,5 @@ def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, st
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)
     surface = document.addNode("surface", "surface", "surfaceshader")
-    generator.generate("surface", surface, context_of(document, target, generator, False, ()))
+    generated(generator, "surface", surface, context_of(document, target, generator, False, ()))
     return dict(generator.getTokenSubstitutions())
