@@ -63,6 +63,8 @@ PLUMBING = (
     "mxeon.models.catalog",
     "mxeon.models.core.evaluation",
     "mxeon.models.lobe_plot",
+    "mxeon.models.media_model",
+    "mxeon.models.nodes.frames",
     "mxeon.models.nodes.inputs",
     "mxeon.models.shading_model",
 )  # which has no arguments of its own

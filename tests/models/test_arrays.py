@@ -8,21 +8,36 @@ same function in NumPy, where these can be relied on.
 import inspect
 import re
 import sys
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+import mxeon
 from docs import arrays as table
 from mxeon.albedo import fon_albedo_dir, fon_loss
-from mxeon.models import conductor_brdf, dielectric_brdf, eon_brdf, lambert_brdf, unchecked
+from mxeon.models import eon_brdf, lambert_brdf, smith_g1, unchecked
 from mxeon.models.core import edges, namespaces
 from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse import formulas
 from tests.fuzz import arguments
 
-COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"}
+COLORS = {
+    "rho",
+    "color",
+    "color0",
+    "color82",
+    "color90",
+    "tint",
+    "radiance",
+    "base",
+    "ior",
+    "extinction",
+}
+TINTS = ("rho", "color", "tint", "radiance", "base")
+PAIRS = ("microfacet", "ggx_", "btdf")  # in the names of functions whose roughness is a pair
 ROWS = 48
 SEED = 11
 GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
@@ -35,26 +50,27 @@ PORTABLE = {
     for name, function in arguments.functions().items()
     if inspect.unwrap(function) is not function
 }
-COMPENSATED = ("dielectric_brdf", "generalized_schlick_brdf")
-CASES = [
-    *((name, False) for name in PORTABLE),
-    *((name, True) for name in PORTABLE if name.endswith(COMPENSATED)),
-]
+COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
 OTHERS = sorted(set(arguments.functions()) - set(PORTABLE))
-HIGH = {"exponent": 8.0, "ior": 3.0, "extinction": 4.0}  # ends for tests, where a range has none
+# Ends for tests, where a range has none.
+HIGH = {"exponent": 8.0, "ior": 3.0} | dict.fromkeys(
+    ("extinction", "radiance", "base", "absorption", "scattering", "distance"), 4.0
+)
 
 
 def pytorch():
     torch = pytest.importorskip("torch")
     pytest.importorskip("array_api_compat")
 
-    def gradients(loss, values):
+    def gradients(function, values):
         tensors = {k: torch.tensor(v, requires_grad=True) for k, v in values.items()}
-        loss(tensors).backward()
-        return {
+        value = function(**tensors)
+        scalar(value).sum().backward()
+        found = {
             k: np.zeros_like(values[k]) if t.grad is None else t.grad.numpy()
             for k, t in tensors.items()
         }
+        return whole(value).detach().numpy(), found
 
     return SimpleNamespace(
         array=lambda x: torch.tensor(np.asarray(x)),
@@ -67,16 +83,22 @@ def pytorch():
 def jax():
     library = pytest.importorskip("jax")
     library.config.update("jax_enable_x64", True)
+    library.config.update("jax_disable_most_optimizations", True)  # compiled for one call
 
-    def gradients(loss, values):
+    def gradients(function, values):
+        def loss(arrays):
+            value = function(**arrays)
+            return scalar(value).sum(), whole(value)
+
         with unchecked():
-            return {k: np.asarray(v) for k, v in library.grad(loss)(values).items()}
+            found, value = library.jit(library.grad(loss, has_aux=True))(values)
+        return np.asarray(value), {k: np.asarray(v) for k, v in found.items()}
 
     return SimpleNamespace(
         array=library.numpy.asarray,
         numpy=np.asarray,
         gradients=gradients,
-        transforms=(library.jit, library.vmap),
+        transforms=(library.jit, lambda f: library.jit(library.vmap(f))),
     )
 
 
@@ -105,20 +127,33 @@ def sampled(function):
             arrays[name] = directions(rng, value[2] < 0.0)
         else:
             low, high, _ = RANGES[name]
-            pairs = name == "roughness" and "microfacet" in function.__module__
+            place = f"{function.__module__}.{function.__name__}"
+            pairs = name == "roughness" and any(each in place for each in PAIRS)
             high, shape = HIGH.get(name, high), (ROWS, 2) if pairs else (ROWS, *np.shape(value))
             inside = low + (high - low) * rng.uniform(0.2, 0.95, shape)
-            ends = rng.choice([low, 1.0, high], shape)
+            ends = rng.choice([low, min(1.0, high), high], shape)
             arrays[name] = np.where(rng.random(shape) < 0.25, ends, inside)
-    channels = np.ndim(arguments.call(function, arguments.base(function)))
+    channels = np.ndim(whole(arguments.call(function, arguments.base(function))))
     for name in COLORS & set(arrays) if channels else ():
-        if name.startswith(("rho", "color", "tint")) or "conductor" in function.__name__:
+        if name.startswith(TINTS) or "conductor" in function.__name__:
             arrays[name] = arrays[name][:, np.newaxis]
     return arrays, switches
 
 
+def whole(value):
+    """An array: of a sampler the components of the direction, and the density."""
+    if not isinstance(value, tuple):
+        return value
+    w, pdf = value
+    return array_namespace(w).stack(
+        [w[..., 0], w[..., 1], w[..., 2], pdf + 0.0 * w[..., 0]], axis=-1
+    )
+
+
 def scalar(value):
-    """One number per row: values of all channels together."""
+    """One number per row: the first channel, or all that a sampler returns together."""
+    if isinstance(value, tuple):
+        return whole(value).sum(-1)
     return value if value.ndim == 1 else value[..., 0]
 
 
@@ -160,9 +195,11 @@ def test_gradients_are_finite_and_those_of_differences(library, name):
     assert_gradients(library, name, False)
 
 
-@pytest.mark.parametrize("name", [name for name, compensate in CASES if compensate])
+@pytest.mark.parametrize("name", COMPENSATED)
 def test_gradients_of_the_compensation_are_those_of_differences(name):
-    assert_gradients(pytorch(), name, True)  # JAX compiles its polynomials for seconds
+    assert_gradients(
+        pytorch(), f"mxeon.models.microfacet.{name}", True
+    )  # JAX compiles its polynomials for seconds
 
 
 def assert_gradients(library, name, compensate):
@@ -170,7 +207,8 @@ def assert_gradients(library, name, compensate):
     function = PORTABLE[name]
     arrays, switches = sampled(function)
     switches |= {"compensate": True} if compensate else {}
-    found = library.gradients(lambda values: scalar(function(**values, **switches)).sum(), arrays)
+    value, found = library.gradients(partial(function, **switches), arrays)
+    assert_values(value, function, arrays, switches)
     for argument, gradient in found.items():
         assert np.isfinite(gradient).all(), argument
         columns, judged = gradient.reshape(ROWS, -1).T, 0
@@ -190,19 +228,22 @@ def assert_gradients(library, name, compensate):
         assert judged >= COMPARED * columns.size, argument
 
 
-@pytest.mark.parametrize(("name", "compensate"), CASES)
-def test_values_are_those_of_numpy(library, name, compensate):
-    function = PORTABLE[name]
-    arrays, switches = sampled(function)
-    switches |= {"compensate": True} if compensate else {}
-    expected = function(**arrays, **switches)
-    other = {name: library.array(value) for name, value in arrays.items()}
-    result = function(**other, **switches)
-    assert isinstance(
-        result, type(other["roughness" if "roughness" in other else next(iter(other))])
-    )
-    error = np.abs(library.numpy(result) - expected) / np.maximum(1.0, np.abs(expected))
+def assert_values(value, function, arrays, switches):
+    """Compare values with those of the same function in NumPy."""
+    expected = whole(function(**arrays, **switches))
+    assert value.shape == expected.shape
+    error = np.abs(value - expected) / np.maximum(1.0, np.abs(expected))
     assert error.max() <= VALUE
+
+
+@pytest.mark.parametrize("name", COMPENSATED)
+def test_values_with_compensation_are_those_of_numpy(name):
+    function, library = PORTABLE[f"mxeon.models.microfacet.{name}"], jax()
+    arrays, switches = sampled(function)
+    switches |= {"compensate": True}
+    with unchecked():
+        value = library.transforms[0](partial(function, **switches))(**arrays)
+    assert_values(library.numpy(value), function, arrays, switches)
 
 
 def test_numpy_gets_its_own_functions_to_the_last_bit():
@@ -259,23 +300,20 @@ def test_values_are_checked_wherever_there_are_any(library):
         lambert_brdf(up, -up, rho)
     with pytest.raises(ValueError, match="^roughness must be real numbers"):
         eon_brdf(up, up, rho, "rough")
-    with pytest.raises(ValueError, match="^compensate must be False for arrays of"):
-        conductor_brdf(up, up, [0.5, 0.5], rho, rho)
     with unchecked():
         assert library.numpy(lambert_brdf(up, -up, 2.0 * rho)) == 1.0 / np.pi
 
 
 def test_a_number_for_the_roughness_stands_for_both(library):
-    wo, wi, ior = [0.6, 0.0, 0.8], [0.0, 0.6, 0.8], library.array(1.5)
-    both = dielectric_brdf(wo, wi, 1.0, library.array([0.4, 0.4]), ior, compensate=False)
+    wo = library.array([0.6, 0.0, 0.8])
+    both = smith_g1(wo, library.array([0.4, 0.4]))
     for roughness in (0.4, library.array(0.4)):
-        one = dielectric_brdf(wo, wi, 1.0, roughness, ior, compensate=False)
-        assert library.numpy(one) == library.numpy(both)
+        assert library.numpy(smith_g1(wo, roughness)) == library.numpy(both)
 
 
 def test_precision_is_that_of_the_arrays(library):
     single = library.array(np.array([0.5], np.float32))
-    value = eon_brdf(np.array([[0.6, 0.0, 0.8]]), [0, 0, 1], single, 0.5)
+    value = lambert_brdf(np.array([[0.6, 0.0, 0.8]]), [0, 0, 1], single)
     assert library.numpy(value).dtype == np.float32 and tuple(value.shape) == (1, 1)
     whole = lambert_brdf(library.array([0, 0, 1]), [0, 0, 1], 0.5)  # integers are no precision
     assert library.numpy(whole).dtype in (np.float32, np.float64)
@@ -327,11 +365,43 @@ def test_the_page_lists_the_functions_that_take_other_arrays():
 def test_the_examples_of_the_page_run(name):
     pytest.importorskip(name)
     blocks = re.findall(r"```python\n(.*?)```", table.PAGE.read_text(encoding="utf-8"), re.DOTALL)
-    [block] = [each for each in blocks if f"import {name}\n" in each]
-    exec(block, {})
+    chosen = [each for each in blocks if f"import {name}\n" in each]
+    assert chosen
+    for block in chosen:
+        exec(block, {})
 
 
 def test_functions_of_dr_jit_have_the_names_of_the_standard():
     drjit = pytest.importorskip("drjit")
     namespaces._drjit.cache_clear()
     assert namespaces._drjit().where is drjit.select
+
+
+@pytest.mark.parametrize("name", ["eon", "qon", "zeltner", "conductor", "dielectric_t"])
+def test_models_by_name_take_other_arrays_and_give_gradients(name):
+    library, row = pytorch(), mxeon.model(name)
+    rng = np.random.default_rng(SEED)
+    wo, wi = directions(rng, False), directions(rng, row.lights == "back")
+    inputs = {each.name: np.array(each.default) * 0.9 + 0.05 for each in row.parameters}
+    inputs |= {"weight": np.array(0.7)}
+    expected = row.bsdf(wo, wi, **inputs)
+    value, found = library.gradients(partial(row.bsdf, wo, wi), inputs)
+    np.testing.assert_allclose(value, expected, VALUE, VALUE)
+    assert all(np.isfinite(each).all() and each.any() for each in found.values())
+    assert found["weight"] == pytest.approx(expected[..., 0].sum() / 0.7)
+
+
+def test_models_by_name_run_under_jit_and_in_a_frame():
+    library, row = jax(), mxeon.model("eon")
+    wo, wi, normal = np.array([0.6, 0.0, 0.8]), np.array([0.0, 0.6, 0.8]), np.array([0.6, 0.0, 0.8])
+    with unchecked():
+        traced = library.transforms[0](lambda rough: row.brdf(wo, wi, 0.5, rough, normal=normal))
+        value = library.numpy(traced(0.4))
+    assert value == pytest.approx(row.brdf(wo, wi, 0.5, 0.4, normal=normal))
+
+
+def test_models_by_name_refuse_what_their_functions_do_not_take():
+    torch = pytest.importorskip("torch")
+    for name in ("hair", "conductor_film", "eon_clamped"):
+        with pytest.raises(ValueError, match=r"must be an array of NumPy, not of torch"):
+            mxeon.model(name).bsdf(torch.tensor([0.0, 0.6, 0.8]), [0.0, 0.6, 0.8])

@@ -15,16 +15,21 @@ from mxeon import models
 from mxeon.models.catalog import MODELS, model_names
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.parameters import DEFAULTS
+from mxeon.models.shading_model import ShadingModel
 from mxeon.shaders.library import load_library
 from tests.support import tolerances
 
 WO, WI = np.array([0.6, 0.0, 0.8]), np.array([-0.36, 0.48, 0.8])
 MANY = np.array([[0.6, 0.0, 0.8], [0.0, 0.8, 0.6], [0.0, 0.0, 1.0], [0.0, 0.6, 0.8], WI])
 PAGES = Path(__file__).resolve().parents[2] / "docs/api"
+TRANSMITTED = 3e-4  # of the albedo, whose quadrature states 2e-4; that of the values adds to it
 MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
+TURN = np.array([[0.0, 0.6, 0.8], [0.8, -0.48, 0.36], [0.6, 0.64, -0.48]])  # rows are its axes
 LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
 every_model = pytest.mark.parametrize("name", MODELS)
+SCATTERING = [name for name, each in MODELS.items() if isinstance(each, ShadingModel)]
+every_scattering = pytest.mark.parametrize("name", SCATTERING)
 
 
 @pytest.mark.parametrize("category", DEFAULTS)
@@ -34,9 +39,20 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
     ports = [port for port in definition.getActiveInputs() if port.getName() not in left]
     assert list(DEFAULTS[category]) == [port.getName() for port in ports]
     for port in ports:
-        numbers = [float(each) for each in port.getValueString().split(",")]
+        text = port.getValueString() or "0.0, 0.0, 0.0"  # an EDF has no value
+        numbers = [float(each) for each in text.split(",")]
         assert np.ravel(DEFAULTS[category][port.getName()]).tolist() == numbers
     assert mx.getVersionString() == "1.39.5"
+
+
+@every_scattering
+def test_inputs_that_go_by_name_are_those_of_the_node(name):
+    row = MODELS[name]
+    ports = load_library("stock").getNodeDef(f"ND_{row.node}").getActiveInputs()
+    own = FRAME & {port.getName() for port in ports}
+    assert own - set(row.by_name) == (
+        {"retroreflective"} if name.endswith(("_t", "_rt")) else set()
+    )
 
 
 @every_model
@@ -50,7 +66,7 @@ def test_inputs_are_in_the_order_of_their_node(name):
         assert all(low <= number <= high for number in np.ravel(each.default))
 
 
-@every_model
+@every_scattering
 def test_a_model_has_the_functions_that_it_names(name):
     row = mxeon.model(name)
     light = LIGHT[row.lights]
@@ -88,7 +104,7 @@ def test_a_node_gives_the_model_of_its_default_mode(category):
     assert modes.get("energy_compensation") in (None, "false") or row.name == "eon"
 
 
-@every_model
+@every_scattering
 def test_a_material_each_gives_the_values_of_single_calls(name):
     row = mxeon.model(name)
     light = LIGHT[row.lights]
@@ -115,6 +131,72 @@ def test_inputs_go_to_the_functions_of_the_models():
     assert qon == models.qon_brdf(WO, WI, 0.5, 1.2)[0]
     assert mxeon.model("eon").albedo_dir(0.3, 0.5, 1.0) == models.eon_albedo_dir(0.3, 0.5, 1.0)[0]
     assert mxeon.model("eon").albedo_avg(0.5, 1.0) == models.eon_albedo_avg(0.5, 1.0)[0]
+
+
+@pytest.mark.parametrize("name", ["eon", "dielectric", "conductor_film", "hair", "schlick_t"])
+def test_a_frame_turns_directions_and_a_weight_scales(name):
+    row = mxeon.model(name)
+    light, alpha = LIGHT[row.lights], {"roughness": [0.4, 0.2]} if "schlick" in name else {}
+    plain = row.bsdf(WO, light, **alpha)
+    along = {"curve_direction" if name == "hair" else "tangent": TURN[0] + TURN[2]}
+    frame = {"normal": TURN[2]} | (along if set(along) <= set(row.by_name) else {})
+    turned = row.bsdf(WO @ TURN, light @ TURN, **alpha, **frame)
+    assert np.allclose(turned, plain, rtol=1e-9) or name == "eon"
+    if "weight" in row.by_name:
+        assert_array_equal(row.bsdf(WO, light, **alpha, weight=0.5), 0.5 * plain)
+        assert_array_equal(row.albedo_dir(0.3, weight=0.5), 0.5 * row.albedo_dir(0.3))
+    if name == "eon":  # which has no tangent to turn
+        assert np.allclose(row.bsdf(WO @ TURN, light @ TURN, normal=TURN[2]), plain, rtol=1e-9)
+        wi, pdf = row.sample(WO @ TURN, [0.3, 0.6], normal=TURN[2])
+        assert row.pdf(WO @ TURN, wi, normal=TURN[2]) == pytest.approx(pdf)
+
+
+def test_retroreflection_mirrors_the_viewer():
+    inputs = {"roughness": [0.4, 0.2], "ior": 1.5}
+    value = mxeon.model("dielectric").brdf(WO, WI, **inputs, retroreflective=True)
+    expected = models.dielectric_brdf(WO, WI, [1.0] * 3, **inputs, retroreflective=True)
+    assert np.allclose(value, expected, rtol=1e-12)
+    wi, pdf = mxeon.model("dielectric").sample(WO, [0.3, 0.6], **inputs, retroreflective=True)
+    assert wi @ WO > 0.5 and pdf == pytest.approx(
+        models.ggx_pdf(WO * [-1, -1, 1], wi, inputs["roughness"])
+    )
+
+
+@pytest.mark.parametrize("name", ["dielectric", "schlick"])
+def test_scatter_modes_t_and_rt_are_transmission_and_both(name):
+    inputs, below = {"roughness": 0.4}, LIGHT["back"]
+    if name == "schlick":
+        inputs |= {"color0": 0.04}
+    R, T, RT = (mxeon.model(f"{name}{mode}") for mode in ("", "_t", "_rt"))
+    assert_array_equal(RT.bsdf(WO, [WI, below], **inputs)[0], R.bsdf(WO, WI, **inputs))
+    assert_array_equal(RT.bsdf(WO, [WI, below], **inputs)[1], T.bsdf(WO, below, **inputs))
+
+    # The integral of the values is the albedo.
+    def below_of(wo, wi, rho):
+        return T.bsdf(wo, wi * [1.0, 1.0, -1.0], **inputs)
+
+    integral = models.albedo_dir_quadrature(below_of, 0.8, np.ones(3), nodes=128)
+    albedo = T.albedo_dir(0.8, **inputs)
+    assert np.allclose(integral, albedo, atol=TRANSMITTED)
+    both = RT.albedo_dir(0.8, **inputs)
+    assert np.allclose(both, albedo + R.albedo_dir(0.8, **inputs))
+
+
+def test_emissions_and_media_are_those_of_their_functions():
+    cone = mxeon.model("conical_edf")
+    edf = cone.edf(MANY[:4], 2.0, 30.0, 140.0)
+    assert_array_equal(edf, models.conical_edf(MANY[:4], 2.0, 30.0, 140.0)[:, 0])
+    assert cone.exitance(2.0, 30.0, 140.0) == models.conical_exitance(2.0, 30.0, 140.0)[0]
+    curve = mxeon.model("generalized_schlick_edf").edf(WO, 1.0, 0.0, 1.0, base=[1.0, 2.0])
+    assert curve.round(12).tolist() == [0.8, 1.6]
+    fog = mxeon.model("anisotropic_vdf")
+    inputs = {"absorption": [0.1, 0.2, 0.3], "scattering": 0.5, "anisotropy": 0.3}
+    T = fog.transmittance([1.0, 2.0], **inputs)
+    assert np.allclose(T, np.exp([[-0.6, -0.7, -0.8], [-1.2, -1.4, -1.6]]), rtol=1e-12)
+    assert fog.phase(0.5, **inputs) == models.hg_phase(0.5, 0.3)
+    wi, pdf = fog.sample(WO, [[0.3, 0.6], [0.1, 0.2]], **inputs)
+    assert np.allclose(fog.pdf(WO, wi, **inputs), pdf) and wi.shape == (2, 3)
+    assert mxeon.model("absorption_vdf").functions == ("transmittance",)
 
 
 def test_an_albedo_without_a_closed_form_is_the_integral():
@@ -175,6 +257,12 @@ def test_a_number_for_roughness_is_isotropic(function, inputs):
         (lambda: mxeon.model("conductor_bdsf"), ValueError, "did you mean conductor_bsdf?"),
         (lambda: mxeon.model(["eon"]), ValueError, "got ['eon']"),
         (lambda: mxeon.model("fon").sample(WO, [0.1, 0.2]), ValueError, "fon has no sample; it has brdf"),
+        (lambda: mxeon.model("absorption_vdf").phase(0.5), ValueError, "absorption_vdf has no phase; it has trans"),
+        (lambda: mxeon.model("eon").albedo_dir(0.5, normal=WO), TypeError, "an albedo has none to turn"),
+        (lambda: mxeon.model("eon").brdf(WO, WI, normal=[0.0, 0.0, 2.0]), ValueError, "normal must be unit"),
+        (lambda: mxeon.model("conductor").brdf(WO, WI, tangent=[0.0, 0.0, 1.0]), ValueError, "tangent must not be parallel"),
+        (lambda: mxeon.model("eon").brdf(WO, WI, weight=1.5), ValueError, "weight must lie in [0, 1]; got 1.5"),
+        (lambda: mxeon.model("conductor").brdf(WO, WI, retroreflective=1), ValueError, "retroreflective must be True or False"),
         (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf; it has bsdf"),
         (lambda: mxeon.model("eon").brdf(WO, WI, tint=1.0), TypeError, "inputs are color, roughness; got 'tint'"),
         (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, rho=1.0), TypeError, "got 'rho' twice"),

@@ -34,6 +34,8 @@ from mxeon.models.microfacet.ggx import ggx_ndf, smith_g1, smith_g2, smith_g2_an
 if TYPE_CHECKING:
     from mxeon.models.catalog import model as model
     from mxeon.models.catalog import model_names as model_names
+    from mxeon.models.media_model import EmissionModel as EmissionModel
+    from mxeon.models.media_model import MediumModel as MediumModel
     from mxeon.models.shading_model import ShadingModel as ShadingModel
 
 # Names that are loaded when they are used, by the module that defines them.
@@ -67,6 +69,7 @@ _LATER = {
         "subsurface_coefficients subsurface_reflectance"
     ),
     "media.volume": "extinction hg_pdf hg_phase hg_sample single_scattering_albedo transmittance",
+    "media_model": "EmissionModel MediumModel",
     "microfacet.albedo": (
         "conductor_albedo_dir dielectric_albedo_dir generalized_schlick_albedo_dir "
         "ggx_albedo_dir_anisotropic"

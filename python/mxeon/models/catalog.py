@@ -6,19 +6,28 @@ Inputs have MaterialX's names, order, units and defaults, whatever the functions
 
 from __future__ import annotations
 
+from typing import Literal, TypeAlias, overload
+
 import numpy as np
 
 from mxeon.models import sampling, table
 from mxeon.models.core.arguments import checked_choice
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.edges import cosine
+from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.core.quadrature import albedo_dir_quadrature
+from mxeon.models.media_model import EmissionModel, MediumModel
 from mxeon.models.nodes import NODES
+from mxeon.models.nodes.emissions import EMISSIONS, Emission
 from mxeon.models.nodes.hair import HAIR_NODE
+from mxeon.models.nodes.media import MEDIA, Medium
 from mxeon.models.nodes.node import Inputs, PbrNode
-from mxeon.models.nodes.parameters import parameter
+from mxeon.models.nodes.parameters import BY_NAME, DEFAULTS, FRAME, parameter
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 from mxeon.models.nodes.thin_films import FILM_NODES
-from mxeon.models.shading_model import ModelSampler, ShadingModel
+from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS
+from mxeon.models.shading_model import ModelSampler, NodeModel, ShadingModel
+from mxeon.models.transmission.refraction import LEAST
 
 COSINE = ModelSampler(
     lambda wo, u, i: sampling.cosine_sample(u), lambda wo, wi, i: sampling.cosine_pdf(wi)
@@ -59,18 +68,35 @@ NODES_BY_CATEGORY = {
 }
 
 
-def model(name: str) -> ShadingModel:
+Edf: TypeAlias = Literal["uniform_edf", "conical_edf", "generalized_schlick_edf"]
+Vdf: TypeAlias = Literal["absorption_vdf", "anisotropic_vdf"]
+
+
+@overload
+def model(name: Edf) -> EmissionModel: ...  # type: ignore[overload-overlap]
+
+
+@overload
+def model(name: Vdf) -> MediumModel: ...  # type: ignore[overload-overlap]
+
+
+@overload
+def model(name: str) -> ShadingModel: ...
+
+
+def model(name: str) -> NodeModel:
     """The model with this name: of rough diffuse nodes, a known variant of them, or a node of pbrlib.
 
     Parameters
     ----------
     name : str
         One of `model_names()`, such as "eon", "qon", "dielectric" or "zeltner", or the category of a
-        node, such as "conductor_bsdf", which is the model of its default mode.
+        node, such as "conductor_bsdf" or "uniform_edf", which is the model of its default mode.
 
     Returns
     -------
-    ShadingModel
+    ShadingModel, EmissionModel or MediumModel
+        What reflects or transmits; an EDF; a VDF.
 
     Raises
     ------
@@ -109,7 +135,49 @@ def _of_node(row: PbrNode) -> ShadingModel:
         row.integral or row.albedo,
         sampler=SAMPLERS.get(row.name),
         lights="all sides" if row is HAIR_NODE else lights,
+        by_name=BY_NAME.get(row.category, ("weight", "normal")),
     )
+
+
+def _of_transmission(row: PbrNode) -> ShadingModel:
+    """The model of a node in scatter mode T or RT, of radiance."""
+    passing, mode = TRANSMISSIONS[row.category], row.fixed["scatter_mode"]
+    reflected = row.integral or row.albedo
+
+    # Reflect light from above, and transmit light from below.
+    def value(wo: Array, wi: Array, inputs: Inputs) -> Array:
+        if mode == "T":
+            return passing.value(wo, wi, inputs)
+        xp, (x, y, z) = array_namespace(wi), (wi[:, 0], wi[:, 1], wi[:, 2])
+        back = passing.value(wo, xp.stack([x, y, -xp.abs(z)], axis=1), inputs)
+        front = row.value(wo, xp.stack([x, y, xp.abs(z)], axis=1), inputs)
+        return xp.where(z[:, np.newaxis] < 0.0, back, front)
+
+    # A BTDF of radiance integrates to the transmitted share over the squared index.
+    def albedo(wo: Array, inputs: Inputs) -> Array:
+        ior = np.maximum(passing.ior(inputs), LEAST)[:, np.newaxis]
+        passed: Array = passing.passed(wo, inputs, True) / ior**2
+        return passed if mode == "T" else passed + reflected(wo, inputs)
+
+    # Give both the inputs of the node.
+    inputs = tuple(parameter(row.category, name) for name in row.inputs)
+    lights = "back" if mode == "T" else "all sides"
+    title, frame = f"{row.title}, scatter mode {mode}", FRAME[:-1]
+    return ShadingModel(
+        row.name, title, row.category, inputs, value, albedo, lights=lights, by_name=frame
+    )
+
+
+def _of_emission(row: Emission) -> EmissionModel:
+    """The model of an EDF node."""
+    inputs = tuple(parameter(row.category, name) for name in DEFAULTS[row.category])
+    return EmissionModel(row.category, row.title, row.category, inputs, row.value, row.exitance)
+
+
+def _of_medium(row: Medium) -> MediumModel:
+    """The model of a VDF node."""
+    inputs = tuple(parameter(row.category, name) for name in DEFAULTS[row.category])
+    return MediumModel(row.category, row.title, row.category, inputs)
 
 
 def _of_table(row: table.Model) -> ShadingModel:
@@ -127,7 +195,7 @@ def _of_table(row: table.Model) -> ShadingModel:
 
     def albedo(wo: Array, values: Inputs) -> Array:
         closed = row.albedo_dir or (lambda *given: albedo_dir_quadrature(row.brdf, *given))
-        return closed(np.minimum(wo[:, 2], 1.0), *(values[name] for name in names))
+        return closed(cosine(wo[:, 2]), *(values[name] for name in names))
 
     def average(values: Inputs) -> Array:
         assert row.albedo_avg
@@ -139,11 +207,14 @@ def _of_table(row: table.Model) -> ShadingModel:
     )
 
 
-MODELS = {
+MODELS: dict[str, NodeModel] = {
     each.name: each
     for each in (
         *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
         *map(_of_table, table.PARAMETRIZATIONS),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
+        *map(_of_transmission, TRANSMISSION_NODES),
+        *map(_of_emission, EMISSIONS),
+        *map(_of_medium, MEDIA),
     )
 }

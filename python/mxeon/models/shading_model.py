@@ -3,18 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-import numpy as np
+from typing import TYPE_CHECKING, cast
 
 from mxeon.models import lobe_plot
-from mxeon.models.core.arguments import checked
+from mxeon.models.core.arguments import checked_switch
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.nodes.inputs import Rows, bound_inputs, rows
+from mxeon.models.nodes.frames import ALONG, UP, into_frame, out_of_frame
+from mxeon.models.nodes.inputs import Rows, bound_inputs, rows, views
 from mxeon.models.nodes.node import Inputs
-from mxeon.models.nodes.parameters import Parameter
+from mxeon.models.nodes.parameters import WEIGHT, Parameter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,14 +34,8 @@ class ModelSampler:
 
 
 @dataclass(frozen=True, repr=False)
-class ShadingModel:
-    """A model by its name: functions of MaterialX's inputs.
-
-    Each function takes the inputs after its directions, in the order of `parameters` or by name; one
-    that is left out has MaterialX's default. Shapes broadcast, last axes of directions, colors and pairs
-    apart. A color has its channels on the last axis, or is a number; where all colors are numbers,
-    results have no channels. A pair, such as the `roughness` of microfacets, may be a number, which
-    counts for both directions. Three numbers for a color are red, green and blue.
+class NodeModel:
+    """What the models of all nodes have: a name, inputs, and a list of functions.
 
     Attributes
     ----------
@@ -52,12 +45,70 @@ class ShadingModel:
         Category of the node whose inputs it has.
     parameters : tuple of Parameter
         Its inputs: name, default, interval, unit.
+    """
+
+    name: str
+    title: str
+    node: str
+    parameters: tuple[Parameter, ...]
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """Names of the functions that it has."""
+        return ()
+
+    def __repr__(self) -> str:
+        inputs = "".join(f"\n  {each!r}" for each in self.parameters)
+        return f"{self.name}: {self.title}; {', '.join(self.functions)}{inputs}"
+
+    def _need(self, function: str) -> None:
+        """Raise ValueError unless the model has this function; lists those that it has."""
+        if function not in self.functions:
+            raise ValueError(f"{self.name} has no {function}; it has {', '.join(self.functions)}")
+
+    def _bound(
+        self,
+        vectors: dict[str, ArrayLike],
+        inputs: tuple[ArrayLike, ...],
+        named: dict[str, ArrayLike],
+        *others: Parameter,
+    ) -> Rows:
+        """Vectors and inputs of a call in rows; `others` are parameters that go by name alone."""
+        own = {each.name: named.pop(each.name) for each in others}
+        values = bound_inputs(self.parameters, inputs, named) | own
+        return rows((*self.parameters, *others), tuple(vectors), **vectors, **values)
+
+
+@dataclass(frozen=True, repr=False)
+class ShadingModel(NodeModel):
+    """A model by its name: functions of MaterialX's inputs.
+
+    Each function takes the inputs after its directions, in the order of `parameters` or by name; one
+    that is left out has MaterialX's default. Shapes broadcast, last axes of directions, colors and pairs
+    apart. A color has its channels on the last axis, or is a number; where all colors are numbers,
+    results have no channels. A pair, such as the `roughness` of microfacets, may be a number, which
+    counts for both directions. Three numbers for a color are red, green and blue.
+
+    What is in `by_name` has to be named in a call. `weight` scales values and albedos. With `normal`, and
+    `tangent` or `curve_direction`, directions are those of a frame in which the node's normal is this
+    unit vector, such as that of the scene; a tangent that is left out is +x. `retroreflective` mirrors
+    the viewer.
+
+    Arrays of PyTorch and JAX give results of their library wherever the functions of the model take
+    them; others refuse them by name.
+
+    Attributes
+    ----------
+    name, title, node, parameters
+        As those of `NodeModel`.
     value : callable (wo, wi, inputs) -> ndarray, shape (N, C)
     albedo : callable (wo, inputs) -> ndarray, shape (N, C)
     average : callable (inputs) -> ndarray, or None
     sampler : ModelSampler or None
     lights : str
         Where light comes from that it scatters: "front", "back" or "all sides".
+    by_name : tuple of str
+        The other inputs of the node.
 
     Raises
     ------
@@ -68,15 +119,12 @@ class ShadingModel:
         If an input is unknown or is there twice.
     """
 
-    name: str
-    title: str
-    node: str
-    parameters: tuple[Parameter, ...]
     value: Callable[[Array, Array, Inputs], Array]
     albedo: Callable[[Array, Inputs], Array]
     average: Callable[[Inputs], Array] | None = None
     sampler: ModelSampler | None = None
     lights: str = "front"
+    by_name: tuple[str, ...] = ("weight", "normal")
 
     @property
     def functions(self) -> tuple[str, ...]:
@@ -84,10 +132,6 @@ class ShadingModel:
         value = ("brdf", "bsdf") if self.lights == "front" else ("bsdf",)
         average = ("albedo_avg",) if self.average else ()
         return (*value, "albedo_dir", *average, *(("sample", "pdf") if self.sampler else ()))
-
-    def __repr__(self) -> str:
-        inputs = "".join(f"\n  {each!r}" for each in self.parameters)
-        return f"{self.name}: {self.title}; {', '.join(self.functions)}{inputs}"
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of a model that reflects, in 1/sr and without the cosine.
@@ -115,7 +159,7 @@ class ShadingModel:
     def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Value of any model, as `brdf`; wi lies where its light comes from."""
         call = self._rows({"wo": wo, "wi": wi}, inputs, named)
-        return _colors(call, self.value(call.vectors[0], call.vectors[1], call.inputs))
+        return call.colors(self.value(call.vectors[0], call.vectors[1], call.inputs))
 
     def albedo_dir(
         self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
@@ -141,18 +185,15 @@ class ShadingModel:
         >>> mxeon.model("eon").albedo_dir(0.5, color=[0.2, 1.0], roughness=1.0).round(6)
         array([0.177706, 1.      ])
         """
-        cosine, phi = np.broadcast_arrays(checked("mu", mu), checked("phi", azimuth))
-        sine = np.sqrt((1.0 - cosine) * (1.0 + cosine))
-        wo = np.stack([sine * np.cos(phi), sine * np.sin(phi), cosine], axis=-1)
-        call = self._rows({"wo": wo}, inputs, named)
-        return _colors(call, self.albedo(call.vectors[0], call.inputs))
+        call = self._rows({"view": views(mu, azimuth)}, inputs, named)
+        return call.colors(self.albedo(call.vectors[0], call.inputs))
 
     def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Average albedo, of light from all sides alike, where a closed form is known."""
         self._need("albedo_avg")
         assert self.average
         call = self._rows({}, inputs, named)
-        return _colors(call, self.average(call.inputs))
+        return call.colors(self.average(call.inputs))
 
     def sample(
         self, wo: ArrayLike, u: ArrayLike, *inputs: ArrayLike, **named: ArrayLike
@@ -172,7 +213,9 @@ class ShadingModel:
         assert self.sampler
         call = self._rows({"wo": wo, "u": u}, inputs, named)
         wi, pdf = self.sampler.sample(call.vectors[0], call.vectors[1], call.inputs)
-        return call.shaped(wi, (3,)), call.shaped(pdf)
+        wi = call.shaped(wi, (3,))
+        frame = _frame(named)
+        return out_of_frame(wi, *frame) if frame else wi, call.shaped(pdf)
 
     def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
         """Density of `sample` at wi, in 1/sr, shape (...); inputs as those of `brdf`."""
@@ -202,22 +245,34 @@ class ShadingModel:
         """
         return lobe_plot.draw(self, named, path)
 
-    def _need(self, function: str) -> None:
-        """Raise ValueError unless the model has this function; lists those that it has."""
-        if function not in self.functions:
-            raise ValueError(f"{self.name} has no {function}; it has {', '.join(self.functions)}")
-
     def _rows(
         self,
         vectors: dict[str, ArrayLike],
         inputs: tuple[ArrayLike, ...],
         named: dict[str, ArrayLike],
     ) -> Rows:
-        """Vectors and inputs of a call."""
-        return rows(self.parameters, vectors, bound_inputs(self.parameters, inputs, named))
+        """Vectors and inputs of a call, in the frame of the node."""
+        # Take what goes by name alone.
+        own = {name: named[name] for name in self.by_name if name in named}
+        rest = {name: value for name, value in named.items() if name not in own or name == "weight"}
+        # Turn directions into the frame, and mirror the viewer.
+        if frame := _frame(own):
+            if not {"wo", "wi"} & set(vectors):
+                raise TypeError("normal and tangent turn directions; an albedo has none to turn")
+            turned = {n: into_frame(v, *frame) for n, v in vectors.items() if n in ("wo", "wi")}
+            vectors = vectors | turned
+        if checked_switch("retroreflective", cast(bool, own.get("retroreflective", False))):
+            vectors = {n: _mirrored(v) if n == "wo" else v for n, v in vectors.items()}
+        return self._bound(vectors, inputs, rest, *([WEIGHT] if "weight" in own else []))
 
 
-def _colors(call: Rows, values: Array) -> Array:
-    """Values of rows, (N, C), in the shape of the pairs; without channels where no color has any."""
-    values = call.shaped(values, values.shape[-1:])
-    return values if call.colored or values.shape[-1] != 1 else values[..., 0]
+def _frame(named: Mapping[str, ArrayLike]) -> tuple[ArrayLike, ArrayLike] | None:
+    """Normal and tangent of a call, of which one was named."""
+    if not {"normal", "tangent", "curve_direction"} & set(named):
+        return None
+    return named.get("normal", UP), named.get("tangent", named.get("curve_direction", ALONG))
+
+
+def _mirrored(wo: ArrayLike) -> ArrayLike:
+    """Directions turned by half a turn about the normal."""
+    return out_of_frame(wo, UP, tuple(-x for x in ALONG))

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked_choice
+from mxeon.models.core.arguments import checked, checked_choice, checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.namespaces import any_array
 from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse import albedo, known_defect_albedos, known_defects
 from mxeon.models.diffuse import brdf as models
@@ -85,24 +86,28 @@ def model(name: str) -> Model:
     return rows[checked_choice("model", name, rows)]
 
 
+@any_array
 def _lambert_albedo_dir(mu: ArrayLike, rho: ArrayLike) -> Array:
     """Albedo rho in the shape to which mu and rho broadcast."""
-    rho = np.atleast_1d(np.asarray(rho, np.float64))
-    return np.broadcast_to(rho, np.broadcast_shapes(np.shape(mu) + (1,), rho.shape)).copy()
+    (color,), (cosine,) = checked_colors({"rho": rho}, mu=mu)
+    return color + 0.0 * cosine
 
 
+@any_array
 def _lambert_albedo_avg(rho: ArrayLike) -> Array:
     """Albedo rho, shape (..., C)."""
-    return np.atleast_1d(np.asarray(rho, np.float64))
+    (color,), _ = checked_colors({"rho": rho})
+    return color
 
 
 def _tinted(white: Callable[..., Array]) -> Callable[..., Array]:
     """Albedo at unit reflectance, `white(..., parameter)`, as one that takes rho before it."""
 
+    @any_array
     def tinted(*arguments: ArrayLike) -> Array:
         *mu, rho, parameter = arguments
-        albedo = white(*mu, parameter)[..., np.newaxis]
-        return albedo * np.asarray(rho, np.float64)
+        albedo: Array = white(*mu, parameter)[..., np.newaxis]
+        return albedo * checked("rho", rho)
 
     return tinted
 

@@ -35,6 +35,7 @@ class Namespace(Protocol):
     atan: Callable[..., Array]
     atan2: Callable[..., Array]
     broadcast_to: Callable[..., Array]
+    cos: Callable[..., Array]
     exp: Callable[..., Array]
     hypot: Callable[..., Array]
     log: Callable[..., Array]
@@ -43,6 +44,7 @@ class Namespace(Protocol):
     minimum: Callable[..., Array]
     permute_dims: Callable[..., Array]
     reshape: Callable[..., Array]
+    sin: Callable[..., Array]
     sqrt: Callable[..., Array]
     square: Callable[..., Array]
     stack: Callable[..., Array]
@@ -54,7 +56,7 @@ class Namespace(Protocol):
 
 
 # NumPy below 2 has other names for some functions.
-_NAMES = {"atan": np.arctan, "atan2": np.arctan2}
+_NAMES = {"atan": np.arctan, "atan2": np.arctan2, "permute_dims": np.transpose}
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else SimpleNamespace(**{**vars(np), **_NAMES}))
 
 
@@ -199,6 +201,15 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
         return xp.asarray(numbers, dtype=dtype, **place) if numbers.dtype.kind in "iuf" else value
 
     return convert
+
+
+def like(values: Numbers, array: Array) -> Array:
+    """Values of NumPy as an array of another's library, precision and device."""
+    xp = array_namespace(array)
+    if xp is NUMPY:
+        return np.asarray(values, np.float64)
+    place = {"device": array.device} if library(array) == "torch" else {}
+    return xp.asarray(values, dtype=array.dtype, **place)
 
 
 def accept(name: str, value: object) -> None:

@@ -6,10 +6,10 @@ Every color in [0, 1] is reached, by one rho in [0, 1], at every roughness; no o
 
 from __future__ import annotations
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import trimmed
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.diffuse.formulas import C1, C2
 
 # [Portsmouth2025], Eqs. (32) and (34); color and roughness in [0, 1]; largest error of rho 4.41e-3,
@@ -22,6 +22,7 @@ NORMAL_REFIT = (0.2531091, 0.9883170)
 AVERAGE_REFIT = 0.1843278
 
 
+@any_array
 def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflectance rho that gives EON this directional albedo at normal incidence.
 
@@ -61,11 +62,13 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
     """
     color, r = _checked(color, roughness)
     b, d = 1.0 + (C1 - C2) * r * color, 1.0 + C1 * r
-    rho = 2.0 * color * d / (b + np.sqrt(b * b + 4.0 * C2 * r * d * color))
+    sqrt = array_namespace(color, r).sqrt
+    rho = 2.0 * color * d / (b + sqrt(b * b + 4.0 * C2 * r * d * color))
     # A color of 1 may be rounded to 1 + 2^-52, which no model takes.
-    return np.minimum(rho, 1.0)
+    return trimmed(rho, 1.0)
 
 
+@any_array
 def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     """Reflectance rho that gives EON this average albedo.
 
@@ -98,6 +101,7 @@ def eon_rho_from_albedo_avg(color: ArrayLike, roughness: ArrayLike) -> Array:
     return scaled / (scaled + (1.0 + C2 * r) * (1.0 - color))
 
 
+@any_array
 def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by the paper's polynomial.
 
@@ -121,6 +125,7 @@ def eon_rho_from_albedo_normal_approx(color: ArrayLike, roughness: ArrayLike) ->
     return _polynomial(color, roughness, *NORMAL)
 
 
+@any_array
 def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_normal` by a polynomial of the paper's form with new coefficients.
 
@@ -144,6 +149,7 @@ def eon_rho_from_albedo_normal_refit_approx(color: ArrayLike, roughness: ArrayLi
     return _polynomial(color, roughness, *NORMAL_REFIT)
 
 
+@any_array
 def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by the paper's polynomial.
 
@@ -166,6 +172,7 @@ def eon_rho_from_albedo_avg_approx(color: ArrayLike, roughness: ArrayLike) -> Ar
     return _polynomial(color, roughness, AVERAGE, 1.0)
 
 
+@any_array
 def eon_rho_from_albedo_avg_refit_approx(color: ArrayLike, roughness: ArrayLike) -> Array:
     """`eon_rho_from_albedo_avg` by a polynomial of the paper's form with a new coefficient.
 

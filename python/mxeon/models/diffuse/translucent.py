@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked_transmitted, checked_triples
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.diffuse.formulas import lambert_brdf
 
 
+@any_array
 def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     """BTDF of Lambert's transmission.
 
@@ -44,5 +44,7 @@ def translucent_btdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     >>> translucent_btdf([0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.2, 0.8]).round(6)
     array([0.063662, 0.254648])
     """
-    mirrored = checked_transmitted("wi", checked_triples("wi", wi)) * np.array([1.0, 1.0, -1.0])
+    light = checked_transmitted("wi", checked_triples("wi", wi))
+    xp = array_namespace(light)
+    mirrored = xp.stack([light[..., 0], light[..., 1], -light[..., 2]], axis=-1)
     return evaluate(lambert_brdf, wo, mirrored, rho)

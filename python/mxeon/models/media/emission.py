@@ -19,10 +19,13 @@ from mxeon.models.core.arguments import (
     checked_sphere,
 )
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_least_0, at_most, power
+from mxeon.models.core.namespaces import any_array, array_namespace
 
 HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
 
 
+@any_array
 def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
     """Radiance of a surface that emits the same in all directions.
 
@@ -55,9 +58,10 @@ def uniform_edf(wo: ArrayLike, radiance: ArrayLike) -> Array:
     array([0.5, 2. ])
     """
     mu, (c,), _ = _checked(wo, {"radiance": radiance})
-    return np.array(np.broadcast_to(c, (*np.broadcast_shapes(mu.shape, c.shape[:-1]), c.shape[-1])))
+    return c + 0.0 * mu[..., np.newaxis]
 
 
+@any_array
 def uniform_exitance(radiance: ArrayLike) -> Array:
     """Radiant exitance of a uniform emitter, pi c.
 
@@ -86,9 +90,10 @@ def uniform_exitance(radiance: ArrayLike) -> Array:
     6.283185
     """
     (c,) = checked_numbers(radiance=radiance)
-    return np.asarray(np.pi * c)[()]
+    return (np.pi * c)[()]
 
 
+@any_array
 def conical_edf(
     wo: ArrayLike, radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike
 ) -> Array:
@@ -125,18 +130,20 @@ def conical_edf(
     """
     angles = {"inner_angle": inner_angle, "outer_angle": outer_angle}
     mu, (c,), (inner, outer) = _checked(wo, {"radiance": radiance}, **angles)
-    falloff = conical_falloff(np.maximum(mu, 0.0)[..., np.newaxis], inner, outer)
-    return np.asarray(c * falloff)
+    falloff = conical_falloff(at_least_0(mu)[..., np.newaxis], inner, outer)
+    return c * falloff
 
 
 def conical_falloff(mu: Array, inner: Array, outer: Array) -> Array:
     """Share of the radiance at cosines `mu`, without checks; 1 in the cone, 0 outside."""
+    xp = array_namespace(mu, inner, outer)
     soft = outer > inner
-    width = np.where(soft, cone_width(inner, outer), 1.0)
-    t = np.clip((mu - cone_cosine(outer)) / width, 0.0, 1.0)
-    return np.where(soft, t * t * (3.0 - 2.0 * t), mu >= cone_cosine(inner))
+    width = xp.where(soft, cone_width(inner, outer), 1.0)
+    t = at_most(at_least_0((mu - cone_cosine(outer)) / width), 1.0)
+    return xp.where(soft, t * t * (3.0 - 2.0 * t), xp.where(mu >= cone_cosine(inner), 1.0, 0.0))
 
 
+@any_array
 def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: ArrayLike) -> Array:
     """Radiant exitance of a conical emitter, in closed form.
 
@@ -177,20 +184,23 @@ def conical_exitance(radiance: ArrayLike, inner_angle: ArrayLike, outer_angle: A
     (c,), (inner, outer) = checked_colors({"radiance": radiance}, **angles)
     a, b = cone_cosine(outer), cone_cosine(inner)
     # Find where the ramp between both cones begins above the horizon.
-    h = np.where(outer > inner, cone_width(inner, outer), 0.0)
-    start = np.clip(np.where(h > 0.0, -a / np.where(h > 0.0, h, 1.0), 1.0), 0.0, 1.0)
+    xp = array_namespace(inner, outer)
+    h = xp.where(outer > inner, cone_width(inner, outer), 0.0)
+    start = xp.where(h > 0.0, -a / xp.where(h > 0.0, h, 1.0), 1.0)
+    start = at_most(at_least_0(start), 1.0)
 
     # Integrate the smoothstep times the cosine over the ramp.
     def antiderivative(t: Array | float) -> Array:
-        return np.asarray(h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t)))
+        return h * (a * t**3 * (1.0 - 0.5 * t) + h * t**4 * (0.75 - 0.4 * t))
 
     ramp = antiderivative(1.0) - antiderivative(start)
     # Add the inner cone.
-    cone = 0.5 * np.sin(HALF_TURN * inner) ** 2
-    share = np.where(b <= 0.0, 0.5, cone + ramp)
-    return np.asarray(2.0 * np.pi * c * share)
+    cone = 0.5 * xp.sin(HALF_TURN * inner) ** 2
+    share = xp.where(b <= 0.0, 0.5, cone + ramp)
+    return 2.0 * np.pi * c * share
 
 
+@any_array
 def generalized_schlick_edf(
     wo: ArrayLike, base: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
 ) -> Array:
@@ -228,10 +238,12 @@ def generalized_schlick_edf(
     """
     colors = {"base": base, "color0": color0, "color90": color90}
     mu, (c, r0, r90), (q,) = _checked(wo, colors, exponent=exponent)
-    power = np.maximum(1.0 - np.abs(mu[..., np.newaxis]), 0.0) ** q
-    return np.asarray(c * (r0 + (r90 - r0) * power))
+    mu = mu[..., np.newaxis]
+    height = array_namespace(mu).where(mu < 0.0, -mu, mu)
+    return c * (r0 + (r90 - r0) * power(at_least_0(1.0 - height), q))
 
 
+@any_array
 def generalized_schlick_exitance(
     radiance: ArrayLike, color0: ArrayLike, color90: ArrayLike, exponent: ArrayLike
 ) -> Array:
@@ -259,18 +271,19 @@ def generalized_schlick_exitance(
     colors = {"radiance": radiance, "color0": color0, "color90": color90}
     (c, r0, r90), (q,) = checked_colors(colors, exponent=exponent)
     share = 2.0 / ((q + 1.0) * (q + 2.0))
-    return np.asarray(np.pi * c * (r0 + (r90 - r0) * share))
+    return np.pi * c * (r0 + (r90 - r0) * share)
 
 
 def cone_cosine(angle: Array) -> Array:
     """Cosine of half of a full angle in degrees, exactly 0 at 180."""
-    return np.asarray(np.sin(HALF_TURN * (180.0 - angle)))
+    return array_namespace(angle).sin(HALF_TURN * (180.0 - angle))
 
 
 def cone_width(inner: Array, outer: Array) -> Array:
     """c_in - c_out by a product of sines."""
     half = 0.5 * HALF_TURN
-    return np.asarray(2.0 * np.sin(half * (outer + inner)) * np.sin(half * (outer - inner)))
+    sin = array_namespace(inner, outer).sin
+    return 2.0 * sin(half * (outer + inner)) * sin(half * (outer - inner))
 
 
 def _checked(
@@ -282,4 +295,5 @@ def _checked(
     parts = dict(zip(colors, vectors, strict=True))
     plain = {name: value[..., 0] for name, value in zip(numbers, values, strict=True)}
     broadcastable({"wo": directions} | parts, plain)
-    return np.clip(np.asarray(directions[..., 2], np.float64), -1.0, 1.0), vectors, values
+    (mu,) = broadcastable({}, {"mu": directions[..., 2]})
+    return -at_most(-at_most(mu, 1.0), 1.0), vectors, values

@@ -16,8 +16,10 @@ from mxeon.models.core.arguments import (
     lead_shape,
 )
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.namespaces import any_array, array_namespace
 
 
+@any_array
 def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
     """Extinction coefficient, sigma_t = sigma_a + sigma_s.
 
@@ -46,9 +48,10 @@ def extinction(absorption: ArrayLike, scattering: ArrayLike) -> Array:
     2.0
     """
     sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
-    return np.asarray(sigma_a + sigma_s)[()]
+    return (sigma_a + sigma_s)[()]
 
 
+@any_array
 def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayLike) -> Array:
     """Share of the radiance that passes a homogeneous medium, T = exp(-sigma_t t).
 
@@ -78,9 +81,11 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
     """
     values = {"absorption": absorption, "scattering": scattering, "distance": distance}
     sigma_a, sigma_s, t = checked_numbers(**values)
-    return np.asarray(np.exp(-(sigma_a + sigma_s) * t))[()]
+    xp = array_namespace(sigma_a, sigma_s, t)
+    return xp.exp(-(sigma_a + sigma_s) * t)[()]
 
 
+@any_array
 def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Array:
     """Share of the light that leaves a ray by being scattered, sigma_s / sigma_t.
 
@@ -102,9 +107,11 @@ def single_scattering_albedo(absorption: ArrayLike, scattering: ArrayLike) -> Ar
     """
     sigma_a, sigma_s = checked_numbers(absorption=absorption, scattering=scattering)
     sigma_t = sigma_a + sigma_s
-    return np.asarray(sigma_s / np.where(sigma_t > 0.0, sigma_t, 1.0))[()]
+    xp = array_namespace(sigma_t)
+    return (sigma_s / xp.where(sigma_t > 0.0, sigma_t, 1.0))[()]
 
 
+@any_array
 def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
     """Phase function of Henyey and Greenstein.
 
@@ -140,7 +147,8 @@ def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
     array([0.477465, 0.017684])
     """
     cosine, mean = checked_numbers(cos_theta=cos_theta, g=g)
-    return np.asarray(_phase(1.0 - np.where(mean < 0.0, -cosine, cosine), mean))[()]
+    xp = array_namespace(cosine, mean)
+    return _phase(1.0 - xp.where(mean < 0.0, -cosine, cosine), mean)[()]
 
 
 def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
@@ -197,6 +205,7 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     return wi, np.array(np.broadcast_to(density, shape))[()]
 
 
+@any_array
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     """Density of `hg_sample` at `wi`, in solid angle: the phase function itself.
 
@@ -229,11 +238,10 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
         checked_numbers(g=g),
     )
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
-    side = np.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
-    difference = (
-        np.asarray(views, np.float64) + side * lights
-    )  # 0 where the deflection is likeliest
-    return np.asarray(_phase(0.5 * np.sum(difference**2, axis=-1), mean))[()]
+    xp = array_namespace(views, lights, mean)
+    side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
+    difference = 1.0 * views + side * lights  # 0 where the deflection is likeliest
+    return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
 
 
 def _around(axis: Array, local: Array) -> Array:
@@ -248,6 +256,7 @@ def _around(axis: Array, local: Array) -> Array:
 
 def _phase(less: Array, g: Array) -> Array:
     """The phase function at 1 - cos for g >= 0, and at 1 + cos for g < 0."""
-    size = np.abs(g)
+    xp = array_namespace(less, g)
+    size = xp.abs(g)
     square = (1.0 - size) ** 2 + 2.0 * size * less
-    return np.asarray((1.0 - size) * (1.0 + size) / (4.0 * np.pi * square * np.sqrt(square)))
+    return (1.0 - size) * (1.0 + size) / (4.0 * np.pi * square * xp.sqrt(square))

@@ -132,6 +132,7 @@ def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> A
     return _colors(formulas.conductor, vectors, {"mu": checked("mu", mu)})
 
 
+@any_array
 def fresnel_conductor_avg(ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Average Fresnel reflectance F_ss of a conductor, by quadrature.
 

@@ -11,8 +11,8 @@ from functools import lru_cache
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import hypot, power, root, trimmed
-from mxeon.models.core.namespaces import NUMPY, array_namespace, library
+from mxeon.models.core.edges import at_most, hypot, power, root, trimmed
+from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
@@ -130,11 +130,9 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     F has square roots at c^2 = 1 - n^2, next to the real axis for weakly absorbing media, and, for
     strong ones, a pole as near to grazing as 1 / |n|.
     """
-    # Refuse arrays that cannot be written into.
-    if name := library(ior):
-        raise ValueError(
-            f"compensate must be False for arrays of {name}: its average takes NumPy's"
-        )
+    # Take the split rule for all arrays that cannot be written into.
+    if array_namespace(ior, extinction) is not NUMPY:
+        return _split_avg_of_arrays(ior, extinction)
     # Average smooth curves by one rule, and the others by one that is split.
     ior, extinction = np.broadcast_arrays(ior, extinction)
     n2 = (ior + 1j * extinction) ** 2
@@ -195,6 +193,30 @@ def _split_avg(ior: Array, extinction: Array, n2: Array) -> Array:
         rows = length > 0.0
         total[rows] += _part(low[rows], length[rows], *(array[rows] for array in terms))
     return 2.0 * total
+
+
+def _split_avg_of_arrays(ior: Array, extinction: Array) -> Array:
+    """`_split_avg` for arrays of another library, all nodes at once.
+
+    The critical angle counts as a constant of the integral, which does not depend on where it is split.
+    """
+    # Find the critical angle, the real part of sqrt(1 - n^2).
+    xp = array_namespace(ior, extinction)
+    real = extinction * extinction - (ior - 1.0) * (ior + 1.0)
+    size = hypot(real, 2.0 * ior * extinction)
+    split = at_most(root(xp.maximum(0.5 * (size + real), 0.0)), 1.0)
+    # Sum over the nodes of both sides.
+    t = STEP * np.arange(-STEPS, STEPS + 1)
+    X = np.exp(np.pi * np.sinh(t))
+    shape = (-1, *(1,) * split.ndim)
+    x = like((X / (1.0 + X)).reshape(shape), ior)
+    weight = like((STEP * np.pi * np.cosh(t) * X / (1.0 + X) ** 2).reshape(shape), ior)
+    gap = _gap(ior, extinction)
+    total = 0.0 * split
+    for low, length in ((0.0, split), (split, 1.0 - split)):
+        mu = at_most(low + length * x, 1.0)
+        total = total + length * xp.sum(weight * mu * _conductor(mu, ior, extinction, gap), axis=0)
+    return trimmed(2.0 * total, 1.0)
 
 
 def _part(low: Array, length: Array, ior: Array, extinction: Array, gap: Array) -> Array:

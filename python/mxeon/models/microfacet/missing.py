@@ -21,7 +21,7 @@ from mxeon.models.core.chebyshev import (
 )
 from mxeon.models.core.edges import at_most, cube_root, root
 from mxeon.models.core.evaluation import evaluate_material
-from mxeon.models.core.namespaces import NUMPY, array_namespace
+from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.microfacet.ggx_albedo import quadrature
 
 # Nodes in the cube root of s and in the square root of alpha, panels for one of the quadrature that
@@ -50,7 +50,7 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
     if xp is NUMPY:
         rows = np.einsum("ij,j...->i...", table, powers)
     else:
-        rows = xp.tensordot(xp.asarray(table, dtype=powers.dtype), powers, axes=1)
+        rows = xp.tensordot(like(table, powers), powers, axes=1)
     rough = alpha > 0.0
     s = mu / xp.where(rough, mu + alpha, 1.0) * (1.0 + alpha)
     value = chebyshev_sum(rows, cube_root(at_most(s, 1.0)))

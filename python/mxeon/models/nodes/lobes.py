@@ -8,6 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.edges import cosine
+from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
 from mxeon.models.diffuse.translucent import translucent_btdf
 from mxeon.models.microfacet import materialx_fits
@@ -31,8 +33,9 @@ def _tinted(
     """Albedo of a lobe of one roughness times its color."""
 
     def tinted(wo: Array, inputs: Inputs) -> Array:
-        white = albedo(np.minimum(wo[:, 2], 1.0), inputs["roughness"])
-        return np.asarray(white[..., np.newaxis] * inputs["color"])
+        white = albedo(cosine(wo[:, 2]), inputs["roughness"])
+        tinted: Array = white[..., np.newaxis] * inputs["color"]
+        return tinted
 
     return tinted
 
@@ -43,7 +46,7 @@ def _untinted(
     """Albedo of a lobe of one roughness without its color."""
 
     def untinted(wo: Array, inputs: Inputs) -> Array:
-        white = albedo(np.minimum(wo[:, 2], 1.0), inputs["roughness"])
+        white = albedo(cosine(wo[:, 2]), inputs["roughness"])
         return np.repeat(white[..., np.newaxis], 3, axis=-1)
 
     return untinted
@@ -75,7 +78,7 @@ LOBE_NODES = (
         COLOR_ROUGHNESS,
         _sheen(burley_brdf),
         lambda wo, inputs: burley_albedo_dir(
-            np.minimum(wo[:, 2], 1.0), inputs["color"], inputs["roughness"]
+            cosine(wo[:, 2]), inputs["color"], inputs["roughness"]
         ),
         variants=(
             Variant("MaterialX's fit of its albedo", albedo=materialx_fits.burley_albedo),
@@ -89,7 +92,7 @@ LOBE_NODES = (
         "translucent_bsdf",
         ("color",),
         lambda wo, wi, inputs: translucent_btdf(wo, wi, inputs["color"]),
-        lambda wo, inputs: np.broadcast_to(inputs["color"], wo.shape),
+        lambda wo, inputs: array_namespace(wo).broadcast_to(inputs["color"], wo.shape),
         transmits=True,
     ),
     PbrNode(

@@ -9,14 +9,14 @@ from mxeon.models.core.ranges import RANGES
 from mxeon.models.hair import DEFAULTS as HAIR
 
 Value = float | tuple[float, ...]
-WHITE, GRAY = (1.0,) * 3, (0.18,) * 3
+WHITE, GRAY, BLACK = (1.0,) * 3, (0.18,) * 3, (0.0,) * 3
 FACETS: dict[str, Value] = {
     "roughness": (0.05, 0.05),
     "thinfilm_thickness": 0.0,
     "thinfilm_ior": 1.5,
 }
-# Defaults of the inputs of a lobe, in the order of the node's definition; those that select a mode, the
-# weight and the frame are left out. A test compares them with MaterialX's definitions.
+# Defaults of the inputs of a node, in the order of its definition; those that select a mode and those of
+# BY_NAME are left out. A test compares them with MaterialX's definitions.
 DEFAULTS: dict[str, dict[str, Value]] = {
     "oren_nayar_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
     "burley_diffuse_bsdf": {"color": GRAY, "roughness": 0.0},
@@ -37,11 +37,30 @@ DEFAULTS: dict[str, dict[str, Value]] = {
         **FACETS,
     },
     "chiang_hair_bsdf": HAIR,
+    "uniform_edf": {"color": WHITE},
+    "conical_edf": {"color": WHITE, "inner_angle": 60.0, "outer_angle": 0.0},
+    "generalized_schlick_edf": {"color0": WHITE, "color90": WHITE, "exponent": 5.0, "base": BLACK},
+    "absorption_vdf": {"absorption": BLACK},
+    "anisotropic_vdf": {"absorption": BLACK, "scattering": BLACK, "anisotropy": 0.0},
+}
+FRAME = ("weight", "normal", "tangent", "retroreflective")
+# Inputs of a lobe's weight, frame and mirror, which a call takes by name alone; others have ("weight", "normal").
+BY_NAME = {
+    **dict.fromkeys(("dielectric_bsdf", "conductor_bsdf", "generalized_schlick_bsdf"), FRAME),
+    "chiang_hair_bsdf": ("normal", "curve_direction"),
+}
+# What an input is, where functions of `mxeon.models` have another name for it.
+QUANTITIES = {
+    ("uniform_edf", "color"): "radiance",
+    ("conical_edf", "color"): "radiance",
+    ("anisotropic_vdf", "anisotropy"): "g",
 }
 UNITS = {
     "sigma": "rad",
     "thinfilm_thickness": "nm",
     "absorption_coefficient": "1/radius",
+    **dict.fromkeys(("absorption", "scattering"), "1/m"),
+    **dict.fromkeys(("inner_angle", "outer_angle"), "degree"),
     **dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), "rad^2, rad"),
 }
 
@@ -87,4 +106,8 @@ class Parameter:
 
 def parameter(category: str, name: str, quantity: str = "") -> Parameter:
     """Input of a node, by its category and name."""
-    return Parameter(name, DEFAULTS[category][name], quantity or name)
+    quantity = quantity or QUANTITIES.get((category, name), name)
+    return Parameter(name, DEFAULTS[category][name], quantity)
+
+
+WEIGHT = Parameter("weight", 1.0, "lobe_weight")

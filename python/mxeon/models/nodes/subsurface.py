@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.nodes.node import PbrNode
 
 STEPS = 32  # of the circle in MaterialX
@@ -50,6 +51,6 @@ SUBSURFACE_NODE = PbrNode(
     "Subsurface scattering, which is Lambert on a plane",
     "subsurface_bsdf",
     ("color", "radius"),
-    lambda wo, wi, inputs: np.asarray(inputs["color"] / np.pi),
-    lambda wo, inputs: np.broadcast_to(inputs["color"], wo.shape),
+    lambda wo, wi, inputs: inputs["color"] / np.pi,
+    lambda wo, inputs: array_namespace(wo).broadcast_to(inputs["color"], wo.shape),
 )

@@ -15,7 +15,12 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 from mxeon.models.nodes.microfacets import DIELECTRIC, MICROFACET_NODES, SCHLICK
 from mxeon.models.nodes.node import Inputs, PbrNode
-from mxeon.models.transmission.schlick import generalized_schlick_transmittance_dir, schlick_ior
+from mxeon.models.transmission.btdf import dielectric_btdf
+from mxeon.models.transmission.schlick import (
+    generalized_schlick_btdf,
+    generalized_schlick_transmittance_dir,
+    schlick_ior,
+)
 from mxeon.models.transmission.transmittance import dielectric_transmittance_dir
 
 MODES = ("T", "RT")
@@ -27,6 +32,8 @@ class Transmission:
 
     Attributes
     ----------
+    value : callable (wo, wi, inputs) -> ndarray, shape (N, 3)
+        BTDF of radiance, with its tint.
     passed : callable (wo, inputs, shadow) -> ndarray, shape (N, 3)
         Share of the light from wo that the BTDF transmits, with its tint; without `shadow`, the mean
         of 1 - F over the facets that wo sees.
@@ -38,6 +45,7 @@ class Transmission:
         Index of refraction that refracts the view.
     """
 
+    value: Callable[[Array, Array, Inputs], Array]
     passed: Callable[[Array, Inputs, bool], Array]
     reflected: Callable[[Array, Inputs], Array]
     tint: Callable[[Inputs], Array]
@@ -51,6 +59,7 @@ def _white(inputs: Inputs) -> dict[str, Array]:
 
 TRANSMISSIONS = {
     DIELECTRIC.category: Transmission(
+        lambda wo, wi, i: dielectric_btdf(wo, wi, i["tint"], i["roughness"], i["ior"]),
         lambda wo, i, shadow: dielectric_transmittance_dir(
             wo, i["tint"], i["roughness"], i["ior"], shadow
         ),
@@ -60,6 +69,9 @@ TRANSMISSIONS = {
         lambda i: np.asarray(i["ior"]),
     ),
     SCHLICK.category: Transmission(
+        lambda wo, wi, i: generalized_schlick_btdf(
+            wo, wi, i["color0"], i["color82"], i["color90"], i["roughness"], i["exponent"]
+        ),
         lambda wo, i, shadow: generalized_schlick_transmittance_dir(
             wo,
             i["color0"],

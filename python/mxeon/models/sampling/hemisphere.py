@@ -10,8 +10,11 @@ import numpy as np
 
 from mxeon.models.core.arguments import broadcastable, checked, checked_directions, checked_pairs
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.edges import root
+from mxeon.models.core.namespaces import any_array, array_namespace
 
 
+@any_array
 def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled uniformly on the hemisphere, and its density.
 
@@ -43,10 +46,11 @@ def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
     (array([0.6, 0. , 0.8]), 0.159155)
     """
     u1, u2 = unpack_uniforms(u)
-    wi = around(u1, np.sqrt((1.0 - u1) * (1.0 + u1)), u2)
+    wi = around(u1, root((1.0 - u1) * (1.0 + u1)), u2)
     return wi, _uniform_density(wi)
 
 
+@any_array
 def uniform_pdf(wi: ArrayLike) -> Array:
     """Density of `uniform_sample` at `wi`, in solid angle.
 
@@ -73,6 +77,7 @@ def uniform_pdf(wi: ArrayLike) -> Array:
     return _uniform_density(checked_directions("wi", wi))
 
 
+@any_array
 def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled proportionally to its cosine with the normal, and its density.
 
@@ -96,10 +101,11 @@ def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
     (array([0.6, 0. , 0.8]), 0.254648)
     """
     u1, u2 = unpack_uniforms(u)
-    wi = around(np.sqrt(1.0 - u1), np.sqrt(u1), u2)
+    wi = around(root(1.0 - u1), root(u1), u2)
     return wi, wi[..., 2] / np.pi
 
 
+@any_array
 def cosine_pdf(wi: ArrayLike) -> Array:
     """Density of `cosine_sample` at `wi`, in solid angle.
 
@@ -115,7 +121,8 @@ def cosine_pdf(wi: ArrayLike) -> Array:
     >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
     0.254648
     """
-    return np.asarray(checked_directions("wi", wi)[..., 2], np.float64) / np.pi
+    (w,) = broadcastable({"wi": checked_directions("wi", wi)}, {})
+    return w[..., 2] / np.pi
 
 
 def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
@@ -137,13 +144,15 @@ def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
 
 def around(mu: Array, S: Array, u2: Array) -> Array:
     """Direction with cosine `mu` and sine `S` at the azimuth 2 pi u2."""
-    phi = 2.0 * np.pi * u2
-    return stack_xyz(S * np.cos(phi), S * np.sin(phi), mu)
+    xp, phi = array_namespace(u2), 2.0 * np.pi * u2
+    return stack_xyz(S * xp.cos(phi), S * xp.sin(phi), mu)
 
 
 def stack_xyz(x: Array, y: Array, z: Array) -> Array:
     """Components, broadcast against each other, as vectors along a last axis."""
-    return np.stack(np.broadcast_arrays(x, y, z), axis=-1)
+    xp = array_namespace(x, y, z)
+    shape = np.broadcast_shapes(*(tuple(each.shape) for each in (x, y, z)))
+    return xp.stack([xp.broadcast_to(each, shape) for each in (x, y, z)], axis=-1)
 
 
 def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
@@ -170,9 +179,9 @@ def _broadcastable(vectors: dict[str, Numbers], numbers: dict[str, ArrayLike]) -
 
 def _checked_pairs(u: ArrayLike) -> Array:
     """Checked random numbers of shape (..., 2), as a float64 array."""
-    return np.asarray(checked_pairs("u", u), np.float64)
+    return broadcastable({"u": checked_pairs("u", u)}, {})[0]
 
 
 def _uniform_density(wi: Numbers) -> Array:
     """1/(2 pi) in the shape of `wi` without its last axis."""
-    return np.full(wi.shape[:-1], 0.5 / np.pi)[()]
+    return (0.0 * wi[..., 2] + 0.5 / np.pi)[()]

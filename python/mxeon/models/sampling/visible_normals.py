@@ -9,8 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked_directions, checked_roughness, lead_shape
+from mxeon.models.core.arguments import (
+    broadcastable,
+    checked_directions,
+    checked_roughness,
+    lead_shape,
+)
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.sampling.hemisphere import around, unpack_uniforms
 
@@ -61,6 +67,7 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     return wi, _density(view, wh, alpha)
 
 
+@any_array
 def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ggx_sample` at `wi`, above the horizon, in solid angle.
 
@@ -98,8 +105,10 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def _components(vectors: dict[str, Numbers]) -> list[Array]:
     """Vectors, broadcast against each other, as float64 arrays with the components first."""
     lead = lead_shape(vectors, {})
-    spread = [np.broadcast_to(v, lead + v.shape[-1:]) for v in vectors.values()]
-    return [np.moveaxis(np.asarray(vector, np.float64), -1, 0) for vector in spread]
+    arrays = broadcastable(vectors, {})
+    xp, order = array_namespace(*arrays), (len(lead), *range(len(lead)))
+    spread = [xp.broadcast_to(v, (*lead, *v.shape[-1:])) for v in arrays]
+    return [xp.permute_dims(vector, order) for vector in spread]
 
 
 def _density(wo: Array, wh: Array, roughness: Array) -> Array:

@@ -10,9 +10,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_triples, checked_vector, lead_shape
+from mxeon.models.core.arguments import (
+    checked,
+    checked_numbers,
+    checked_triples,
+    checked_vector,
+    lead_shape,
+)
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.edges import at_most, guarded, least_normal
+from mxeon.models.core.edges import at_most, guarded, least_normal, root
 from mxeon.models.core.evaluation import evaluate
 from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace
 from mxeon.models.diffuse.formulas import cosines
@@ -80,6 +86,7 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
     return _tinted(_conty_kulla_formula, wo, wi, color, roughness)
 
 
+@any_array
 def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the sheen of Zeltner, Burley and Chiang. It is not reciprocal.
 
@@ -117,6 +124,7 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
     return _tinted(_zeltner_formula, wo, wi, color, roughness)
 
 
+@any_array
 def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of the Zeltner sheen at unit color: E of the text, which is exact.
 
@@ -154,17 +162,15 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
     0.315212
     """
-    mu, roughness = checked("mu", mu), checked("roughness", roughness)
-    lead_shape({}, {"mu": mu, "roughness": roughness})
-    return _zeltner_albedo(np.asarray(mu, float), np.asarray(roughness, float))
+    return _zeltner_albedo(*checked_numbers(mu=mu, roughness=roughness))
 
 
 def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
     """Entries a and b of M^-1: [MaterialX2026], Zeltner Sheen Model, Fitted Coefficients."""
-    x, y = mu, np.maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
+    x, y = mu, array_namespace(mu, roughness).maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
     a = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x**2 + 2.60994 * x * y)
     slope = 0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y**2
-    return a, np.sqrt(1.0 - x) * (y - 1.0) * y**3 / slope
+    return a, root(1.0 - x) * (y - 1.0) * y**3 / slope
 
 
 def _tinted(
@@ -213,23 +219,26 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """Zeltner's lobe, (C, ...), on valid arrays."""
+    # Turn the light into the frame where wo has azimuth 0.
+    xp = array_namespace(wo, wi, roughness)
     mu_o, mu_i, s = cosines(wo, wi)
-    sine = np.sqrt(np.square(wo[..., 0]) + np.square(wo[..., 1]))
+    sine = root(xp.square(wo[..., 0]) + xp.square(wo[..., 1]))
     turned = sine > 0.0
-    x = np.where(turned, s, wi[..., 0]) / np.where(turned, sine, 1.0)
+    x = xp.where(turned, s, wi[..., 0]) / xp.where(turned, sine, 1.0)
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
-    y = np.where(turned, cross, wi[..., 1]) / np.where(turned, sine, 1.0)
+    y = xp.where(turned, cross, wi[..., 1]) / xp.where(turned, sine, 1.0)
+    # Transform it, and the cosine with it.
     a, b = zeltner_matrix(mu_o, roughness)
-    length = np.square(a * x + b * mu_i) + np.square(a * y) + np.square(mu_i)
-    lobe: Array = tint * (_zeltner_albedo(mu_o, roughness) * np.square(a / length) / np.pi)
-    return lobe
+    length = xp.square(a * x + b * mu_i) + xp.square(a * y) + xp.square(mu_i)
+    return tint * (_zeltner_albedo(mu_o, roughness) * xp.square(a / length) / np.pi)
 
 
 def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
     """E of the text: [MaterialX2026], Zeltner Sheen Model, Directional Albedo."""
-    x, y = mu, np.maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
+    xp = array_namespace(mu, roughness)
+    x, y = mu, xp.maximum(roughness, ZELTNER_LEAST_ROUGHNESS)
     s = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y))
     m = y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y**2))) / (0.046391 + y)
     o = y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) / (1.26264 + y * (-1.92021 + y))
-    albedo: Array = np.exp(-0.5 * np.square((x - m) / s)) / (s * np.sqrt(2.0 * np.pi)) + o
+    albedo: Array = xp.exp(-0.5 * xp.square((x - m) / s)) / (s * np.sqrt(2.0 * np.pi)) + o
     return albedo

@@ -13,8 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
 from mxeon.models.core.arguments import (
     channel_count,
     checked,
@@ -22,14 +20,18 @@ from mxeon.models.core.arguments import (
     checked_roughness,
     checked_switch,
     checked_transmitted,
+    checked_vector,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.edges import guarded, least_normal
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.lobe import DIELECTRIC
 from mxeon.models.transmission.refraction import LEAST, Facet
 
 
+@any_array
 def dielectric_btdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -85,7 +87,7 @@ def dielectric_btdf(
     >>> dielectric_btdf(wo, wi, 1.0, [0.3, 0.3], 1.5).round(6)
     array([10.066984])
     """
-    vectors = {"tint": np.atleast_1d(checked("tint", tint))}
+    vectors = {"tint": checked_vector("tint", tint)}
     return evaluate_btdf(DIELECTRIC.at, wo, wi, roughness, ior, vectors, {}, radiance=radiance)
 
 
@@ -123,7 +125,8 @@ def evaluate_btdf(
         G2 = ggx.visibility(wo[2], -wi[2], ggx.mean_alpha(roughness))
         lobe = ggx.ndf(facet.normal, roughness) * G2
         if radiance:
-            lobe = lobe / np.maximum(ior, LEAST) ** 2
+            bends = ior > max(LEAST, least_normal(wo))  # nothing passes an index of 0
+            lobe = lobe / guarded(array_namespace(ior).maximum(ior, LEAST), bends, 1.0) ** 2
         f = (1.0 - F) * (4.0 * lobe * facet.cosine_o * facet.jacobian)
         return f * material["tint"] if "tint" in material else f
 

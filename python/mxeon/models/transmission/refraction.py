@@ -6,15 +6,16 @@ An index of refraction is that of the far side relative to the side of the first
 
 from __future__ import annotations
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked, checked_directions, checked_transmitted
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import guarded, least_normal, root, trimmed
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array, array_namespace
 
 LEAST = 1e-50  # index below which all light counts as reflected; its square divides
 
 
+@any_array
 def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Array:
     """Direction on the far side into which light along `wo` is refracted, and that refracts into it.
 
@@ -53,6 +54,7 @@ def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Ar
     return evaluate_material(refracted, vectors, {"ior": checked("ior", ior)}, 3)
 
 
+@any_array
 def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Array:
     """Normal of the microfacet that refracts one direction into the other.
 
@@ -94,13 +96,15 @@ def transmission_half_vector(wo: ArrayLike, wi: ArrayLike, ior: ArrayLike) -> Ar
 
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     """`refraction_direction` on float64 arrays, components first."""
-    inverse = 1.0 / np.maximum(ior, LEAST)
-    cosine = np.sum(wo * normal, axis=0)
+    xp = array_namespace(wo, normal, ior)
+    bends = ior > max(LEAST, least_normal(wo))
+    inverse = 1.0 / guarded(xp.maximum(ior, LEAST), bends, 1.0)
+    cosine = xp.sum(wo * normal, axis=0)
     squared = 1.0 - inverse * inverse * (1.0 - cosine) * (1.0 + cosine)
-    passes = (squared > 0.0) & (cosine > 0.0) & (ior > LEAST)
-    scale = inverse * cosine - np.sqrt(np.maximum(squared, 0.0))
+    passes = (squared > 0.0) & (cosine > 0.0) & bends
+    scale = inverse * cosine - root(xp.maximum(squared, 0.0))
     wi = scale * normal - inverse * wo
-    return np.where(passes, wi, 0.0)
+    return xp.where(passes, wi, 0.0)
 
 
 class Facet:
@@ -126,11 +130,12 @@ class Facet:
 
         |wo + n wi|^2 (d wh / d wi) = n^2 |wi . wh|: [Walter2007], Eq. (17).
         """
+        xp = array_namespace(wo, wi, ior)
         total = wo + ior * wi
-        length = np.sqrt(np.sum(total * total, axis=0))
-        side_o, side_i = np.sum(wo * total, axis=0), np.sum(wi * total, axis=0)
+        length = root(xp.sum(total * total, axis=0))
+        side_o, side_i = xp.sum(wo * total, axis=0), xp.sum(wi * total, axis=0)
         real = (length > 0.0) & (anywhere | ((side_o * side_i < 0.0) & (side_o * total[2] > 0.0)))
-        scale = np.where(real, 1.0, 0.0) / np.where(length > 0.0, length, 1.0)
-        normal = total * (scale * np.where(total[2] < 0.0, -1.0, 1.0))
-        cosine_o, cosine_i = (np.minimum(np.abs(side) * scale, 1.0) for side in (side_o, side_i))
+        scale = xp.where(real, 1.0, 0.0) / xp.where(length > 0.0, length, 1.0)
+        normal = total * (scale * xp.where(total[2] < 0.0, -1.0, 1.0))
+        cosine_o, cosine_i = (trimmed(xp.abs(side) * scale, 1.0) for side in (side_o, side_i))
         return cls(normal, cosine_o, cosine_i, (ior * scale) ** 2 * cosine_i)
