@@ -20,7 +20,7 @@ from mxeon.models import (
     fresnel_dielectric,
     generalized_schlick_brdf,
 )
-from mxeon.models.microfacet import ggx_albedo, slopes
+from mxeon.models.microfacet import ggx_albedo, missing, slopes
 from mxeon.models.microfacet.missing import missing_light
 from tests.support import tolerances
 from tests.support.hemispheres import hemisphere
@@ -28,6 +28,7 @@ from tests.support.hemispheres import hemisphere
 ALPHA = np.geomspace(1e-4, 1.0, 9)
 MU = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 13), 1.0 - np.geomspace(1e-12, 0.1, 4)]))
 GOLD = [0.183, 1.373], [3.424, 1.77]
+CUBICS = 5e-13  # of (1 - E_ss) / E_ss, whose polynomials are within 1e-10; twice their rounding
 COLORS = [0.9, 0.2], 0.5, 1.0
 EXACT = {"epsabs": 1e-13, "epsrel": 1e-12, "limit": 200}
 NODES = {
@@ -109,8 +110,19 @@ def test_the_table_of_what_facets_miss_agrees_with_the_quadrature():
 def test_a_mirror_misses_nothing_and_grazing_light_has_a_limit():
     mu = np.array([0.0, 5e-324, 1e-160, 0.5, 1.0, 1.0 + 1e-7])
     assert (missing_light(mu, np.zeros(1)) == 0.0).all()
-    missing = missing_light(mu, np.array([5e-324, 1e-160, 1.0])[:, None])
-    assert (missing >= 0.0).all() and np.ptp(missing[:, 0]) < tolerances.E_SS
+    assert (missing_light(np.linspace(0.0, 1.0, missing.MANY), np.zeros(1)) == 0.0).all()
+    light = missing_light(mu, np.array([5e-324, 1e-160, 1.0])[:, None])
+    assert (light >= 0.0).all() and np.ptp(light[:, 0]) < tolerances.E_SS
+
+
+@pytest.mark.parametrize("alpha", [1e-160, 1e-4, 0.3, 1.0])
+def test_many_cosines_of_one_alpha_share_cubics_that_follow_the_polynomials(alpha):
+    s = np.linspace(0.0, 0.9999, missing.MANY) ** 3
+    mu = np.append(s * alpha / (1.0 + alpha - s), [0.0, 5e-324, 1.0, 1.0 + 1e-7, np.nan])
+    cubics = missing_light(mu, np.array([alpha]))
+    polynomials = [missing_light(part, np.array([alpha])) for part in np.array_split(mu, 2)]
+    error = np.abs(cubics - np.concatenate(polynomials))
+    assert np.isnan(cubics[-1]) and error[:-1].max() < CUBICS
 
 
 def test_at_small_alpha_the_albedo_is_a_function_of_mu_over_alpha():
