@@ -8,6 +8,7 @@ lobe of Schlick's curve or of sheen alone, but `principled` has both in one. Tim
 import sys
 import time
 from functools import partial
+from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
@@ -30,6 +31,7 @@ SECONDS = {"one": 0.5, "own": 3.0}  # of a million pairs of microfacets, by mate
 COMPENSATION = 1e-10  # of the table of E_ss
 PLUGIN = 3e-6  # of pi f cos in float32
 LLVM, SCALAR = "Mitsuba, llvm", "Mitsuba, scalar"
+PASS = "the sum wo + wi", "one pass of NumPy"
 # Models, and Mitsuba's nodes beside them.
 NODES = {
     "EON": {"type": "eon", "reflectance": {"type": "rgb", "value": [0.2, 0.5, 0.8]}, "roughness": 0.7},
@@ -84,6 +86,14 @@ def mitsuba_rivals(wo, wi, calls):
     return ways
 
 
+def mitsuba_version():
+    """Version of the installed package; "not installed" without it."""
+    try:
+        return version("mitsuba")
+    except PackageNotFoundError:
+        return "not installed"
+
+
 def _scalar(mi, bsdf, wo, wi):
     """A call for each pair, in Mitsuba's words si.wi and wo."""
     context, pairs = mi.BSDFContext(), []
@@ -136,6 +146,7 @@ def measure(rounds=3, pairs=PAIRS, calls=CALLS):
     wo, wi = arguments(pairs, "one")[:2]
     rivals = {(name, "one material"): way for name, way in ours(wo, wi, "one").items()}
     rivals |= {(name, "a material each"): way for name, way in ours(wo, wi, "own").items()}
+    rivals[PASS] = partial(np.add, wo, wi)
     try:
         rivals |= mitsuba_rivals(wo, wi, min(calls, pairs))
     except (NotRun, PackageError) as reason:
@@ -146,7 +157,7 @@ def measure(rounds=3, pairs=PAIRS, calls=CALLS):
     for (name, way), times in seconds.items():
         count = min(calls, pairs) if way == SCALAR else pairs
         rates = [1e-6 * count / each for each in times]
-        node = f" ({NODES[name]['type']})" if way in (LLVM, SCALAR) else ""
+        node = f" ({NODES[name]['type']}, {mitsuba_version()})" if way in (LLVM, SCALAR) else ""
         figures.append(figure(f"{name}, {way}{node}", "million values/s", rates))
     for name in NODES:
         if (name, LLVM) in seconds:

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from benchmarks import mitsuba_noise
 from mxeon import mitsuba as plugins
 from mxeon import models
 from mxeon.errors import NotRun, PackageError
@@ -69,6 +70,20 @@ def test_values_are_those_of_the_model(mi, name, amount):
     assert np.abs(values - expected(name, wo, wi, amount)).max() <= MITSUBA_EVAL
     behind = bsdf.eval(mi.BSDFContext(), surface(mi, wo), -light)
     assert not np.array(behind).any()
+
+
+def test_the_benchmark_samples_the_same_values_by_the_cosine(mi):
+    mitsuba_noise.register_both(mi)
+    rng = np.random.default_rng(SEED)
+    wo, wi = directions(rng), directions(rng)[::-1].copy()
+    exact, cosine = (
+        mi.load_dict(mitsuba_noise.eon(kind, COLOR, 0.7))
+        for kind in (mitsuba_noise.EXACT, mitsuba_noise.COSINE)
+    )
+    context, point, light = mi.BSDFContext(), surface(mi, wo), mi.Vector3f(wi.T)
+    values = [np.array(each.eval(context, point, light)) for each in (exact, cosine)]
+    assert np.array_equal(*values)
+    assert np.allclose(np.array(cosine.pdf(context, point, light)), wi[:, 2] / np.pi, 1e-6)
 
 
 def test_a_scalar_variant_has_the_same_values(mi):
