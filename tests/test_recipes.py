@@ -21,8 +21,10 @@ DATA = ("eonlib", "profiles", "examples", "renderers")
 
 # By the file that a recipe changes: texts, each before the one at which it is put in.
 
-# A node that dims its color by a number. Its third place is its section of docs/specification.md.
+# A node that dims its color by a number: its model and its ports. Its third place is its section of
+# docs/specification.md.
 ROWS = "python/mxeon/models/nodes/lobes.py"
+DEFAULTS, RANGES = "python/mxeon/models/nodes/parameters.py", "python/mxeon/models/core/ranges.py"
 PORTS = "python/mxeon/conformance/nodes/bsdf.py"
 NODE = {
     ROWS: {
@@ -42,6 +44,8 @@ SHADED = PbrNode(
 """,
         '    PbrNode(\n        "burley",': "    SHADED,\n",
     },
+    DEFAULTS: {'    "translucent_bsdf": {': '    "shaded_bsdf": {"color": WHITE, "shade": 0.0},\n'},
+    RANGES: {'    **_each("u reflectivity': '    "shade": _SHARE,\n'},
     PORTS: {
         '    "burley_diffuse_bsdf": (': '    "shaded_bsdf": '
         '(WEIGHT, COLOR, Port("shade", edges=(0.0, 1.0), change=0.5), NORMAL),\n'
@@ -148,6 +152,8 @@ CHECK = {
 
 RUN = """
 import json
+import numpy as np
+import mxeon
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.shaders.document.policy import DEFAULT
@@ -160,6 +166,8 @@ for library in ("right", "wrong"):
             assert each.control.caught, each
             rows.append([library, each.subject, each.check, each.verdict, each.diagnosis])
 judge.close()
+shaded = mxeon.model("shaded_bsdf").brdf([0, 0, 1], [0, 0, 1], [1, 1, 1], shade=1.0)
+assert np.allclose(np.pi * shaded, 0.5), shaded
 print(json.dumps(rows))
 """
 
@@ -208,8 +216,8 @@ def verdicts(results, subject):
     return {key[2]: row[0] for key, row in results.items() if key[:2] == ("right", subject)}
 
 
-def test_a_node_takes_its_row_and_its_ports(results):
-    assert set(NODE) == {ROWS, PORTS}
+def test_a_node_takes_its_model_and_its_ports(results):
+    assert set(NODE) == {ROWS, DEFAULTS, RANGES, PORTS}
     judged = verdicts(results, "shaded_bsdf")
     assert set(judged.values()) == {"passed"}
     assert {"value", "environment", "inputs", "surroundings", "frame", "integral"} < set(judged)

@@ -20,6 +20,7 @@ def lines_left_out(words: str) -> Iterator[None]:
     ----------
     words : str
     """
+    # Let a file take the place of the error output.
     sys.stderr.flush()
     output = os.dup(ERROR)
     with tempfile.TemporaryFile() as file:
@@ -27,6 +28,7 @@ def lines_left_out(words: str) -> Iterator[None]:
         try:
             yield
         finally:
+            # Restore it, and write what is left.
             os.dup2(output, ERROR)
             os.close(output)
             file.seek(0)

@@ -57,14 +57,8 @@ SAMPLERS = {
 NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
-    "burley_diffuse_bsdf": "burley",
-    "translucent_bsdf": "translucent",
-    "subsurface_bsdf": "subsurface",
-    "sheen_bsdf": "conty_kulla",
-    "dielectric_bsdf": "dielectric",
-    "conductor_bsdf": "conductor",
-    "generalized_schlick_bsdf": "schlick",
-    "chiang_hair_bsdf": "hair",
+    # Modes after the first one do not count.
+    **{row.category: row.name for row in reversed((*NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
 

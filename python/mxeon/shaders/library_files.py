@@ -35,6 +35,7 @@ def check_sources(document: mx.Document, library: str) -> None:
     library : str
         Its folder.
     """
+    # The sources that the library's own implementations name.
     search, folder = mx.getDefaultDataSearchPath(), Path(library)
     parents = cache(lambda uri: Path(uri).parents)  # of few documents, for many implementations
     waiting = [
@@ -42,6 +43,7 @@ def check_sources(document: mx.Document, library: str) -> None:
         for each in document.getImplementations()
         if each.hasFile() and folder in parents(uri := each.getActiveSourceUri())
     ]
+    # Each of them once, and what it includes.
     known = set()
     while waiting:
         name, local = waiting.pop()

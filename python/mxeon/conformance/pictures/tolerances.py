@@ -11,12 +11,12 @@ from mxeon.conformance.accuracy.bsdf import MICROFACET_MEAN, RINGS, UNFITTED, su
 from mxeon.conformance.accuracy.hair import error_of
 from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO
 from mxeon.conformance.accuracy.utilities import BLACKBODY
-from mxeon.conformance.nodes.hair import ROUGHNESSES
 from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
+from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes

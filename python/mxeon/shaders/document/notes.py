@@ -92,7 +92,7 @@ def same_names(element: mx.Element) -> tuple[str, ...]:
     """
     nodes = [element, *(edge.getUpstreamElement() for edge in element.traverseGraph())]
     first: dict[tuple[str, str], mx.Node] = {}
-    pairs = {}
+    pairs: dict[str, None] = {}
     for node in nodes:
         if node.isA(mx.Node):
             other = first.setdefault((node.getCategory(), node.getName()), node)
