@@ -13,10 +13,11 @@ from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.bsdf import BsdfProbe
-from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe, BsdfPlaneProbe
-from mxeon.conformance.probes.families import HOST_PROBES, probe_type_of
+from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe
+from mxeon.conformance.probes.families import HOST_PROBES, RenderedProbe, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
+from mxeon.conformance.probes.pictures import PictureProbe
+from mxeon.conformance.probes.rendered import RenderedSamples
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.text import sources
@@ -83,7 +84,7 @@ def test_a_host_has_probes_by_what_it_shows():
     for subject in BSDFS:
         assert issubclass(probe_type_of(subject, PairProbe), BsdfProbe)
         assert probe_type_of(subject, PictureProbe) is BsdfPictureProbe
-        assert probe_type_of(subject, PlaneProbe) is BsdfPlaneProbe
+        assert issubclass(probe_type_of(subject, RenderedProbe), RenderedSamples)
         assert probe_type_of(subject, NativeProbe) is None
 
 
@@ -94,7 +95,8 @@ def test_the_materials_of_pictures_have_every_input_of_the_model():
 
 
 def test_light_comes_from_below_where_a_node_transmits():
-    probe = BsdfPlaneProbe(Engine(0.0), SUBJECTS["translucent"], "stock")
+    subject = SUBJECTS["translucent"]
+    probe = probe_type_of(subject, RenderedProbe)(Engine(0.0), subject, "stock")
     assert all((batch.wi[:, 2] < 0.0).all() and len(batch.wi) for batch in probe.batches)
 
 

@@ -26,7 +26,6 @@ VERBS = {
     "picture": (None, SIDE),
     "evaluate": (None, None, None, {}, "direct"),
     "call": ("eon_brdf",),
-    "plane": (None, SIDE),
 }
 RENDERER_VERBS = {
     "node": ("Diffuse BSDF", (0.5, 0.5, 0.5), 1.0, SIDE),
@@ -139,7 +138,7 @@ def test_a_host_has_the_verb_by_which_checks_ask_it(row):
         "pairs": "evaluate",
         "closures": "trees",
         "pictures": "picture",
-        "planes": "plane",
+        "rendered": "evaluate",
         "drawn pictures": "picture",
         "half pictures": "picture",
         "native": "node",

@@ -54,8 +54,9 @@ class Row:
     module : str
         Module with its class `Host`; "" where only the text of the target is checked.
     probe : str
-        How checks ask it: for "pairs" of directions, for "pictures" of a sphere, for pictures of
-        "planes", for the "closures" of a shader, for "drawn pictures" of a sphere whose points are exact,
+        How checks ask it: for "pairs" of directions, for "rendered" ones, with its own closures and
+        what a camera shows, for "pictures" of a sphere, for the "closures" of a shader, for "drawn
+        pictures" of a sphere whose points are exact,
         for "half pictures", the same in half floats, for pictures of "native" nodes of its own, for
         "exact" ones, without noise and with the points of float32, for those of "facets" of a
         polyhedron, "coarse" ones or not, for these and for "facet pairs" of directions, or "" for
@@ -214,7 +215,7 @@ HOSTS = (
             OwnNode("disney", "burley", others=True),
         ),
     ),
-    Row("testrender", "osl", "mxeon.hosts.testrender", "planes", surfaces=True),
+    Row("testrender", "osl", "mxeon.hosts.testrender", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )

@@ -282,18 +282,3 @@ class Host(Engine):
         from mxeon.shaders import functions
 
         return self.execute(functions.source(self.language), function, *arguments)
-
-    def plane(self, shader: Shader, scene: Scene) -> Array:
-        """Radiance of a plane with a shader on it.
-
-        Returns
-        -------
-        ndarray, shape (size * size, 3)
-            pi f cos(theta_i), or the albedo, at `mxeon.shaders.plane.plane_pairs`.
-
-        Raises
-        ------
-        Unsupported
-            If the host has no such verb.
-        """
-        raise self._unsupported("pictures of a plane", "testrender")

@@ -12,17 +12,19 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import numpy as np
+
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.hosts.testrender import Host, planes
+from mxeon.hosts.testrender import Host, scenes
 from mxeon.hosts.testrender.programs import VARIABLES, find_program
 from mxeon.shaders.generation import generate
-from mxeon.shaders.scene import Scene
 
 FOLDER = Path(__file__).parent
 FACTS = FOLDER / "facts.json"
-PICTURE = FOLDER / "plane.tif"  # testrender's picture of SHADER under LIGHT
-LIGHT = Scene("light", light=(0.6, 0.0, 0.8), size=16)
+PICTURE = FOLDER / "pairs.tif"  # testrender's picture of the pairs
 SUBJECT, INPUTS = SUBJECTS[0], {"color": (0.2, 0.5, 0.8), "roughness": 1.0}
+VIEWS = np.array([(0.6, 0.0, 0.8), (0.0, 0.28, 0.96), (-0.48, 0.64, 0.6), (0.96, 0.0, 0.28)])
+LIGHTS = np.array([(0.0, 0.6, 0.8), (0.96, 0.0, 0.28), (0.48, -0.6, 0.64), (-0.6, 0.0, 0.8)])
 
 MISSPELLED = """shader wrong(output closure color out = 0)
 {
@@ -42,10 +44,9 @@ grep -n no_such_function "$last" && exit 1
 cp "$last" "${{last%.osl}}.oso"
 """,
     "testrender": """for last; do :; done
-cmp scene.xml "{folder}/scene.xml" && cmp plane.obj "{folder}/plane.obj" || exit 1
-cmp light.obj "{folder}/light.obj" || exit 1
+for name in scene.xml points.obj light.obj; do cmp $name "{folder}/$name" || exit 1; done
 echo '{warning}' >&2
-cp "{folder}/plane.tif" "$last"
+cp "{folder}/pairs.tif" "$last"
 """,
     "testshade": "exit 1\n",
 }
@@ -61,13 +62,18 @@ def shader():
     return generate(SUBJECT.document(INPUTS), "osl")[0]
 
 
+def values(host):
+    """What a host has for the recorded pairs."""
+    return host.evaluate(shader(), VIEWS, LIGHTS, {}, "direct")
+
+
 def write_replay(folder):
     """Write programs that replay the recording; their paths by the variable that names them."""
-    values = {"title": facts()["title"], "warning": facts()["warning"], "folder": FOLDER}
+    words = {"title": facts()["title"], "warning": facts()["warning"], "folder": FOLDER}
     paths = {}
     for name, text in REPLAY.items():
         path = folder / name
-        path.write_text(f"#!/bin/sh\n{text.format(**values)}")
+        path.write_text(f"#!/bin/sh\n{text.format(**words)}")
         path.chmod(0o755)
         paths[VARIABLES[name]] = str(path)
     return paths
@@ -76,9 +82,9 @@ def write_replay(folder):
 def record():
     """Record the facts again."""
     with Host() as host:
-        host.plane(shader(), LIGHT)
+        values(host)
         folder = host._folder
-        for name in (planes.SCENE, planes.PLANE, planes.LIGHT):
+        for name in (scenes.SCENE, scenes.POINTS, scenes.LIGHT):
             (FOLDER / name).write_text((folder / name).read_text())
         PICTURE.write_bytes((folder / "picture.tif").read_bytes())
     recorded = {

@@ -11,6 +11,7 @@ from mxeon.conformance.accuracy import (
     diffuse,
     emission,
     hair,
+    rendered,
     surface_shaders,
     thin_films,
     utilities,
@@ -30,6 +31,7 @@ from mxeon.conformance.nodes.bsdf import (
     SUBSURFACE,
 )
 from mxeon.conformance.nodes.closures import SCATTERING, closure_kind
+from mxeon.conformance.nodes.rendered import LOBES, RENDERED, rendered_kind
 from mxeon.conformance.nodes.surface_shaders import WHOLE
 from mxeon.conformance.nodes.transmission import SCHLICK_TRANSMITTED, TRANSMITTED
 from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES
@@ -143,7 +145,6 @@ LIT: dict[str, Accuracy] = {
         lambert=diffuse.LAMBERT,
     ),
     "pictures": _seen(diffuse.CYCLES_RAY, diffuse.CYCLES_NOISE, diffuse.CYCLES_RAY),
-    "planes": _seen(diffuse.TESTRENDER, diffuse.TESTRENDER_NOISE, diffuse.TESTRENDER),
     "drawn pairs": _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
     "drawn lobes": _seen(diffuse.LOBE),
     **{
@@ -158,9 +159,7 @@ LIT: dict[str, Accuracy] = {
         if kind != SHEEN  # Storm takes the mode's default
     },
     "bsdf pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
-    "bsdf planes": _seen(diffuse.BSDF_PLANE, diffuse.BSDF_PLANE_NOISE),
     "lobes": _seen(diffuse.LOBE),
-    "plane lobes": _seen(diffuse.TESTRENDER),
     "exact": _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
     "facets": _seen(diffuse.FACETS, diffuse.FACET_NOISE, diffuse.FACETS),
     "coarse facets": _seen(diffuse.COARSE_FACETS, diffuse.COARSE_FACETS),
@@ -219,10 +218,31 @@ def _of_closures(shown: Accuracy, value: Tolerance) -> Accuracy:
     return Accuracy(value, value, light, shown.frame, lambert=shown.lambert and value, lit=False)
 
 
-# By kind of probe.
-ACCURACY: Mapping[str, Accuracy] = LIT | {
-    closure_kind(kind): _of_closures(
-        LIT[kind], closures.GRAPH if kind == WHOLE else closures.ARGUMENTS
+def _rendered(kind: str) -> Accuracy:
+    """Accuracy of a renderer's closures of a kind; its environments have noise."""
+    value = rendered.FLAT if kind in rendered.FLAT_KINDS else rendered.SHARP
+    if kind == LOBES:
+        return Accuracy(rendered.BELOW, pairs=False, lit=False)
+    return Accuracy(
+        value,
+        rendered.NOISE,
+        rendered.PASSED,
+        integral=rendered.INTEGRAL,
+        light=rendered.LIGHT,
+        reciprocity=value,
+        lambert=rendered.FLAT,
+        lit=False,
     )
-    for kind in SCATTERING
-}
+
+
+# By kind of probe.
+ACCURACY: Mapping[str, Accuracy] = (
+    LIT
+    | {
+        closure_kind(kind): _of_closures(
+            LIT[kind], closures.GRAPH if kind == WHOLE else closures.ARGUMENTS
+        )
+        for kind in SCATTERING
+    }
+    | {rendered_kind(kind): _rendered(kind) for kind in RENDERED}
+)

@@ -12,7 +12,6 @@ from mxeon.conformance.samples.measurement import absolute, mean_error, relative
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 from mxeon.conformance.samples.uneven_environment import ROWS, SLOPE
 from mxeon.shaders.facets import NARROWEST
-from mxeon.shaders.plane import DISTANCE, LIGHT_RADIUS, LIGHTS
 
 HALF_ROUNDING = 2.0**-11  # of float16
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
@@ -163,22 +162,6 @@ CYCLES_RAY = Tolerance(
     "float32 position of a pixel's point, three roundings of 2^-23, over the square of the smallest "
     "cosine judged, 0.05; 1e-5 for the roughness that is taken for 0; rounded up",
 )
-TESTRENDER = Tolerance(
-    rounded_up(
-        2.0 * LIGHT_RADIUS / DISTANCE * math.tan(math.radians(max(LIGHTS))) + FAST_ARC_COSINE
-    ),
-    "relative",
-    relative,
-    "the light's radius seen from the plane, 1.6e-5, times the tangent of its angle, 75 degrees, for "
-    "its cosine and as much again for the lobe; 4.6e-5 for OpenImageIO's fast arc cosine; rounded up",
-)
-TESTRENDER_NOISE = Tolerance(
-    rounded_up(4.0 * 0.0125 / math.sqrt(PLANE_PIXELS)),
-    "mean albedo",
-    mean_error,
-    "four standard errors of the mean of a picture's 16 384 pixels, each of 64 paths: measured, a "
-    "pixel is off by 0.0125 rms at roughness 1 and reflectance 1; rounded up",
-)
 CYCLES_NOISE = Tolerance(
     mean_noise(12_836),
     "mean albedo",
@@ -280,12 +263,6 @@ BSDF_RAY = Tolerance(
     scaled,
     "8 times the error of a ray in a picture: 5, twice over the least alpha, and 3; rounded up",
 )
-BSDF_PLANE = Tolerance(
-    rounded_up(LOBE_SLOPE * TESTRENDER.value),
-    SCALED,
-    scaled,
-    "8 times the error of a plane's picture: 5, twice over the least alpha, and 3; rounded up",
-)
 
 
 def drawn_of(value: Tolerance, cut: float = 0.0) -> Tolerance:
@@ -305,10 +282,4 @@ BSDF_NOISE = Tolerance(
     "mean albedo",
     mean_error,
     "that of Cycles' pictures, for the 3212 pixels of a smaller one",
-)
-BSDF_PLANE_NOISE = Tolerance(
-    2.0 * TESTRENDER_NOISE.value,
-    "mean albedo",
-    mean_error,
-    "that of testrender's pictures, for a quarter of their pixels",
 )

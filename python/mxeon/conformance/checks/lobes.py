@@ -14,7 +14,14 @@ from mxeon.conformance.checks.controls import (
     take_response,
     with_inputs,
 )
-from mxeon.conformance.checks.names import COMBINATION, EMITTER, FRAMED, MEDIUM_NAMES, OTHERS
+from mxeon.conformance.checks.names import (
+    COMBINATION,
+    EMITTER,
+    FRAMED,
+    MEDIUM_NAMES,
+    OTHERS,
+    shows_exactly,
+)
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
@@ -280,6 +287,7 @@ CHECKS = (
         scale_cosine(-1),
         tolerances.count_of("values"),
         pairs=True,
+        applies=shows_exactly,
         diagnose=input_diagnosis.diagnose_finite,
     ),
 )

@@ -5,6 +5,7 @@ from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
+from mxeon.conformance.checks.names import shows_exactly
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.probes.cases import stretched_case
 from mxeon.models.nodes.microfacets import MICROFACET_NODES
@@ -29,6 +30,7 @@ CHECKS = (
         rougher,
         tolerances.SHAPE,
         pairs=True,
+        applies=shows_exactly,
         open=True,
     ),
     Check(

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of the models that several checks hold for."""
+"""Names of the models that several checks hold for, and hosts that they leave out."""
 
+from mxeon.conformance.nodes.subject import Subject
+from mxeon.hosts import HOSTS
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.combinations import COMBINATIONS
 from mxeon.models.nodes.emissions import COMBINED_EMISSIONS, EMISSIONS
@@ -14,3 +16,8 @@ OTHERS = (*FRAMED, SUBSURFACE_NODE.name)
 COMBINATION = tuple(row.name for row in COMBINATIONS)
 EMITTER = tuple(row.name for row in (*EMISSIONS, *COMBINED_EMISSIONS))
 MEDIUM_NAMES = tuple(row.name for row in (*MEDIA, *COMBINED_MEDIA))
+
+
+def shows_exactly(subject: Subject, host: str) -> bool:
+    """Whether a host has directions to the last bit, those on the horizon too."""
+    return all(row.probe != "rendered" for row in HOSTS if row.name == host)

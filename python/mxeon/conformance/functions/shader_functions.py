@@ -23,7 +23,7 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.base import Host
 from mxeon.shaders import functions
 
-KINDS = ("pairs", "pictures", "planes")  # of probes whose hosts evaluate functions
+KINDS = ("pairs", "pictures", "rendered")  # of probes whose hosts evaluate functions
 ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
 SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
 DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 import mxeon
 from mxeon.conformance.nodes.diffuse import DiffuseSubject
-from mxeon.conformance.probes.pictures import Mask, PictureProbe, PlaneProbe, picture_pairs
+from mxeon.conformance.probes.pictures import Mask, PictureProbe, picture_pairs
 from mxeon.conformance.probes.polyhedron import FacetPairProbe, FacetProbe
 from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.probes.rendered import RenderedSamples
 from mxeon.conformance.results import PORTRAIT, Picture
 from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
 from mxeon.shaders.facets import facet_points
@@ -27,14 +28,14 @@ def comparison_pictures(probe: Probe) -> tuple[Picture, ...]:
     Parameters
     ----------
     probe : PairProbe or PictureProbe
-        Of a surface shader's lobe or of a plane there are none.
+        Of a surface shader's lobe there are none, nor on a renderer that shows no exact mirror pair.
 
     Returns
     -------
     tuple of Picture
         Away from rim and terminator; elsewhere both are black.
     """
-    if not isinstance(probe.subject, DiffuseSubject) or isinstance(probe, PlaneProbe):
+    if not isinstance(probe.subject, DiffuseSubject) or isinstance(probe, RenderedSamples):
         return ()
     points = ((scene, *_points(probe, scene)) for scene in SCENES)
     return tuple(_comparison(probe, *each) for each in points if len(each[1].wo))

@@ -12,7 +12,6 @@ from mxeon.conformance.probes.pictures import (
     PICTURE_SIZE,
     Mask,
     PictureProbe,
-    PlaneProbe,
 )
 from mxeon.conformance.samples.batch import LOBE_RIM, Array, Batch, Values
 from mxeon.shaders.document.values import Plain
@@ -51,12 +50,3 @@ class DiffuseLobeProbe(PictureProbe):
             for port in shader.inputs
         )
         return replace(shader, inputs=tuple(ports))
-
-
-class DiffuseLobePlaneProbe(DiffuseLobeProbe, PlaneProbe):
-    """The diffuse lobe of a surface shader on a plane."""
-
-    shown: ClassVar[str] = "plane lobes"
-
-    def _shader(self, inputs: Values) -> Shader:
-        return PictureProbe._shader(self, inputs)

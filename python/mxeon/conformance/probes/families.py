@@ -19,9 +19,9 @@ from mxeon.conformance.probes.bsdf import (
     MicrofacetProbe,
     TransmissionProbe,
 )
-from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe, BsdfPlaneProbe
+from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe
 from mxeon.conformance.probes.closures import closures_of
-from mxeon.conformance.probes.diffuse_lobes import DiffuseLobePlaneProbe, DiffuseLobeProbe
+from mxeon.conformance.probes.diffuse_lobes import DiffuseLobeProbe
 from mxeon.conformance.probes.drawn import (
     DrawnBsdfProbe,
     DrawnLobeProbe,
@@ -35,9 +35,10 @@ from mxeon.conformance.probes.emission_pictures import EmissionPictureProbe, Sur
 from mxeon.conformance.probes.hair import HairProbe
 from mxeon.conformance.probes.media import MediumProbe
 from mxeon.conformance.probes.pairs import PairProbe
-from mxeon.conformance.probes.pictures import PictureProbe, PlaneProbe
+from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.probes.polyhedron import CoarseFacetProbe, FacetPairProbe, FacetProbe
 from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.probes.rendered import RenderedLobeProbe, rendered_of
 from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
 from mxeon.conformance.probes.subsurface import SubsurfaceProbe
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
@@ -67,12 +68,13 @@ PBR_SUBJECTS: tuple[Subject, ...] = (
 ALL_SUBJECTS: tuple[Subject, ...] = (*SUBJECTS, *PBR_SUBJECTS, *SURFACES)
 
 ClosureProbe = closures_of(PairProbe)
+RenderedProbe = rendered_of(PairProbe)
 # By the word of a host's row for how it is asked.
 HOST_PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "pairs": PairProbe,
     "closures": ClosureProbe,
     "pictures": PictureProbe,
-    "planes": PlaneProbe,
+    "rendered": RenderedProbe,
     "drawn pictures": DrawnProbe,
     "half pictures": HalfProbe,
     "native": NativeProbe,
@@ -119,7 +121,10 @@ PROBES: Mapping[type[Probe], Mapping[str, type[Probe]]] = {
         **IN_THE_DARK,
         utilities.VALUES: UtilityOslProbe,
     },
-    PlaneProbe: {"lobes": DiffuseLobePlaneProbe, **dict.fromkeys(BSDF_KINDS, BsdfPlaneProbe)},
+    RenderedProbe: {
+        **{kind: rendered_of(EVALUATED[kind]) for kind in (*BSDF_KINDS, bsdf.SUBSURFACE)},
+        "lobes": RenderedLobeProbe,
+    },
     DrawnProbe: {"lobes": DrawnLobeProbe, **dict.fromkeys(bsdf.KINDS, DrawnBsdfProbe)},
     # Storm takes an enumerated input for its default: no node of another mode is shown there.
     HalfProbe: {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Probes of a node on hosts that make pictures: the lit points of a sphere or of a plane are its pairs."""
+"""Probes of a node on hosts that make pictures: the lit points of a sphere are its pairs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.samples.batch import RIM, Array, Batch, Values
 from mxeon.hosts import front_lit_only
 from mxeon.hosts.base import Host
-from mxeon.shaders.plane import LIGHTS, plane_pairs
 from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, VIEW, Scene, local_directions, sphere
 
 if TYPE_CHECKING:
@@ -103,24 +102,6 @@ class PictureProbe(LobeProbe):
     def _radiance(self, shader: Shader, scene: Scene) -> NDArray[np.floating]:
         """The host's values at all points of a picture."""
         return self.host.picture(shader, scene)[sphere(scene.size).mask]
-
-
-class PlaneProbe(PictureProbe):
-    """A node on a plane: every pixel is another direction of view."""
-
-    shown: ClassVar[str] = "planes"
-    scenes: ClassVar[tuple[Scene, ...]] = tuple(
-        Scene(f"plane{degrees:.0f}", light=(np.sin(polar), 0.0, np.cos(polar)))
-        for degrees in LIGHTS
-        for polar in [np.radians(degrees)]
-    )
-
-    def points(self, scene: Scene) -> Pairs:
-        wo, wi = plane_pairs(scene)
-        return wo, wi, self._mask(wo, wi)
-
-    def _radiance(self, shader: Shader, scene: Scene) -> NDArray[np.floating]:
-        return self.host.plane(shader, scene)
 
 
 @lru_cache(maxsize=8)  # a check makes many pictures of a few documents

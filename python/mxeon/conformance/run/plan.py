@@ -194,7 +194,7 @@ def _on_host(
         if probe is PairProbe:
             yield Task(CURVE, subject.title, host, library)
     for each in nodes:
-        left = each.closure and row.probe != "closures" and _is_renderers(row.target, library)
+        left = each.closure and row.probe == "pictures" and _is_renderers(row.target, library)
         if not left and _is_judged(each, library):
             yield from _checks_of(each, probe, host, library)
     if row.surfaces:
@@ -208,7 +208,7 @@ def _on_host(
 def _is_renderers(target: str, library: str) -> bool:
     """Whether a library leaves the other BSDF nodes to the renderer, as the stock library does.
 
-    The renderer's closures are judged with the stock library alone.
+    Where pictures show it, the renderer's closures are judged with the stock library alone.
     """
     return target == "osl" and library in LIBRARIES and library != "stock"
 

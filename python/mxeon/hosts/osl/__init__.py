@@ -10,10 +10,8 @@ So what MaterialX's text says is judged, whatever a renderer makes of it.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -22,18 +20,15 @@ from mxeon.hosts import base
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.blender import Blender
 from mxeon.hosts.osl.carriers import prelude
-from mxeon.hosts.osl.points import TYPES, Column, row, statements
+from mxeon.hosts.osl.points import Column, row, statements
+from mxeon.hosts.osl.texts import columns_of, header, indented, with_variables
 from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
 LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, and its text
-OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")  # of a shader
 VERSION = "float version(float x)\n{\n    return OSL_VERSION;\n}\n"
-# What a shader finds in the place of the surface. I points to the surface, as OSL has it; it is read
-# by functions, which local variables do not reach.
-SURFACE = {"N": ("normal", (0.0, 0.0, 1.0)), "dPdu": ("vector", (1.0, 0.0, 0.0))}
-NAMES = {"N": "normal", "dPdu": "tangent"}
+# I points to the surface, as OSL has it; it is read by functions, which local variables do not reach.
 VIEW = """
 vector mxeon_view()
 {{
@@ -77,19 +72,11 @@ class Host(base.Host):
         count = len(wo)
         with self._engine.folder() as name:
             folder = Path(name)
-            # Values of its inputs and of its surface, as local variables that hide them.
-            columns = {
-                each: Column(kind, inputs.get(NAMES[each], value))
-                for each, (kind, value) in SURFACE.items()
-            }
-            block = _indented(statements({**columns, **_inputs(shader, inputs)}, folder, count))
+            # Its inputs and its surface have values of each point.
+            block = statements(columns_of(shader, inputs), folder, count)
             [view] = statements({"view": Column("vector", wo)}, folder, count)
-            # The shader in that block, after the carriers.
-            head, brace, body = _with_header(shader.stages["pixel"]).rpartition("\n)\n{\n")
-            main, end, _ = body.rpartition("}")
-            output = OUTPUT.findall(head)[-1]
-            last = _print(f"mxeon_text({output})") + f"    {output} = 0;\n"
-            text = f"{VIEW.format(read=view)}{head}{brace}{{\n{block}{main}{last}}}\n{end}\n"
+            shown = with_variables(shader, block, _printed_closure)
+            text = VIEW.format(read=view) + shown.replace('"mx_funcs.h"', f'"{header()}"')
             rows = self._printed(folder, text, count)
         return read_trees([whole_label(each, ROOT) for each in rows])
 
@@ -106,7 +93,7 @@ class Host(base.Host):
         count = max((len(column.rows) for column in columns.values()), default=1)
         # Run a shader that prints its value.
         with self._engine.folder() as name:
-            block = _indented(statements(columns, Path(name), count))
+            block = indented(statements(columns, Path(name), count))
             last = _print(f"mxeon_text((color) {function}({', '.join(columns)}))")
             text = f"{source}\nshader call(output closure color out = 0)\n{{\n{block}{last}}}\n"
             rows = self._printed(Path(name), text, count)
@@ -130,25 +117,10 @@ class Host(base.Host):
         return rows
 
 
-def _inputs(shader: Shader, inputs: Inputs) -> Mapping[str, Column]:
-    """Columns of the inputs that a shader has, by the names of its variables."""
-    columns = {}
-    for port in shader.inputs:
-        key = port.path if port.path in inputs else port.path.rsplit("/", 1)[-1]
-        if key in inputs:
-            columns[port.name] = Column(TYPES.get(port.type, port.type), inputs[key])
-    return columns
-
-
 def _print(text: str) -> str:
     return PRINT.format(root=ROOT, text=text)
 
 
-def _indented(lines: Iterable[str]) -> str:
-    return "".join(f"    {line}\n" for line in lines)
-
-
-def _with_header(text: str) -> str:
-    """A generated text with the path of its include."""
-    header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
-    return text.replace('"mx_funcs.h"', f'"{header.asString()}"')
+def _printed_closure(output: str) -> str:
+    """Statements that print a closure and drop it."""
+    return _print(f"mxeon_text({output})") + f"    {output} = 0;\n"

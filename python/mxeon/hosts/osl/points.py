@@ -25,10 +25,8 @@ WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
 ROW = """#define MXEON_ROW \\
     ((int) floor({size} * (0.5 - 0.5 * P[1])) * {size} + (int) floor({size} * (0.5 + 0.5 * P[0])))
 """
-READ = (
-    'texture("{image}", 0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1], 0.0, 0.0, 0.0, 0.0, '
-    '"interp", "closest")'
-)
+READ = 'texture("{image}", {place}, 0.0, 0.0, 0.0, 0.0, "interp", "closest")'
+PLANE = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # where the plane of Blender reads an image
 
 
 @dataclass(frozen=True)
@@ -51,6 +49,11 @@ class Column:
         """The values, (N or 1, components)."""
         return np.asarray(self.values, np.float32).reshape(-1, WIDTHS.get(self.kind, 1))
 
+    @property
+    def directed(self) -> bool:
+        """Whether the values are directions, which turn with the frame of the surface."""
+        return self.kind in ("normal", "vector")
+
 
 def side(count: int) -> int:
     """Pixels on a side of the square picture that has so many points."""
@@ -62,33 +65,50 @@ def row(count: int) -> str:
     return ROW.format(size=side(count))
 
 
-def statements(columns: Mapping[str, Column], folder: Path, count: int) -> Iterator[str]:
+def statements(
+    columns: Mapping[str, Column], folder: Path, count: int, place: str = PLANE
+) -> Iterator[str]:
     """OSL declarations of variables that have a value for each point; their images are written.
 
     Each float of a variable is exact: an image of float32, read without a filter.
+
+    Parameters
+    ----------
+    columns : mapping of str to Column
+        Variables by name.
+    folder : Path
+        Of the images.
+    count : int
+        Points.
+    place : str
+        OSL expressions of the two coordinates at which a point reads its pixel.
     """
+
+    def read(name: str, rows: NDArray[np.float32]) -> str:
+        return READ.format(image=_image(folder, name, rows).as_posix(), place=place)
+
     for name, column in columns.items():
         # One row for each point: write them, and read them where the shader runs.
         rows = np.broadcast_to(column.rows, (count, column.rows.shape[1]))
         # A vector2 and an int are made of floats, as textures have neither.
         if column.kind == "vector2":
             for axis, part in zip("xy", rows.T, strict=True):
-                yield f"float {name}_{axis} = {_read(folder, f'{name}_{axis}', part)};"
+                yield f"float {name}_{axis} = {read(f'{name}_{axis}', part)};"
             yield f"vector2 {name} = vector2({name}_x, {name}_y);"
         elif column.kind == "int":
-            yield f"float {name}_float = {_read(folder, name, rows)};"
+            yield f"float {name}_float = {read(name, rows)};"
             yield f"int {name} = (int) {name}_float;"
         # A normal is read as a vector.
         else:
             kind = "vector" if column.kind == "normal" else column.kind
-            yield f"{kind} {name} = {_read(folder, name, rows)};"
+            yield f"{kind} {name} = {read(name, rows)};"
 
 
-def _read(folder: Path, name: str, rows: NDArray[np.float32]) -> str:
-    """OSL that reads the rows of an image, which is written."""
+def _image(folder: Path, name: str, rows: NDArray[np.float32]) -> Path:
+    """Image of the rows of a variable, one pixel for each."""
     size, image = side(len(rows)), folder / f"{name}.exr"
     channels = rows.size // len(rows)
     pixels = np.zeros((size * size, channels), np.float32)
     pixels[: len(rows)] = rows.reshape(-1, channels)
     write_image(image, pixels.reshape(size, size, channels), {})
-    return READ.format(image=image.as_posix())
+    return image

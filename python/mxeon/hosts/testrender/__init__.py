@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """OSL's own programs: generated OSL compiled by oslc and rendered by testrender.
 
-The picture is of a plane, on which every pixel is a pair of directions that is known exactly.
-testshade evaluates functions.
+Each pixel of a picture shows a pair of directions of its own; see `scenes`. testshade evaluates functions.
 """
 
 from __future__ import annotations
@@ -10,27 +9,28 @@ from __future__ import annotations
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import base, fragment
-from mxeon.hosts.base import Array, Identity
-from mxeon.hosts.testrender import calls, planes
+from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.osl.points import Column, side, statements
+from mxeon.hosts.osl.texts import columns_of, header, with_variables
+from mxeon.hosts.testrender import calls, scenes
 from mxeon.hosts.testrender.programs import find_program, output, version
 from mxeon.io.images import read_image, write_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
-from mxeon.shaders.scene import Scene
 
-# Squared, the paths of a pixel. The light is a point as far as float32 can tell, the sky is not.
-LIGHT_SAMPLES, SKY_SAMPLES = 1, 8
+PATHS = 1 << 12  # pixels of a picture with a sky, each of SKY_SAMPLES^2 paths
 HELPERS = {
     "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",
-    "mxeon_light": "shader mxeon_light(float radiance = 1.0) { Ci = radiance * emission(); }",
-    "mxeon_sky": "shader mxeon_sky(float radiance = 1.0) { Ci = radiance * background(); }",
+    "mxeon_light": "shader mxeon_light() { Ci = emission(); }",
+    "mxeon_sky": "shader mxeon_sky() { Ci = background(); }",
 }
+DIRECT, TRANSMITTED, EMITTED = "direct", "transmission", "emission"  # branches of `evaluate`
+BASE = "    {output} = layer({output}, uniform_edf(color(1)));\n"  # what shines through a layer
 
 
 class Host(base.Host):
@@ -57,36 +57,76 @@ class Host(base.Host):
         """Version of oslc; the device is the CPU."""
         return Identity(self.name, self._version, "CPU")
 
-    def plane(self, shader: Shader, scene: Scene) -> Array:
-        """Radiance of a plane with the shader on it, at `mxeon.shaders.plane.plane_pairs`.
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: Array | None = None,
+    ) -> Array:
+        """Values that testrender gives to the closures of a shader; see `mxeon.hosts.base.Host`.
 
-        Parameters
-        ----------
-        shader : Shader
-        scene : Scene
-            A distant light, in the plane's frame, or a uniform environment.
+        The throughput is what is seen of a white emission below. The environment is sampled, so that it
+        has noise; what comes through the surface is part of it.
 
-        Returns
-        -------
-        ndarray, shape (size * size, 3), float64
-            pi f cos(theta_i), or radiance.
+        Raises
+        ------
+        Unsupported
+            If the environment is not uniform, or is asked for its light from below alone.
+        ValueError
+            If a pair is not `scenes.visible`, or the light of a single pair is not finite.
         """
-        self.refuse_paths(scene)
+        through = output == "throughput"
+        if irradiance is not None or (branch == TRANSMITTED and not through):
+            raise self._unsupported("uneven environment, and none below alone", "gl")
+        if branch == DIRECT and output == "response":
+            pixels, scene = self._pixels(shader, wo, wi, inputs, "", True)
+            return np.asarray(pixels / scene.irradiance[:, np.newaxis])
+        # What does not depend on the light: each view has one across it, too small to add to an emission.
+        sky = not through and branch != EMITTED
+        repeats = max(1, PATHS // len(wo)) if sky else 1
+        rows = np.repeat(np.arange(len(wo)), repeats)
+        spread = {
+            name: np.asarray(each)[rows] if np.shape(each)[:1] == (len(wo),) else each
+            for name, each in inputs.items()
+        }
+        last = BASE if through else ""
+        pixels, _ = self._pixels(
+            shader, wo[rows], scenes.perpendicular(wo)[rows], spread, last, not sky
+        )
+        return np.asarray(pixels.reshape(len(wo), repeats, 3).mean(axis=1))
+
+    def _pixels(
+        self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, lit: bool
+    ) -> tuple[NDArray[np.float64], scenes.PairScene]:
+        """Radiance of pairs, (N, 3), with their scene."""
+        # Turn what has a direction into the frame of the scene.
+        wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
+        if not scenes.visible(wo, wi).all():
+            raise InputError(
+                f"testrender: the sine of each pair must be at least {scenes.LEAST_SINE}"
+            )
+        scene = scenes.pair_scene(wo, wi, side(len(wo)))
+        columns = {
+            name: Column(each.kind, scene.turned(each.rows) if each.directed else each.values)
+            for name, each in columns_of(shader, inputs).items()
+        }
         # Compile the shaders, and write the scene.
-        for name, text in {shader.name: shader.stages["pixel"], **HELPERS}.items():
-            self._compile(name, text)
-        for name, text in planes.files(shader.name, scene).items():
-            (self._folder / name).write_text(text, encoding="utf-8")
-        # Render it.
-        samples = SKY_SAMPLES if scene.light is None else LIGHT_SAMPLES
-        # A worker has one core.
+        block = statements(columns, self._folder, len(wo), scenes.PLACE)
+        text = with_variables(shader, block, lambda output: last.format(output=output))
+        for name, each in {shader.name: text, **HELPERS}.items():
+            self._compile(name, each)
+        for name, each in scene.files(shader.name, lit).items():
+            (self._folder / name).write_text(each, encoding="utf-8")
+        # Render it; a worker has one core.
+        samples = scenes.LIGHT_SAMPLES if lit else scenes.SKY_SAMPLES
         options = ["-t", "1", "-aa", str(samples), "--res", str(scene.size), str(scene.size)]
-        pixels = self._image([self._testrender, *options, planes.SCENE])
-        # Divide by the light that falls on each pixel.
-        radiance = pixels[..., :3].reshape(-1, 3)
-        if scene.light is None:
-            return radiance
-        return radiance / planes.irradiance(scene.light, scene.size)[:, np.newaxis]
+        pixels = self._image([self._testrender, *options, scenes.SCENE])
+        return pixels[..., :3].reshape(-1, 3)[: len(wo)], scene
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""
@@ -115,8 +155,7 @@ class Host(base.Host):
         if self._compiled.get(name) == text:
             return
         (self._folder / f"{name}.osl").write_text(text, encoding="utf-8")
-        header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
-        include = f"-I{header.getParentPath().asString()}"
+        include = f"-I{Path(header()).parent}"
         output([self._oslc, "-q", include, f"{name}.osl"], self._folder, ShaderError)
         self._compiled[name] = text
 

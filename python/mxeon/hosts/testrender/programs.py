@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
-from mxeon.errors import MxeonError, NotRun
+from mxeon.errors import MxeonError, NotRun, ShaderError
 from mxeon.hosts.base import RendererWarning
 
 VARIABLES = {
@@ -68,6 +68,11 @@ def output(
         Working folder.
     failure : type
         Of the error that is raised with the program's last lines where it fails.
+
+    Raises
+    ------
+    ShaderError
+        If it ends well but reports an error: testrender goes on without the lobes that it has no room for.
     """
     # Run the program.
     try:
@@ -87,7 +92,7 @@ def output(
     # Raise what it reports and goes on after: it has lost lobes then.
     for line in lines:
         if line.startswith("ERROR") or "Assertion" in line:
-            raise failure(f"testrender: {program}: {line}")
+            raise ShaderError(f"testrender: {program}: {line}")
     # Pass its warnings on.
     for line in dict.fromkeys(lines):
         if line.startswith("WARNING"):

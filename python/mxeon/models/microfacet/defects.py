@@ -23,6 +23,7 @@ from mxeon.models.microfacet.lobe import (
     missing,
     uncompensated,
 )
+from mxeon.models.microfacet.missing import missing_light
 
 # Fresnel curve of each node, its inputs with channels, and those without.
 NODES: dict[str, tuple[Curve, tuple[str, ...], tuple[str, ...]]] = {
@@ -132,6 +133,13 @@ def _compensated_by(cosine: Callable[[Pair], Array]) -> Callable[[Pair], Array]:
         return 1.0 + F * missing(pair.wo[2], pair.roughness)
 
     return factor
+
+
+def _compensated_bsdl(pair: Pair) -> Array:
+    """Compensation of OSL's BSDL: F at the half vector, and E_ss at the arithmetic mean of both alphas."""
+    alpha = 0.5 * (pair.roughness[0] + pair.roughness[1])
+    F = pair.curve.at(pair.cosine, **pair.material)
+    return 1.0 + F * missing_light(pair.wo[2], alpha)
 
 
 def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float) -> Array:
@@ -257,6 +265,11 @@ MICROFACET_DEFECTS = (
         "smith_anisotropic",
         "masking of the anisotropic distribution (Heitz 2014)",
         Lobe(visibility=_anisotropic),
+    ),
+    MicrofacetDefect(
+        "bsdl",
+        "BSDL's lobe: compensation with F at the half vector, masking of the anisotropic distribution",
+        Lobe(_compensated_bsdl, _anisotropic),
     ),
     MicrofacetDefect("alpha_squared", "roughness squared once more", Lobe(alpha=np.square)),
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),

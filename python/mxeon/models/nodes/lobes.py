@@ -52,6 +52,18 @@ def _untinted(
     return untinted
 
 
+def _by_largest(
+    albedo: Callable[[Array, Inputs], Array],
+) -> Callable[[Array, Inputs], Array]:
+    """An albedo times the largest channel of the color, in every channel."""
+
+    def gray(wo: Array, inputs: Inputs) -> Array:
+        largest = np.max(np.broadcast_to(inputs["color"], wo.shape), axis=-1, keepdims=True)
+        return np.asarray(np.minimum(albedo(wo, inputs) * largest, 1.0))
+
+    return gray
+
+
 def _sheen(
     brdf: Callable[..., Array],
 ) -> Callable[[Array, Array, Inputs], Array]:
@@ -118,6 +130,10 @@ LOBE_NODES = (
                 "MaterialX's fit of its albedo without the color",
                 albedo=materialx_fits.conty_kulla_albedo,
             ),
+            Variant(
+                "MaterialX's fit of its albedo, times the largest channel of the color",
+                albedo=_by_largest(materialx_fits.conty_kulla_albedo),
+            ),
         ),
     ),
     PbrNode(
@@ -137,6 +153,14 @@ LOBE_NODES = (
                 _tinted(_bounded(conty_kulla_albedo_dir)),
             ),
             Variant("its albedo without the color", albedo=_untinted(zeltner_albedo_dir)),
+            Variant(
+                "its albedo times the largest channel of the color",
+                albedo=_by_largest(_untinted(zeltner_albedo_dir)),
+            ),
+            Variant(
+                "MaterialX's fit of the Conty-Kulla albedo, times the largest channel of the color",
+                albedo=_by_largest(materialx_fits.conty_kulla_albedo),
+            ),
         ),
     ),
 )

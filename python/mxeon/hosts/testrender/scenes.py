@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A scene in testrender's files in which each pixel shows a pair of directions of its own.
+
+The camera sees a small triangle in each pixel, and a small light lies outside the picture. Where a
+triangle lies on the ray of its pixel decides about the angle between view and light. The frame of the
+shaded surface is turned into them: a shader gets its normal and tangent, whatever the triangle is.
+
+    camera ------- d ------> P        wo = -d
+                            /         angle of wo and wi: foot point of the light + distance cot(angle) d
+                       light
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.hosts.base import Array
+
+Vectors = NDArray[np.float64]
+
+SCENE, POINTS, LIGHT = "scene.xml", "points.obj", "light.obj"
+EYE = 40.0  # height of the camera above the light, which lies at the origin
+CENTER = 1.5  # of the picture, at the height of the light
+NEAREST = 0.5  # ray to the light
+FOV = 5.725  # degrees, of the whole frame, which is tan(FOV / 2) wide at distance 1
+LIGHT_RADIUS = 2.0**-18
+# Of a triangle, over its distance: the camera's rays are off by some 2^-24, and what is small hides no light.
+TRIANGLE = 2e-5
+LEAST_SINE = 0.08  # of the angle between view and light: the camera would see the light, or have points behind it
+CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # of a triangle
+PLACE = "u, v"  # where a point reads an image
+# Paths of a pixel, squared: the light is a point as far as float32 can tell, the sky is not.
+LIGHT_SAMPLES, SKY_SAMPLES = 1, 8
+
+WORLD = """<World>
+  <Option no_jitter="int 1" />
+  <Option max_bounces="int 1" />
+  <Camera eye="0,0,{eye:.9g}" dir="{center:.9g},0,-{eye:.9g}" up="0,1,0" fov="{fov:.9g}" />
+  <ShaderGroup name="points">
+    shader {shader} material ;
+    shader mxeon_root root ;
+    connect material.out root.material ;
+  </ShaderGroup>
+  <Model filename="{points}" />
+{light}
+</World>
+"""
+LIGHT_GROUP = f"""  <ShaderGroup name="light" is_light="yes">
+    shader mxeon_light light ;
+  </ShaderGroup>
+  <Model filename="{LIGHT}" />"""
+# Of resolution 0: no table of a sky that is uniform.
+SKY_GROUP = """  <ShaderGroup name="sky">
+    shader mxeon_sky sky ;
+  </ShaderGroup>
+  <Background resolution="0" />"""
+
+
+@dataclass(frozen=True)
+class PairScene:
+    """Points that show pairs of directions to a camera.
+
+    Attributes
+    ----------
+    size : int
+        Pixels on a side of the picture.
+    rays : ndarray, shape (N, 3)
+        Unit vectors from the camera through the pixels' centers, row 0 first.
+    points : ndarray, shape (N, 3)
+        Float32 numbers.
+    turn : ndarray, shape (N, 3, 3)
+        Matrix from the frame of the pairs to that of the scene.
+    """
+
+    size: int
+    rays: Vectors
+    points: Vectors
+    turn: NDArray[np.float64]
+
+    @property
+    def irradiance(self) -> NDArray[np.float64]:
+        """Irradiance of a surface that faces the light, of radiance 1, (N,)."""
+        area = 0.5 * np.cross(*np.diff(_light_corners(), axis=0))
+        squared = (self.points**2).sum(axis=1)
+        return np.asarray(np.abs(self.points @ area) / squared**1.5)
+
+    def turned(self, vectors: Array) -> Vectors:
+        """Vectors of the frame of the pairs, (N or 1, 3), in that of the scene."""
+        each = np.broadcast_to(np.asarray(vectors, np.float64), self.rays.shape)
+        return np.asarray((self.turn @ each[:, :, np.newaxis])[:, :, 0])
+
+    def files(self, shader: str, lit: bool) -> dict[str, str]:
+        """Texts of the files of the scene, by name, with its light or with a white sky.
+
+        Parameters
+        ----------
+        shader : str
+            Name of the points' shader, whose output is `out`.
+        lit : bool
+        """
+        light = LIGHT_GROUP if lit else SKY_GROUP
+        world = WORLD.format(
+            eye=EYE, center=CENTER, fov=FOV, shader=shader, points=POINTS, light=light
+        )
+        texts = {SCENE: world, POINTS: self._model()}
+        return texts | ({LIGHT: _model(_light_corners()[np.newaxis])} if lit else {})
+
+    def _model(self) -> str:
+        """A triangle about each point, which the light sees from its edge and the camera from above."""
+        # Two axes in the plane of the triangle: towards the light, and across.
+        toward = -_unit(self.points)
+        across = _unit(np.cross(toward, self.rays))  # whose normal faces the camera
+        reach = TRIANGLE * np.linalg.norm(self.points - [0.0, 0.0, EYE], axis=1)
+        axes = np.stack([toward, across], axis=1) * reach[:, np.newaxis, np.newaxis]
+        # Points of the same pixel of an image.
+        column, row = np.arange(len(self.rays)) % self.size, np.arange(len(self.rays)) // self.size
+        places = (np.stack([column, row], axis=1) + 0.5) / self.size
+        corners = self.points[:, np.newaxis] + np.array(CORNERS) @ axes
+        return _model(corners, places)
+
+
+def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
+    """Scene of pairs of directions with a sine of at least LEAST_SINE between them.
+
+    Parameters
+    ----------
+    wo, wi : ndarray, shape (N, 3)
+        Unit vectors.
+    size : int
+        Pixels on a side of the picture, at least the root of N.
+    """
+    # Points at which the light appears at the angle.
+    rays = _rays(size)[: len(wo)]
+    eye = np.array([0.0, 0.0, EYE])
+    foot = eye - (rays @ eye)[:, np.newaxis] * rays
+    across = np.cross(wo, wi)
+    cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(across, axis=1)
+    points = foot + (np.linalg.norm(foot, axis=1) * cotangent)[:, np.newaxis] * rays
+    points = points.astype(np.float32).astype(np.float64)
+    # The frames of both pairs, which have the view as their first axis.
+    local = _frame(wo, wi)
+    world = _frame(-rays, -_unit(points))
+    return PairScene(size, rays, points, world @ np.swapaxes(local, 1, 2))
+
+
+def perpendicular(vectors: Array) -> Vectors:
+    """Unit vectors across others, (N, 3)."""
+    axes = np.where(np.abs(vectors[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
+    return _unit(np.cross(vectors, axes))
+
+
+def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
+    """Which pairs of directions a scene can show, (N,)."""
+    return np.asarray(np.linalg.norm(np.cross(wo, wi), axis=1) >= LEAST_SINE)
+
+
+def _rays(size: int) -> Vectors:
+    """Directions of the camera's rays, (size^2, 3)."""
+    axis = (np.arange(size) + 0.5) / size - 0.5
+    x, y = (each.ravel()[:, np.newaxis] for each in np.meshgrid(axis, -axis))
+    ahead = _unit(np.array([[CENTER, 0.0, -EYE]]))
+    right = _unit(np.cross(ahead, [[0.0, 1.0, 0.0]]))
+    up = np.cross(right, ahead)
+    width = np.tan(np.radians(FOV) / 2.0)  # half the usual extent
+    return _unit(ahead + width * (x * right + y * up))
+
+
+def _frame(first: Vectors, other: Vectors) -> NDArray[np.float64]:
+    """Axes as columns, (N, 3, 3): the first vector, what is across both, and what is across these."""
+    across = _unit(np.cross(first, other))
+    return np.stack([first, across, np.cross(first, across)], axis=-1)
+
+
+def _light_corners() -> Vectors:
+    """Corners of the light, which faces the middle of the picture."""
+    return LIGHT_RADIUS * np.array([(0.0, x, y) for x, y in CORNERS])
+
+
+def _unit(vectors: Vectors) -> Vectors:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+def _model(corners: NDArray[np.float64], places: Vectors | None = None) -> str:
+    """Triangles (N, 3, 3) as an OBJ file, with the place of each in an image."""
+    count = len(corners)
+    rows = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners.reshape(-1, 3)]
+    first = 3 * np.arange(count) + 1
+    if places is None:
+        faces = [f"f {n} {n + 1} {n + 2}" for n in first]
+    else:
+        rows += [f"vt {u:.9g} {v:.9g}" for u, v in places]
+        faces = [
+            f"f {n}/{each} {n + 1}/{each} {n + 2}/{each}" for each, n in enumerate(first, start=1)
+        ]
+    return "\n".join([*rows, *faces, ""])
