@@ -84,6 +84,16 @@ THIN = {
 }
 SHEEN = {"color": (0.8, 0.1, 0.1), "roughness": 0.5, "mode": "zeltner"}
 FUZZ = {"color": (1.0, 1.0, 1.0), "roughness": 1.0, "mode": "zeltner"}
+LEAF = {"color": (0.4, 0.7, 0.2), "normal": (0.0, 0.0, -1.0)}
+LOBES = ("roughness_R", "roughness_TT", "roughness_TRT")
+
+
+def _hair(variance: float, scale: float) -> str:
+    """White hair whose lobes all have a variance and a scale."""
+    clear = {"absorption_coefficient": (0.0, 0.0, 0.0)}
+    return _lobe("chiang_hair_bsdf", {**dict.fromkeys(LOBES, (variance, scale)), **clear})
+
+
 PAGES = {
     "genglsl_clamped_dot": Shown(
         "back", "EON of roughness 1, lit from behind", _lobe("oren_nayar_diffuse_bsdf", ROUGH)
@@ -108,6 +118,31 @@ PAGES = {
             lobe_text("sheen_bsdf", SHEEN, "top"),
             _operator("layer", "lobe", top="top", base="base"),
         ),
+    ),
+    "genglsl_multiply_throughput": Shown(
+        "side",
+        "a Zeltner sheen of roughness 1, multiplied by 0, over white Oren-Nayar",
+        _layered(
+            lobe_text("sheen_bsdf", FUZZ, "fuzz"),
+            _operator("multiply", "top", in1="fuzz", in2="0.0"),
+            _operator("layer", "lobe", top="top", base="base"),
+        ),
+    ),
+    "genglsl_translucent_side": Shown(
+        "side",
+        "a translucent surface whose normal faces away, lit from the viewer's side",
+        _lobe("translucent_bsdf", LEAF),
+    ),
+    "genglsl_hair_uniform_lobe": Shown(
+        "side", "white hair of variance 0.1 and scale 0.3", _hair(0.1, 0.3)
+    ),
+    "genglsl_hair_roughness": Shown(
+        "side", "white hair of variance 20 and scale 5", _hair(20.0, 5.0)
+    ),
+    "openpbr_thin_walled": Shown(
+        "front",
+        "a thin-walled OpenPBR surface of diffuse roughness 1 and white color",
+        _surface("open_pbr_surface", {**THIN, "subsurface_color": ("color3", (1.0, 1.0, 1.0))}),
     ),
     "genglsl_add_throughput": Shown(
         "furnace",
