@@ -137,7 +137,6 @@ CHECK = {
         "Half of the color gives half of the light.",
         ("burley", "shaded"),
         halved,
-        "a thousandth is added to every value",
         offset,
         "value",
         pairs=True,

@@ -90,7 +90,7 @@ def judge_check(check: Check, probe: Probe) -> Result:
     try:
         with renderer_warnings() as notes:
             right = check.measured(probe, tolerance.metric)
-            wrong = check.measured(check.control(probe), tolerance.metric)
+            wrong = check.measured(check.control.make(probe), tolerance.metric)
             if right.error > tolerance.value:
                 diagnosis = check.diagnose(probe)
     except (NotRun, ShaderError) as error:
@@ -99,4 +99,4 @@ def judge_check(check: Check, probe: Probe) -> Result:
     diagnosis = replace(diagnosis, permitted=check.open and diagnosis.permitted)
     if diagnosis.text:
         diagnosis = replace(diagnosis, text="; ".join([diagnosis.text, *notes]))
-    return judge_measurements(place, tolerance, right, check.variant, wrong, diagnosis)
+    return judge_measurements(place, tolerance, right, check.control.words, wrong, diagnosis)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
-from mxeon.conformance.checks.controls import Control
+from mxeon.conformance.checks.controls import Mistake
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.subject import Subject
@@ -27,9 +27,8 @@ class Check:
         The models that it holds for.
     measure : callable (probe) -> Case, iterable of Case, or Measurement
         What is compared, of which the worst row counts; or a number of its own.
-    variant : str
-        The error that the control makes.
-    control : callable (probe) -> probe
+    control : Mistake
+        With which it has to fail.
     allowed : Quantity or Tolerance
         The quantity by whose accuracy a kind of probe is judged, which it may lack; or the tolerance
         where it is the same for all.
@@ -51,8 +50,7 @@ class Check:
     claim: str
     models: tuple[str, ...]
     measure: Callable[[Probe], Case | Iterable[Case] | Measurement]
-    variant: str
-    control: Control
+    control: Mistake
     allowed: Quantity | Tolerance
     pairs: bool = False
     lit: bool = False

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Negative controls: the probe of a check made wrong on purpose, on which the check has to fail."""
+"""Negative controls: a probe made wrong on purpose, on which its check has to fail."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +12,27 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Batch
 
 Array = NDArray[np.float64]
-Control = Callable[[Probe], Probe]
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """What a control does wrong.
+
+    Attributes
+    ----------
+    words : str
+        For a reader.
+    make : callable (probe) -> probe
+        The probe with the mistake.
+    """
+
+    words: str
+    make: Callable[[Probe], Probe]
+
+
+def mistake(words: str) -> Callable[[Callable[[Probe], Probe]], Mistake]:
+    """Decorator of a function that makes a probe wrong."""
+    return lambda make: Mistake(words, make)
 
 
 class Altered(Probe):
@@ -79,14 +100,13 @@ class Altered(Probe):
         return self.probe.density(self.batch(batch))
 
 
-def with_inputs(**inputs: ArrayLike) -> Control:
-    """A control that passes these inputs to the host in place of the batch's."""
-    return lambda probe: Altered(probe, batch=lambda batch: batch.altered(**inputs))
+def with_inputs(words: str, **inputs: ArrayLike) -> Mistake:
+    """The host gets these inputs in place of the batch's."""
+    return Mistake(words, lambda probe: Altered(probe, lambda batch: batch.altered(**inputs)))
 
 
+@mistake("every channel gets the mean color")
 def gray(probe: Probe) -> Altered:
-    """A control that loses the color: every channel gets the mean of the three."""
-
     def mean_color(batch: Batch) -> Batch:
         colors = {
             name: np.repeat(np.mean(values, axis=-1, keepdims=True), 3, axis=-1)
@@ -98,36 +118,36 @@ def gray(probe: Probe) -> Altered:
     return Altered(probe, batch=mean_color)
 
 
+@mistake("the response is taken for the throughput")
 def take_response(probe: Probe) -> Altered:
-    """A control that takes the response for another output."""
     return Altered(probe, throughputs=lambda batch, values: probe.direct(batch))
 
 
+@mistake("all light passes")
 def pass_all(probe: Probe) -> Altered:
-    """A control whose throughput is 1."""
     return Altered(probe, throughputs=lambda batch, values: np.ones_like(values))
 
 
-def scale(factor: float) -> Control:
-    """A control whose values are multiplied by a factor."""
-    return lambda probe: Altered(probe, values=lambda batch, values: factor * values)
+def scale(words: str, factor: float) -> Mistake:
+    """Values are multiplied by a factor."""
+    return Mistake(words, lambda probe: Altered(probe, values=lambda _, values: factor * values))
 
 
+@mistake("a thousandth is added to every value")
 def offset(probe: Probe) -> Altered:
-    """A control to whose values a thousandth is added."""
     return Altered(probe, values=lambda batch, values: values + 1e-3)
 
 
+@mistake("one output is not a number")
 def no_number(probe: Probe) -> Altered:
-    """A control whose first value is not a number."""
     return Altered(
         probe,
         values=lambda batch, values: np.where(np.arange(len(values))[:, None], values, np.nan),
     )
 
 
+@mistake("the roughness is a tenth larger")
 def rougher(probe: Probe) -> Altered:
-    """A control whose roughness is a tenth larger."""
     return Altered(
         probe,
         batch=lambda batch: batch.altered(
@@ -136,8 +156,8 @@ def rougher(probe: Probe) -> Altered:
     )
 
 
+@mistake("the roughness is the same in both directions")
 def isotropic(probe: Probe) -> Altered:
-    """A control whose roughness is the same in both directions."""
     return Altered(
         probe,
         batch=lambda batch: batch.altered(
@@ -146,9 +166,8 @@ def isotropic(probe: Probe) -> Altered:
     )
 
 
+@mistake("each row has the inputs of another")
 def shifted(probe: Probe) -> Altered:
-    """A control in which each pair has the inputs of another."""
-
     def batch(batch: Batch) -> Batch:
         inputs = {name: np.roll(values, 1, axis=0) for name, values in batch.inputs.items()}
         return batch.altered(**inputs)
@@ -156,17 +175,17 @@ def shifted(probe: Probe) -> Altered:
     return Altered(probe, batch=batch)
 
 
+@mistake("every change is dropped")
 def drop_changes(probe: Probe) -> Altered:
-    """A control that drops every change of inputs: the host sees the first batch only."""
     return Altered(probe, batch=lambda batch: probe.few[0])
 
 
-def scale_cosine(power: int) -> Control:
-    """A control whose values carry a power of cos(theta_o) too many."""
+def scale_cosine(words: str, power: int) -> Mistake:
+    """Values carry a power of cos(theta_o) too many."""
 
     def values(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
             scaled: Array = values * batch.wo[:, 2:] ** power
         return scaled
 
-    return lambda probe: Altered(probe, values=values)
+    return Mistake(words, lambda probe: Altered(probe, values=values))

@@ -5,7 +5,7 @@ from mxeon.conformance.accuracy import emission as tolerances
 from mxeon.conformance.accuracy.diffuse import count_of
 from mxeon.conformance.checks import emission_measures as measures
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import gray, offset, scale, shifted, with_inputs
+from mxeon.conformance.checks.controls import gray, mistake, offset, scale, shifted, with_inputs
 from mxeon.conformance.checks.names import EMITTER, MEDIUM_NAMES
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
@@ -23,8 +23,8 @@ from mxeon.conformance.probes.cases import (
 from mxeon.conformance.probes.probe import Probe
 
 
+@mistake("a node is asked for that nothing implements")
 def unimplemented(probe: Probe) -> Probe:
-    """A control that asks for a node that its document defines, and that nothing implements."""
     return probe.of(UNIMPLEMENTED)
 
 
@@ -50,7 +50,6 @@ CHECKS = (
         "The target has an implementation of the node.",
         (*EMITTER, *MEDIUM_NAMES, ABSENT),
         measures.implemented,
-        "a node is asked for that nothing implements",
         unimplemented,
         count_of("nodes"),
         diagnose=diagnose_missing,
@@ -60,7 +59,6 @@ CHECKS = (
         "The radiance is that of the node's equation for every view from the front.",
         EMITTER,
         conditioned(value_cases),
-        "every channel gets the mean color",
         gray,
         "value",
         diagnose=diagnosis.diagnose_radiance,
@@ -71,7 +69,6 @@ CHECKS = (
         "The back of the surface emits what the equation has for it.",
         EMITTER,
         conditioned(back_cases),
-        "a thousandth is added to every value",
         offset,
         "value",
         pairs=True,
@@ -84,8 +81,7 @@ CHECKS = (
         "The radiance integrates to the power that the equation has.",
         EMITTER,
         measures.exitance,
-        "the radiance is 0.99 times as large",
-        scale(0.99),
+        scale("the radiance is 0.99 times as large", 0.99),
         "integral",
         diagnose=diagnosis.diagnose_radiance,
         adapt=tolerances.widen_for_functions,
@@ -95,7 +91,6 @@ CHECKS = (
         "A medium passes what its coefficients leave over one meter.",
         MEDIUM_NAMES,
         transmittance_cases,
-        "each view has the coefficients of another",
         shifted,
         "value",
         diagnose=diagnosis.diagnose_medium,
@@ -106,8 +101,7 @@ CHECKS = (
         "The light that a surface emits is scaled by its opacity.",
         (SURFACES,),
         value_cases,
-        "the opacity is 1",
-        with_inputs(opacity=1.0),
+        with_inputs("the opacity is 1", opacity=1.0),
         "value",
         diagnose=diagnose_opacity,
     ),

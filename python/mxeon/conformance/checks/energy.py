@@ -6,7 +6,7 @@ import numpy as np
 from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import Altered, pass_all, scale, shifted
+from mxeon.conformance.checks.controls import Altered, mistake, pass_all, scale, shifted
 from mxeon.conformance.checks.names import COMBINATION, OTHERS
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
@@ -25,9 +25,8 @@ from mxeon.models.nodes.combinations import FACTOR
 LAYERS = tuple(row.name for row in NODES if row.layerable)
 
 
+@mistake("values are multiplied once more")
 def again(probe: Probe) -> Altered:
-    """A control whose values have their factor twice."""
-
     def scaled(batch: Batch, values: Array) -> Array:
         return values * np.reshape(batch.inputs[FACTOR], (len(values), -1))
 
@@ -40,7 +39,6 @@ CHECKS = (
         "The throughput of a layer is 1 - E for light from above, for every weight.",
         LAYERS,
         layering_cases,
-        "all light passes",
         pass_all,
         "throughput",
         diagnose=diagnosis.diagnose_throughput,
@@ -50,7 +48,6 @@ CHECKS = (
         "The throughput of a layer is 1 - E for light through the base as well.",
         LAYERS,
         transmission_cases,
-        "all light passes",
         pass_all,
         "throughput",
         diagnose=diagnosis.diagnose_transmission,
@@ -60,7 +57,6 @@ CHECKS = (
         "A dip at 82 degrees lets through what it does not reflect.",
         tuple(row.name for row in NODES if row.layerable and "color82" in row.inputs),
         measures.dip,
-        "all light passes",
         pass_all,
         tolerances.DIP,
         pairs=True,
@@ -72,7 +68,6 @@ CHECKS = (
         "The throughput towards a thinner side, of which no fit is made, is as near as stated.",
         tuple(row.name for row in NODES if row.layerable and "tint" in row.inputs),
         measures.denser,
-        "all light passes",
         pass_all,
         tolerances.UNFITTED,
         pairs=True,
@@ -84,7 +79,6 @@ CHECKS = (
         "A layer over a white base returns all light.",
         LAYERS,
         measures.layer,
-        "all light passes",
         pass_all,
         "light",
         diagnose=diagnosis.diagnose_throughput,
@@ -94,8 +88,7 @@ CHECKS = (
         "Values integrate to the directional albedo of the equations.",
         OTHERS,
         measures.integral,
-        "values are 2 % too large",
-        scale(1.02),
+        scale("values are 2 % too large", 1.02),
         "integral",
         open=True,
     ),
@@ -104,8 +97,7 @@ CHECKS = (
         "No albedo exceeds 1, nor what the equations have.",
         OTHERS,
         measures.energy,
-        "values are 100 times as large",
-        scale(100.0),
+        scale("values are 100 times as large", 100.0),
         "integral",
     ),
 )
@@ -116,7 +108,6 @@ COMBINED_CHECKS = (
         "The value of two lobes together is that of the node's equation.",
         COMBINATION,
         value_cases,
-        "each pair has the inputs of another",
         shifted,
         "value",
         pairs=True,
@@ -126,7 +117,6 @@ COMBINED_CHECKS = (
         "The environment branch of two lobes together gives their albedo.",
         COMBINATION,
         albedo_cases,
-        "each pair has the inputs of another",
         shifted,
         "albedo",
         pairs=True,
@@ -137,7 +127,6 @@ COMBINED_CHECKS = (
         "Two lobes together pass what they do not scatter, as the layer equation asks.",
         COMBINATION,
         measures.passing,
-        "all light passes",
         pass_all,
         "throughput",
         diagnose=diagnosis.diagnose_throughput,
@@ -148,7 +137,6 @@ COMBINED_CHECKS = (
         "A factor above 1 counts as 1, and one below 0 as 0.",
         SINGLE,
         measures.factors,
-        "values are multiplied once more",
         again,
         tolerances.FACTOR,
         pairs=True,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.checks.controls import Altered
+from mxeon.conformance.checks.controls import Altered, mistake
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, diagnose_albedo
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.bsdf import LEAST_INDEX
@@ -204,8 +204,8 @@ def _mirror(probe: Probe, batch: Batch) -> Batch:
     return batch.altered(thinfilm_thickness=0.0, **subject_of(probe, BsdfSubject).row.mirror)
 
 
+@mistake("the film is a quarter thicker")
 def thicker(probe: Probe) -> Altered:
-    """A control whose film is a quarter thicker."""
     return Altered(
         probe,
         batch=lambda batch: batch.altered(
@@ -214,9 +214,8 @@ def thicker(probe: Probe) -> Altered:
     )
 
 
+@mistake("values under a film are 100 times as large")
 def brighter(probe: Probe) -> Altered:
-    """A control whose values under a film are 100 times as large."""
-
     def values(batch: Batch, values: Array) -> Array:
         return values * np.where(np.any(batch.inputs["thinfilm_thickness"]), 100.0, 1.0)
 

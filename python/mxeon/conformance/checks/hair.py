@@ -51,10 +51,7 @@ def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
     return diagnose
 
 
-def without_offset(probe: Probe) -> Probe:
-    """A control that sees the fiber turned about itself: its normal is off by a tenth."""
-    return with_inputs(normal=(0.0, 0.1, 0.995))(probe)
-
+TURNED = with_inputs("the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995))
 
 CHECKS = tuple(
     Check(
@@ -62,8 +59,7 @@ CHECKS = tuple(
         claim,
         (HAIR_NODE.name,),
         _measure(key),
-        "the normal is turned about the fiber by a tenth",
-        without_offset,
+        TURNED,
         HAIR_REGION,
         lit=True,
         diagnose=_diagnose(key),

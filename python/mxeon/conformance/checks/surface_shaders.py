@@ -8,7 +8,7 @@ import numpy as np
 from mxeon.conformance.accuracy.diffuse import count_of
 from mxeon.conformance.accuracy.surface_shaders import MEAN, VALUE
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import Altered, scale, shifted
+from mxeon.conformance.checks.controls import Altered, Mistake, scale, shifted
 from mxeon.conformance.checks.measures import counted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.surface_shaders import SHADERS, SurfaceShader
@@ -111,17 +111,12 @@ class IgnoreChanges(Altered):
         return np.repeat(self.probe.response(batch.first(1), branch), len(batch.wo), axis=0)
 
 
-def ignore_changes(probe: Probe) -> Altered:
-    return IgnoreChanges(probe)
-
-
 CHECKS = (
     Check(
         "lobes",
         "Direct light is that of all lobes by the layer equation.",
         MODELS,
         value_cases,
-        "each pair has the inputs of another",
         shifted,
         "value",
         diagnose=diagnose_lobes,
@@ -131,7 +126,6 @@ CHECKS = (
         "The environment branch gives the albedo of all lobes by the layer equation.",
         MODELS,
         albedo_cases,
-        "each view has the inputs of another",
         shifted,
         "albedo",
         diagnose=diagnose_sum,
@@ -141,8 +135,7 @@ CHECKS = (
         "Over many materials and views no light is gained or lost in the mean.",
         MODELS,
         mean,
-        "every value is a hundredth lower",
-        scale(0.99),
+        scale("every value is a hundredth lower", 0.99),
         MEAN,
         lit=True,
         diagnose=diagnose_sum,
@@ -152,8 +145,7 @@ CHECKS = (
         "A white material of many lobes in a white environment cannot be seen.",
         MODELS,
         furnace,
-        "every value is a tenth lower",
-        scale(0.9),
+        scale("every value is a tenth lower", 0.9),
         "albedo",
         lit=True,
         diagnose=diagnose_sum,
@@ -163,8 +155,7 @@ CHECKS = (
         "No material of these lobes reflects and transmits more light than it gets.",
         MODELS,
         energy,
-        "every value is half as high again",
-        scale(1.5),
+        scale("every value is half as high again", 1.5),
         "albedo",
         lit=True,
         diagnose=diagnose_sum,
@@ -174,8 +165,7 @@ CHECKS = (
         "An input changes a value, unless its page says that it does not.",
         MODELS,
         counted(misplaced),
-        "every change is dropped",
-        ignore_changes,
+        Mistake("every change is dropped", IgnoreChanges),
         count_of("inputs"),
         diagnose=diagnose_reach,
     ),

@@ -7,7 +7,14 @@ from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.accuracy.diffuse import SURROUNDINGS, count_of
 from mxeon.conformance.checks import transmission_measures as measures
 from mxeon.conformance.checks.check import Check
-from mxeon.conformance.checks.controls import Altered, drop_changes, offset, scale, with_inputs
+from mxeon.conformance.checks.controls import (
+    Altered,
+    drop_changes,
+    mistake,
+    offset,
+    scale,
+    with_inputs,
+)
 from mxeon.conformance.checks.measures import counted, finite
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, not_finite
@@ -24,9 +31,8 @@ BOTH = tuple(subject.model for subject in TRANSMITTING if subject.reflects)
 UNSHADOWED = "the mean of 1 - F over the normals seen, divided by G_1 of the view"
 
 
+@mistake("every value is infinite")
 def infinite(probe: Probe) -> Altered:
-    """A control whose values are divided by 0."""
-
     def divided(batch: Batch, values: Array) -> Array:
         return np.full_like(values, np.inf)
 
@@ -77,8 +83,7 @@ CHECKS = (
         "A uniform environment shines through with what the BTDF passes, up to all that is not reflected.",
         MODELS,
         measures.transmitted,
-        "values are twice as large",
-        scale(2.0),
+        scale("values are twice as large", 2.0),
         "value",
         diagnose=diagnose_transmitted,
     ),
@@ -87,8 +92,7 @@ CHECKS = (
         "A white lobe that reflects and transmits returns all light of a uniform environment.",
         BOTH,
         measures.clear,
-        "values are 5 % too large",
-        scale(1.05),
+        scale("values are 5 % too large", 1.05),
         "light",
         diagnose=diagnose_transmitted,
     ),
@@ -97,7 +101,6 @@ CHECKS = (
         "Mode RT reflects and passes to its base what mode R does; mode T reflects nothing.",
         MODELS,
         measures.kept,
-        "a thousandth is added to every value",
         offset,
         tolerances.RETROREFLECTION,
         diagnose=unknown,
@@ -107,8 +110,7 @@ CHECKS = (
         "A smooth surface passes 1 - F of its angle, and nothing beyond the critical one.",
         MODELS,
         measures.critical,
-        "the index is another",
-        with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
+        with_inputs("the index is another", ior=2.5, color0=(0.5, 0.5, 0.5)),
         tolerances.SMOOTH_PASSED,
         diagnose=diagnose_transmitted,
     ),
@@ -117,8 +119,7 @@ CHECKS = (
         "An uneven environment is looked up where a solid sphere refracts the view.",
         MODELS,
         measures.refraction_case,
-        "the index is another",
-        with_inputs(ior=2.5, color0=(0.5, 0.5, 0.5)),
+        with_inputs("the index is another", ior=2.5, color0=(0.5, 0.5, 0.5)),
         SURROUNDINGS,
         lit=True,
         diagnose=unknown,
@@ -128,7 +129,6 @@ CHECKS = (
         "No light through the surface is infinite or not a number, at the edges of the domain.",
         MODELS,
         finite(measures.finite_case),
-        "values are divided by 0",
         infinite,
         count_of("values"),
         diagnose=diagnose_finite,
@@ -138,7 +138,6 @@ CHECKS = (
         "Every input of the node but retroreflective changes the light through the surface.",
         MODELS,
         counted(measures.wrong_inputs),
-        "every change is dropped",
         drop_changes,
         count_of("inputs"),
         lit=True,
