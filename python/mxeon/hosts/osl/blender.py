@@ -28,7 +28,7 @@ class Blender:
     """
 
     def __init__(self) -> None:
-        python = interpreter()
+        python = interpreter("osl")
         self._temporary = TemporaryDirectory(prefix="mxeon-osl-")
         script = Path(tracing.__file__).with_name("worker.py")
         log = Path(self._temporary.name, "log.txt")
