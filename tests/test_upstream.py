@@ -167,7 +167,7 @@ def test_a_figure_twice_as_large_is_seen():
 @pytest.mark.filterwarnings("ignore:.*brings code of its own")
 def test_the_quantities_of_each_page_are_those_computed(page, measure):
     host = page.split("_")[0]
-    with available(host if host in ("cycles", "storm") else "gl"):
+    with available(host if host in ("cycles", "storm", "testrender") else "gl"):
         assert ledger.written(page) == measure()
 
 

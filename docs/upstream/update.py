@@ -8,7 +8,7 @@ has a block between two markers, which only this program writes; numbers of the 
 
 import re
 import sys
-from contextlib import closing
+from contextlib import closing, contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -26,6 +26,7 @@ from docs.upstream.pbr_quantities import OF_PBRLIB
 from docs.upstream.storm_quantities import OF_STORM
 from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.surface_quantities import OF_SURFACES
+from docs.upstream.testrender_quantities import OF_TESTRENDER
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
 from mxeon.conformance.known_issues import ISSUES, RENDERERS
 from mxeon.conformance.known_issues.issue import STOCK
@@ -34,6 +35,7 @@ from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.selection import ALL
 from mxeon.conformance.run.tasks import SOURCE
+from mxeon.errors import NotRun
 from mxeon.io.files import write_text
 from mxeon.models.diffuse import albedo, formulas
 from mxeon.models.diffuse import brdf as models
@@ -221,6 +223,7 @@ OF_QUANTITIES = {
     **OF_FILMS,
     **OF_SURFACES,
     **OF_STORM,
+    **OF_TESTRENDER,
 }
 
 
@@ -235,12 +238,15 @@ def main():
     for path, text in generated().items():
         write_text(path, text)
     issues = [each for each in CHECKED if not sys.argv[1:] or each.host in sys.argv[1:]]
-    measured = {host: judged(host) for host in dict.fromkeys(each.host for each in issues)}
     blocks = {}
-    for each in issues:
-        results, place = measured[each.host]
-        blocks[each.page] = block(shown(each, results), place)
-    blocks |= {page: measure() for page, measure in OF_QUANTITIES.items()}
+    for host in dict.fromkeys(each.host for each in issues):
+        with _where_it_runs():
+            results, place = judged(host)
+            shows = [each for each in issues if each.host == host]
+            blocks |= {each.page: block(shown(each, results), place) for each in shows}
+    for page, measure in OF_QUANTITIES.items():
+        with _where_it_runs():
+            blocks[page] = measure()
     for page, text in blocks.items():
         path = FOLDER / f"{page}.md"
         head, rest = path.read_text(encoding="utf-8").split(BEGIN)
@@ -248,6 +254,15 @@ def main():
     for path in pages():
         write_text(path, remeasured(path))
     patches.main()  # whose messages have words and figures of the pages
+
+
+@contextmanager
+def _where_it_runs():
+    """Leave a page as it is where its host cannot run, and say so."""
+    try:
+        yield
+    except NotRun as reason:
+        print(f"not run: {reason}", file=sys.stderr)
 
 
 def pages():

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What testrender makes of light through a surface, and of a layer times a color.
-
-    python -m docs.upstream.testrender_figures
-
-prints the figures of two pages, with the programs that MXEON_OSLC and MXEON_TESTRENDER name.
-"""
+"""Figures of the pages on testrender that no check of the suite measures."""
 
 import numpy as np
 
+from docs.upstream.storm_quantities import table
 from mxeon.conformance.nodes.combinations import node_over
 from mxeon.conformance.nodes.transmission import TRANSMITTING
 from mxeon.conformance.probes.rendered import apart
@@ -35,34 +31,33 @@ def lit(host, shader, side):
     return 2.0 * np.pi / NODES * (weight * values).sum()
 
 
-def refraction(host):
-    """Print the light of glass of alpha 1 in a white environment: from lights, and by its samples."""
+def refraction_block():
+    """Light of glass of alpha 1 in a white environment: from lights on every side, and by its samples."""
     [subject] = [each for each in TRANSMITTING if each.title == "dielectric_bsdf, scatter_mode RT"]
-    [shader] = host.compile(subject.document(), library="stock")
-    above, below = lit(host, shader, 1.0), lit(host, shader, -1.0)
-    sampled = host.evaluate(shader, VIEW, VIEW, GLASS, "environment")[0, 0]
-    print(f"reflected {above:.3f}, transmitted {below:.3f}, sampled in all {sampled:.3f}")
+    with Host() as host:
+        [shader] = host.compile(subject.document(), library="stock")
+        above, below = lit(host, shader, 1.0), lit(host, shader, -1.0)
+        sampled = host.evaluate(shader, VIEW, VIEW, GLASS, "environment")[0, 0]
+    rows = {"lights on every side": above + below, "a white sky, by samples": sampled}
+    return table((f"light of {name}", value, 1.0) for name, value in rows.items())
 
 
-def multiplied(host):
-    """Print the ratio of a coated base times a color to the same without the color."""
+def multiplied_block():
+    """Ratio of a coated base times a color to the same without the color."""
     factor = node_over("multiply", value=input_text("in2", "color3", COLOR), in1="coated")
     layered = node_over("layer", "coated", top="coat", base="base")
     texts = (COATED + layered + factor, COATED + node_over("layer", top="coat", base="base"))
-    colored, plain = (
-        host.evaluate(
-            host.compile(document_text(text + SURFACE), library="stock")[0],
-            VIEW,
-            LIGHT,
-            {},
-            "direct",
+    with Host() as host:
+        colored, plain = (
+            host.evaluate(shader, VIEW, LIGHT, {}, "direct")[0]
+            for text in texts
+            for shader in host.compile(document_text(text + SURFACE), library="stock")
         )
-        for text in texts
-    )
-    print("a coated base times", *COLOR, "over the same:", *np.round(colored / plain, 4)[0])
+    channels = zip(("red", "green", "blue"), colored / plain, COLOR, strict=True)
+    return table((f"{name}, over that without the color", *pair) for name, *pair in channels)
 
 
-if __name__ == "__main__":
-    with Host() as testrender:
-        refraction(testrender)
-        multiplied(testrender)
+OF_TESTRENDER = {
+    "testrender_refraction_lit": refraction_block,
+    "testrender_multiplied_layer": multiplied_block,
+}
