@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional albedo of the Conty-Kulla sheen at unit color.
+// Directional albedo of the Conty-Kulla sheen at full reflectance.
 
 // Source: fits/conty_kulla_albedo.py. Domain: mu and roughness in [1e-4, 1]. Largest absolute error
 // of min(E, 1): 1.5e-3.

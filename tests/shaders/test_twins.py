@@ -7,15 +7,20 @@ import re
 import numpy as np
 import pytest
 
+from mxeon.conformance.accuracy.bsdf import CONTY_KULLA_FIT, ESS_FIT
 from mxeon.models.diffuse import albedo, formulas
 from mxeon.models.diffuse import brdf as models
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import cltc, eon, ltc
+from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders import functions as twins
 from mxeon.shaders.library import eonlib_folder
 from tests.support.cases import directions_32
 from tests.support.tolerances import TWIN_ALBEDO, TWIN_LOSS, TWIN_VALUE
 
+ALBEDOS_OF_NODES = ("ggx_albedo", "conty_kulla_albedo")
 STEMS = ("eon", twins.FAMILY, "ltc_sampling", "eon_sampling", "hair_parameters")
+FITTED_ROUNDING = 32 * 2.0**-24  # of a rational function in float32
 WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "osl": "glsl"}
 MODELS = ("lambert", "oren_nayar", "qon", "fon", "eon")
 SAMPLERS = ("uniform", "cosine", "ltc0", "ltc", "cltc", "hair")
@@ -71,7 +76,7 @@ def name_of(function):
     return function.__name__
 
 
-@by_stem
+@pytest.mark.parametrize("stem", STEMS + ALBEDOS_OF_NODES)
 def test_osl_twin_with_four_words_replaced_is_the_glsl_twin(stem):
     pattern = re.compile(rf"\b({'|'.join(WORDS)})\b")
     assert pattern.sub(lambda word: WORDS[word[0]], text("osl", stem)) == text("glsl", stem)
@@ -167,3 +172,24 @@ def test_twin_loss_keeps_its_relative_accuracy_down_to_grazing(gl):
     mu = np.logspace(-8, 0, 100_000).astype("f4")
     error = gl.call("fon_loss", mu)[:, 0] / formulas.fon_loss(np.float64(mu)) - 1.0
     assert np.max(np.abs(error)) <= TWIN_LOSS
+
+
+NODE_ALBEDOS = (
+    ("ggx_albedo", ggx_albedo_dir, ESS_FIT),
+    ("conty_kulla_albedo", conty_kulla_albedo_dir, CONTY_KULLA_FIT),
+)
+
+
+@pytest.mark.parametrize("stem, function, fit", NODE_ALBEDOS, ids=ALBEDOS_OF_NODES)
+def test_the_osl_of_an_albedo_is_the_model_up_to_its_fit(hosts, stem, function, fit):
+    mu, roughness = 10.0 ** np.random.default_rng(1).uniform(-2.0, 0.0, (2, 4096))
+    columns = [each.astype(np.float32).astype(np.float64) for each in (mu, roughness)]
+    exact = np.minimum(function(*columns), 1.0)
+
+    def error(text):
+        values = hosts("osl").execute(text, function.__name__, *columns)[:, 0]
+        return np.abs(values - exact).max()
+
+    right = text("osl", stem)
+    wrong = re.sub(r"(define \w+_N10) (\S+)", r"\1 (1.1 * \2)", right)
+    assert error(right) <= fit + FITTED_ROUNDING < error(wrong)
