@@ -98,6 +98,23 @@ def test_narrow_lobes_of_hair_add_more_than_wide_ones():
     assert PLAIN.value < wide.value < narrow.value < 1e-3
 
 
+def test_narrow_sheens_add_what_they_return_beyond_all_light():
+    wide, narrow = (
+        tolerance('<sheen_bsdf name="lobe" type="BSDF"/>', roughness=[r], mode="conty_kulla")
+        for r in (0.3, 0.036)
+    )
+    assert wide.value == FITTED.value < narrow.value < 0.05
+
+
+def test_a_truth_value_is_drawn_white_or_black(host, tmp_path):
+    text = """<materialx version="1.39"><nodegraph name="logic">
+      <and name="both" type="boolean">
+        <input name="in1" type="boolean" value="true"/><input name="in2" type="boolean" value="true"/>
+      </and><output name="shown" type="boolean" nodename="both"/></nodegraph></materialx>"""
+    result, _ = judged(host, tmp_path, text)
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("shown",))
+
+
 def test_nodes_of_one_name_in_two_nodegraphs_are_named(host, tmp_path):
     result, notes = judged(host, tmp_path, colors("tint", "tint"))
     assert result.verdict == "failed"

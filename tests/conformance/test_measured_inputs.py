@@ -92,6 +92,15 @@ def test_a_look_does_not_keep_a_value_from_being_measured(host, tmp_path):
     assert (result.check, result.measured) == ("picture", ("lobe.color",))
 
 
+def test_a_pattern_of_an_included_graph_is_measured(host, tmp_path):
+    graph = f'<nodegraph name="patterns">{NOISE}<output name="out" type="color3" nodename="pattern"/></nodegraph>'
+    (tmp_path / "patterns.mtlx").write_text(f'<materialx version="1.39">{graph}</materialx>')
+    include = '<xi:include href="patterns.mtlx" xmlns:xi="http://www.w3.org/2001/XInclude"/>'
+    lobe = LOBE.replace('nodename="pattern"', 'nodegraph="patterns" output="out"')
+    [result], _, _ = judged(host, tmp_path, document_text(include + lobe + SURFACE))
+    assert (result.check, result.verdict, result.measured) == ("picture", "passed", ("lobe.color",))
+
+
 def test_a_wrong_lobe_behind_a_measured_input_is_found(host, tmp_path):
     [result], _, _ = judged(host, tmp_path, document_text(NOISE + LOBE + SURFACE), "stock")
     assert (result.check, result.verdict, result.measured) == ("picture", "failed", ("lobe.color",))

@@ -18,12 +18,14 @@ from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
+from mxeon.models.sheen import conty_kulla_albedo_dir
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, inner_lobes
 
 # Nodes whose shaders take an albedo from a fit.
 FITTED_NODES = {row.category for row in NODES if row.fitted or row.mirror}
 HAIR = "chiang_hair_bsdf"
+COSINES = 256  # of views, among which a sheen's albedo is largest
 
 # Errors are taken times cos(theta_o): the normal changes by its inverse from pixel to pixel.
 UNIT = "pi f cos, times cos(theta_o)"
@@ -105,7 +107,7 @@ def inner_nodes(shader: Shader) -> Iterator[mx.Element]:
 
 
 def _others(lobes: tuple[ShownLobe, ...]) -> list[Tolerance]:
-    """What inputs of lobes add: a film, an index for which nothing was fitted, and narrow lobes of hair."""
+    """What inputs of lobes add: a film, an index without a fit, and narrow lobes of hair and sheen."""
     others = [FILM_ALBEDO] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
     others += [UNFITTED] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
     hairs = [
@@ -117,7 +119,23 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Tolerance]:
     if hairs:
         words = "the roundings of hair's lobes, by the slope of their logarithms"
         others.append(Tolerance(error_of(*np.min(hairs, axis=0)), RELATIVE, absolute, words))
+    narrow = [
+        np.ravel(lobe.inputs["roughness"]).min()
+        for lobe in lobes
+        if lobe.inputs.get("mode") == "conty_kulla"
+    ]
+    if narrow and (excess := _excess(min(narrow))):
+        words = (
+            "what a narrow sheen returns beyond all light, of which fits of its albedo have none"
+        )
+        others.append(Tolerance(excess, RELATIVE, absolute, words))
     return others
+
+
+def _excess(roughness: float) -> float:
+    """Light beyond all that the Conty-Kulla sheen returns, times cos(theta_o), at most."""
+    mu = np.linspace(1e-3, 1.0, COSINES)
+    return float((mu * (conty_kulla_albedo_dir(mu, roughness) - 1.0)).max().clip(0.0))
 
 
 def _any(

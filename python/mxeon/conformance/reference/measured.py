@@ -25,7 +25,7 @@ from mxeon.shaders.scene import Scene
 
 # Types that a generator draws as a color, and their components.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
-PATTERNS = (*DRAWN, "color4", "vector4")  # of which a generator draws three components
+PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # of which a generator draws three components
 LIT = ("BSDF", "EDF", "VDF", "surfaceshader", "material")  # types of what scatters or emits light
 CLOSURES = (*LIT, "displacementshader", "volumeshader", "lightshader")
 TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # whose shaders of an output draw its value
@@ -137,6 +137,8 @@ def value_document(
     scope = copy.getDescendant(element.getParent().getNamePath()) or copy
     if scope.isA(mx.NodeGraph) and scope.getNodeDef():
         scope = _opened(copy, scope)
+    if scope.isA(mx.NodeGraph):
+        scope.setSourceUri("")  # outputs of graphs that a document includes are not drawn
     name = added(scope) if added else name
     shown = _show(scope, scope.createValidChildName(NAME), name, kind, output)
     return copy, shown.getNamePath()
