@@ -63,6 +63,22 @@ NAMES = """<materialx version="1.39">
   <output name="shown" type="color3" nodename="both"/>
 </materialx>"""
 
+# A material by a definition.
+MATERIAL = """<materialx version="1.39">
+  <nodedef name="ND_clay" node="clay"><output name="out" type="material"/></nodedef>
+  <nodegraph name="NG_clay" nodedef="ND_clay">
+    <oren_nayar_diffuse_bsdf name="lobe" type="BSDF"/>
+    <surface name="shading" type="surfaceshader">
+      <input name="bsdf" type="BSDF" nodename="lobe"/>
+    </surface>
+    <surfacematerial name="look" type="material">
+      <input name="surfaceshader" type="surfaceshader" nodename="shading"/>
+    </surfacematerial>
+    <output name="out" type="material" nodename="look"/>
+  </nodegraph>
+  <clay name="clay1" type="material"/>
+</materialx>"""
+
 
 def anisotropic_environment_block():
     """White albedo of a brushed lobe in stock GLSL's environment branch, and of its values."""
@@ -197,6 +213,13 @@ def names_block():
     return _table([("values, of 2, of two nodes `tint`", len(values), 2)], "{}")
 
 
+def material_block():
+    """Whether the shader of a material that a nodegraph defines has its lobe."""
+    [shader] = generate(MATERIAL, "glsl", library=STOCK)
+    lobes = int("void mx_oren_nayar_diffuse_bsdf(" in shader.stages["pixel"])
+    return _table([("lobes of the material, of 1, in its shader", lobes, 1)], "{}")
+
+
 def _direction(mu, azimuth):
     """A unit vector by its cosine and azimuth."""
     radius = np.sqrt(1.0 - mu * mu)
@@ -214,6 +237,7 @@ def _table(rows, form):
 
 OF_PBRLIB = {
     "genglsl_anisotropic_environment": anisotropic_environment_block,
+    "material_graphs": material_block,
     "pbrlib_anisotropic_masking": anisotropic_masking_block,
     "pbrlib_energy": energy_block,
     "pbrlib_hair_energy": hair_block,

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from docs.upstream.pbr_quantities import MATERIAL
 from mxeon.conformance.accuracy.bsdf import UNFITTED
 from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO
 from mxeon.conformance.pictures.document_pictures import judge_document
@@ -125,6 +126,12 @@ def test_nodes_of_one_name_in_two_nodegraphs_are_named(host, tmp_path):
 def test_nodes_of_two_names_in_two_nodegraphs_pass(host, tmp_path):
     result, notes = judged(host, tmp_path, colors("tint1", "tint2"))
     assert (result.verdict, notes) == ("passed", ())
+
+
+def test_a_material_that_a_nodegraph_defines_is_named(host, tmp_path):
+    result, _ = judged(host, tmp_path, MATERIAL)
+    assert result.verdict == "failed"
+    assert "a material that a nodegraph defines is not generated" in result.diagnosis
 
 
 def test_generation_warns_of_nodes_of_one_name():

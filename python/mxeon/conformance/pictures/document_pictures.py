@@ -42,6 +42,9 @@ Case: TypeAlias = tuple[Scene, Pixels, ExpectedPicture]  # with the host's pictu
 
 MATCH = "The picture is the reference's in every pixel."
 SAME_NAMES = "nodes {} have the values of one of them; see docs/upstream/same_names.md"
+DEFINED_MATERIAL = (
+    "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md"
+)
 FINITE = "No pixel is infinite or not a number."
 
 
@@ -136,16 +139,22 @@ def _judge_material(
         lobes = (lobe for each in expected for lobe in each.lobes)
         tolerance = rounded_by(host, tolerance_of(shader, lobes))
         result = _judge_match(place, cases, tolerance, front_lit)
-        if result.verdict == FAILED and (names := same_names(_element(shader))):
-            result = replace(result, diagnosis=SAME_NAMES.format(names[0]))
+        if result.verdict == FAILED and (reason := _known(shader)):
+            result = replace(result, diagnosis=reason)
     return result, tuple(
         _picture(file, shader, host, library, scene, image, reference)
         for scene, image, reference in zip(scenes, images, references, strict=True)
     )
 
 
-def _element(shader: Shader) -> mx.Element:
-    return shader.document.getDescendant(shader.element)
+def _known(shader: Shader) -> str:
+    """What MaterialX is known to make of a document like that of a shader; "" for nothing."""
+    element = shader.document.getDescendant(shader.element)
+    if names := same_names(element):
+        return SAME_NAMES.format(names[0])
+    graph = element.getImplementation() if element.isA(mx.Node) else None
+    defined = element.getType() == "material" and graph and graph.isA(mx.NodeGraph)
+    return DEFINED_MATERIAL if defined else ""
 
 
 def _picture_notes(shader: Shader, host: Host) -> tuple[str, ...]:
