@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_choice, checked_colors
-from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.namespaces import any_array
 from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse import albedo, known_defect_albedos, known_defects
@@ -227,7 +227,7 @@ OTHERS = (
 
 
 def _reparametrized(
-    name: str, title: str, base: str, parameter: Callable[[ArrayLike], Array]
+    name: str, title: str, base: str, parameter: Callable[[ArrayLike], Numbers]
 ) -> Model:
     """A model as a function of another roughness, from which its own parameter follows."""
     row = next(each for each in MODELS if each.name == base)
@@ -241,16 +241,19 @@ def _reparametrized(
     return Model(name, title, brdf, "roughness", albedo_dir if row.albedo_dir else None)
 
 
-def _half_pi(roughness: ArrayLike) -> Array:
-    return np.multiply(0.5 * np.pi, roughness)
+@any_array
+def _half_pi(roughness: ArrayLike) -> Numbers:
+    return 0.5 * np.pi * checked("roughness", roughness)
 
 
-def _slope(roughness: ArrayLike) -> Array:
-    return np.multiply(np.sqrt(0.5), roughness)
+@any_array
+def _slope(roughness: ArrayLike) -> Numbers:
+    return float(np.sqrt(0.5)) * checked("roughness", roughness)
 
 
-def _square(roughness: ArrayLike) -> Array:
-    return np.multiply(roughness, roughness)
+@any_array
+def _square(roughness: ArrayLike) -> Numbers:
+    return checked("roughness", roughness) ** 2
 
 
 # The models with other meanings of a roughness in [0, 1], which renderers have in place of sigma.

@@ -72,6 +72,25 @@ def hypot(x: Array, y: Array) -> Array:
     return xp.where(zero, 0.0, xp.hypot(xp.where(zero, 1.0, x), y))
 
 
+def arcsine(x: Array) -> Array:
+    """Arc sine of x kept in [-1, 1]; where x is at an end or beyond its derivative counts as 0."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return xp.asin(xp.minimum(xp.maximum(x, -1.0), 1.0))
+    inside = xp.abs(x) < 1.0
+    end = xp.where(x < 0.0, -0.5 * np.pi, 0.5 * np.pi)
+    return xp.where(inside, xp.asin(xp.where(inside, x, 0.0)), end)
+
+
+def angle(y: Array, x: Array) -> Array:
+    """Angle of the point (x, y); at the origin it is that of the x axis, and its derivative counts as 0."""
+    xp = array_namespace(x, y)
+    if xp is NUMPY:
+        return xp.atan2(y, x)
+    origin = (x == 0.0) & (y == 0.0)
+    return xp.atan2(y, xp.where(origin, 1.0, x))
+
+
 def except_at_1(formula: Callable[[Array], Array], x: Array, value: float) -> Array:
     """formula(x), and `value` with derivative 0 where x is 1 or a rounding more."""
     xp = array_namespace(x)

@@ -31,24 +31,28 @@ class Namespace(Protocol):
 
     abs: Callable[..., Array]
     asarray: Callable[..., Array]
+    asin: Callable[..., Array]
     astype: Callable[..., Array]
     atan: Callable[..., Array]
     atan2: Callable[..., Array]
     broadcast_to: Callable[..., Array]
     cos: Callable[..., Array]
     exp: Callable[..., Array]
+    expm1: Callable[..., Array]
     hypot: Callable[..., Array]
     log: Callable[..., Array]
     log1p: Callable[..., Array]
     maximum: Callable[..., Array]
     minimum: Callable[..., Array]
     permute_dims: Callable[..., Array]
+    remainder: Callable[..., Array]
     reshape: Callable[..., Array]
     sin: Callable[..., Array]
     sqrt: Callable[..., Array]
     square: Callable[..., Array]
     stack: Callable[..., Array]
     sum: Callable[..., Array]
+    tanh: Callable[..., Array]
     tensordot: Callable[..., Array]
     where: Callable[..., Array]
     finfo: Callable[..., np.finfo[np.float64]]
@@ -56,7 +60,7 @@ class Namespace(Protocol):
 
 
 # NumPy below 2 has other names for some functions.
-_NAMES = {"atan": np.arctan, "atan2": np.arctan2, "permute_dims": np.transpose}
+_NAMES = {"asin": np.arcsin, "atan": np.arctan, "atan2": np.arctan2, "permute_dims": np.transpose}
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else SimpleNamespace(**{**vars(np), **_NAMES}))
 
 

@@ -18,9 +18,11 @@ from mxeon.models.core.arguments import (
     checked_numbers,
     checked_pairs,
     checked_sphere,
+    checked_vector,
 )
-from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array, array_namespace, library, like
 from mxeon.models.hair import formulas as formulas
 from mxeon.models.hair.formulas import LOBES, TEXT, HairForm
 
@@ -38,6 +40,7 @@ TINTS, ROUGHNESSES = (
 )
 
 
+@any_array
 def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     """Curve-scattering distribution function of a hair fiber.
 
@@ -86,8 +89,8 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     """
     # Check the inputs.
     form: HairForm = inputs.pop("form", TEXT)
-    values = _checked(inputs)
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_sphere("wi", wi)}
+    values = _checked(inputs, vectors["wo"])
     numbers = {name: values.pop(name) for name in ("ior", "cuticle_angle")}
     colors = {name: values[name] for name in (*TINTS, "absorption_coefficient")}
 
@@ -102,6 +105,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
     return evaluate_material(formula, vectors | values, numbers, channel_count(colors), BLOCK)
 
 
+@any_array
 def chiang_hair_attenuation(
     wo: ArrayLike, ior: ArrayLike, absorption_coefficient: ArrayLike
 ) -> Array:
@@ -142,12 +146,14 @@ def chiang_hair_attenuation(
     def formula(wo: Array, absorption_coefficient: Array, ior: Array) -> Array:
         view, effective = formulas.section(wo, ior)
         factors = formulas.attenuations(view, effective, ior, absorption_coefficient, TEXT)
-        return np.concatenate(list(np.moveaxis(factors, 0, 1)))
+        rows = [factors[lobe, c] for c in range(channels) for lobe in range(len(LOBES))]
+        return array_namespace(factors).stack(rows)
 
     values = evaluate_material(formula, vectors, {"ior": checked("ior", ior)}, 4 * channels, BLOCK)
-    return values.reshape(*values.shape[:-1], channels, 4)
+    return array_namespace(values).reshape(values, (*values.shape[:-1], channels, 4))
 
 
+@any_array
 def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLike) -> Array:
     """Longitudinal scattering function M.
 
@@ -180,10 +186,12 @@ def hair_longitudinal(theta_i: ArrayLike, theta_o: ArrayLike, variance: ArrayLik
     4.18169
     """
     i, o, v = checked_numbers(theta_i=theta_i, theta_o=theta_o, variance=variance)
-    inclined = np.sin(i), np.cos(i), np.sin(o), np.cos(o)
+    xp = array_namespace(i, o, v)
+    inclined = xp.sin(i), xp.cos(i), xp.sin(o), xp.cos(o)
     return formulas.longitudinal(*inclined, v)
 
 
+@any_array
 def hair_azimuthal(phi: ArrayLike, scale: ArrayLike) -> Array:
     """Azimuthal scattering function N, the logistic density trimmed to [-pi, pi].
 
@@ -224,8 +232,8 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 }
 
 
-def _checked(inputs: dict[str, ArrayLike]) -> dict[str, Array]:
-    """Values of all ports of the node, as arrays; those of tints and absorption (..., C)."""
+def _checked(inputs: dict[str, ArrayLike], wo: Numbers) -> dict[str, Array]:
+    """Values of all ports of the node, as arrays of wo's library; those of colors (..., C)."""
     # Refuse unknown names.
     unknown = set(inputs) - set(DEFAULTS)
     if unknown:
@@ -235,10 +243,11 @@ def _checked(inputs: dict[str, ArrayLike]) -> dict[str, Array]:
     values = {}
     for name, value in {**DEFAULTS, **inputs}.items():
         check = checked_pairs if name in ROUGHNESSES else checked
-        values[name] = np.asarray(check(name, value), np.float64)
+        array = check(name, value)
+        values[name] = array if library(array) else like(array, wo)
     # Give colors their channels.
     for name in (*TINTS, "absorption_coefficient"):
-        values[name] = np.atleast_1d(values[name])
+        values[name] = checked_vector(name, values[name])
     return values
 
 

@@ -7,12 +7,14 @@ to the viewer. A direction has the inclination theta, sin(theta) = x, and an azi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.edges import angle, arcsine, at_most, guarded, hypot, least_normal, root
+from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.microfacet import fresnel_formulas
 
 LOBES = ("R", "TT", "TRT", "TRRT+")
@@ -26,16 +28,37 @@ BESSEL, TERMS = 20.0, 48
 
 def bessel_scaled(x: Array) -> Array:
     """exp(-x) I_0(x) for x >= 0, of [Olver2010], Eq. 10.25.2 and 10.40.1."""
-    small, large = np.minimum(x, BESSEL), np.maximum(x, BESSEL)
+    xp = array_namespace(x)
+    small, large = xp.minimum(x, BESSEL), xp.maximum(x, BESSEL)
+    if xp is NUMPY:
+        series, tail = _bessel_series(small, large)
+    else:
+        series, tail = (1.0 + each for each in _bessel_powers(small, large))
+    return xp.where(x < BESSEL, xp.exp(-small) * series, tail / xp.sqrt(2.0 * np.pi * large))
+
+
+def _bessel_series(small: Array, large: Array) -> tuple[Array, Array]:
+    """Both series, term by term."""
     series = term = np.ones_like(small)
     tail = rest = np.ones_like(large)
     for k in range(1, TERMS):
         term = term * np.square(0.5 * small / k)
         series = series + term
         if k < 2.0 * BESSEL - 1.0:  # beyond, the terms grow again
-            rest = rest * np.square(2 * k - 1) / (8.0 * k * large)
+            rest = rest * (2 * k - 1) ** 2 / (8.0 * k * large)
             tail = tail + rest
-    return np.where(x < BESSEL, np.exp(-small) * series, tail / np.sqrt(2.0 * np.pi * large))
+    return series, tail
+
+
+def _bessel_powers(small: Array, large: Array) -> Iterator[Array]:
+    """Both series but for their first term, as few operations, which a library compiles in less time."""
+    xp = array_namespace(small)
+    k = np.arange(1, TERMS)
+    terms = np.cumprod((0.5 * BESSEL / k) ** 2)
+    rest = np.cumprod(np.where(k < 2.0 * BESSEL - 1.0, (2 * k - 1) ** 2 / (8.0 * k * BESSEL), 0.0))
+    for x, powers, coefficients in ((small / BESSEL, 2 * k, terms), (BESSEL / large, k, rest)):
+        factors = x[..., np.newaxis] ** like(powers, x)
+        yield xp.sum(factors * like(coefficients, x), axis=-1)
 
 
 def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array) -> Array:
@@ -46,30 +69,29 @@ def longitudinal(sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Arra
     d is the distance of the points (|cos_i|, sin_i) and (cos_o, -sin_o) of the unit circle. A tilted
     inclination may leave [-pi/2, pi/2]; I_0 is even, so the sign of its cosine has no effect.
     """
-    cos_i = np.abs(cos_i)
-    d2 = np.square(cos_i - cos_o) + np.square(sin_i + sin_o)
-    norm = -v * np.expm1(-2.0 / v)
-    value: Array = np.exp(-0.5 * d2 / v) * bessel_scaled(cos_i * cos_o / v) / norm
-    return value
+    xp = array_namespace(sin_i, sin_o, v)
+    cos_i = xp.abs(cos_i)
+    d2 = xp.square(cos_i - cos_o) + xp.square(sin_i + sin_o)
+    norm = -v * xp.expm1(-2.0 / v)
+    return xp.exp(-0.5 * d2 / v) * bessel_scaled(cos_i * cos_o / v) / norm
 
 
-def azimuthal(angle: Array, s: Array) -> Array:
-    """N_p of the angle phi - Phi_p, which is wrapped into [-pi, pi]: Azimuthal Scattering."""
-    scale = SCALE * s
-    wrapped = np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi
-    fall = np.exp(-np.abs(wrapped) / scale)
-    value: Array = fall / (scale * np.square(1.0 + fall)) / np.tanh(0.5 * np.pi / scale)
+def azimuthal(phi: Array, s: Array) -> Array:
+    """N_p of an angle phi - Phi_p, which is wrapped into [-pi, pi]: Azimuthal Scattering."""
+    xp, scale = array_namespace(phi, s), SCALE * s
+    wrapped = xp.remainder(phi + np.pi, 2.0 * np.pi) - np.pi
+    fall = xp.exp(-xp.abs(wrapped) / scale)
+    value: Array = fall / (scale * xp.square(1.0 + fall)) / xp.tanh(0.5 * np.pi / scale)
     return value
 
 
 def attenuation(F: Array, T: Array) -> Array:
     """A_p, (4, ...): Attenuation Factors. Where F = T = 1, that of TRRT+ has the limit 0."""
-    pass_through = np.square(1.0 - F)
+    xp = array_namespace(F, T)
+    pass_through = xp.square(1.0 - F)
     rest = 1.0 - F * T
-    last = pass_through * F**2 * T**3 / np.where(rest > 0.0, rest, 1.0)
-    return np.stack(
-        np.broadcast_arrays(F + 0.0 * T, pass_through * T, pass_through * F * T**2, last)
-    )
+    last = pass_through * F**2 * T**3 / xp.where(rest > 0.0, rest, 1.0)
+    return xp.stack([F + 0.0 * T, pass_through * T, pass_through * F * T**2, last])
 
 
 @dataclass(frozen=True)
@@ -128,27 +150,30 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
     of the point whose normal is +z. A view along the fiber has none, and counts as h = 0. Below
     index 1, where no ray enters, F is 1 and gamma_t has no effect.
     """
-    sin_o, cos_o = wo[0], np.hypot(wo[1], wo[2])
-    inside = np.sqrt(np.maximum(np.square(ior) - np.square(sin_o), 0.0))
-    effective = inside / np.maximum(cos_o, LEAST)
-    gamma_o = np.arctan2(-wo[1], np.where(cos_o > 0.0, wo[2], 1.0))
-    sin_t = -wo[1] / np.maximum(inside, LEAST)
-    return Section(sin_o, cos_o, gamma_o, np.arcsin(np.clip(sin_t, -1.0, 1.0))), effective
+    xp, least = array_namespace(wo, ior), max(LEAST, least_normal(wo))
+    sin_o, cos_o = wo[0], hypot(wo[1], wo[2])
+    inside = root(xp.maximum(xp.square(ior) - xp.square(sin_o), 0.0))
+    effective = inside / xp.maximum(guarded(cos_o, cos_o > least, 1.0), LEAST)
+    gamma_o = angle(-wo[1], xp.where(cos_o > 0.0, wo[2], 1.0))
+    sin_t = -wo[1] / xp.maximum(guarded(inside, inside > least, 1.0), LEAST)
+    return Section(sin_o, cos_o, gamma_o, arcsine(sin_t)), effective
 
 
 def attenuations(
     view: Section, effective: Array, ior: Array, absorption: Array, form: HairForm
 ) -> Array:
     """A_p of a view, (4, C, ...), of absorptions (C, ...)."""
-    cos_gamma = np.cos(view.gamma_o)
+    xp, least = array_namespace(view.sin_o, ior, absorption), max(LEAST, least_normal(ior))
+    cos_gamma = xp.cos(view.gamma_o)
     if form.effective:
-        F = fresnel_formulas.dielectric(cos_gamma, np.minimum(effective, 1e50))
+        F = fresnel_formulas.dielectric(cos_gamma, xp.minimum(effective, 1e50))
     else:
         F = fresnel_formulas.dielectric(view.cos_o * cos_gamma, ior)
-    sin_t = np.minimum(np.abs(view.sin_o) / np.maximum(ior, LEAST), 1.0)
-    cos_t = np.sqrt((1.0 - sin_t) * (1.0 + sin_t))
-    T = np.exp(-absorption * (2.0 * np.cos(view.gamma_t) / np.maximum(cos_t, LEAST)))
-    return attenuation(F, T)
+    bends = ior > least
+    sin_t = at_most(xp.abs(view.sin_o) / xp.maximum(guarded(ior, bends, least), LEAST), 1.0)
+    cos_t = root((1.0 - sin_t) * (1.0 + sin_t))
+    cos_t = xp.maximum(guarded(cos_t, cos_t > least, least), LEAST)
+    return attenuation(F, xp.exp(-absorption * (2.0 * xp.cos(view.gamma_t) / cos_t)))
 
 
 def distribution(
@@ -162,23 +187,24 @@ def distribution(
 ) -> Array:
     """M_p N_p of a lobe: Cuticle Tilt, Longitudinal Scattering, Azimuthal Scattering."""
     # Limit the roughness.
-    v, s = (np.clip(each, *form.limits) for each in roughness)
+    xp, (low, high) = array_namespace(wo, wi, alpha), form.limits
+    v, s = (xp.minimum(xp.maximum(each, low), high) for each in roughness)
     # Tilt the light, or the view, by the angle of the cuticle.
-    inclined = [(wi[0], np.hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
+    inclined = [(wi[0], hypot(wi[1], wi[2])), (view.sin_o, view.cos_o)]
     if lobe < 3:
         tilt = (2.0 - 3.0 * lobe) * alpha
         sine, cosine = inclined[not form.tilts_light]
         turned = (
-            sine * np.cos(tilt) + cosine * np.sin(tilt),
-            cosine * np.cos(tilt) - sine * np.sin(tilt),
+            sine * xp.cos(tilt) + cosine * xp.sin(tilt),
+            cosine * xp.cos(tilt) - sine * xp.sin(tilt),
         )
         inclined[not form.tilts_light] = turned
     # Scatter longitudinally.
     (sin_i, cos_i), (sin_o, cos_o) = inclined
-    M = form.longitudinal(sin_i, cos_i, sin_o, np.abs(cos_o), v)
+    M = form.longitudinal(sin_i, cos_i, sin_o, xp.abs(cos_o), v)
     # Scatter in azimuth about the exit angle of the lobe.
     if lobe == 3:
         return M * form.uniform
     exit_angle = 2.0 * lobe * view.gamma_t - 2.0 * view.gamma_o + lobe * np.pi
-    phi = np.arctan2(wi[2] * wo[1] - wo[2] * wi[1], wi[1] * wo[1] + wi[2] * wo[2])
+    phi = angle(wi[2] * wo[1] - wo[2] * wi[1], wi[1] * wo[1] + wi[2] * wo[2])
     return M * azimuthal(phi - exit_angle, s)
