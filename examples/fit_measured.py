@@ -3,7 +3,7 @@
 
 FILE is a material of the MERL database. Without one a varnished clay is made, with noise, and written as
 such a file, so that the fit can be compared with what was put in. Needs scipy and matplotlib:
-`pip install 'mxeon[fit,report]'`.
+`pip install '.[fit,report]'` in a checkout.
 """
 
 import argparse

@@ -79,7 +79,13 @@ def test_the_parameters_of_lobes_over_eon_lie_within_their_errors(model, paramet
     fit = fit_brdf(data, model)
     assert np.abs(deviates(fit, parameters)).max() < LARGEST_DEVIATE
     assert max(each.max() for each in fit.errors.values()) < 0.1
-    assert fit_brdf(data, "eon").scatter > 2.0  # another model does not pass for it
+    other = fit_brdf(data, "eon")  # which does not pass for it
+    assert fit.fits and not other.fits and other.scatter > 2.0
+    assert (
+        str(other)
+        .splitlines()[0]
+        .endswith(": the model does not fit; its errors assume that it does")
+    )
 
 
 def test_a_base_that_is_all_metal_is_the_metal():
@@ -116,6 +122,10 @@ def test_a_fit_says_its_parameters_and_evaluates_its_model():
     assert title.startswith("eon, scatter ") and rho.count("+-") == 3 and "roughness" in roughness
     expected = eon_brdf(data.wo, data.wi, fit.values["rho"], fit.values["roughness"])
     assert np.array_equal(fit.brdf(data.wo, data.wi), expected)
+    one = fit.brdf(data.wo[0], data.wi[0])
+    assert one.shape == (3,) and np.array_equal(one, expected[0])
+    assert fit.brdf(data.wo[0], data.wi).shape == expected.shape
+    assert fit.brdf(data.wo[:4, np.newaxis], data.wi).shape == (4, *expected.shape)
 
 
 # --- files of MERL ---------------------------------------------------------------------------

@@ -94,6 +94,12 @@ class RoughDiffusePlugin:
 
     def configure(self, properties: Mitsuba) -> None:
         """Take the textures, and say which lobes there are."""
+        if self.parameter in properties:
+            value = properties[self.parameter]
+            if isinstance(value, int | float) and not 0.0 <= value <= self.largest:
+                raise ValueError(
+                    f"{self.parameter} must lie in [0, {self.largest:.4g}]; got {value:g}"
+                )
         self.reflectance = properties.get_texture("reflectance", 0.5)
         self.amount = properties.get_texture(self.parameter, 0.0)
         flags = self.mi.BSDFFlags.DiffuseReflection | self.mi.BSDFFlags.FrontSide

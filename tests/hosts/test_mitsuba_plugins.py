@@ -86,6 +86,12 @@ def test_the_benchmark_samples_the_same_values_by_the_cosine(mi):
     assert np.allclose(np.array(cosine.pdf(context, point, light)), wi[:, 2] / np.pi, 1e-6)
 
 
+@pytest.mark.parametrize("name, value", [("eon", 1.7), ("qon", -0.1)])
+def test_a_parameter_outside_its_range_is_refused(mi, name, value):
+    with pytest.raises(Exception, match=rf"{PARAMETERS[name]} must lie in \[0, .*\]; got {value}"):
+        mi.load_dict(material(name, value))
+
+
 def test_a_scalar_variant_has_the_same_values(mi):
     mi.set_variant("scalar_rgb")
     plugins.register()

@@ -290,6 +290,25 @@ def test_every_function_on_the_pages_is_in_one_namespace():
     assert all(getattr(models, name) is not None for name in models.__all__)
 
 
+def test_three_samples_of_one_direction_take_no_color_for_their_reflectances():
+    u, color = np.full((3, 2), 0.4), np.array([0.8, 0.4, 0.1])
+    with pytest.raises(ValueError, match=r"^rho of shape \(3,\) beside 3 samples .* rho.mean\(\)"):
+        models.eon_sample(WO, u, 0.5, rho=color)
+    each = models.eon_sample(np.tile(WO, (3, 1)), u, 0.5, rho=color)[1]
+    assert len(set(each)) == 3
+    _, pdf = mxeon.model("eon").sample(WO, u, color=color[:, np.newaxis], roughness=0.5)
+    assert np.allclose(pdf, each)
+
+
+def test_a_plot_names_channels_and_multiplies_all_but_fibers_by_the_cosine():
+    axes = mxeon.model("dielectric_rt").plot(tint=[0.9, 0.5, 0.1], roughness=0.5).get_axes()
+    names = [text.get_text() for text in axes[1].get_legend().get_texts()]
+    assert names == ["red", "green", "blue"]
+    assert axes[0].get_title() == "value times cosine, mean of the channels, 1/sr"
+    fiber = mxeon.model("hair").plot().get_axes()[0]
+    assert fiber.get_title() == "value, mean of the channels, 1/sr"
+
+
 @pytest.mark.parametrize("name", ["eon", "conductor", "translucent", "hair"])
 def test_a_plot_has_a_lobe_an_albedo_and_the_density_of_samples(name, tmp_path):
     row = mxeon.model(name)

@@ -27,6 +27,7 @@ __all__ = [
     "read_merl",
 ]
 
+MISFIT = 1.5  # scatter above which a model does not fit data whose errors are known
 LEAST_SINGULAR = 1e-12  # of the largest one: below, a direction of parameters is undetermined
 
 
@@ -44,6 +45,14 @@ class Fit:
     scatter : float
         Root of the mean squared difference from the data, per degree of freedom: in units of `error`,
         about 1 where model and errors are right; in 1/sr without errors.
+    weighted : bool
+        Whether the data had errors.
+
+    Notes
+    -----
+    With errors of the data, `errors` are what they make of the parameters if the model is right: a scatter
+    of 10 says that it is not, and that the parameters are off by more. Without errors of the data the
+    scatter counts as the error of each value, whether it is noise or misfit.
     """
 
     model: str
@@ -51,14 +60,24 @@ class Fit:
     errors: dict[str, Array]
     covariance: Array
     scatter: float
+    weighted: bool = True
+
+    @property
+    def fits(self) -> bool:
+        """Whether nothing contradicts the model: no errors are known, or the scatter is at most 1.5."""
+        return not self.weighted or self.scatter <= MISFIT
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike) -> Array:
-        """Values of the fitted model in 1/sr, shape (N, C), for directions (N, 3)."""
-        directions = (np.asarray(w, np.float64) for w in (wo, wi))
-        return FIT_MODELS[self.model].value(*directions, **self.values)
+        """Values of the fitted model in 1/sr, shape (..., C), for directions (..., 3) that broadcast."""
+        views, lights = np.broadcast_arrays(*(np.asarray(w, np.float64) for w in (wo, wi)))
+        rows = (each.reshape(-1, 3) for each in (views, lights))
+        value = FIT_MODELS[self.model].value(*rows, **self.values)
+        return value.reshape(*views.shape[:-1], -1)
 
     def __str__(self) -> str:
-        rows, width = [f"{self.model}, scatter {self.scatter:.3g}"], max(map(len, self.values))
+        misfit = "" if self.fits else ": the model does not fit; its errors assume that it does"
+        rows = [f"{self.model}, scatter {self.scatter:.3g}{misfit}"]
+        width = max(map(len, self.values))
         for name, value in self.values.items():
             pairs = zip(np.atleast_1d(value), np.atleast_1d(self.errors[name]), strict=True)
             rows.append(f"  {name:{width}} " + ", ".join(f"{v:.4f} +- {e:.4f}" for v, e in pairs))
@@ -89,8 +108,8 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
 
     Notes
     -----
-    Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), with the errors of the data, or
-    times their scatter. What the data do not determine, such as the roughness of a black surface, has a
+    Errors are those of the linearized model: sqrt(diag((J^T J)^-1)), J the derivatives of the differences
+    over the errors of the data, and of 1 without them; then they are multiplied by the scatter. What the data do not determine, such as the roughness of a black surface, has a
     very large one. At an end of a parameter's range they hold on the side that is left.
 
     Examples
@@ -122,7 +141,8 @@ def fit_brdf(measurement: MeasuredBrdf, model: str = "eon") -> Fit:
     covariance = _inverse_normal(jacobian)
     scatter = float(np.sqrt(cost / max(data.value.size - len(x), 1)))
     covariance = covariance if data.error is not None else covariance * scatter**2
-    return Fit(model, parameters(x), parameters(np.sqrt(np.diag(covariance))), covariance, scatter)
+    errors = parameters(np.sqrt(np.diag(covariance)))
+    return Fit(model, parameters(x), errors, covariance, scatter, data.error is not None)
 
 
 def _search(

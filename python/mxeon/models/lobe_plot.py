@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.projections.polar import PolarAxes
 
 VIEWS = (0.0, 30.0, 60.0)  # polar angles of the viewer, degrees
-VIEW_COLORS = ("#3f7fd1", "#2f9e63", "#d8505f")
+VIEW_COLORS = ("#6a4c93", "#c9811b", "#1b8f8f")  # none of them a channel's
 CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
 ANGLES = 721  # of a lobe
+FIBER = "chiang_hair_bsdf"
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "font.size": 9, "axes.titlesize": 10}
 
 
@@ -27,6 +28,9 @@ class Drawable(Protocol):
 
     @property
     def title(self) -> str: ...
+
+    @property
+    def node(self) -> str: ...
 
     @property
     def lights(self) -> str: ...
@@ -91,11 +95,11 @@ def _angles(model: Drawable) -> Array:
 def _lobes(model: Drawable, inputs: Mapping[str, ArrayLike]) -> tuple[Array, list[Array]]:
     """Angles of lights, and for each view the value times |cosine|, averaged over the channels.
 
-    Light from all sides is that of a fiber, whose value has no cosine beside it.
+    The value of a fiber has no cosine beside it.
     """
     angles = _angles(model)
     wi = _plane(angles)
-    cosine = np.abs(np.cos(angles)) if model.lights != "all sides" else np.ones(ANGLES)
+    cosine = np.ones(ANGLES) if model.node == FIBER else np.abs(np.cos(angles))
     lobes = []
     for view in VIEWS:
         values = model.bsdf(_plane(np.radians(view)), wi, **inputs)
@@ -122,8 +126,8 @@ def _draw_lobe(axes: PolarAxes, model: Drawable, inputs: Mapping[str, ArrayLike]
     axes.set_rlim(0.0, 1.1 * largest)
     rings = [0.5 * largest, largest]
     axes.set_yticks(rings, [f"{each:.2g}" for each in rings])
-    fiber = model.lights == "all sides"
-    axes.set_title("value, 1/sr" if fiber else "value times cosine, 1/sr")
+    quantity = "value" if model.node == FIBER else "value times cosine"
+    axes.set_title(f"{quantity}, mean of the channels, 1/sr")
     below = (0.5, 0.02 if model.lights == "front" else -0.1)
     axes.legend(loc="upper center", bbox_to_anchor=below, ncols=3, fontsize=7, frameon=False)
 
@@ -138,8 +142,11 @@ def _draw_albedo(axes: Axes, model: Drawable, inputs: Mapping[str, ArrayLike]) -
     gray = bool((channels == channels[:, :1]).all())
     colored = channels.shape[1] == 3 and not gray
     colors = CHANNEL_COLORS if colored else ("#444444",) * channels.shape[1]
-    for channel, color in zip(channels.T, colors, strict=True):
-        axes.plot(degrees, channel, color=color, linewidth=1.2)
+    names = ("red", "green", "blue") if colored else ("all channels",) * channels.shape[1]
+    for channel, color, name in zip(channels.T, colors, names, strict=True):
+        axes.plot(degrees, channel, color=color, linewidth=1.2, label=name)
+    if colored:
+        axes.legend(fontsize=7, frameon=False)
     axes.set(xlim=(0.0, 90.0), xlabel="viewer's angle, degrees", title="directional albedo")
     axes.set_ylim(0.0, max(1.05, 1.05 * float(channels.max())))
     axes.set_xticks(range(0, 91, 15))

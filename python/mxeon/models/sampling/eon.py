@@ -79,7 +79,8 @@ def eon_sample(
     roughness : array_like, shape (...)
         Dimensionless, in [0, 1].
     rho : array_like, shape (...)
-        Gray reflectance for which the sampling is exact, dimensionless, in [0, 1].
+        Gray reflectance for which the sampling is exact, dimensionless, in [0, 1]: one number for each
+        direction. Three of them for three samples of one `wo` might be a color, and are refused.
 
     Returns
     -------
@@ -110,6 +111,11 @@ def eon_sample(
     (array([0.      , 0.707107, 0.707107]), 0.225079)
     """
     wo, u, roughness, rho = checked_draw(wo, u, roughness=roughness, rho=rho)
+    if wo.ndim == 1 and u.shape == (3, 2) and rho.shape == (3,):
+        raise ValueError(
+            "rho of shape (3,) beside 3 samples has two meanings: write rho.mean() for a color, or "
+            "repeat wo for a number for each sample"
+        )
     u1, u2 = unpack_uniforms(u)
     cosine, sine, S_o = azimuth_frame(wo)
     mu_o, S_o = np.minimum(wo[..., 2], 1.0), np.minimum(S_o, 1.0)
