@@ -139,8 +139,8 @@ def _judge_material(
         lobes = (lobe for each in expected for lobe in each.lobes)
         tolerance = rounded_by(host, tolerance_of(shader, lobes))
         result = _judge_match(place, cases, tolerance, front_lit)
-        if result.verdict == FAILED and (reason := _known(shader)):
-            result = replace(result, diagnosis=reason)
+        if result.verdict == FAILED and (known := _known(shader)):
+            result = replace(result, diagnosis=known)
     return result, tuple(
         _picture(file, shader, host, library, scene, image, reference)
         for scene, image, reference in zip(scenes, images, references, strict=True)
