@@ -109,6 +109,33 @@ def test_the_layers_are_those_of_the_specification():
             assert (error / np.maximum(1.0, expected)).max() < CURVES
 
 
+@pytest.mark.parametrize(
+    "model, parameters", [(dielectric_over_eon, VARNISHED), (openpbr_base, BASE)]
+)
+def test_lobes_over_eon_have_gradients_by_their_parameters(model, parameters):
+    # Differentiate the sum of the values.
+    torch, rng = pytest.importorskip("torch"), np.random.default_rng(SEED)
+    wo, wi = directions(rng, 20), directions(rng, 20)
+    given = {
+        k: torch.tensor(v, dtype=torch.float64, requires_grad=True) for k, v in parameters.items()
+    }
+    value = model(wo, wi, **given)
+    value.sum().backward()
+    assert np.allclose(value.detach().numpy(), model(wo, wi, **parameters), CURVES, CURVES)
+
+    # Compare it with differences.
+    def total(name, step):
+        return model(wo, wi, **parameters | {name: parameters[name] + step}).sum()
+
+    for name, tensor in given.items():
+        for k in range(tensor.numel()):
+            step = np.zeros(tensor.numel())
+            step[k] = 1e-4
+            step = step.reshape(tensor.shape)
+            slope = (total(name, step) - total(name, -step)) / 2e-4
+            assert tensor.grad.ravel()[k].item() == pytest.approx(slope, rel=1e-5, abs=1e-5)
+
+
 def test_what_the_data_do_not_determine_has_a_large_error():
     wo = directions(np.random.default_rng(SEED), 20)
     fit = fit_brdf(MeasuredBrdf(wo, wo, np.zeros((20, 1)), np.full((20, 1), 1e-3)))

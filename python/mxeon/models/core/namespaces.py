@@ -32,11 +32,14 @@ class Namespace(Protocol):
     abs: Callable[..., Array]
     asarray: Callable[..., Array]
     asin: Callable[..., Array]
+    asinh: Callable[..., Array]
     astype: Callable[..., Array]
     atan: Callable[..., Array]
     atan2: Callable[..., Array]
     broadcast_to: Callable[..., Array]
+    concat: Callable[..., Array]
     cos: Callable[..., Array]
+    cosh: Callable[..., Array]
     exp: Callable[..., Array]
     expm1: Callable[..., Array]
     hypot: Callable[..., Array]
@@ -48,6 +51,7 @@ class Namespace(Protocol):
     remainder: Callable[..., Array]
     reshape: Callable[..., Array]
     sin: Callable[..., Array]
+    sinh: Callable[..., Array]
     sqrt: Callable[..., Array]
     square: Callable[..., Array]
     stack: Callable[..., Array]
@@ -60,7 +64,14 @@ class Namespace(Protocol):
 
 
 # NumPy below 2 has other names for some functions.
-_NAMES = {"asin": np.arcsin, "atan": np.arctan, "atan2": np.arctan2, "permute_dims": np.transpose}
+_NAMES = {
+    "asin": np.arcsin,
+    "asinh": np.arcsinh,
+    "concat": np.concatenate,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "permute_dims": np.transpose,
+}
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else SimpleNamespace(**{**vars(np), **_NAMES}))
 
 

@@ -18,6 +18,8 @@ from itertools import pairwise
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.edges import hypot
+from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.microfacet.ggx_formulas import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
@@ -57,23 +59,26 @@ class Slopes:
     def seen(cls, wo: Array, roughness: Array) -> Slopes:
         """The slopes that `wo`, shape (3, ...), sees."""
         (x, y, _), (alpha_x, alpha_y) = wo, roughness
-        A = np.hypot(x * alpha_x, y * alpha_y)
-        tilted, length = A > 0.0, np.where(A > 0.0, A, 1.0)
+        xp, A = array_namespace(wo, roughness), hypot(x * alpha_x, y * alpha_y)
+        tilted, length = A > 0.0, xp.where(A > 0.0, A, 1.0)
         axis = (
-            np.where(tilted, x * alpha_x, 1.0) / length,
-            np.where(tilted, y * alpha_y, 0.0) / length,
+            xp.where(tilted, x * alpha_x, 1.0) / length,
+            xp.where(tilted, y * alpha_y, 0.0) / length,
         )
-        mu_o = np.clip(wo[2], LEAST_MU, 1.0)
+        mu_o = xp.minimum(xp.maximum(wo[2], LEAST_MU), 1.0)
         return cls(mu_o, mean_alpha(roughness), A, axis, roughness)
 
     @property
     def scale(self) -> Array:
         """Distance from a right angle, and radius, within which lean and limit change."""
-        return self.mu_o / np.maximum(self.steepness, self.mu_o)
+        maximum = array_namespace(self.mu_o, self.steepness).maximum
+        return self.mu_o / maximum(self.steepness, self.mu_o)
 
     @property
     def isotropic(self) -> bool:
-        """Whether both halves of every surface are alike."""
+        """Whether both halves of every surface are alike; of another library's arrays it is not known."""
+        if array_namespace(self.roughness) is not NUMPY:
+            return False
         return bool(np.all(self.roughness[0] == self.roughness[1]))
 
     def rays(self, omega: Array) -> tuple[Array, Array, Array]:
@@ -82,23 +87,25 @@ class Slopes:
         wo . h / h_z = mu_o + B r; wi lies above the horizon where mu_o g r^2 <= 2 B r + mu_o.
         """
         (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
-        cosine, sine = np.cos(omega), np.sin(omega)
+        xp = array_namespace(omega)
+        cosine, sine = xp.cos(omega), xp.sin(omega)
         g = (alpha_x * (cos_0 * cosine - sin_0 * sine)) ** 2
         g = g + (alpha_y * (sin_0 * cosine + cos_0 * sine)) ** 2
         B = self.steepness * cosine
-        ahead = np.abs(B) + np.sqrt(B * B + self.mu_o * self.mu_o * g)
-        ahead = np.maximum(ahead, self.mu_o / LARGEST_R)
-        beyond = ahead / np.maximum(self.mu_o * g, ahead / LARGEST_R)
-        return B, g, np.where(B < 0.0, self.mu_o / ahead, beyond)
+        ahead = xp.abs(B) + xp.sqrt(B * B + self.mu_o * self.mu_o * g)
+        ahead = xp.maximum(ahead, self.mu_o / LARGEST_R)
+        beyond = ahead / xp.maximum(self.mu_o * g, ahead / LARGEST_R)
+        return B, g, xp.where(B < 0.0, self.mu_o / ahead, beyond)
 
     def facets(self, r: Array, B: Array, g: Array) -> tuple[Array, Array]:
         """Cosine wo . h, and the integrand without F."""
-        lean = np.maximum(B * r + self.mu_o, 0.0)
+        xp = array_namespace(r, B, g)
+        lean = xp.maximum(B * r + self.mu_o, 0.0)
         stretch = 1.0 + g * r * r
-        mu_i = np.clip(2.0 * lean / stretch - self.mu_o, 0.0, 1.0)
+        mu_i = xp.minimum(xp.maximum(2.0 * lean / stretch - self.mu_o, 0.0), 1.0)
         smith = smith_lambda(self.mu_o, self.alpha) * mu_i
         smith = smith + smith_lambda(mu_i, self.alpha) * self.mu_o
-        cosine = np.minimum(lean / np.sqrt(stretch), 1.0)
+        cosine = xp.minimum(lean / xp.sqrt(stretch), 1.0)
         return cosine, _density(r) * 2.0 * mu_i * lean / smith
 
 
@@ -268,25 +275,27 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
 
     Halves of an isotropic surface are alike.
     """
-    x, weight = (v.reshape(-1, *(1,) * np.ndim(scale)) for v in _rule(QUADRANT))
-    extent = np.arcsinh(0.5 * np.pi / scale)
-    omega = 0.5 * np.pi - scale * np.sinh(extent * x)
-    weight = weight * extent * scale * np.cosh(extent * x)
+    xp = array_namespace(scale)
+    x, weight = (like(v.reshape(-1, *(1,) * scale.ndim), scale) for v in _rule(QUADRANT))
+    extent = xp.asinh(0.5 * np.pi / scale)
+    omega = 0.5 * np.pi - scale * xp.sinh(extent * x)
+    weight = weight * extent * scale * xp.cosh(extent * x)
     if isotropic:
-        omega, weight = np.concatenate([omega, np.pi - omega]), np.concatenate([2.0 * weight] * 2)
+        omega, weight = xp.concat([omega, np.pi - omega]), xp.concat([2.0 * weight] * 2)
     else:
-        omega = np.concatenate([omega, np.pi - omega, -omega, np.pi + omega])
-        weight = np.concatenate([weight] * 4)
+        omega = xp.concat([omega, np.pi - omega, -omega, np.pi + omega])
+        weight = xp.concat([weight] * 4)
     return omega[np.newaxis], weight[np.newaxis]
 
 
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     """Nodes and weights of [0, length], denser towards 0 from `scale` on, along the first axis."""
-    x, weight = (v.reshape(-1, *(1,) * (np.ndim(length) - 1)) for v in _rule(NODES))
-    x = np.concatenate([k + x for k in range(PANELS)]) / PANELS
-    weight = np.concatenate([weight] * PANELS) / PANELS
-    extent = np.arcsinh(length / scale)
-    rise = np.exp(extent * x)
+    xp, (x, weight) = array_namespace(length), _rule(NODES)
+    shape = (-1, *(1,) * (length.ndim - 1))
+    x = like((np.concatenate([k + x for k in range(PANELS)]) / PANELS).reshape(shape), length)
+    weight = like((np.concatenate([weight] * PANELS) / PANELS).reshape(shape), length)
+    extent = xp.asinh(length / scale)
+    rise = xp.exp(extent * x)
     fall = 1.0 / rise
     half = 0.5 * scale
     # sinh and cosh of one exponential, which takes a third of the time.
