@@ -266,5 +266,9 @@ def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, cap
     fitted = names["fit"].values
     by_gradients = names["torch"].sigmoid(names["x"]).tolist()
     assert by_gradients == pytest.approx([*fitted["rho"], fitted["roughness"]], abs=1e-5)
-    assert names["weight"] == pytest.approx(np.ones(4))
+    J, errors = names["J"].numpy(), names["fit"].errors
+    found = np.sqrt(np.linalg.inv(J.T @ J).diagonal())
+    assert found == pytest.approx([*errors["rho"], errors["roughness"]], rel=1e-3)
+    albedo = names["eon_albedo_dir"](0.8, fitted["rho"], fitted["roughness"])
+    assert names["weight"].mean(axis=0) == pytest.approx(albedo, rel=0.02)  # of deviates of 0.4 %
     assert all((tmp_path / name).stat().st_size > 1000 for name in ("lobe.png", "rendered.png"))
