@@ -231,7 +231,8 @@ def accept(name: str, value: object) -> None:
     """Raise ValueError unless the function at hand takes this other library's array as `name`."""
     if not _any_array.get():
         raise ValueError(
-            f"{name} must be an array of NumPy, not of {library(value)}: this function takes no other"
+            f"{name} must be an array of NumPy, not of {library(value)}: this function takes no other; "
+            "the page on arrays of PyTorch and JAX lists those that do"
         )
 
 
