@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, TypeVar, cast
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,7 +95,7 @@ class RenderedSamples(Probe):
         """A batch with inputs that a renderer takes."""
         return replace(batch, inputs=self._taken(batch.inputs))
 
-    def _taken(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
+    def _taken(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
         """Inputs that a renderer takes."""
         taken = {**inputs}
         taken.pop("occlusion", None)

@@ -78,8 +78,9 @@ class Host(base.Host):
         Unsupported
             If the environment is not uniform, or is asked for its light from below alone.
         ValueError
-            If a pair is not `scenes.visible`, or the light of a single pair is not finite.
+            If a pair in the light of a point is not `scenes.visible`.
         """
+        # Values in the light of a point.
         through = output == "throughput"
         if irradiance is not None or (branch == TRANSMITTED and not through):
             raise self._unsupported("uneven environment, and none below alone", "gl")
@@ -87,6 +88,7 @@ class Host(base.Host):
             pixels, scene = self._pixels(shader, wo, wi, inputs, "", True)
             return np.asarray(pixels / scene.irradiance[:, np.newaxis])
         # What does not depend on the light: each view has one across it, too small to add to an emission.
+        # A sky is shown by several pixels of each view.
         sky = not through and branch != EMITTED
         repeats = max(1, PATHS // len(wo)) if sky else 1
         rows = np.repeat(np.arange(len(wo)), repeats)
