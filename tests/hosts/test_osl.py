@@ -41,7 +41,7 @@ def host(hosts):
 
 def test_it_names_the_versions_of_osl_and_of_blender(host):
     version = host.identity().version
-    assert re.fullmatch(r"OSL 1\.\d+\.\d+ in Blender 5\.\d+\.\d+", version)
+    assert re.fullmatch(r"OSL 1\.\d+\.\d+ in (Blender 5\.\d+\.\d+|testshade)", version)
 
 
 def test_the_arguments_of_a_closure_are_those_of_the_document_to_the_last_bit(host):
@@ -109,7 +109,7 @@ def test_a_function_is_called_with_every_kind_of_argument(host):
             'lobe_roughness, "film", 1.0)',
             "keyword of burley_diffuse_bsdf must be one of label; got 'film'",
         ),
-        ("lobe_roughness, 1.0)", "does not compile: .*No matching function call"),
+        ("lobe_roughness, 1.0)", "osl: .*(No matching function call|lobe_out = unknown)"),
         (
             "lobe_roughness) + diffuse(N)",
             r"closure must be one of .*; got '\(1, 1, 1\) \* diffuse",
@@ -123,7 +123,7 @@ def test_what_no_closure_takes_fails_with_its_words(host, new, message):
 
 def test_what_the_engine_says_of_a_text_fails(host):
     wrong = altered(shader(), "BSDF lobe_out", 'error("out of range"); BSDF lobe_out')
-    with pytest.raises(ShaderError, match="osl: ERROR: out of range|osl: ERROR: .*out of range"):
+    with pytest.raises(ShaderError, match="osl: .*ERROR: .*out of range"):
         host.trees(wrong, WO, {})
 
 
@@ -171,6 +171,16 @@ def test_closures_that_lie_too_deep_are_not_run():
 
 
 def test_a_prelude_has_the_closures_that_a_text_names():
-    text = carriers.prelude("sheen_bsdf(N)")
+    text = carriers.prelude("sheen_bsdf(N)", carriers.HOLDOUT)
     assert "#define sheen_bsdf mxeon_sheen_bsdf" in text
     assert "conductor" not in text
+
+
+def test_the_root_of_zeltners_roughness_undoes_a_square_to_the_last_bit():
+    rough = np.random.default_rng(1).random(4096).astype(np.float32)
+    squares = (rough * rough).astype(np.float64)
+    arguments = {"roughness": squares, "mode": np.where(np.arange(4096) % 2, 1.0, 0.0)}
+    sheen = trees.ClosureTree("sheen_bsdf", (), arguments)
+    [found] = trees.with_roots(trees.ClosureTree("mul", (sheen,), {"factor": rough})).parts
+    assert np.array_equal(found.arguments["roughness"][1::2], rough[1::2])
+    assert np.array_equal(found.arguments["roughness"][::2], squares[::2])

@@ -9,7 +9,9 @@ So what MaterialX's text says is judged, whatever a renderer makes of it.
 
 from __future__ import annotations
 
+import os
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,8 +23,10 @@ from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.blender import Blender
 from mxeon.hosts.osl.carriers import prelude
 from mxeon.hosts.osl.points import Column, row, statements
+from mxeon.hosts.osl.testshade import Testshade
 from mxeon.hosts.osl.texts import columns_of, header, indented, with_variables
-from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label
+from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label, with_roots
+from mxeon.hosts.testrender.programs import VARIABLES
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
@@ -42,12 +46,12 @@ PRINT = '    printf("mxeon %d {root} %s\\n", MXEON_ROW, {text});\n'
 
 
 class Host(base.Host):
-    """Blender's OSL, with a process and a temporary folder.
+    """Blender's OSL, or a build's testshade that MXEON_TESTSHADE names; with a temporary folder.
 
     Raises
     ------
     NotRun
-        If no interpreter with Blender is found.
+        If no interpreter with Blender is found, or no program of the build.
     """
 
     name = "osl"
@@ -55,14 +59,14 @@ class Host(base.Host):
     language = "osl"
 
     def __init__(self) -> None:
-        self._engine = Blender()
+        self._engine = Testshade() if os.environ.get(VARIABLES["testshade"]) else Blender()
 
     def close(self) -> None:
         """End the process and remove its files."""
         self._engine.close()
 
     def identity(self) -> Identity:
-        """Version of OSL, as its compiler knows it, and of Blender."""
+        """Version of OSL, as its compiler knows it, and of what runs it."""
         number = int(self.execute(VERSION, "version", 0.0)[0, 0])
         version = f"OSL {number // 10000}.{number // 100 % 100}.{number % 100}"
         return Identity(self.name, f"{version} in {self._engine.version}", "CPU")
@@ -73,12 +77,16 @@ class Host(base.Host):
         with self._engine.folder() as name:
             folder = Path(name)
             # Its inputs and its surface have values of each point.
-            block = statements(columns_of(shader, inputs), folder, count)
-            [view] = statements({"view": Column("vector", wo)}, folder, count)
+            place = self._engine.place
+            block = statements(columns_of(shader, inputs), folder, count, place)
+            [view] = statements({"view": Column("vector", wo)}, folder, count, place)
             shown = with_variables(shader, block, _printed_closure)
             text = VIEW.format(read=view) + shown.replace('"mx_funcs.h"', f'"{header()}"')
             rows = self._printed(folder, text, count)
-        return read_trees([whole_label(each, ROOT) for each in rows])
+        found = read_trees([whole_label(each, ROOT) for each in rows])
+        if not self._engine.rooted:
+            return found
+        return tuple(replace(each, tree=with_roots(each.tree)) for each in found)
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""
@@ -93,7 +101,7 @@ class Host(base.Host):
         count = max((len(column.rows) for column in columns.values()), default=1)
         # Run a shader that prints its value.
         with self._engine.folder() as name:
-            block = indented(statements(columns, Path(name), count))
+            block = indented(statements(columns, Path(name), count, self._engine.place))
             last = _print(f"mxeon_text((color) {function}({', '.join(columns)}))")
             text = f"{source}\nshader call(output closure color out = 0)\n{{\n{block}{last}}}\n"
             rows = self._printed(Path(name), text, count)
@@ -108,7 +116,9 @@ class Host(base.Host):
             If it says nothing of one of them.
         """
         rows: list[dict[str, str]] = [{} for _ in range(count)]
-        lines = self._engine.printed(folder, f"{row(count)}{prelude(text)}{text}", count)
+        engine = self._engine
+        head = f"{row(count, engine.place)}{prelude(text, engine.carrier)}"
+        lines = engine.printed(folder, f"{head}{text}", count)
         for match in map(LINE.match, lines):
             if match and int(match[1]) < count:
                 rows[int(match[1])][match[2]] = match[3]

@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from mxeon.errors import ShaderError
 from mxeon.hosts.cycles import tracing
 from mxeon.hosts.cycles.process import interpreter
+from mxeon.hosts.osl.carriers import HOLDOUT
 from mxeon.hosts.osl.points import side
 from mxeon.hosts.process import Worker
 from mxeon.shaders.scene import Scene
@@ -21,11 +22,23 @@ TROUBLE = ("ERROR", "WARNING")  # first words of what the engine has to say
 class Blender:
     """A process of Blender, started by the first run.
 
+    Attributes
+    ----------
+    carrier : Carrier
+    place : str
+        OSL expressions of the coordinates at which a point reads its pixel of an image.
+    rooted : bool
+        Whether its OSL takes the root of the roughness of a Zeltner sheen.
+
     Raises
     ------
     NotRun
         If no interpreter with Blender is found.
     """
+
+    carrier = HOLDOUT
+    rooted = False
+    place = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # on the plane that the worker shows
 
     def __init__(self) -> None:
         python = interpreter("osl")
@@ -36,7 +49,7 @@ class Blender:
 
     @property
     def version(self) -> str:
-        """Version of Blender."""
+        """Blender and its version."""
         self._worker.start()
         return f"Blender {self._worker.version}"
 

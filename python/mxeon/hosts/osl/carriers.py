@@ -2,8 +2,8 @@
 """OSL text that stands before a generated shader and makes every closure of it a label that can be printed.
 
 OSL prints a closure with six digits, and only what a renderer has a closure for. Here every closure of
-MaterialX, and every operation on closures, is a function that returns a `holdout` whose label is its
-text, with nine digits, from which a float32 is read back exactly. The shader itself stays as it is.
+MaterialX, and every operation on closures, is a function that returns a closure of the engine whose
+label is its text, with nine digits, from which a float32 is read back exactly. The shader itself stays as it is.
 
     layer<mul<0.5|sheen_bsdf<0 0 1|1 1 1|0.300000012>>|burley_diffuse_bsdf<0 0 1|1 1 1|0>>
 """
@@ -79,15 +79,34 @@ CLOSURES = {
     "transparent": Signature({}),
 }
 
+
+@dataclass(frozen=True)
+class Carrier:
+    """A closure that an engine has, which carries a label.
+
+    Attributes
+    ----------
+    call : str
+        OSL that makes it of the string `label`.
+    before : str
+        What the engine prints of it before the label.
+    """
+
+    call: str
+    before: str
+
+
+HOLDOUT = Carrier('holdout("label", label)', '(1, 1, 1) * holdout ("label", "')
+DEBUG = Carrier("debug(label)", '(1, 1, 1) * debug ("')
+AFTER = '")'
 # OSL cuts what it formats of a closure after 1024 characters, and Blender a line. So each closure is
 # printed where it is made, and its label is the hash of its text.
-BEFORE, AFTER = '(1, 1, 1) * holdout ("label", "', '")'
-LABELS = f"""\
+LABELS = """\
 closure color mxeon_label(string text)
 {{
     string label = format("@%d", hash(text));
     printf("mxeon %d %s %s\\n", MXEON_ROW, label, text);
-    return holdout("label", label);
+    return {call};
 }}
 string mxeon_text(float x) {{ return format("%.9g", x); }}
 string mxeon_text(color x) {{ return format("%.9g %.9g %.9g", x[0], x[1], x[2]); }}
@@ -97,18 +116,25 @@ string mxeon_text(string x) {{ return format("'%s'", x); }}
 string mxeon_text(closure color x)
 {{
     string label = format("%s", x);
-    return startswith(label, "{BEFORE.replace('"', chr(92) + '"')}")
-        ? substr(label, {len(BEFORE)}, strlen(label) - {len(BEFORE) + len(AFTER)}) : label;
+    return startswith(label, "{before}")
+        ? substr(label, {start}, strlen(label) - {rest}) : label;
 }}
 """
 
 
-def prelude(text: str) -> str:
+def prelude(text: str, carrier: Carrier) -> str:
     """OSL that turns the closures of CLOSURES that a text names, and OPERATIONS on them, into labels."""
+    start = len(carrier.before)
+    labels = LABELS.format(
+        call=carrier.call,
+        before=carrier.before.replace('"', '\\"'),
+        start=start,
+        rest=start + len(AFTER),
+    )
     names = [name for name in CLOSURES if name in text]  # others take the compiler time
     closure = "closure color"
     lines = [
-        LABELS,
+        labels,
         _function("mxeon_layer", LAYER, closure, closure),
         _function("__operator__add__", SUM, closure, closure),
     ]

@@ -22,11 +22,10 @@ TYPES = {
 }  # by MaterialX's
 WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
 # The row of a point, from its place in the picture.
-ROW = """#define MXEON_ROW \\
-    ((int) floor({size} * (0.5 - 0.5 * P[1])) * {size} + (int) floor({size} * (0.5 + 0.5 * P[0])))
+ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floor({size} * (x)))
+#define MXEON_ROW MXEON_AT({place})
 """
 READ = 'texture("{image}", {place}, 0.0, 0.0, 0.0, 0.0, "interp", "closest")'
-PLANE = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"  # where the plane of Blender reads an image
 
 
 @dataclass(frozen=True)
@@ -60,13 +59,13 @@ def side(count: int) -> int:
     return max(LEAST_SIZE, math.isqrt(count - 1) + 1)
 
 
-def row(count: int) -> str:
-    """OSL that defines MXEON_ROW, the row of a point of so many."""
-    return ROW.format(size=side(count))
+def row(count: int, place: str) -> str:
+    """OSL that defines MXEON_ROW, the row of a point of so many, by its place in an image."""
+    return ROW.format(size=side(count), place=place)
 
 
 def statements(
-    columns: Mapping[str, Column], folder: Path, count: int, place: str = PLANE
+    columns: Mapping[str, Column], folder: Path, count: int, place: str
 ) -> Iterator[str]:
     """OSL declarations of variables that have a value for each point; their images are written.
 

@@ -100,6 +100,19 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
     )
 
 
+def with_roots(tree: ClosureTree | None) -> ClosureTree | None:
+    """A tree whose Zeltner sheens have the root of their roughness, a float32 as the closure takes it."""
+    if tree is None:
+        return None
+    arguments = dict(tree.arguments)
+    mode = arguments.get("mode")
+    if tree.name == "sheen_bsdf" and isinstance(mode, np.ndarray):
+        rough = np.asarray(arguments["roughness"], np.float64)
+        root = np.sqrt(rough).astype(np.float32).astype(np.float64)
+        arguments["roughness"] = np.where(mode == 0.0, rough, root)
+    return ClosureTree(tree.name, tuple(map(with_roots, tree.parts)), arguments)
+
+
 def _exact(numbers: Sequence[Sequence[str]]) -> Values:
     """Float32 numbers that nine digits tell, in float64, (N, numbers)."""
     return np.array(numbers, np.float32).astype(np.float64)

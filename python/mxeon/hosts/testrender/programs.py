@@ -23,8 +23,14 @@ LINES = 4  # last ones of a program's output in a message
 TITLE = re.compile(r"^oslc -- (Open Shading Language) compiler (\S+)", re.MULTILINE)
 
 
-def find_program(name: str) -> str:
+def find_program(name: str, host: str = "testrender") -> str:
     """Path of a program, named by its variable or on PATH.
+
+    Parameters
+    ----------
+    name : str
+    host : str
+        That needs it, for the message.
 
     Raises
     ------
@@ -36,7 +42,7 @@ def find_program(name: str) -> str:
     path = shutil.which(program)
     if path is None:
         raise NotRun(
-            f"testrender: no program {program!r}; build Open Shading Language, as docs/build_testrender.sh "
+            f"{host}: no program {program!r}; build Open Shading Language, as docs/build_testrender.sh "
             f"does on Debian 12, and name it in {variable}"
         )
     return os.path.abspath(path)
@@ -57,7 +63,10 @@ def version(oslc: str) -> str:
 
 
 def output(
-    command: Sequence[str], folder: Path | None = None, failure: type[MxeonError] = NotRun
+    command: Sequence[str],
+    folder: Path | None = None,
+    failure: type[MxeonError] = NotRun,
+    host: str = "testrender",
 ) -> str:
     """Standard output of a program; its warnings are passed on as `RendererWarning`.
 
@@ -68,6 +77,8 @@ def output(
         Working folder.
     failure : type
         Of the error that is raised with the program's last lines where it fails.
+    host : str
+        That needs it, for the messages.
 
     Raises
     ------
@@ -80,19 +91,17 @@ def output(
             command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT, errors="replace"
         )
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise NotRun(f"testrender: {error}") from None
+        raise NotRun(f"{host}: {error}") from None
     # Raise its failure.
     lines = (process.stdout + process.stderr).strip().splitlines()
     program = Path(command[0]).name
     if process.returncode:
         last = " | ".join(lines[-LINES:])
-        raise failure(
-            f"testrender: {program}: exit status {process.returncode}; last output: {last}"
-        )
+        raise failure(f"{host}: {program}: exit status {process.returncode}; last output: {last}")
     # Raise what it reports and goes on after: it has lost lobes then.
     for line in lines:
         if line.startswith("ERROR") or "Assertion" in line:
-            raise ShaderError(f"testrender: {program}: {line}")
+            raise ShaderError(f"{host}: {program}: {line}")
     # Pass its warnings on.
     for line in dict.fromkeys(lines):
         if line.startswith("WARNING"):
