@@ -9,6 +9,7 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.diffuse import DiffuseLobe
 from mxeon.conformance.nodes.rendered import rendered_kind
 from mxeon.conformance.nodes.subject import Subject
@@ -27,7 +28,9 @@ from mxeon.conformance.samples.batch import (
     random_inputs,
 )
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED
+from mxeon.hosts.base import Host
 from mxeon.hosts.testrender.scenes import LEAST_SINE, perpendicular, visible
+from mxeon.models.nodes.bsdl import BSDL_VARIANTS
 from mxeon.models.table import model
 
 P = TypeVar("P", bound=Probe)
@@ -46,6 +49,11 @@ class RenderedSamples(Probe):
     Both cosines are at least RIM, and no lobe is so sharp that the place of a pixel counts. A roughness is at
     most 1, as OSL's stdosl.h has it, a weight is not negative, and there is no occlusion.
     """
+
+    def __init__(
+        self, host: Host, subject: Subject, library: str, counts: Counts | None = None
+    ) -> None:
+        super().__init__(host, _with_bsdl(subject), library, counts)
 
     @classmethod
     def kind_of(cls, subject: Subject) -> str:
@@ -160,6 +168,14 @@ def apart(wo: Array, wi: Array) -> Array:
     moved = along * wo + FARTHER * across / np.linalg.norm(across, axis=1, keepdims=True)
     moved = moved / np.linalg.norm(moved, axis=1, keepdims=True)  # wo is one up to its roundings
     return np.where(visible(wo, wi)[:, np.newaxis], wi, moved)
+
+
+def _with_bsdl(subject: Subject) -> Subject:
+    """A subject with the functions of BSDL among those that may explain its values."""
+    if not isinstance(subject, BsdfSubject) or subject.row.name not in BSDL_VARIANTS:
+        return subject
+    variants = (*BSDL_VARIANTS[subject.row.name], *subject.row.variants)
+    return replace(subject, row=replace(subject.row, variants=variants))
 
 
 def _is_shown(batch: Batch, rim: float = RIM) -> NDArray[np.bool_]:

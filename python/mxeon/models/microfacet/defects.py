@@ -266,11 +266,6 @@ MICROFACET_DEFECTS = (
         "masking of the anisotropic distribution (Heitz 2014)",
         Lobe(visibility=_anisotropic),
     ),
-    MicrofacetDefect(
-        "bsdl",
-        "BSDL's lobe: compensation with F at the half vector, masking of the anisotropic distribution",
-        Lobe(_compensated_bsdl, _anisotropic),
-    ),
     MicrofacetDefect("alpha_squared", "roughness squared once more", Lobe(alpha=np.square)),
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
@@ -284,4 +279,10 @@ FITTED_DEFECTS = tuple(
     )
     for each in MICROFACET_DEFECTS
     if each.lobe.factor is compensation
+)
+# Of OSL's own renderer, which its closures are compared with alone.
+BSDL = MicrofacetDefect(
+    "bsdl",
+    "BSDL's lobe: compensation with F at the half vector, masking of the anisotropic distribution",
+    Lobe(_compensated_bsdl, _anisotropic),
 )

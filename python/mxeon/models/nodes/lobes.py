@@ -40,7 +40,7 @@ def _tinted(
     return tinted
 
 
-def _untinted(
+def untinted(
     albedo: Callable[[Array, Array], Array],
 ) -> Callable[[Array, Inputs], Array]:
     """Albedo of a lobe of one roughness without its color."""
@@ -50,18 +50,6 @@ def _untinted(
         return np.repeat(white[..., np.newaxis], 3, axis=-1)
 
     return untinted
-
-
-def _by_largest(
-    albedo: Callable[[Array, Inputs], Array],
-) -> Callable[[Array, Inputs], Array]:
-    """An albedo times the largest channel of the color, in every channel."""
-
-    def gray(wo: Array, inputs: Inputs) -> Array:
-        largest = np.max(np.broadcast_to(inputs["color"], wo.shape), axis=-1, keepdims=True)
-        return np.asarray(np.minimum(albedo(wo, inputs) * largest, 1.0))
-
-    return gray
 
 
 def _sheen(
@@ -121,7 +109,7 @@ LOBE_NODES = (
         variants=(
             Variant("Zeltner sheen", _sheen(zeltner_brdf), _tinted(zeltner_albedo_dir)),
             Variant(
-                "its albedo without the color", albedo=_untinted(_bounded(conty_kulla_albedo_dir))
+                "its albedo without the color", albedo=untinted(_bounded(conty_kulla_albedo_dir))
             ),
             Variant(
                 "MaterialX's fit of its albedo", albedo=_colored(materialx_fits.conty_kulla_albedo)
@@ -129,10 +117,6 @@ LOBE_NODES = (
             Variant(
                 "MaterialX's fit of its albedo without the color",
                 albedo=materialx_fits.conty_kulla_albedo,
-            ),
-            Variant(
-                "MaterialX's fit of its albedo, times the largest channel of the color",
-                albedo=_by_largest(materialx_fits.conty_kulla_albedo),
             ),
         ),
     ),
@@ -152,15 +136,7 @@ LOBE_NODES = (
                 _sheen(conty_kulla_brdf),
                 _tinted(_bounded(conty_kulla_albedo_dir)),
             ),
-            Variant("its albedo without the color", albedo=_untinted(zeltner_albedo_dir)),
-            Variant(
-                "its albedo times the largest channel of the color",
-                albedo=_by_largest(_untinted(zeltner_albedo_dir)),
-            ),
-            Variant(
-                "MaterialX's fit of the Conty-Kulla albedo, times the largest channel of the color",
-                albedo=_by_largest(materialx_fits.conty_kulla_albedo),
-            ),
+            Variant("its albedo without the color", albedo=untinted(zeltner_albedo_dir)),
         ),
     ),
 )

@@ -39,7 +39,6 @@ OPEN = (
     "compensation_average",
     "compensation_average_fitted",
 )
-BSDL_INDEX = (1.001, 5.0)  # of a dielectric
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 
 
@@ -95,42 +94,18 @@ def isotropic(inputs: Inputs) -> dict[str, Array]:
     return {**inputs, "roughness": np.repeat(mean, 2, axis=-1)}
 
 
-def _white(inputs: Inputs) -> dict[str, Array]:
+def white(inputs: Inputs) -> dict[str, Array]:
     """Inputs without the tint."""
     return {**inputs, "tint": np.ones(3)}
 
 
-def _undipped(inputs: Inputs) -> dict[str, Array]:
+def undipped(inputs: Inputs) -> dict[str, Array]:
     """Inputs without a dip at 82 degrees."""
     return {**inputs, "color82": np.ones((1, 3))}
 
 
 def _schlick(inputs: Inputs) -> tuple[Array, Array, Array]:
     return inputs["color0"], inputs["color82"], inputs["color90"]
-
-
-def _of_mean_index(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a dielectric whose index has the mean of `color0`, up to 5, in every channel."""
-    root = np.sqrt(np.clip(np.mean(inputs["color0"], axis=-1), 0.0, 0.99))
-    changed = _indexed({**inputs, "ior": (1.0 + root) / (1.0 - root), "tint": np.ones(3)})
-    return DIELECTRIC.albedo(wo, _arithmetic(changed))
-
-
-def _arithmetic(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with the arithmetic mean of the roughness in both directions."""
-    mean = inputs["roughness"].mean(axis=-1, keepdims=True)
-    return {**inputs, "roughness": np.repeat(mean, 2, axis=-1)}
-
-
-def _indexed(inputs: Inputs) -> dict[str, Array]:
-    """Inputs with the index that OSL's BSDL takes for it: from 1.001 to 5."""
-    return {**inputs, "ior": np.clip(inputs["ior"], *BSDL_INDEX)}
-
-
-def _bsdl(category: str, wo: Array, wi: Array, inputs: Inputs) -> Array:
-    """Values of BSDL's lobe."""
-    [defect] = [each for each in MICROFACET_DEFECTS if each.name == "bsdl"]
-    return defect.value(category, wo, wi, inputs)
 
 
 def _has_film(inputs: Inputs) -> bool:
@@ -254,12 +229,7 @@ MICROFACET_NODES = (
             *_variants(DIELECTRIC),
             Variant(
                 "its albedo without the tint",
-                albedo=lambda wo, inputs: DIELECTRIC.albedo(wo, isotropic(_white(inputs))),
-            ),
-            Variant(
-                "BSDL's lobe, of an index from 1.001 to 5",
-                lambda wo, wi, inputs: _bsdl(DIELECTRIC.category, wo, wi, _indexed(inputs)),
-                lambda wo, inputs: DIELECTRIC.albedo(wo, _arithmetic(_indexed(_white(inputs)))),
+                albedo=lambda wo, inputs: DIELECTRIC.albedo(wo, isotropic(white(inputs))),
             ),
         ),
     ),
@@ -291,8 +261,8 @@ MICROFACET_NODES = (
             *_variants(SCHLICK),
             Variant(
                 "color82 counts as 1",
-                lambda wo, wi, inputs: SCHLICK.value(wo, wi, _undipped(inputs)),
-                lambda wo, inputs: SCHLICK.albedo(wo, isotropic(_undipped(inputs))),
+                lambda wo, wi, inputs: SCHLICK.value(wo, wi, undipped(inputs)),
+                lambda wo, inputs: SCHLICK.albedo(wo, isotropic(undipped(inputs))),
             ),
             Variant(
                 "its albedo, averaged over the channels",
@@ -301,14 +271,6 @@ MICROFACET_NODES = (
             Variant(
                 "MaterialX's fit of its albedo, averaged over the channels",
                 albedo=lambda wo, inputs: averaged_channels(SCHLICK.fitted(wo, inputs)),
-            ),
-            Variant(
-                "the albedo of a dielectric of the mean F0, of an index up to 5",
-                albedo=_of_mean_index,
-            ),
-            Variant(
-                "BSDL's lobe, and color82 counts as 1",
-                lambda wo, wi, inputs: _bsdl(SCHLICK.category, wo, wi, _undipped(inputs)),
             ),
         ),
     ),
