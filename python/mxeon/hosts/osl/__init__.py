@@ -80,9 +80,11 @@ class Host(base.Host):
             place = self._engine.place
             block = statements(columns_of(shader, inputs), folder, count, place)
             [view] = statements({"view": Column("vector", wo)}, folder, count, place)
+            # Print its closures at each point.
             shown = with_variables(shader, block, _printed_closure)
             text = VIEW.format(read=view) + shown.replace('"mx_funcs.h"', f'"{header()}"')
             rows = self._printed(folder, text, count)
+        # Read them as this OSL means them.
         found = read_trees([whole_label(each, ROOT) for each in rows])
         if not self._engine.rooted:
             return found
