@@ -91,8 +91,8 @@ def film_figures():
 
 
 def film_white_figures():
-    """Share by which the red of a white metal is too bright under the printed matrix."""
-    return {"white": float(film.white().split()[0]) - 1.0}
+    """Share by which the red of a white metal is too bright under the printed matrix, and digits."""
+    return {"white": float(film.white().split()[0]) - 1.0, "digits": film.agreeing_digits()}
 
 
 def ggx_fit_figures():

@@ -16,6 +16,7 @@ SUBSTRATES = ((2.4, 0.0), (1.5, 0.0), (1.33, 0.0), (2.9, 3.1), (0.2, 3.4))
 INDICES = (1.0, 1.33, 1.6, 2.3)
 THICKNESSES = np.linspace(0.0, 2000.0, 26)
 COSINES = np.linspace(0.05, 1.0, 8)
+DIGITS = 12  # of a reflectance
 
 
 def grid():
@@ -39,6 +40,38 @@ def errors(orders):
     error = np.abs(text_xyz(orders) - film_spectrum_xyz(*grid()))
     metal = np.array(SUBSTRATES)[:, 1] > 0.0
     return error[~metal].max(), error[metal].max()
+
+
+def agreeing_digits(wavelength=550e-9):
+    """Digits in which all orders of the text agree with matrices at one wavelength; DIGITS at most.
+
+    Further ones are those of a machine's sines.
+    """
+    mu, thickness, index, ior, extinction = grid()
+    opd = film.path_difference(mu, thickness, index)
+    airy = 0.0
+    for first, second, phase in film.over_index(mu, index, ior, extinction):
+        passed = 1.0 - first
+        through = passed**2 * second / (1.0 - first * second)
+        wave = np.sqrt(first * second) * np.exp(1j * (2.0 * np.pi * opd / wavelength + phase))
+        orders = 2.0 * (wave / (1.0 - wave)).real
+        airy = airy + 0.5 * (first + through + (through - passed) * orders)
+    error = np.abs(airy - _by_matrices(mu, index, ior + 1j * extinction, opd / wavelength))
+    return min(DIGITS, int(-np.log10(error.max())))
+
+
+def _by_matrices(mu, index, substrate, waves):
+    """Reflectance of a film for unpolarized light, by the matrix of its fields; `waves` of a path and back."""
+    sine2, delta = 1.0 - mu * mu, np.pi * waves
+    indices = (1.0, index, substrate)
+    cosines = [np.sqrt(1.0 - sine2 / n**2 + 0j) for n in indices]
+    total = 0.0
+    for power in (1, -1):  # perpendicular and parallel
+        above, within, below = (n * c**power for n, c in zip(indices, cosines, strict=True))
+        E = np.cos(delta) - 1j * below / within * np.sin(delta)
+        H = below * np.cos(delta) - 1j * within * np.sin(delta)
+        total = total + 0.5 * np.abs((above * E - H) / (above * E + H)) ** 2
+    return total
 
 
 def unclamped(form):
