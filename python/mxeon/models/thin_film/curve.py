@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
@@ -19,7 +21,8 @@ from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet.lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve
 from mxeon.models.thin_film import formulas as film
 
-AVERAGE_NODES = 12  # of Gauss-Legendre in the cosine
+# Gauss-Legendre in the cosine: nodes of the curve, and of the polynomial through it, which is clamped.
+NODES, FINE = 14, 200
 
 
 @dataclass(frozen=True)
@@ -77,18 +80,27 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
         coated = _airy(category, form, mu, thinfilm_thickness, thinfilm_ior, material)
         return np.where(thinfilm_thickness > 0.0, coated, plain)
 
-    # Average it over the cosine, by quadrature.
-    def average(**material: Array) -> Array:
-        x, w = np.polynomial.legendre.leggauss(AVERAGE_NODES)
-        mu = 0.5 * (1.0 + x)
-        nodes = (
-            at(np.asarray(c), **material) * weight for c, weight in zip(mu, w * mu, strict=True)
-        )
-        plain = bare.average(**{k: v for k, v in material.items() if not k.startswith("thinfilm")})
-        total = sum(nodes, np.zeros(1))
-        return np.where(material["thinfilm_thickness"] > 0.0, total, plain)
+    # Average it over the cosine: the clamp has kinks, which a polynomial through the curve has not.
+    def average(*, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array) -> Array:
+        free, film = without_clamp(form), (thinfilm_thickness, thinfilm_ior)
+        cosines, between, shares = _rule()
+        nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
+        curve = np.tensordot(between, np.stack(nodes), 1)
+        total = np.tensordot(shares, np.clip(curve, 0.0, 1.0) if form.clamped else curve, 1)
+        return np.where(thinfilm_thickness > 0.0, total, bare.average(**material))
 
     return Curve(at, average)
+
+
+@cache
+def _rule() -> tuple[Array, Array, Array]:
+    """Cosines of nodes, the matrix from values there to those of a fine rule, and its shares."""
+    x, w = legendre.leggauss(NODES)
+    fine, weight = legendre.leggauss(FINE)
+    degree = np.arange(NODES)
+    moments = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, NODES - 1).T * w
+    between = legendre.legvander(fine, NODES - 1) @ moments
+    return 0.5 * (1.0 + x), between, 0.5 * weight * (1.0 + fine)
 
 
 def without_clamp(form: Form) -> Form:
