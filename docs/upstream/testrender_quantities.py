@@ -7,7 +7,7 @@ from docs.upstream.storm_quantities import table
 from mxeon.conformance.nodes.combinations import node_over
 from mxeon.conformance.nodes.transmission import TRANSMITTING
 from mxeon.conformance.probes.rendered import apart
-from mxeon.hosts.testrender import Host
+from mxeon.hosts.testrender.renderer import Host
 from mxeon.shaders.nodes import SURFACE, document_text, input_text, lobe_text
 
 COSINE, NODES, COLOR = 0.95, 48, (0.2, 0.5, 0.8)

@@ -23,9 +23,10 @@ from mxeon.conformance.results import FAILED, PASSED
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.errors import InputError, NotRun, ShaderError
-from mxeon.hosts import base, testrender
+from mxeon.hosts import base
 from mxeon.hosts.base import RendererWarning
 from mxeon.hosts.testrender import calls, programs, scenes
+from mxeon.hosts.testrender.renderer import Host
 from mxeon.models import eon_brdf
 from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.nodes import document_text, input_text, node_text
@@ -45,7 +46,7 @@ def replay(tmp_path, monkeypatch):
 
 @pytest.fixture
 def host(replay):
-    with testrender.Host() as host:
+    with Host() as host:
         yield host
 
 
@@ -55,7 +56,7 @@ def test_a_missing_program_is_not_run_and_names_the_remedy(replay, monkeypatch, 
     monkeypatch.delenv(variable)
     monkeypatch.setenv("PATH", str(tmp_path / "nothing"))
     with pytest.raises(NotRun, match=f"no program '{name}'; build Open Shading .* in {variable}"):
-        testrender.Host()
+        Host()
 
 
 @pytest.mark.parametrize("line", ("ERROR: lobes are lost", "a.h:7: Assertion 'ok' failed"))
@@ -70,7 +71,7 @@ def test_what_a_program_reports_and_goes_on_after_is_an_error_with_its_words(tmp
 def test_a_program_without_a_version_is_not_run(replay):
     (replay / "oslc").write_text("#!/bin/sh\necho another compiler\n")
     with pytest.raises(NotRun, match="must be OSL's compiler; its help names no version"):
-        testrender.Host()
+        Host()
 
 
 def test_a_program_that_fails_is_not_run_with_its_words(host, replay):
@@ -91,7 +92,7 @@ def test_a_program_may_be_named_from_here(monkeypatch, replay):
     monkeypatch.chdir(replay)
     for name, variable in programs.VARIABLES.items():
         monkeypatch.setenv(variable, f"./{name}")
-    with closing(testrender.Host()) as host, pytest.warns(RendererWarning):
+    with closing(Host()) as host, pytest.warns(RendererWarning):
         assert osl.values(host).shape == (4, 3)
 
 
@@ -251,7 +252,7 @@ def test_a_renderer_that_loses_lobes_fails_with_its_words():
     ports = "".join(input_text(f"{name}_weight", "float", 0.5) for name in names)
     ports += input_text("base_metalness", "float", 0.5)
     text = document_text(node_text("open_pbr_surface", "surfaceshader", "shading", ports))
-    with testrender.Host() as host:
+    with Host() as host:
         [shader] = host.compile(text)
         with pytest.raises(ShaderError, match="Assertion 'ok"):
             host.evaluate(shader, osl.VIEWS, osl.LIGHTS, {}, "direct")

@@ -215,7 +215,7 @@ HOSTS = (
             OwnNode("disney", "burley", others=True),
         ),
     ),
-    Row("testrender", "osl", "mxeon.hosts.testrender", "rendered", surfaces=True),
+    Row("testrender", "osl", "mxeon.hosts.testrender.renderer", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )

@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.hosts.testrender import Host, scenes
+from mxeon.hosts.testrender import scenes
 from mxeon.hosts.testrender.programs import VARIABLES, find_program
+from mxeon.hosts.testrender.renderer import Host
 from mxeon.shaders.generation import generate
 
 FOLDER = Path(__file__).parent

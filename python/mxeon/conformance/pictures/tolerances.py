@@ -108,8 +108,10 @@ def inner_nodes(shader: Shader) -> Iterator[mx.Element]:
 
 def _others(lobes: tuple[ShownLobe, ...]) -> list[Tolerance]:
     """What inputs of lobes add: a film, an index without a fit, and narrow lobes of hair and sheen."""
+    # A film, and an index below 1.
     others = [FILM_ALBEDO] * _any(lobes, "thinfilm_thickness", lambda value: value > 0.0)
     others += [UNFITTED] * _any(lobes, "ior", lambda value: value < 1.0, "dielectric_bsdf")
+    # Narrow hair.
     hairs = [
         np.reshape(lobe.inputs[name], (-1, 2)).min(axis=0)
         for lobe in lobes
@@ -119,6 +121,7 @@ def _others(lobes: tuple[ShownLobe, ...]) -> list[Tolerance]:
     if hairs:
         words = "the roundings of hair's lobes, by the slope of their logarithms"
         others.append(Tolerance(error_of(*np.min(hairs, axis=0)), RELATIVE, absolute, words))
+    # A narrow sheen.
     narrow = [
         np.ravel(lobe.inputs["roughness"]).min()
         for lobe in lobes

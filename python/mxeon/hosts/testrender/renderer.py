@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OSL's own programs: generated OSL compiled by oslc and rendered by testrender.
+
+Each pixel of a picture shows a pair of directions of its own; see `scenes`. testshade evaluates functions.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mxeon.errors import InputError, NotRun, ShaderError
+from mxeon.hosts import base, fragment
+from mxeon.hosts.base import Array, Identity, Inputs
+from mxeon.hosts.osl.points import Column, side, statements
+from mxeon.hosts.osl.texts import columns_of, header, with_variables
+from mxeon.hosts.testrender import calls, scenes
+from mxeon.hosts.testrender.programs import find_program, output, version
+from mxeon.io.images import read_image, write_image
+from mxeon.shaders import functions
+from mxeon.shaders.generation import Shader
+
+PATHS = 1 << 12  # pixels of a picture with a sky, each of SKY_SAMPLES^2 paths
+HELPERS = {
+    "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",
+    "mxeon_light": "shader mxeon_light() { Ci = emission(); }",
+    "mxeon_sky": "shader mxeon_sky() { Ci = background(); }",
+}
+DIRECT, TRANSMITTED, EMITTED = "direct", "transmission", "emission"  # branches of `evaluate`
+BASE = "    {output} = layer({output}, uniform_edf(color(1)));\n"  # what shines through a layer
+
+
+class Host(base.Host):
+    """oslc, testrender and testshade, on PATH or named by variables; see `programs.VARIABLES`.
+
+    Raises
+    ------
+    NotRun
+        If one of them is missing, or oslc does not start.
+    """
+
+    name = "testrender"
+    target = "osl"
+    language = "osl"
+
+    def __init__(self) -> None:
+        self._oslc, self._testrender = map(find_program, ("oslc", "testrender"))
+        self._version = version(self._oslc)
+        self._temporary = TemporaryDirectory(prefix="mxeon-testrender-")
+        self._folder = Path(self._temporary.name)
+        self._compiled: dict[str, str] = {}
+
+    def identity(self) -> Identity:
+        """Version of oslc; the device is the CPU."""
+        return Identity(self.name, self._version, "CPU")
+
+    def evaluate(
+        self,
+        shader: Shader,
+        wo: Array,
+        wi: Array,
+        inputs: Inputs,
+        branch: str,
+        *,
+        output: str = "response",
+        irradiance: Array | None = None,
+    ) -> Array:
+        """Values that testrender gives to the closures of a shader; see `mxeon.hosts.base.Host`.
+
+        The throughput is what is seen of a white emission below. The environment is sampled, so that it
+        has noise; what comes through the surface is part of it.
+
+        Raises
+        ------
+        Unsupported
+            If the environment is not uniform, or is asked for its light from below alone.
+        ValueError
+            If a pair in the light of a point is not `scenes.visible`.
+        """
+        # Values in the light of a point.
+        through = output == "throughput"
+        if irradiance is not None or (branch == TRANSMITTED and not through):
+            raise self._unsupported("uneven environment, and none below alone", "gl")
+        if branch == DIRECT and output == "response":
+            pixels, scene = self._pixels(shader, wo, wi, inputs, "", True)
+            return np.asarray(pixels / scene.irradiance[:, np.newaxis])
+        # What does not depend on the light: each view has one across it, too small to add to an emission.
+        # A sky is shown by several pixels of each view.
+        sky = not through and branch != EMITTED
+        repeats = max(1, PATHS // len(wo)) if sky else 1
+        rows = np.repeat(np.arange(len(wo)), repeats)
+        spread = {
+            name: np.asarray(each)[rows] if np.shape(each)[:1] == (len(wo),) else each
+            for name, each in inputs.items()
+        }
+        last = BASE if through else ""
+        pixels, _ = self._pixels(
+            shader, wo[rows], scenes.perpendicular(wo)[rows], spread, last, not sky
+        )
+        return np.asarray(pixels.reshape(len(wo), repeats, 3).mean(axis=1))
+
+    def _pixels(
+        self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, lit: bool
+    ) -> tuple[NDArray[np.float64], scenes.PairScene]:
+        """Radiance of pairs, (N, 3), with their scene."""
+        # Turn what has a direction into the frame of the scene.
+        wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
+        if not scenes.visible(wo, wi).all():
+            raise InputError(
+                f"testrender: the sine of each pair must be at least {scenes.LEAST_SINE}"
+            )
+        scene = scenes.pair_scene(wo, wi, side(len(wo)))
+        columns = {
+            name: Column(each.kind, scene.turned(each.rows) if each.directed else each.values)
+            for name, each in columns_of(shader, inputs).items()
+        }
+        # Compile the shaders, and write the scene.
+        block = statements(columns, self._folder, len(wo), scenes.PLACE)
+        text = with_variables(shader, block, lambda output: last.format(output=output))
+        for name, each in {shader.name: text, **HELPERS}.items():
+            self._compile(name, each)
+        for name, each in scene.files(shader.name, lit).items():
+            (self._folder / name).write_text(each, encoding="utf-8")
+        # Render it; a worker has one core.
+        samples = scenes.LIGHT_SAMPLES if lit else scenes.SKY_SAMPLES
+        options = ["-t", "1", "-aa", str(samples), "--res", str(scene.size), str(scene.size)]
+        pixels = self._image([self._testrender, *options, scenes.SCENE])
+        return pixels[..., :3].reshape(-1, 3)[: len(wo)], scene
+
+    def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
+        """Values of an OSL function; see `mxeon.hosts.base.Host`."""
+        # Compile a shader that calls the function.
+        parameters = functions.parameters(source, function)
+        kinds = {name: kind for kind, name in parameters}
+        self._compile(calls.SHADER, calls.text(source, function, parameters))
+        # Write the arguments as textures.
+        values = {name: (kinds[name], value) for name, value in zip(kinds, arguments, strict=True)}
+        columns = fragment.columns(values)
+        count, (width, height) = fragment.frame(columns)
+        for name, rows in columns.items():
+            image = fragment.texels(rows, (width, height))
+            write_image(self._folder / calls.texture(name), image, {})
+        # Run it for each pixel.
+        size = ["-t", "1", "--res", str(width), str(height)]
+        pixels = self._image([find_program("testshade"), *size, *calls.OPTIONS])
+        return pixels.reshape(-1, 3)[:count]
+
+    def close(self) -> None:
+        """Remove the host's files."""
+        self._temporary.cleanup()
+
+    def _compile(self, name: str, text: str) -> None:
+        """Compile a shader, unless its text is that of the last one of its name."""
+        if self._compiled.get(name) == text:
+            return
+        (self._folder / f"{name}.osl").write_text(text, encoding="utf-8")
+        include = f"-I{Path(header()).parent}"
+        output([self._oslc, "-q", include, f"{name}.osl"], self._folder, ShaderError)
+        self._compiled[name] = text
+
+    def _image(self, command: list[str]) -> NDArray[np.float64]:
+        """Pixels that a program writes; TIFF, since its EXR files have half floats."""
+        picture = self._folder / "picture.tif"
+        picture.unlink(missing_ok=True)
+        output([*command, picture.name], self._folder)
+        try:
+            return read_image(picture).astype(np.float64)
+        except ValueError as error:
+            raise NotRun(f"testrender: {error}") from None
