@@ -31,7 +31,8 @@ from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, SHADER_FUNCTIONS
 from mxeon.conformance.run import check, judge, plan
 from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
-from mxeon.conformance.samples.uneven_environment import sky
+from mxeon.conformance.samples.edge_cases import turned_frames
+from mxeon.conformance.samples.uneven_environment import ROWS, sky
 from mxeon.conformance.text import check_texts
 from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
@@ -374,3 +375,13 @@ def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path, monkeypatch
         with pytest.raises(ValueError, match=r"^(workers|timeout|scheduler) must be "):
             check(EXAMPLES[:1], ["msl"], folder=tmp_path, **wrong)
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+
+def test_turned_normals_point_to_middles_of_texels_which_every_filter_reads_alike():
+    frames = turned_frames(np.random.default_rng(0), 512)
+    assert np.allclose(frames @ frames.swapaxes(1, 2), np.eye(3), atol=1e-14)
+    assert np.allclose(np.linalg.det(frames), 1.0, atol=1e-14)
+    for x, y, z in (frames[:, :, 2].T, -frames[:, :, 2].T):
+        # Rows and columns of MaterialX's latitude-longitude map, from 0.
+        row, column = ROWS * np.arccos(y) / np.pi, ROWS * np.arctan2(x, -z) / np.pi
+        assert np.allclose(row % 1.0, 0.5, atol=1e-9) and np.allclose(column % 1.0, 0.5, atol=1e-9)

@@ -9,12 +9,14 @@ import pytest
 from fits import thin_film as fit
 from fits import thin_film_sets as sets
 from mxeon.conformance.accuracy import thin_films as tolerances
+from mxeon.conformance.accuracy.bsdf import FRESNEL_FIT
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.thin_films import CHECKS
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.probes.thin_films import FilmProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
+from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import document_text, input_text, node_text
 from mxeon.shaders.scene import SIDE
@@ -180,6 +182,27 @@ def test_the_shader_is_as_near_as_its_tolerances_say(monkeypatch):
     errors |= fit.errors([name for name in STATED if name != "orders"])
     for name, most in STATED.items():
         assert 0.2 * most < max(errors[name].values()) <= most
+
+
+def test_five_cosines_average_a_curve_without_a_film_as_exactly_as_its_tolerance_says():
+    cosines, weights = fit.gauss(5)
+
+    def error(curve, average):
+        nodes = (
+            weight * curve(np.asarray(mu)) for mu, weight in zip(cosines, weights, strict=True)
+        )
+        return np.abs(sum(nodes) - average).max()
+
+    ior = np.geomspace(1.0001, 10.0, 2000)
+    metal = np.meshgrid(np.linspace(0.05, 5.0, 50), np.linspace(0.5, 10.0, 50))
+    power = np.linspace(1.0, 8.0, 500)
+    errors = (
+        error(lambda mu: fresnel.dielectric(mu, ior), fresnel.dielectric_avg(ior)) + 5.3e-5,
+        error(lambda mu: fresnel.conductor(mu, *metal), fresnel.conductor_avg(*metal))
+        + FRESNEL_FIT,
+        error(lambda mu: (1.0 - mu) ** power, 2.0 / ((power + 1.0) * (power + 2.0))),
+    )
+    assert 0.9 * tolerances.BARE_AVERAGE < max(errors) <= tolerances.BARE_AVERAGE
 
 
 @pytest.mark.parametrize("name", SETS)

@@ -2,7 +2,7 @@
 """How exact each kind of probe is: one row for each, with a tolerance for each quantity."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from mxeon.conformance.accuracy import (
@@ -172,7 +172,10 @@ LIT: dict[str, Accuracy] = {
     CLOSED: _lobe(CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
     SUBSURFACE: _lobe(CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
     SHEEN: _lobe(SHEEN, bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
-    FITTED: _lobe(FITTED, bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO, bsdf.FLAT_FRAME),
+    FITTED: replace(
+        _lobe(FITTED, bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO, bsdf.FLAT_FRAME),
+        reciprocity=bsdf.EXCHANGED,
+    ),
     MICROFACET: _lobe(
         MICROFACET,
         bsdf.MICROFACET_VALUE,

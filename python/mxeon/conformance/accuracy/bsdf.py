@@ -56,6 +56,13 @@ CONTY_KULLA_VALUE = Tolerance(
     "32 roundings of float32, 2^-24 each, and four in the logarithm of a sine, which enter times half "
     "the inverse of the roughness, at least 0.01; rounded up",
 )
+EXCHANGED = Tolerance(
+    rounded_up(32 * ROUNDING),
+    SCALED,
+    scaled,
+    "32 roundings of float32, 2^-24 each: the half vector has the same digits, and so has its power; rounded "
+    "up",
+)
 # Error of a compensation in an albedo, of which E_ss is a factor.
 COMPENSATION_ALBEDO = ESS_FIT / LEAST_ESS + FRESNEL_FIT * (1.0 - LEAST_ESS)
 ROUGH_SUM = 5e-4  # error of a sum over 1024 directions for alpha from 0.3 on: measured as `sum_of`
@@ -149,11 +156,11 @@ FLAT_FRAME = Tolerance(
     "five roundings in each of three cosines, 2^-24 each, over the least, 1/4; rounded up",
 )
 MICROFACET_FRAME = Tolerance(
-    rounded_up(4 * 5 * ROUNDING / (TURNED[0] * LEAST_TURNED)),
+    rounded_up(2 * 2 * 5 * ROUNDING / (2 * TURNED[0] * LEAST_TURNED)),
     SCALED,
     scaled,
-    "five roundings of a half vector, 2^-24 each, over the least cosine, 1/4, and the least alpha, "
-    "0.1, times the fourth power of the distribution; rounded up",
+    "five roundings of each of two directions in a frame, 2^-24 each, over twice the least cosine, 1/4, and "
+    "the least alpha, 0.1, times 2, the largest slope of the distribution as in `anisotropy`; rounded up",
 )
 SHAPE = Tolerance(
     rounded_up(2 * 64 * ROUNDING),
@@ -169,11 +176,12 @@ RETROREFLECTION = Tolerance(
     "one function of the same numbers but for signs: the 41 roundings of a value",
 )
 ANISOTROPY = Tolerance(
-    rounded_up(4 * 2 * ROUNDING / (LEAST_COSINE * LEAST_ALPHA)),
+    rounded_up(2 * 2 * 2 * ROUNDING / (2 * LEAST_COSINE * LEAST_ALPHA)),
     SCALED,
     scaled,
-    "two roundings of a turned direction, 2^-24 each, over the least cosine, 0.1, and the least "
-    "alpha, 0.05, times the fourth power of the distribution; rounded up",
+    "two roundings of each of two turned directions, 2^-24 each, over twice the least cosine, 0.1, and the "
+    "least alpha, 0.05, times 2: q^-4 of q^2 = h_z^2 + (h_x / alpha_x)^2 + (h_y / alpha_y)^2 has no larger "
+    "slope; rounded up",
 )
 
 RINGS = Tolerance(

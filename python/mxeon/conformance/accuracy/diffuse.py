@@ -14,6 +14,8 @@ from mxeon.conformance.samples.uneven_environment import ROWS, SLOPE
 from mxeon.shaders.facets import NARROWEST
 
 HALF_ROUNDING = 2.0**-11  # of float16
+ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, of which others have a tenth
+FILTER_STEP = 2.0**-8  # of a texel: engines keep the weights of filters in eight bits
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
 HALF_CUT = 2.0**-10  # relative error of float16 where digits are cut off, as llvmpipe does
 PLANE_PIXELS = 128**2  # of a picture of testrender
@@ -106,11 +108,11 @@ FRAME = Tolerance(
     "times 4 by s / t, times 3 by a sine, and times 2 by s and the cosine itself; rounded up",
 )
 SURROUNDINGS = Tolerance(
-    SLOPE * math.sqrt(2.0) * math.pi / ROWS + HALF_ROUNDING,
+    rounded_up(SLOPE * (math.sqrt(2.0) * math.pi / ROWS * FILTER_STEP + ARC_SINE) + HALF_ROUNDING),
     "irradiance",
     absolute,
-    "a texel of the map, pi / 128 high and wide, whatever filter reads it, times the largest slope, "
-    "1/2; and half floats, 2^-11",
+    "half floats, 2^-11, of numbers up to 1; and the slope of the map, 1/2, times 2^-8 of a texel, pi / 128 "
+    "high and wide, whose middle is read, and times an engine's error of an arc sine, 4e-4; rounded up",
 )
 CONDITIONED = "over 1, the value, and its change with each argument"
 PART = Tolerance(

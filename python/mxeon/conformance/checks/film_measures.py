@@ -11,6 +11,7 @@ from mxeon.conformance.checks.controls import Altered, mistake
 from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, diagnose_albedo
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.bsdf import LEAST_INDEX
+from mxeon.conformance.probes.cases import WHITE
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case
@@ -30,15 +31,18 @@ RARE = 0.5  # index of a film that MaterialX counts as vacuum
 def film_limit(probe: Probe) -> Iterable[Case]:
     """Values under a film of index 1, and under one of THIN_LIMIT, against those without.
 
-    A film of an index below that of vacuum counts as one of index 1, whatever that one does.
+    A film of an index below that of vacuum counts as one of index 1, whatever that one does. Under a thin
+    one the sensitivities count, of five digits, whose sum is not 1: as much as in the equations is right.
     """
     batch = _compared(probe)
-    bare = probe.direct(batch.altered(thinfilm_thickness=0.0))
+    without = batch.altered(thinfilm_thickness=0.0)
+    bare = probe.direct(without)
     empty, rare = (probe.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, RARE))
     cases = [Case(batch, empty, bare), Case(batch, rare, empty)]
     if "color0" not in batch.inputs:  # whose curve is taken at another angle under a film
         thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
-        cases.append(Case(batch, probe.direct(thin), bare))
+        sensed = probe.expected(thin) - probe.expected(without)
+        cases.append(Case(batch, probe.direct(thin), bare + sensed))
     return cases
 
 
@@ -233,9 +237,14 @@ def film_energy(probe: Probe) -> Iterable[Case]:
 
 
 def _compared(probe: Probe) -> Batch:
-    """Random pairs with a film, whose substrate float32 can tell from vacuum."""
+    """Random pairs with a film, whose substrate float32 can tell from vacuum.
+
+    Schlick's curve has no dip at 82 degrees: where that is negative, a film's counts as 0.
+    """
     batch: Batch = probe.few[0]
     changes: dict[str, ArrayLike] = {"thinfilm_thickness": 300.0}
     if "tint" in batch.inputs:
         changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
+    if "color82" in batch.inputs:
+        changes["color82"] = WHITE
     return batch.altered(**changes)

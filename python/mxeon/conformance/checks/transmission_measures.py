@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of light through microfacets: its share, its place, and what it leaves alone."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from mxeon.conformance.nodes.transmission import TransmissionSubject
 from mxeon.conformance.probes.probe import Probe, subject_of
-from mxeon.conformance.samples.batch import Array, Batch
-from mxeon.conformance.samples.measurement import (
-    Case,
-)
-from mxeon.conformance.samples.uneven_environment import sky, sky_map
+from mxeon.conformance.samples.batch import Array, Batch, rounded
+from mxeon.conformance.samples.edge_cases import aimed
+from mxeon.conformance.samples.measurement import Case
+from mxeon.conformance.samples.uneven_environment import sky, sky_map, texel_middles
 from mxeon.models.microfacet.ggx import smith_g1
 from mxeon.models.transmission.refraction import refraction_direction
 
@@ -114,13 +114,20 @@ def critical(probe: Probe) -> Iterable[Case]:
 
 def refraction_case(probe: Probe) -> Case:
     """An uneven environment through smooth surfaces, over a uniform one, against its place."""
-    batch = _smooth(probe)
+    batch, place = _looking(_smooth(probe), subject_of(probe, TransmissionSubject).functions.ior)
     level = probe.transmitted(batch)
     bright = level.min(axis=1) > LEAST_PASSED
-    batch, level = batch.where(bright), level[bright]
-    index = subject_of(probe, TransmissionSubject).functions.ior(batch.inputs)
-    measured = probe.transmitted(batch, sky_map()) / level
-    return Case(batch, measured, sky(through_sphere(batch.wo, index)))
+    measured = probe.transmitted(batch, sky_map()) / np.where(bright[:, np.newaxis], level, 1.0)
+    return Case(batch.where(bright), measured[bright], sky(place[bright]))
+
+
+def _looking(batch: Batch, ior: Callable[[Mapping[str, Array]], Array]) -> tuple[Batch, Array]:
+    """Views in frames from which a sphere refracts them to middles of texels of the sky, and these."""
+    out = through_sphere(batch.wo, ior(batch.inputs))
+    place = texel_middles(out)
+    frames = aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, place)
+    axes = {"tangent": rounded(frames[:, :, 0].T), "normal": rounded(frames[:, :, 2].T)}
+    return replace(batch.altered(**axes), frame=frames), place
 
 
 def through_sphere(wo: Array, index: Array) -> Array:

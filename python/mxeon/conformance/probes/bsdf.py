@@ -23,6 +23,7 @@ from mxeon.models.sampling.visible_normals import ggx_pdf, ggx_sample
 FIT_COSINE = 1e-4  # least cosine of the domain of the fits
 LEAST_STRETCHED = 0.05  # alpha and cosine of anisotropic albedos: a sum over directions is coarse
 LEAST_VIEW = 0.02  # cosine of their views
+LEAST_INVERTED = 0.1  # index of a dielectric of which the inverse is taken
 LEAST_INDEX = 1.05  # above 1, to which shaders fit their averages: fits/ggx_cosine.py
 
 
@@ -153,9 +154,16 @@ class MicrofacetProbe(BsdfProbe):
 
     @cached_property
     def turned(self) -> Batch:
-        """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain."""
+        """Pairs in frames of their own, none with a sharp lobe, whose place would be uncertain.
+
+        Dielectrics are denser than air: at a critical angle their curve has an infinite slope.
+        """
         batch = super().turned
-        return batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_TURNED))
+        changes = {"roughness": np.maximum(batch.inputs["roughness"], LEAST_TURNED)}
+        if "tint" in batch.inputs:
+            index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
+            changes["ior"] = np.maximum(index, 1.0 / index)
+        return batch.altered(**changes)
 
     @cached_property
     def mirrored(self) -> tuple[Batch, Batch]:

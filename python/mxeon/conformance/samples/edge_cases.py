@@ -14,6 +14,7 @@ from mxeon.conformance.samples.batch import (
     rounded,
     rounded_roughness,
 )
+from mxeon.conformance.samples.uneven_environment import texel_middles
 from mxeon.models.table import Model
 
 EACH = 256  # pairs of each kind
@@ -21,11 +22,11 @@ GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines
 AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
 ABOVE_ONE = 1.0 + 2.0**-23  # a cosine of unit vectors, by a rounding of float32
 HORIZON = 0.1  # least cosine of the other direction where one is at the horizon or below it
+POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
 TURNED = (0.25, 0.95)  # cosines in turned frames, where a cosine has roundings
 LEAST_SHEEN = 0.01  # roughness of the other lobes, which the Zeltner sheen has at least
 LEAST_COLOR82 = 0.5  # of a lobe whose albedo is asked; see docs/loading.md
 LEAST_TURNED = 0.1  # roughness of microfacets in turned frames
-POLE = 0.99  # largest height of a normal in turned frames: a map of the sky ends at the poles
 TINY = (0.0, 1e-6, 1e-3, 1.0)  # of a color channel
 SMOOTH = (0.0, 1e-6, 1e-3, 1.0)  # roughness, in units of the largest
 WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)
@@ -79,9 +80,27 @@ def outside_directions(rng: np.random.Generator) -> tuple[Array, Array]:
 
 
 def turned_frames(rng: np.random.Generator, count: int) -> Array:
-    """Axes of at most so many random frames, as columns; no normal points to a pole of the sky."""
+    """Axes of at most so many random frames, as columns.
+
+    Each normal points to the middle of a texel of the sky, and none to a pole.
+    """
     axes, _ = np.linalg.qr(rng.standard_normal((count, 3, 3)))
-    return np.asarray(axes[np.abs(axes[:, 1, 2]) <= POLE])
+    axes = axes[np.abs(axes[:, 1, 2]) <= POLE]
+    return aimed(axes, axes[:, :, 2], texel_middles(axes[:, :, 2]))
+
+
+def aimed(axes: Array, of: Array, to: Array) -> Array:
+    """Frames (N, 3, 3), turned the shortest way that takes unit vectors `of` to others `to`, (N, 3).
+
+    That is half a turn about the middle of both, and half a turn about the second.
+    """
+    for vectors in (of + to, to):
+        about = vectors[:, :, np.newaxis]
+        along = np.sum(about * axes, axis=1, keepdims=True) / np.sum(
+            about**2, axis=1, keepdims=True
+        )
+        axes = 2.0 * along * about - axes
+    return axes
 
 
 def turned_directions(rng: np.random.Generator, count: int) -> Array:

@@ -29,3 +29,16 @@ def sky_map() -> NDArray[np.float32]:
     """The irradiance over pi as a latitude-longitude map, (ROWS, 2 ROWS, 3)."""
     directions, _ = latlong_directions(ROWS, 2 * ROWS)
     return sky(directions @ TURN[:3, :3]).reshape(ROWS, 2 * ROWS, 3).astype(np.float32)
+
+
+def texel_middles(near: Array) -> Array:
+    """The directions to the middles of texels of the map next to unit vectors, both (N, 3).
+
+    There every filter reads one texel. So is the opposite direction such a middle.
+    """
+    polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
+    azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5
+    row = np.minimum((ROWS * polar).astype(int), ROWS - 1)
+    column = (2 * ROWS * azimuth).astype(int) % (2 * ROWS)
+    middles, _ = latlong_directions(ROWS, 2 * ROWS)
+    return np.asarray(middles[2 * ROWS * row + column])
