@@ -115,6 +115,19 @@ def test_a_color_in_srgb_becomes_linear():
     assert np.allclose(center(text), color(linear, 0.02 / 12.92, 1.0), rtol=1e-6)
 
 
+def test_a_document_without_a_color_space_has_no_color_management():
+    node = f"""<{EON} name="lobe" type="BSDF"><input name="color" type="color3"
+      value="0.5, 0.02, 1.0" colorspace="srgb_texture"/></{EON}>"""
+    assert np.allclose(center(material(node)), color(0.5, 0.02, 1.0), rtol=1e-6)
+
+
+def test_a_length_is_in_meters():
+    node = f'<{EON} name="lobe" type="BSDF"><input name="weight" type="float" {{}}/></{EON}>'
+    length = 'value="0.0005" unittype="distance" unit="kilometer"'
+    images = [center(material(node.format(words))) for words in (length, 'value="0.5"')]
+    assert np.allclose(*images, rtol=1e-6)
+
+
 @pytest.mark.parametrize("compensation, brdf", [(0.0, qon_brdf), (1.0, eon_brdf)])
 def test_lama_diffuse_mixes_the_two_models_at_half_its_squared_roughness(compensation, brdf):
     node = f"""<LamaDiffuse name="lobe" type="BSDF">

@@ -51,6 +51,7 @@ UNCONNECTED: dict[str, Value] = {
     "VDF": None,
 }
 NUMBERS = ("float", "boolean", "integer")
+DISTANCE = "distance"  # type of units
 # A surface with its opacity and what it emits, or its lobes alone.
 SURFACES: dict[bool, Operation] = {
     True: (("bsdf", "edf", "opacity"), lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity),
@@ -355,9 +356,19 @@ class Graph:
         if port.getType() in UNCONNECTED:
             return UNCONNECTED[port.getType()]
         constant = plain(value)
-        if port.getType() == "color3" and isinstance(constant, np.ndarray):
-            return self._linear(port, constant)
+        if isinstance(constant, np.ndarray):
+            if port.getType() == "color3":
+                return self._linear(port, constant)
+            if port.hasUnit():
+                return constant * self._meters(port)
         return constant
+
+    def _meters(self, port: mx.Input) -> float:
+        """Factor from the unit of an input, a length, to that of shaders, which is a meter."""
+        library = self._document.getDataLibrary() or self._document
+        definition = library.getUnitTypeDef(DISTANCE)
+        scales = mx.LinearUnitConverter.create(definition).getUnitScale() if definition else {}
+        return float(scales.get(port.getUnit(), 1.0))
 
     def _port(self, path: Path, name: str) -> mx.Input:
         """Input of a node, or else of its nodedef."""
@@ -384,7 +395,9 @@ class Graph:
     def _linear(self, element: mx.Element, value: Values) -> Values:
         """Color in the document's linear space, as the generators' color management has it."""
         space = element.getActiveColorSpace()
-        if space in ("", "none", self._document.getColorSpace() or "lin_rec709"):
+        if not self._document.getColorSpace():  # no color management
+            return value
+        if space in ("", "none", self._document.getColorSpace()):
             return value
         if space != "srgb_texture":
             raise NotRun(f"reference: there is no transform for color space {space!r}")

@@ -41,6 +41,8 @@ def lookup(
     file = node.getInput("file")
     if not file or not file.getValueString():
         raise NotRun("reference: an image must name its file itself")
+    if file.hasUnit():
+        raise NotRun("reference: an image must hold no lengths")
     # Read as many channels as the type has, in a color space that has a transform.
     channels = CHANNELS.get(node.getType(), 0)
     values = _texels(file.getValueString(), texcoord.tobytes())
