@@ -11,7 +11,6 @@ ever smaller steps.
 import numpy as np
 
 from mxeon.conformance.probes.thin_films import LEAST_OIL, SHARP
-from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import SUBSTRATES, TEXT, film_curve
 from mxeon.models.thin_film.lobe import film_albedo_dir
@@ -27,12 +26,18 @@ FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "in
 CLEAR = {**SHARP, "index": (LEAST_OIL, 2.5)}
 STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
 # Of the shader, chosen by `thin_film_nodes.py`: the width of five cosines; two cosines, their weights and
-# their width; how far skewness bends four nodes, and the part of the deviation that each has around it.
-# The deviation of facets that one node stands for.
+# their width; for visible facets, polynomials of the mean of their cosines, of the reach of four nodes
+# around it and of their bend; the width of each of four nodes, and of one alone, as parts of the reach.
 WIDTH = 0.07
 PAIR = ((0.294, 0.785), (0.275, 0.725), 0.165)
-BEND, SHARE = 0.39, 0.29
-ALIKE = 0.04
+STEEP = 0.2
+FACETS = (
+    (3.0211, -0.024078, -5.4469, 2.4636, 0.016408, 2.3342, -2.7778, -7.803, 8.2627, 0.041009),
+    (-0.20527, 4.4118, -5.1988, 0.92353, 3.6844, -7.7366, 3.6534, -2.2933, 3.1415, -0.33986),
+    (0.63084, -1.2769, 1.0363, -0.70252, 0.49459, 0.18617, -1.2792, -1.6739, 2.466, -0.3033),
+)  # fmt: skip
+SHARE, ALONE = 0.22, 0.6
+ALIKE = 0.05  # reach below which one node serves
 WHITE = {"color82": 1.0, "color90": 1.0}
 
 
@@ -200,11 +205,11 @@ def visible_average(category, material, alpha, mu):
     return (film / mirror).T
 
 
-def visible_mean(category, material, alpha, mu, bend=BEND, share=SHARE, count=4):
-    """The same in the shader's cosines, or in another number of them."""
+def visible_mean(category, material, alpha, mu, rule=None, count=4):
+    """The same in the shader's cosines, or by other coefficients, or in another number of cosines."""
     return sum(
         weight * shader_curve(category, material, cosine, width)
-        for cosine, weight, width in _nodes(mu, alpha, bend, share, count)
+        for cosine, weight, width in _nodes(mu, alpha, rule or (FACETS, SHARE, ALONE), count)
     )
 
 
@@ -215,49 +220,29 @@ MIRRORS = {
 }
 
 
-def _nodes(mu, alpha, bend, share, count):
+def _nodes(mu, alpha, rule, count):
     """Cosines that stand for the visible facets, their weights and widths."""
-    # Moments of the facets.
-    cosines, weights = (np.array(each) for each in zip(*_facets(mu, alpha), strict=True))
-    weights /= weights.sum(axis=0)
-    mean = (weights * cosines).sum(axis=0)
-    central = cosines - mean
-    deviation = np.sqrt(np.maximum((weights * central**2).sum(axis=0), 1e-12))
-    skewness = (weights * central**3).sum(axis=0) / deviation**3
-
-    # Nodes of an even spread, bent; one where the facets are alike.
-    b = np.clip(bend * skewness, -0.8, 0.8)
-    alike = deviation < ALIKE
+    coefficients, share, alone = rule
+    mean, reach, bend = facets(mu, alpha, coefficients)
+    alike = reach < ALIKE
     x, w = np.polynomial.legendre.leggauss(count)
-    for t, weight in zip(np.sqrt(3.0) * x, 0.5 * w, strict=True):
-        bent = np.sqrt(1.0 - 0.8 * b * b) * t + b * (t * t - 1.0)
-        offset = np.where(alike, 0.0, np.sqrt(1.0 - share**2) * deviation * bent)
-        yield np.clip(mean + offset, 0.0, 1.0), weight, np.where(alike, 1.0, share) * deviation
+    for node, weight in zip(x, 0.5 * w, strict=True):
+        offset = np.where(alike, 0.0, reach * (node + bend * (3.0 * node * node - 1.0)))
+        yield np.clip(mean + offset, 0.0, 1.0), weight, np.where(alike, alone, share) * reach
 
 
-def _facets(mu, alpha):
-    """Cosines of 16 visible facets with their view, and their weights.
+def facets(mu, alpha, coefficients):
+    """Mean of the cosines of visible facets with their view, the reach of nodes around it, and their bend."""
+    factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
+    polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
+    mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))
+    return mu + mean, reach, bend
 
-    Lower ones than the lowest mirror no light along the normal.
-    """
-    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
-    x, w = np.polynomial.legendre.leggauss(4)
-    stretched = wo * np.stack([alpha, alpha, np.ones_like(alpha)], axis=-1)
-    stretched /= np.linalg.norm(stretched, axis=1, keepdims=True)
-    lowest = 2.0 * alpha**2 * stretched[:, 2] / (1.0 + alpha**2)
-    for u, height in zip(0.5 * (1.0 + x), w, strict=True):
-        for azimuth in np.pi * (np.arange(4) + 0.5) / 4.0:
-            v = stretched[:, 2]
-            z = (1.0 - u) * lowest + u * (1.0 + v) - v
-            radius = np.sqrt(np.clip(1.0 - z * z, 0.0, 1.0))
-            columns = [radius * np.cos(azimuth), radius * np.sin(azimuth), z]
-            H = np.stack(columns, axis=-1) + stretched
-            H *= np.stack([alpha, alpha, np.ones_like(alpha)], axis=-1)
-            H /= np.linalg.norm(H, axis=1, keepdims=True)
-            c = (wo * H).sum(axis=1)
-            mu_i = np.maximum(2.0 * c * H[:, 2] - wo[:, 2], 0.0)
-            smith = smith_lambda(wo[:, 2], alpha) * mu_i + smith_lambda(mu_i, alpha) * wo[:, 2]
-            yield c, height * 2.0 * mu_i * wo[:, 2] / smith
+
+def monomials(mu, alpha):
+    """Those of third degree in the cosine of the view and in alpha / (alpha + 1/5)."""
+    y = alpha / (alpha + STEEP)
+    return np.stack([mu**i * y**j for i in range(4) for j in range(4 - i)])
 
 
 # What is measured, by name: errors, and the ranges of films.

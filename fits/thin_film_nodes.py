@@ -13,18 +13,24 @@ from collections.abc import Callable
 import numpy as np
 
 from fits import thin_film as fit
+from mxeon.models.microfacet.ggx_formulas import smith_lambda
 from mxeon.models.thin_film.curve import film_curve
 
 SEED, COUNT = 24, 1 << 8  # of the films
+FACETS = 384  # films that coefficients for visible facets are fitted to
+GRID = 16  # views and roughness along a side, at which coefficients are tied to moments of facets
+TIE = 2e-2  # by which they are, relative to an error of a film
+BEND = 0.39  # of nodes, for a skewness of 1: Gauss's four for an even spread, a t + b (t^2 - 1), bent by b
+NEWTON, NEAR = 2, 1e-5  # steps, and the difference that measures a slope
 STEPS = (0.1, 0.03, 0.01)  # the last one is the digit that ships
 FINER = (*STEPS, 3e-3, 1e-3)  # of two cosines
 
 
-def random_films():
+def random_films(count=COUNT):
     """Categories, materials, roughness and views."""
     rng = np.random.default_rng(SEED)
     for category in fit.MIRRORS:
-        unit = rng.random((fit.NUMBERS, COUNT))
+        unit = rng.random((fit.NUMBERS, count))
         yield category, *fit.filmed(category, fit.FILMS, unit)
 
 
@@ -78,14 +84,99 @@ def pair():
     return chosen(error, (0.3, 0.8, 0.3, 0.1), FINER)
 
 
-def bend_and_share():
-    """How far skewness bends four nodes, and the part of the deviation that each has around it."""
-    films = [(film, fit.visible_average(*film)) for film in random_films()]
-    return chosen(
-        lambda *both: _power(fit.visible_mean(*film, *both) - exact for film, exact in films),
-        (0.3, 0.3),
-        STEPS,
-    )
+def facets(share=fit.SHARE, alone=fit.ALONE):
+    """Coefficients for visible facets, by Gauss and Newton's steps from the moments of their cosines."""
+    films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
+    start = _moments()
+    rows, right = _near(start)
+
+    def errors(coefficients):
+        rule = coefficients, share, alone
+        return np.concatenate(
+            [(fit.visible_mean(*film, rule) - exact).ravel() for film, exact in films]
+        )
+
+    found = start
+    for _ in range(NEWTON):
+        left = errors(found)
+        slopes = np.stack(
+            [(errors(found + NEAR * axis) - left) / NEAR for axis in np.eye(len(found))], 1
+        )
+        change = np.linalg.lstsq(
+            np.concatenate([slopes, rows]),
+            np.concatenate([-left, right - rows @ found]),
+            rcond=None,
+        )[0]
+        found = found + change
+    return tuple(float(f"{each:.5g}") for each in found)
+
+
+def grid():
+    """Cosines of views and roughness from end to end."""
+    axis = (np.arange(GRID) + 0.5) / GRID
+    return (each.ravel() for each in np.meshgrid(axis, axis))
+
+
+def _rows(mu, alpha):
+    """What each coefficient adds to the mean, the reach and the bend at views and roughness."""
+    factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
+    terms = fit.monomials(mu, alpha)
+    blocks = np.zeros((3, mu.size, 3, len(terms)))
+    for k, factor in enumerate(factors):
+        blocks[k, :, k] = (factor * terms).T
+    return blocks.reshape(3 * mu.size, -1)
+
+
+def _moments():
+    """Coefficients by which nodes have mean, deviation and skewness of facets, as far as these can be had."""
+    mu, alpha = grid()
+    mean, deviation, skewness = facet_moments(mu, alpha)
+    b = np.clip(BEND * skewness, -0.8, 0.8)
+    even = np.sqrt(1.0 - 0.8 * b * b)
+    reach, bend = deviation * even * np.sqrt(3.0 * (1.0 - 0.08)), b / (np.sqrt(3.0) * even)
+    wanted = np.concatenate([mean - mu, reach, bend])
+    return np.linalg.lstsq(_rows(mu, alpha), wanted, rcond=None)[0]
+
+
+def facet_moments(mu, alpha):
+    """Mean, deviation and skewness of the cosines of 16 visible facets with their view."""
+    cosines, weights = (np.array(each) for each in zip(*_facets(mu, alpha), strict=True))
+    weights /= weights.sum(axis=0)
+    mean = (weights * cosines).sum(axis=0)
+    central = cosines - mean
+    deviation = np.sqrt(np.maximum((weights * central**2).sum(axis=0), 1e-12))
+    return mean, deviation, (weights * central**3).sum(axis=0) / deviation**3
+
+
+def _facets(mu, alpha):
+    """Cosines of 16 visible facets with their view, and their weights.
+
+    Lower ones than the lowest mirror no light along the normal.
+    """
+    wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
+    x, w = np.polynomial.legendre.leggauss(4)
+    stretched = wo * np.stack([alpha, alpha, np.ones_like(alpha)], axis=-1)
+    stretched /= np.linalg.norm(stretched, axis=1, keepdims=True)
+    lowest = 2.0 * alpha**2 * stretched[:, 2] / (1.0 + alpha**2)
+    for u, height in zip(0.5 * (1.0 + x), w, strict=True):
+        for azimuth in np.pi * (np.arange(4) + 0.5) / 4.0:
+            v = stretched[:, 2]
+            z = (1.0 - u) * lowest + u * (1.0 + v) - v
+            radius = np.sqrt(np.clip(1.0 - z * z, 0.0, 1.0))
+            columns = [radius * np.cos(azimuth), radius * np.sin(azimuth), z]
+            H = np.stack(columns, axis=-1) + stretched
+            H *= np.stack([alpha, alpha, np.ones_like(alpha)], axis=-1)
+            H /= np.linalg.norm(H, axis=1, keepdims=True)
+            c = (wo * H).sum(axis=1)
+            mu_i = np.maximum(2.0 * c * H[:, 2] - wo[:, 2], 0.0)
+            smith = smith_lambda(wo[:, 2], alpha) * mu_i + smith_lambda(mu_i, alpha) * wo[:, 2]
+            yield c, height * 2.0 * mu_i * wo[:, 2] / smith
+
+
+def _near(start):
+    """Equations that hold coefficients near to a start where no film asks for others."""
+    rows = TIE * _rows(*grid())
+    return rows, rows @ start
 
 
 def costs():
@@ -101,7 +192,8 @@ def costs():
                 for film, average, _ in films
             ),
             _root(
-                fit.visible_mean(*film, fit.BEND, 4.0 * fit.SHARE / count, count) - visible
+                fit.visible_mean(*film, (fit.FACETS, 4.0 * fit.SHARE / count, fit.ALONE), count)
+                - visible
                 for film, _, visible in films
             ),
         )
@@ -117,6 +209,6 @@ def _root(errors):
 if __name__ == "__main__":
     print(f"width of five cosines: {width()}")
     print(f"two cosines, the first weight, their width: {pair()}")
-    print(f"bend of four nodes, and their share of the deviation: {bend_and_share()}")
+    print(f"coefficients for visible facets: {facets()}")
     for count, (average, visible) in costs().items():
         print(f"{count} nodes: F_ss {average:.2g}, visible facets {visible:.2g}")

@@ -183,7 +183,14 @@ def test_the_script_chooses_the_nodes_of_a_film():
     (low, high), (weight, _), pair_width = thin_film.PAIR
     assert thin_film_nodes.width() == (thin_film.WIDTH,)
     assert thin_film_nodes.pair() == (low, high, weight, pair_width)
-    assert thin_film_nodes.bend_and_share() == (thin_film.BEND, thin_film.SHARE)
+
+
+def test_the_script_gives_the_coefficients_of_the_facets():
+    mu, alpha = thin_film_nodes.grid()
+    shipped, fitted = (
+        thin_film.facets(mu, alpha, each) for each in (thin_film.FACETS, thin_film_nodes.facets())
+    )
+    np.testing.assert_allclose(fitted, shipped, atol=1e-3)
 
 
 def test_the_shader_has_the_nodes_of_a_film():
@@ -194,14 +201,15 @@ def test_the_shader_has_the_nodes_of_a_film():
 
     def macros(pattern):
         found = re.findall(rf"#define (?:THIN_FILM|MICROFACET)_{pattern} (.*)", text)
-        return [float(digits) for each in found for digits in re.findall(r"\d\.\d+", each)]
+        return [float(digits) for each in found for digits in re.findall(r"-?\d\.\d+", each)]
 
     cosines, weights, width = thin_film.PAIR
     assert macros(r"PAIR\d") == [cosines[0], weights[0], cosines[1], weights[1]]
     assert macros("PAIR_WIDTH") == [width]
-    assert macros("WIDTH") == [thin_film.WIDTH, thin_film.SHARE]
-    assert macros("BEND") == [thin_film.BEND] and macros("ALIKE") == [thin_film.ALIKE]
-    np.testing.assert_allclose(macros("APART"), np.sqrt(1.0 - thin_film.SHARE**2), atol=1e-8)
+    assert macros("WIDTH") == [thin_film.WIDTH] and macros("ALIKE") == [thin_film.ALIKE]
+    assert macros("SHARE") + macros("ALONE") == [thin_film.SHARE, thin_film.ALONE]
+    columns = np.transpose(thin_film.FACETS).ravel()
+    assert macros(r"FACETS_\d\d") == list(columns)
     np.testing.assert_allclose(
         np.reshape(macros(r"GAUSS\d"), (-1, 2)).T, thin_film.gauss(5), atol=1e-8
     )

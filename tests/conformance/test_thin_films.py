@@ -107,9 +107,8 @@ WRONG = {
     "weights of two cosines": (
         "conductor_bsdf", "vec2(0.785, 0.725)", "vec2(0.785, 0.625)", "film_smooth",
     ),
-    "facets without masking": (
-        "conductor_bsdf", "node.y * mu_i / max(shadow, MICROFACET_LEAST)", "vec4(node.y)",
-        "film_visible",
+    "facets of a smooth surface": (
+        "conductor_bsdf", "mu + s * s * C.x", "mu", "film_visible",
     ),
     "half of the film": (
         "generalized_schlick_bsdf", "F.visible += i < facets ? curve",

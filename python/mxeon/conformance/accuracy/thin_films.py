@@ -13,7 +13,7 @@ from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rou
 # Largest errors of the shader's thin film, for cosines from 0.1 on: fits/thin_film.py searches for each.
 FILM_ORDERS = 8.2e-3  # six orders and a geometric series, relative to the largest channel
 FILM_AVERAGE = 1.1e-2  # F_ss in five cosines
-FILM_VISIBLE = 4.9e-2  # mean over the visible facets in four cosines
+FILM_VISIBLE = 2.8e-2  # mean over the visible facets in four cosines
 FILM_SHARP_ORDERS = 6.2e-6  # six orders of films from 200 nm and cosines from 0.3 on
 FILM_SLOPE = 9.1  # slope of their curves in the logarithm of the path difference
 FILM_WAVES = 1.8  # slope of the same curves in the cosines and sines of their phases, of any signs
@@ -31,7 +31,7 @@ FILM_ALBEDO = Tolerance(
     rounded_up(FILM_VISIBLE + FILM_AVERAGE * (1.0 - LEAST_ESS) + ESS_FIT),
     "albedo",
     absolute,
-    "the mean over visible facets in four cosines, 4.9e-2, and F_ss in five, 1.1e-2, times the light that "
+    "the mean over visible facets in four cosines, 2.8e-2, and F_ss in five, 1.1e-2, times the light that "
     "is lost, at most 0.69; and the fit of E_ss, 5e-4. The first is of films of 1000 nm, whose fringes "
     "few cosines do not see; `film_visible` judges it where they do; rounded up",
 )
@@ -57,7 +57,7 @@ FILM_SMOOTH_MEAN = Tolerance(
     "sets, by fits/thin_film_sets.py, and roundings",
 )
 FILM_STEEP = Tolerance(
-    7.3e-4,
+    4.6e-4,
     "reflectance, rms",
     root_mean_square,
     "the mean over visible facets in four cosines of 64 films of 50 to 100 nm on rough lobes: the "
