@@ -18,8 +18,8 @@ from benchmarks import page, record
 from mxeon.errors import NotRun
 
 GROUPS = (
-    "shaders", "noise", "materials", "instructions", "registers", "cycles", "models", "values", "tool", "check",
-    "parts",
+    "shaders", "noise", "materials", "instructions", "registers", "shares", "cycles", "models", "values", "tool",
+    "check", "parts",
 )  # fmt: skip
 QUICK = {
     "shaders": {"rounds": 5},
@@ -27,6 +27,7 @@ QUICK = {
     "materials": {"rounds": 3, "size": 256},
     "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
+    "shares": {"nodes": ("dielectric_bsdf",)},
     "cycles": {"rounds": 2, "size": 32, "samples": (16,)},
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
     "values": {"rounds": 2, "pairs": 100_000, "calls": 200},

@@ -18,6 +18,7 @@ from benchmarks import (
     record,
     registers,
     shaders,
+    shares,
     tool,
 )  # fmt: skip
 from benchmarks.rounds import Check, Figure, Group, figure, interleave, ratio
@@ -62,6 +63,7 @@ SMALLEST = {
     "materials": {"rounds": 1, "size": 32, "nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar",)},
     "registers": {"nodes": ("oren_nayar",)},
+    "shares": {"nodes": ("conductor_bsdf",), "parts": ("nothing", "the film")},
     "cycles": {"rounds": 1, "size": 32, "samples": (64,)},
     "models": {"rounds": 1, "pairs": (1000,)},
     "values": {"rounds": 1, "pairs": 1000, "calls": 20},
@@ -77,9 +79,9 @@ def test_each_group_is_measured_and_written_to_its_page(gl, tmp_path, monkeypatc
     monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
     monkeypatch.setattr(cycles, "processor_seconds", lambda pid: 0.0)  # less than a tick
     monkeypatch.setattr(command, "QUICK", small)
-    host = {"cycles": "cycles", "registers": "registers"}.get(name, "gl")
+    host = {"cycles": "cycles", "registers": "registers", "shares": "registers"}.get(name, "gl")
     with available(host):
-        if name == "registers":
+        if host == "registers":
             registers.driver()
         assert command.main([name, "--quick", "--output", str(tmp_path)]) == 0
     ((group, _),) = record.read(tmp_path / "performance.json")
@@ -96,6 +98,12 @@ def test_materials_that_were_measured_stay_when_the_next_one_fails(gl, tmp_path,
         command.main(["materials", "--quick", "--output", str(tmp_path)])
     ((group, _),) = record.read(tmp_path / "performance.json")
     assert {each.name.split(", ")[1] for each in group.figures} == {"oren_nayar"}
+
+
+def test_a_shader_has_every_part_whose_share_is_measured(gl):
+    texts = [shares.sources(node)["eonlib"]["pixel"] for node in shares.NODES]
+    for part, found in shares.PARTS.items():
+        assert all(any(there in text for text in texts) for there, _ in found), part
 
 
 def test_check_of_shaders_tells_fon_from_eon(gl):
