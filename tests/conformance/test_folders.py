@@ -5,11 +5,13 @@ import shutil
 
 import pytest
 
+from docs.documents import lines
 from mxeon.cli import main
 from mxeon.cli.answer import MANY, summary_by_cause
-from mxeon.conformance.results import FAILED, PASSED, Identity, Result, Run
+from mxeon.conformance.results import FAILED, PASSED, Result, Run
 from mxeon.conformance.run.documents import causes, document_verdicts, documents_in
 from mxeon.errors import MISUSE, InputError
+from mxeon.hosts.base import Identity
 from tests.support.command import CLAY
 
 NAMES = ("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx", "light.mtlx")
@@ -65,6 +67,15 @@ def test_causes_count_documents_the_worst_first():
     assert ("refused", "must contain a renderable element; got ...") in groups
     assert ("no reference", "there is no model for ...") in groups
     assert "4 documents: 2 have reference pictures" in summary_by_cause(RUN)[0]
+
+
+def test_the_page_of_a_run_counts_documents_and_says_how_long_it_took():
+    times = {"minutes": 4.2, "processor minutes": 7.25, "cores": 2}
+    text = "\n".join(lines(document_verdicts(RUN), times, len(RUN.results)))
+    assert "2 of 4 have a reference picture of each material" in text
+    assert "with 5 checks and pictures, took 4 minutes and 7.2 minutes of processor time" in text
+    assert "Measured on: cores 2." in text
+    assert "| b/noise.mtlx | passed |" in text and "| lobe.color |" in text
 
 
 def test_a_bad_document_of_a_folder_is_one_line_and_the_run_goes_on(tmp_path, capsys):

@@ -125,7 +125,7 @@ def _cause(result: Result, measured: Sequence[str]) -> str:
         return FROM_HOST if measured else WHOLE
     if result.verdict == PASSED and result.check == DOCUMENT:
         return "shaders are generated"
-    reason = result.reason or result.diagnosis
+    reason = (result.reason or result.diagnosis).split("; last output:")[0]
     return QUOTED.sub("...", reason.removeprefix("reference: ")) or result.excess
 
 
