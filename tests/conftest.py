@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hosts for the tests, each opened once in a session, when a test first asks for it."""
 
+import os
 import signal
 from functools import partial
 
@@ -21,8 +22,11 @@ EXAMPLE = examples_folder() / "plaster.mtlx"
 def pytest_configure():
     """Undo what nohup or a job in the background ignores, and refuse an unknown host's name.
 
-    A signal that the starter of the tests ignores is ignored by each command that they start.
+    A signal that the starter of the tests ignores is ignored by each command that they start. Mesa's
+    software driver compiles shaders without optimizing them, which takes less time and changes no bit
+    of their values.
     """
+    os.environ.setdefault("GALLIVM_PERF", "nopt")
     for number in ENDING:
         if signal.getsignal(number) == signal.SIG_IGN:
             default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
