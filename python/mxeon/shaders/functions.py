@@ -13,6 +13,11 @@ LANGUAGES = ("glsl", "osl")
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # includes all the others
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
+TWINS = (
+    ALL,
+    "ggx_albedo",
+    "conty_kulla_albedo",
+)  # that have, with their includes, one text in two languages
 INCLUDE = re.compile(r'^#include "(\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
 EACH = "mxeon_each"  # the function that `dispatched` adds
@@ -41,6 +46,14 @@ def source(language: str, stem: str = ALL, library: str = "eonlib") -> str:
 def has_functions(library: str, language: str = "glsl") -> bool:
     """Whether a library brings shader functions of its own: eonlib, or a folder beside them."""
     return library != "stock" and _path(language, ALL, library).is_file()
+
+
+def twins(language: str, library: str) -> str:
+    """Text of the files of a library that have one text in two languages, their includes expanded."""
+    stems = [
+        stem for stem in TWINS if all(_path(each, stem, library).is_file() for each in LANGUAGES)
+    ]
+    return "\n".join(source(language, stem, library) for stem in stems)
 
 
 def expanded(path: Path) -> str:

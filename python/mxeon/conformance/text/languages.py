@@ -9,7 +9,7 @@ import re
 from mxeon.conformance.results import Result
 from mxeon.conformance.text.counts import Claim, counted
 from mxeon.conformance.text.syntax import macros, without_comments
-from mxeon.shaders.functions import SIGNATURE, has_functions, source
+from mxeon.shaders.functions import LANGUAGES, SIGNATURE, has_functions, twins
 
 WORDS = {"color": "vec3", "vector": "vec3", "output": "out", "atan2": "atan"}  # OSL, GLSL
 NUMBER = re.compile(r"\b\d+\.\d+\b")
@@ -23,9 +23,9 @@ CLAIM = Claim(
 
 def check_languages(library: str) -> tuple[Result, ...]:
     """The result for a library that brings shader functions in both languages."""
-    if not all(has_functions(library, language) for language in ("glsl", "osl")):
+    if not all(has_functions(library, language) for language in LANGUAGES):
         return ()
-    glsl, osl = (source(language, library=library) for language in ("glsl", "osl"))
+    glsl, osl = (twins(language, library) for language in LANGUAGES)
     different = differences(glsl, osl)
     control = differences(glsl, NUMBER.sub("777.0", without_comments(osl), count=1))
     meaning = f"another text in OSL: {', '.join(different)}"
