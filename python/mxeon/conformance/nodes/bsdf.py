@@ -42,6 +42,7 @@ BLACK = ("color", "tint", "color0", "color90")  # inputs that are 0 where nothin
 
 LEAST_ALPHA = 1e-3  # of random pairs
 FILM = {"thinfilm_thickness": 400.0}
+# Weights and normals are not drawn from their ports: `node_inputs` and `turned` have them for every node.
 WEIGHT = Port("weight", change=0.5, materials=(1.0, 0.5))
 COLOR = color("color", (0.2, 0.5, 0.8), (0.8, 0.4, 0.1))
 NORMAL = Port("normal", "vector3", change=(0.0, 0.6, 0.8))
