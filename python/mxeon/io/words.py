@@ -14,12 +14,15 @@ ERROR = 2  # file descriptor
 def lines_left_out(words: str) -> Iterator[None]:
     """Context in which lines with these words are kept off the process's error output.
 
-    The other lines appear when it ends.
+    The other lines appear when it ends. A process without an error output has none to keep.
 
     Parameters
     ----------
     words : str
     """
+    if sys.stderr is None:
+        yield
+        return
     # Let a file take the place of the error output.
     sys.stderr.flush()
     output = os.dup(ERROR)
