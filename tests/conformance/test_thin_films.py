@@ -39,6 +39,7 @@ STOCK = {
         "film_curve": (DIFFERS, f"{CHOICES}, and its compensation"),
         "film_orders": (DIFFERS, f"{CHOICES}, and its compensation"),
         "film_limit": (DIFFERS, CHOICES),
+        "film_environment": (DIFFERS, f"{CHOICES}, in light from all sides"),
         "film_average": (DIFFERS, AVERAGE),
         "film_smooth": (DIFFERS, AVERAGE),
         "film_visible": (DIFFERS, f"{CHOICES}, in light from all sides"),

@@ -333,3 +333,9 @@ def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
 
 def test_every_name_that_is_listed_is_that_of_a_model():
     assert [mxeon.model(name).name for name in model_names()] == list(model_names())
+
+
+def test_what_an_emission_prints_names_its_functions():
+    assert repr(mxeon.model("uniform_edf")).startswith(
+        "uniform_edf: uniform emission; edf, exitance\n"
+    )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
@@ -34,7 +35,7 @@ class ModelSampler:
 
 
 @dataclass(frozen=True, repr=False)
-class NodeModel:
+class NodeModel(ABC):
     """What the models of all nodes have: a name, inputs, and a list of functions.
 
     Attributes
@@ -53,9 +54,9 @@ class NodeModel:
     parameters: tuple[Parameter, ...]
 
     @property
+    @abstractmethod
     def functions(self) -> tuple[str, ...]:
         """Names of the functions that it has."""
-        return ()
 
     def __repr__(self) -> str:
         inputs = "".join(f"\n  {each!r}" for each in self.parameters)

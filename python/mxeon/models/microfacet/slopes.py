@@ -77,9 +77,8 @@ class Slopes:
     @property
     def isotropic(self) -> bool:
         """Whether both halves of every surface are alike; of another library's arrays it is not known."""
-        if array_namespace(self.roughness) is not NUMPY:
-            return False
-        return bool(np.all(self.roughness[0] == self.roughness[1]))
+        known = array_namespace(self.roughness) is NUMPY
+        return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
     def rays(self, omega: Array) -> tuple[Array, Array, Array]:
         """Of each azimuth: B and g, with the slope's squared length g r^2, and the last r.
