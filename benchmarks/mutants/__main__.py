@@ -11,6 +11,7 @@ import argparse
 import json
 import re
 import sys
+import tempfile
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
@@ -73,8 +74,13 @@ def summary(found: dict[str, Any]) -> dict[str, Any]:
         "verdict": KILLED,
         "host": found["host"],
         "checks": list(dict.fromkeys(each["check"] for each in failures)) or ["refused"],
-        "explanation": "; ".join(filter(None, words)),
+        "explanation": _placeless("; ".join(filter(None, words))),
     }
+
+
+def _placeless(words: str) -> str:
+    """`words` with files by their names alone: the folder of a trial is gone with it."""
+    return re.sub(rf"{re.escape(tempfile.gettempdir())}/\S*/", "", words)
 
 
 def _read(file: Path) -> dict[str, Any]:
