@@ -335,6 +335,17 @@ def test_a_folder_is_loaded_before_the_standard_libraries(tmp_path):
     assert not any(one.ours for one in found)
 
 
+def test_a_relative_folder_is_that_of_the_working_folder(tmp_path, monkeypatch):
+    for name in ("first", "second"):
+        folder = tmp_path / name / "library"
+        folder.mkdir(parents=True)
+        (folder / "definitions.mtlx").write_text(
+            f'<materialx version="1.39"><nodegraph name="{name}" /></materialx>'
+        )
+        monkeypatch.chdir(folder.parent)
+        assert library.load_library("library").getNodeGraph(name) is not None
+
+
 def test_the_folder_of_eonlib_is_eonlib():
     assert library.implementations(library.load_library(OURS), "diffuse") == (
         library.implementations(library.load_library("diffuse"), "diffuse")

@@ -197,6 +197,8 @@ def load_library(
     UntestedVersionWarning
         If this MaterialX is none of TESTED.
     """
+    if library not in LIBRARIES and os.path.isdir(library):
+        library = os.path.abspath(library)
     return read_library(library, profile, definitions)
 
 
