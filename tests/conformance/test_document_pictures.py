@@ -8,13 +8,16 @@ from docs.upstream.pbr_quantities import MATERIAL
 from mxeon.conformance.accuracy.bsdf import UNFITTED
 from mxeon.conformance.accuracy.thin_films import FILM_ALBEDO
 from mxeon.conformance.pictures.document_pictures import judge_document
-from mxeon.conformance.pictures.tolerances import FITTED, PLAIN, tolerance_of
+from mxeon.conformance.pictures.tolerances import ENCODED, FITTED, PLAIN, TEXTURED, tolerance_of
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.nodes import ShownLobe
 from mxeon.hosts import open_host
 from mxeon.shaders.document.notes import DocumentWarning
 from mxeon.shaders.generation import generate
+from mxeon.shaders.library import examples_folder
 from mxeon.shaders.nodes import SURFACE, document_text
+
+IMAGE = examples_folder() / "textures" / "brick_color.png"
 
 FILM = """<generalized_schlick_bsdf name="lobe" type="BSDF">
   <input name="color0" type="color3" value="0.04, 0.04, 0.04"/>
@@ -88,6 +91,19 @@ def tolerance(text, **inputs):
 def test_inputs_of_lobes_add_what_their_checks_allow(inputs, more):
     lobe = tolerance('<dielectric_bsdf name="lobe" type="BSDF"/>', **inputs)
     assert lobe.value == pytest.approx(FITTED.value + more)
+
+
+@pytest.mark.parametrize(
+    ("space", "expected"), [('colorspace="srgb_texture"', ENCODED), ("", TEXTURED)]
+)
+def test_the_decoding_of_an_image_steepens_the_errors_of_its_filter(space, expected):
+    text = (
+        f'<image name="rho" type="color3"><input name="file" type="filename" value="{IMAGE}" {space}/>'
+        '</image><oren_nayar_diffuse_bsdf name="lobe" type="BSDF">'
+        '<input name="color" type="color3" nodename="rho"/></oren_nayar_diffuse_bsdf>'
+    )
+    [shader] = generate(document_text(text + SURFACE), "glsl")
+    assert tolerance_of(shader, []) == expected
 
 
 def test_narrow_lobes_of_hair_add_more_than_wide_ones():

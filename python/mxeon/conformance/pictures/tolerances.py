@@ -16,6 +16,7 @@ from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance
 from mxeon.hosts import host_row
 from mxeon.hosts.base import Host
+from mxeon.io.srgb import SLOPE
 from mxeon.models.hair import ROUGHNESSES
 from mxeon.models.nodes import NODES
 from mxeon.models.sheen import conty_kulla_albedo_dir
@@ -42,6 +43,12 @@ TEXTURED = Tolerance(
     absolute,
     "a filter's weights have 8 bits after the point, the least OpenGL asks for, and texels differ "
     "by 1 at most",
+)
+ENCODED = Tolerance(
+    SLOPE * TEXTURED.value,
+    UNIT,
+    absolute,
+    f"{TEXTURED.derivation}; they are codes of sRGB, whose decoding has the slope {SLOPE:.3g} at most",
 )
 
 FITTED = Tolerance(
@@ -161,9 +168,16 @@ def _lobes_tolerance(shader: Shader) -> Tolerance:
         return FITTED
     if categories(inner_nodes(shader)) & FITTED_NODES:
         return SHADED
-    return TEXTURED if _textured(shader) else PLAIN
+    return _images_tolerance(shader)
 
 
-def _textured(shader: Shader) -> bool:
-    """Whether a shader reads an image."""
-    return any(port.type == "filename" and port.value for port in shader.inputs)
+def _images_tolerance(shader: Shader) -> Tolerance:
+    """Tolerance of what a shader reads from images, whose filter works on codes before a decoding."""
+    if not any(port.type == "filename" and port.value for port in shader.inputs):
+        return PLAIN
+    inputs = (each for each in inner_nodes(shader) if each.isA(mx.Input))
+    encoded = any(
+        each.getType() == "filename" and each.getActiveColorSpace() == "srgb_texture"
+        for each in inputs
+    )
+    return ENCODED if encoded else TEXTURED
