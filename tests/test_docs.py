@@ -37,6 +37,7 @@ FOLDERS = "docs|tests|fits|benchmarks|examples|eonlib|python|profiles"
 PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s]*[^`<\s:.])(?::\d+)?`")  # without placeholders
 SCRIPT = re.compile(r"python -m ((?:tests|fits|benchmarks|docs)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
+PLACE = re.compile(r"`([\w/]+)\.py:([\w.]+)`")  # of a name, below the package
 
 
 def prose():
@@ -187,6 +188,18 @@ def test_every_module_that_the_prose_names_exists():
     assert "tests.fuzz" in scripts and "mxeon.models" in names
     assert [script for script in scripts if find_spec(script) is None] == []
     assert all(resolve_name(name) for name in names)
+
+
+def test_the_design_begins_with_a_table_of_places_that_exist():
+    page = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
+    start, section, *_ = page.split("\n## ")
+    assert start == "# Design\n" and section.startswith("Where to find\n")
+    rows = [line for line in section.splitlines() if line.startswith("| ")][1:]
+    assert 4 <= len(rows) <= 12
+    places = PLACE.findall(section)
+    assert len(places) > len(rows)
+    for file, name in places:
+        assert resolve_name(f"mxeon.{file.replace('/', '.')}:{name}") is not None
 
 
 def test_the_page_on_hosts_says_what_each_host_is_asked():
