@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mxeon.conformance.accuracy.bsdf import LEAST_ESS, SEEN_ESS
+from mxeon.conformance.accuracy.bsdf import LEAST_ESS, QUADRATURES, SEEN_ESS
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.nodes.bsdf import BSDFS, QUADRATURES
+from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.families import probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED

@@ -14,7 +14,8 @@ from mxeon.conformance.accuracy.emission import (
 )
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.nodes.emission import CONE, EDFS, LEAST_FALLOFF
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.emission import EDFS, LEAST_FALLOFF
 from mxeon.conformance.probes.families import EMISSION_SUBJECTS, PROBES, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
@@ -173,7 +174,7 @@ def test_the_quadrature_of_the_equations_is_as_exact_as_its_tolerance_says(subje
 
 
 def test_soft_and_hard_cones_are_asked_and_their_condition_is_the_slope():
-    probe = PROBES[PairProbe][CONE](None, SUBJECTS["conical_edf"], "stock")
+    probe = PROBES[PairProbe][kinds.CONE_EMISSION](None, SUBJECTS["conical_edf"], "stock")
     for batch in (*probe.batches, probe.backs):
         inner, outer = (batch.inputs[f"{name}_angle"] for name in ("inner", "outer"))
         soft = outer > inner

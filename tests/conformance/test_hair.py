@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mxeon.conformance.accuracy.bsdf import QUADRATURES
 from mxeon.conformance.accuracy.hair import LARGEST
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.nodes.bsdf import HAIR, QUADRATURES
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.probes.hair import HairProbe, aimed
 from mxeon.conformance.results import FAILED, PASSED
@@ -17,7 +18,7 @@ from mxeon.models.hair import ROUGHNESSES, TINTS
 from tests.support.wrong_libraries import wrong_eonlib_node
 
 (SUBJECT,) = HAIRS
-ROWS = {row.key: row for row in CHECKS if applies(row, SUBJECT, HAIR, "gl")}
+ROWS = {row.key: row for row in CHECKS if applies(row, SUBJECT, kinds.HAIR, "gl")}
 FEWER = replace(
     HairProbe.usual, pairs=1 << 9, few=1 << 8, nodes=32
 )  # wrong ones are wrong for many
@@ -150,7 +151,7 @@ def test_the_quadrature_of_the_equations_is_as_exact_as_its_probe_says():
     batch, weights = probe.integrated
     values = SUBJECT.expected(batch).reshape(*weights.shape, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
-    assert np.abs(albedo - probe.integrals).max() <= QUADRATURES[HAIR]
+    assert np.abs(albedo - probe.integrals).max() <= QUADRATURES[kinds.HAIR]
 
 
 def test_inputs_are_those_of_the_node_and_float32_numbers():

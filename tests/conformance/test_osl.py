@@ -10,7 +10,7 @@ import pytest
 from mxeon.conformance.accuracy.accuracy import ACCURACY
 from mxeon.conformance.accuracy.closures import GRAPH
 from mxeon.conformance.accuracy.emission import widen_for_functions
-from mxeon.conformance.nodes.surface_shaders import WHOLE
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.probes.cases import frame_cases, value_cases
 from mxeon.conformance.probes.families import ALL_SUBJECTS, ClosureProbe, probe_type_of
 from mxeon.conformance.probes.probe import Probe
@@ -210,7 +210,7 @@ class Changed(Host):
 def probe_of(host: Host, title: str, library: str = "eonlib") -> Probe:
     probe = probe_type_of(SUBJECTS[title], ClosureProbe)
     assert probe
-    counts = None if SUBJECTS[title].kind == WHOLE else FEW
+    counts = None if SUBJECTS[title].kind == kinds.SURFACE_SHADER else FEW
     return probe(host, SUBJECTS[title], library, counts)
 
 

@@ -11,8 +11,9 @@ from mxeon.conformance.accuracy import surface_shaders as tolerances
 from mxeon.conformance.checks.application import applies, judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.known_issues import with_pages
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.surface_inputs import FREE_PATHS
-from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
+from mxeon.conformance.nodes.surface_shaders import SHADERS
 from mxeon.conformance.probes.families import COMMON_SUBJECTS
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
 from mxeon.conformance.results import FAILED, PASSED
@@ -38,7 +39,7 @@ STOCK = {*ROWS} - {"reach"}  # what fails there
 def judged(host, shader, library, keys=tuple(ROWS)):
     """Results of checks of a surface shader."""
     probe = SurfaceShaderProbe(host, shader, library)
-    assert all(applies(ROWS[key], shader, WHOLE, host.name) for key in keys)
+    assert all(applies(ROWS[key], shader, kinds.SURFACE_SHADER, host.name) for key in keys)
     return {key: with_pages(judge_check(ROWS[key], probe)) for key in keys}
 
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 import mxeon
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS, Check
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.diffuse import CHANGES, ModelSubject
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.results import PASSED, Run
@@ -72,7 +73,7 @@ class ClaimedModel(ModelSubject):
     model: str
 
     node: ClassVar[str] = "a function"
-    kind: ClassVar[str] = "pairs"
+    kind: ClassVar[str] = kinds.DIFFUSE
     inputs: ClassVar[tuple[str, ...]] = ("color", "roughness")
     libraries: ClassVar[tuple[str, ...]] = ()
 
@@ -94,7 +95,7 @@ class ClaimedModel(ModelSubject):
 class CallableProbe(LobeProbe):
     """A function evaluated for pairs."""
 
-    kind = "pairs"
+    kind = kinds.DIFFUSE
 
     host: CallableHost
     subject: ClaimedModel

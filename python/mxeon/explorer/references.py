@@ -12,10 +12,10 @@ import numpy as np
 
 from mxeon.conformance import reference
 from mxeon.conformance.accuracy.accuracy import ACCURACY
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.bsdf import BSDFS, BsdfSubject
 from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.rows import ZERO
-from mxeon.conformance.nodes.surface_shaders import WHOLE
 from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, rounded
 from mxeon.errors import NotRun
@@ -103,7 +103,7 @@ def _kind(node: mx.Node) -> str:
     """Kind of the probe that judges a lobe or a surface shader."""
     if node.getCategory() in DIFFUSE_NODES:
         return "pairs"
-    return next((each.kind for each in _rows(node) if _is_of(node, each)), WHOLE)
+    return next((each.kind for each in _rows(node) if _is_of(node, each)), kinds.SURFACE_SHADER)
 
 
 def _rows(node: mx.Node) -> tuple[BsdfSubject, ...]:

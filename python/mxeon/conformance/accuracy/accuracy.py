@@ -16,25 +16,7 @@ from mxeon.conformance.accuracy import (
     thin_films,
     utilities,
 )
-from mxeon.conformance.nodes import emission as emissions
-from mxeon.conformance.nodes.bsdf import (
-    CLOSED,
-    COMBINED,
-    FILM_PAIRS,
-    FITTED,
-    HAIR,
-    MICROFACET,
-    NESTED,
-    QUADRATURES,
-    SCHLICK,
-    SHEEN,
-    SUBSURFACE,
-)
-from mxeon.conformance.nodes.closures import SCATTERING, closure_kind
-from mxeon.conformance.nodes.rendered import LOBES, RENDERED, rendered_kind
-from mxeon.conformance.nodes.surface_shaders import WHOLE
-from mxeon.conformance.nodes.transmission import SCHLICK_TRANSMITTED, TRANSMITTED
-from mxeon.conformance.nodes.utilities import OSL_VALUES, VALUES
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.samples.tolerance import Tolerance
 
 Quantity: TypeAlias = Literal[
@@ -108,7 +90,7 @@ def _lobe(
 ) -> Accuracy:
     """Accuracy of a BSDF node on a host that evaluates any pairs; `mean` of values in an integral."""
     passed = throughput or albedo
-    integral = bsdf.integral_of(mean or value, QUADRATURES[kind])
+    integral = bsdf.integral_of(mean or value, bsdf.QUADRATURES[kind])
     light = light or bsdf.layer_of(integral, passed)
     return Accuracy(value, albedo, passed, frame, integral, light, reciprocity=value)
 
@@ -127,16 +109,16 @@ def _emission(kind: str) -> Accuracy:
 
 # Values and albedos of nodes that hosts show on a mesh, by kind.
 SHOWN: Mapping[str, tuple[Tolerance, Tolerance]] = {
-    CLOSED: (bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO),
-    SHEEN: (bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO),
-    FITTED: (bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO),
-    MICROFACET: (bsdf.MICROFACET_VALUE, bsdf.MICROFACET_PICTURE),
-    SCHLICK: (bsdf.MICROFACET_VALUE, bsdf.MICROFACET_PICTURE),
+    kinds.CLOSED: (bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO),
+    kinds.SHEEN: (bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO),
+    kinds.FITTED: (bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO),
+    kinds.MICROFACET: (bsdf.MICROFACET_VALUE, bsdf.MICROFACET_PICTURE),
+    kinds.SCHLICK: (bsdf.MICROFACET_VALUE, bsdf.MICROFACET_PICTURE),
 }
 
 # By kind of probe on a host that lights what it shows or evaluates.
 LIT: dict[str, Accuracy] = {
-    "pairs": Accuracy(
+    kinds.DIFFUSE: Accuracy(
         diffuse.VALUE,
         diffuse.ENVIRONMENT,
         frame=diffuse.FRAME,
@@ -144,40 +126,44 @@ LIT: dict[str, Accuracy] = {
         reciprocity=diffuse.RECIPROCITY,
         lambert=diffuse.LAMBERT,
     ),
-    "pictures": _seen(diffuse.CYCLES_RAY, diffuse.CYCLES_NOISE, diffuse.CYCLES_RAY),
-    "drawn pairs": _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
-    "drawn lobes": _seen(diffuse.LOBE),
+    kinds.PICTURE: _seen(diffuse.CYCLES_RAY, diffuse.CYCLES_NOISE, diffuse.CYCLES_RAY),
+    kinds.drawn_kind("drawn", kinds.DIFFUSE): _seen(
+        diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT
+    ),
+    kinds.drawn_kind("drawn", kinds.LOBE): _seen(diffuse.LOBE),
     **{
-        f"drawn {kind}": _seen(diffuse.drawn_of(value), diffuse.drawn_of(albedo))
+        kinds.drawn_kind("drawn", kind): _seen(diffuse.drawn_of(value), diffuse.drawn_of(albedo))
         for kind, (value, albedo) in SHOWN.items()
     },
-    "half pairs": _seen(diffuse.HALF, diffuse.HALF_SURROUNDINGS, diffuse.HALF),
-    "half lobes": _seen(diffuse.HALF_LOBE),
+    kinds.drawn_kind("half", kinds.DIFFUSE): _seen(
+        diffuse.HALF, diffuse.HALF_SURROUNDINGS, diffuse.HALF
+    ),
+    kinds.drawn_kind("half", kinds.LOBE): _seen(diffuse.HALF_LOBE),
     **{
-        f"half {kind}": _seen(diffuse.drawn_of(value, diffuse.HALF_CUT))
+        kinds.drawn_kind("half", kind): _seen(diffuse.drawn_of(value, diffuse.HALF_CUT))
         for kind, (value, _) in SHOWN.items()
-        if kind != SHEEN  # Storm takes the mode's default
+        if kind != kinds.SHEEN  # Storm takes the mode's default
     },
-    "bsdf pictures": _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
-    "lobes": _seen(diffuse.LOBE),
-    "exact": _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
-    "facets": _seen(diffuse.FACETS, diffuse.FACET_NOISE, diffuse.FACETS),
-    "coarse facets": _seen(diffuse.COARSE_FACETS, diffuse.COARSE_FACETS),
-    "facet pairs": Accuracy(
+    kinds.BSDF_PICTURE: _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
+    kinds.LOBE: _seen(diffuse.LOBE),
+    kinds.EXACT: _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
+    kinds.FACET: _seen(diffuse.FACETS, diffuse.FACET_NOISE, diffuse.FACETS),
+    kinds.COARSE_FACET: _seen(diffuse.COARSE_FACETS, diffuse.COARSE_FACETS),
+    kinds.FACET_PAIR: Accuracy(
         diffuse.FACET_PAIRS,
         diffuse.FACET_NOISE,
         reciprocity=diffuse.FACET_PAIRS,
         pairs=False,
     ),
-    CLOSED: _lobe(CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
-    SUBSURFACE: _lobe(CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
-    SHEEN: _lobe(SHEEN, bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
-    FITTED: replace(
-        _lobe(FITTED, bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO, bsdf.FLAT_FRAME),
+    kinds.CLOSED: _lobe(kinds.CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
+    kinds.SUBSURFACE: _lobe(kinds.CLOSED, bsdf.DIFFUSE_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
+    kinds.SHEEN: _lobe(kinds.SHEEN, bsdf.ZELTNER_VALUE, bsdf.CLOSED_ALBEDO, bsdf.FLAT_FRAME),
+    kinds.FITTED: replace(
+        _lobe(kinds.FITTED, bsdf.CONTY_KULLA_VALUE, bsdf.CONTY_KULLA_ALBEDO, bsdf.FLAT_FRAME),
         reciprocity=bsdf.EXCHANGED,
     ),
-    MICROFACET: _lobe(
-        MICROFACET,
+    kinds.MICROFACET: _lobe(
+        kinds.MICROFACET,
         bsdf.MICROFACET_VALUE,
         bsdf.MICROFACET_ENVIRONMENT,
         bsdf.MICROFACET_FRAME,
@@ -185,8 +171,8 @@ LIT: dict[str, Accuracy] = {
         light=bsdf.WHITE_FURNACE,
         mean=bsdf.MICROFACET_MEAN,
     ),
-    SCHLICK: _lobe(
-        SCHLICK,
+    kinds.SCHLICK: _lobe(
+        kinds.SCHLICK,
         bsdf.MICROFACET_VALUE,
         bsdf.MICROFACET_ENVIRONMENT,
         bsdf.MICROFACET_FRAME,
@@ -194,24 +180,28 @@ LIT: dict[str, Accuracy] = {
         bsdf.WHITE_FURNACE,
         bsdf.MICROFACET_MEAN,
     ),
-    HAIR: _lobe(HAIR, hair.HAIR_VALUE, hair.HAIR_ALBEDO, hair.HAIR_FRAME, mean=hair.HAIR_MEAN),
-    COMBINED: Accuracy(bsdf.COMBINED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
-    NESTED: Accuracy(bsdf.NESTED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
-    FILM_PAIRS: Accuracy(thin_films.FILM_VALUE, thin_films.FILM_ALBEDO, thin_films.FILM_ALBEDO),
-    TRANSMITTED: Accuracy(bsdf.MICROFACET_ALBEDO, light=bsdf.clear_of(bsdf.MICROFACET_ALBEDO)),
-    SCHLICK_TRANSMITTED: Accuracy(
+    kinds.HAIR: _lobe(
+        kinds.HAIR, hair.HAIR_VALUE, hair.HAIR_ALBEDO, hair.HAIR_FRAME, mean=hair.HAIR_MEAN
+    ),
+    kinds.COMBINED: Accuracy(bsdf.COMBINED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
+    kinds.NESTED: Accuracy(bsdf.NESTED_VALUE, bsdf.COMBINED_ALBEDO, bsdf.COMBINED_ALBEDO),
+    kinds.FILM: Accuracy(thin_films.FILM_VALUE, thin_films.FILM_ALBEDO, thin_films.FILM_ALBEDO),
+    kinds.TRANSMISSION: Accuracy(
+        bsdf.MICROFACET_ALBEDO, light=bsdf.clear_of(bsdf.MICROFACET_ALBEDO)
+    ),
+    kinds.SCHLICK_TRANSMISSION: Accuracy(
         bsdf.SCHLICK_THROUGHPUT, light=bsdf.clear_of(bsdf.SCHLICK_THROUGHPUT)
     ),
-    emissions.CLOSED: _emission(emissions.CLOSED),
-    emissions.POWER: _emission(emissions.POWER),
-    emissions.CONE: _emission(emissions.CONE),
-    emissions.PICTURES: _seen(emission.PICTURE_RADIANCE),
-    emissions.MEDIUM: Accuracy(emission.TRANSMITTANCE),
-    emissions.SURFACES: _seen(emission.OPACITY),
-    emissions.ABSENT: Accuracy(),
-    VALUES: Accuracy(utilities.ALPHA),  # each output has its own
-    OSL_VALUES: _seen(utilities.ALPHA),
-    WHOLE: Accuracy(surface_shaders.VALUE, surface_shaders.ALBEDO),
+    kinds.EMISSION: _emission(kinds.EMISSION),
+    kinds.POWER_EMISSION: _emission(kinds.POWER_EMISSION),
+    kinds.CONE_EMISSION: _emission(kinds.CONE_EMISSION),
+    kinds.EMISSION_PICTURE: _seen(emission.PICTURE_RADIANCE),
+    kinds.MEDIUM: Accuracy(emission.TRANSMITTANCE),
+    kinds.EMITTING_SURFACE: _seen(emission.OPACITY),
+    kinds.ABSENT: Accuracy(),
+    kinds.UTILITY: Accuracy(utilities.ALPHA),  # each output has its own
+    kinds.UTILITY_OSL: _seen(utilities.ALPHA),
+    kinds.SURFACE_SHADER: Accuracy(surface_shaders.VALUE, surface_shaders.ALBEDO),
 }
 
 
@@ -224,7 +214,7 @@ def _of_closures(shown: Accuracy, value: Tolerance) -> Accuracy:
 def _rendered(kind: str) -> Accuracy:
     """Accuracy of a renderer's closures of a kind; its environments have noise."""
     value = rendered.FLAT if kind in rendered.FLAT_KINDS else rendered.SHARP
-    if kind == LOBES:
+    if kind == kinds.LOBE:
         return Accuracy(rendered.BELOW, pairs=False, lit=False)
     return Accuracy(
         value,
@@ -242,10 +232,10 @@ def _rendered(kind: str) -> Accuracy:
 ACCURACY: Mapping[str, Accuracy] = (
     LIT
     | {
-        closure_kind(kind): _of_closures(
-            LIT[kind], closures.GRAPH if kind == WHOLE else closures.ARGUMENTS
+        kinds.closure_kind(kind): _of_closures(
+            LIT[kind], closures.GRAPH if kind == kinds.SURFACE_SHADER else closures.ARGUMENTS
         )
-        for kind in SCATTERING
+        for kind in kinds.TOLD
     }
-    | {rendered_kind(kind): _rendered(kind) for kind in RENDERED}
+    | {kinds.rendered_kind(kind): _rendered(kind) for kind in kinds.RENDERED}
 )

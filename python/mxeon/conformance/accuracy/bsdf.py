@@ -3,6 +3,7 @@
 
 import math
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.samples.edge_cases import LEAST_COLOR82, LEAST_SHEEN, LEAST_TURNED, TURNED
 from mxeon.conformance.samples.measurement import absolute, mean_error, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
@@ -224,6 +225,17 @@ WHITE_FURNACE = Tolerance(
     absolute,
     "the light that a repaired layer over white may gain or lose, of which the quadrature takes 6e-4",
 )
+
+
+# Largest error of a probe's integrals of the equations, by its kind.
+QUADRATURES = {
+    kinds.CLOSED: 1e-8,
+    kinds.SHEEN: 1e-8,
+    kinds.FITTED: 2e-4,
+    kinds.MICROFACET: 6e-4,
+    kinds.SCHLICK: 6e-4,
+    kinds.HAIR: 5e-6,
+}
 
 
 def integral_of(value: Tolerance, quadrature: float) -> Tolerance:

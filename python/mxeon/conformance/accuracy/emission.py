@@ -6,13 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.conformance.nodes.emission import (
-    CLOSED,
-    CONE,
-    EXPONENTS,
-    MEDIUM,
-    POWER,
-)
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.emission import EXPONENTS
 from mxeon.conformance.nodes.media import MediumSubject
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import RIM, SEED, Array
@@ -77,7 +72,11 @@ OPACITY = Tolerance(
     scaled,
     "a product and two sums with 0 of float32, 2^-24 each; rounded up",
 )
-RADIANCES = {CLOSED: UNIFORM_RADIANCE, POWER: POWER_RADIANCE, CONE: CONE_RADIANCE}
+RADIANCES = {
+    kinds.EMISSION: UNIFORM_RADIANCE,
+    kinds.POWER_EMISSION: POWER_RADIANCE,
+    kinds.CONE_EMISSION: CONE_RADIANCE,
+}
 CONE_EXITANCE = Tolerance(
     rounded_up((8 + 2 * 10 * 0.25) * ROUNDING + CONE_QUADRATURE),
     EXITANCE,
@@ -95,14 +94,14 @@ EXITANCES = {
         f"on the equations, {QUADRATURE:.0e}; rounded up",
     )
     for kind, tolerance in RADIANCES.items()
-} | {CONE: CONE_EXITANCE}
+} | {kinds.CONE_EMISSION: CONE_EXITANCE}
 
 
 def widen_for_functions(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
     """Tolerance of an emission on a host, with the errors of the engine's own functions."""
-    if kind == POWER:
+    if kind == kinds.POWER_EMISSION:
         return replace(tolerance, value=rounded_up(tolerance.value + power_error(host)))
-    if kind == MEDIUM:
+    if kind == kinds.MEDIUM:
         error = 2.0 * exponential_error(host)
         if isinstance(subject, MediumSubject) and subject.combined:
             error += 2.0 * power_error(host)

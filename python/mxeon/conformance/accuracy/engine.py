@@ -8,6 +8,7 @@ import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import power_of
 from mxeon.conformance.accuracy.thin_films import FILM_PHASE, FILM_WAVES
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
@@ -29,7 +30,7 @@ WAVE = """float mxeon_wave(float x)
 
 def widen_for_engine(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
     """Tolerance of values on a host: wider for a sheen of powers, by the engine's own."""
-    if kind != "fitted pairs":
+    if kind != kinds.FITTED:
         return tolerance
     measured = power_of(power_error(host), 1.0 / LEAST_SHEEN)
     return max(tolerance, measured, key=lambda each: each.value)

@@ -4,14 +4,13 @@
 import math
 
 from mxeon.conformance.accuracy.diffuse import FAST_ARC_COSINE
-from mxeon.conformance.nodes.bsdf import CLOSED, SUBSURFACE
-from mxeon.conformance.nodes.closures import DIFFUSE
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED
 from mxeon.conformance.samples.measurement import absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 from mxeon.hosts.testrender.scenes import EYE, NEAREST
 
-FLAT_KINDS = (DIFFUSE, CLOSED, SUBSURFACE)  # of lobes without a peak
+FLAT_KINDS = (kinds.DIFFUSE, kinds.CLOSED, kinds.SUBSURFACE)  # of lobes without a peak
 ANGLE = 3.0 * EYE / NEAREST * ROUNDING  # of a point, which float32 holds along its ray
 FLAT = Tolerance(
     rounded_up(8.0 * ANGLE + FAST_ARC_COSINE),

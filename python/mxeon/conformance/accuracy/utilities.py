@@ -9,8 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.nodes.utilities import VALUES
 from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.measurement import absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
@@ -118,7 +118,7 @@ def utility_tolerance(_: Tolerance, subject: Subject, kind: str, host: Host) -> 
     """The tolerance of an output on a host, in place of the one that the table has."""
     title, node = subject.title, subject.node
     if node == "blackbody":
-        return BLACKBODY if kind == VALUES else OSL_BLACKBODY
+        return BLACKBODY if kind == kinds.UTILITY else OSL_BLACKBODY
     if node == "chiang_hair_roughness":
         return power_tolerance(function_error(host, "pow"))
     if node == "deon_hair_absorption_from_melanin":

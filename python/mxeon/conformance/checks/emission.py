@@ -9,9 +9,8 @@ from mxeon.conformance.checks.controls import gray, mistake, offset, scale, shif
 from mxeon.conformance.checks.names import EMITTER, MEDIUM_NAMES
 from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.emission import (
-    ABSENT,
-    SURFACES,
     UNIMPLEMENTED,
 )
 from mxeon.conformance.probes.cases import (
@@ -48,7 +47,7 @@ CHECKS = (
     Check(
         "implemented",
         "The target has an implementation of the node.",
-        (*EMITTER, *MEDIUM_NAMES, ABSENT),
+        (*EMITTER, *MEDIUM_NAMES, kinds.ABSENT),
         measures.implemented,
         unimplemented,
         count_of("nodes"),
@@ -99,7 +98,7 @@ CHECKS = (
     Check(
         "opacity",
         "The light that a surface emits is scaled by its opacity.",
-        (SURFACES,),
+        (kinds.EMITTING_SURFACE,),
         value_cases,
         with_inputs("the opacity is 1", opacity=1.0),
         "value",

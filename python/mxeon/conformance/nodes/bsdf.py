@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.ports import Port, color, materials
 from mxeon.conformance.nodes.rows import ZERO, RowSubject, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
@@ -16,28 +17,6 @@ from mxeon.models import nodes as pbrlib
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import input_types, material_text
 
-# Kinds of probes; see `mxeon.conformance.probes.bsdf`.
-CLOSED, SHEEN, FITTED, MICROFACET, SCHLICK = KINDS = (
-    "closed pairs",
-    "sheen pairs",
-    "fitted pairs",
-    "microfacet pairs",
-    "Schlick pairs",
-)
-MICROFACET_KINDS = (MICROFACET, SCHLICK)
-HAIR = "hair pairs"  # of the hair node
-SUBSURFACE = "subsurface pairs"  # of subsurface scattering
-COMBINED = "combined pairs"  # of a node that combines lobes
-NESTED = "nested pairs"  # of a node that combines a sum
-FILM_PAIRS = "film pairs"  # of microfacets under a thin film
-QUADRATURES = {  # largest error of a probe's integrals of the equations
-    CLOSED: 1e-8,
-    SHEEN: 1e-8,
-    FITTED: 2e-4,
-    MICROFACET: 6e-4,
-    SCHLICK: 6e-4,
-    HAIR: 5e-6,
-}
 BLACK = ("color", "tint", "color0", "color90")  # inputs that are 0 where nothing is scattered
 
 LEAST_ALPHA = 1e-3  # of random pairs
@@ -141,12 +120,12 @@ class BsdfSubject(RowSubject[Scattering]):
 
     @property
     def kind(self) -> str:
-        """Kind of its probe; see `mxeon.conformance.probes.bsdf`."""
+        """Kind of its probe."""
         if self.anisotropic:
-            return SCHLICK if "color82" in self.row.inputs else MICROFACET
+            return kinds.SCHLICK if "color82" in self.row.inputs else kinds.MICROFACET
         if self.row.fitted:
-            return FITTED
-        return SHEEN if self.row.category == "sheen_bsdf" else CLOSED
+            return kinds.FITTED
+        return kinds.SHEEN if self.row.category == "sheen_bsdf" else kinds.CLOSED
 
     @property
     def black(self) -> Values:

@@ -3,7 +3,8 @@
 
 from dataclasses import dataclass
 
-from mxeon.conformance.nodes.bsdf import COMBINED, NESTED, BsdfSubject
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.ports import Port, color
 from mxeon.conformance.samples.batch import Values
 from mxeon.conformance.samples.edge_cases import LEAST_SHEEN
@@ -94,7 +95,7 @@ class CombinedSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        return NESTED if self.model in combinations.NESTED else COMBINED
+        return kinds.NESTED if self.model in combinations.NESTED else kinds.COMBINED
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this node over sheens."""

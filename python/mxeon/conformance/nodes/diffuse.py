@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values, random_inputs
 from mxeon.conformance.samples.edge_cases import special_inputs
 from mxeon.conformance.samples.uneven_environment import sky
@@ -108,7 +109,7 @@ class DiffuseSubject(ModelSubject):
     model: str
     names: tuple[str, ...] = tuple(INPUT_TYPES)
 
-    kind: ClassVar[str] = "pairs"
+    kind: ClassVar[str] = kinds.DIFFUSE
     libraries: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -174,7 +175,7 @@ class DiffuseLobe(ModelSubject):
     fixed: tuple[tuple[str, str, str], ...] = ()
     libraries: tuple[str, ...] = ()
 
-    kind: ClassVar[str] = "lobes"
+    kind: ClassVar[str] = kinds.LOBE
     inputs: ClassVar[tuple[str, ...]] = ()
     changes: ClassVar[Mapping[str, Changes]] = {}
 

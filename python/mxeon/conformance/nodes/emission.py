@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, color, draw
 from mxeon.conformance.nodes.rows import RowSubject, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Values, rounded
@@ -22,13 +23,6 @@ from mxeon.models.nodes.emissions import (
     Value,
 )
 from mxeon.shaders.nodes import document_text, input_text, node_text
-
-# Kinds of probes; see `mxeon.conformance.probes.emission`.
-CLOSED, POWER, CONE = KINDS = ("emission views", "power views", "cone views")
-MEDIUM = "media"
-PICTURES = "emission pictures"
-SURFACES = "emitting surfaces"
-ABSENT = "absent nodes"  # of a node that no target of the standard library has
 
 EMITTER = """  <surface name="shading" type="surfaceshader">
     <input name="edf" type="EDF" nodename="emission" />
@@ -108,7 +102,8 @@ class EmissionSubject(RowSubject[Value]):
 
     @property
     def kind(self) -> str:
-        return {"conical": CONE, "schlick_emission": POWER}.get(self.row.name, CLOSED)
+        powered = {"conical": kinds.CONE_EMISSION, "schlick_emission": kinds.POWER_EMISSION}
+        return powered.get(self.row.name, kinds.EMISSION)
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that emits by this node alone, with these inputs."""
@@ -174,8 +169,8 @@ class AbsentSubject:
     node: str
     text: str
 
-    kind: ClassVar[str] = ABSENT
-    model: ClassVar[str] = ABSENT
+    kind: ClassVar[str] = kinds.ABSENT
+    model: ClassVar[str] = kinds.ABSENT
     closure: ClassVar[bool] = True
     libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 
@@ -213,8 +208,8 @@ class SurfaceSubject:
     lit: bool
 
     node: ClassVar[str] = "surface"
-    kind: ClassVar[str] = SURFACES
-    model: ClassVar[str] = SURFACES
+    kind: ClassVar[str] = kinds.EMITTING_SURFACE
+    model: ClassVar[str] = kinds.EMITTING_SURFACE
     closure: ClassVar[bool] = True
     libraries: ClassVar[tuple[str, ...]] = ("stock",)  # no library of ours has one
 

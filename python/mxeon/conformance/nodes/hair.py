@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import HAIR, BsdfSubject
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.ports import Port, color
 from mxeon.conformance.nodes.rows import broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Values
@@ -48,7 +49,7 @@ class HairSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        return HAIR
+        return kinds.HAIR
 
     @property
     def ports(self) -> tuple[Port, ...]:

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.emission import MEDIUM
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.ports import COMPONENTS, Port, color, draw
 from mxeon.conformance.nodes.rows import RowSubject, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
@@ -42,7 +42,7 @@ class MediumSubject(RowSubject[Value]):
 
     row: Medium
 
-    kind: ClassVar[str] = MEDIUM
+    kind: ClassVar[str] = kinds.MEDIUM
 
     @property
     def title(self) -> str:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import SUBSURFACE, BsdfSubject
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.rows import ZERO, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE, circle_blur
@@ -19,7 +20,7 @@ class SubsurfaceSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        return SUBSURFACE
+        return kinds.SUBSURFACE
 
     @property
     def others(self) -> tuple[Candidate, ...]:

@@ -6,12 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.ports import draw
 from mxeon.conformance.nodes.surface_inputs import GLTF, OPEN_PBR, PREVIEW, STANDARD, Inputs
 from mxeon.conformance.samples.batch import Array, Values
 from mxeon.shaders.nodes import document_text, node_text
-
-WHOLE = "surface pairs"  # kind of probe
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ class SurfaceShader:
 
     libraries: ClassVar[tuple[str, ...]] = ()
     closure: ClassVar[bool] = True
-    kind: ClassVar[str] = WHOLE
+    kind: ClassVar[str] = kinds.SURFACE_SHADER
 
     @property
     def title(self) -> str:

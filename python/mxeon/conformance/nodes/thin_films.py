@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.conformance.nodes.bsdf import FILM_PAIRS, BsdfSubject
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.combinations import node_over
 from mxeon.conformance.samples.batch import Array, Values
 from mxeon.models.nodes.thin_films import FILM_NODES
@@ -25,7 +26,7 @@ class FilmSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        return FILM_PAIRS
+        return kinds.FILM
 
     def random_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
         """Random values; a dielectric below 1 counts as 1, a film in air.

@@ -3,14 +3,9 @@
 
 from dataclasses import dataclass, replace
 
-from mxeon.conformance.nodes.bsdf import SCHLICK, BsdfSubject
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS, Transmission
-
-# Kinds of probes.
-TRANSMITTED, SCHLICK_TRANSMITTED = KINDS = (
-    "transmission pairs",
-    "Schlick transmission pairs",
-)
 
 
 @dataclass(frozen=True)
@@ -19,7 +14,8 @@ class TransmissionSubject(BsdfSubject):
 
     @property
     def kind(self) -> str:
-        return SCHLICK_TRANSMITTED if super().kind == SCHLICK else TRANSMITTED
+        schlick = super().kind == kinds.SCHLICK
+        return kinds.SCHLICK_TRANSMISSION if schlick else kinds.TRANSMISSION
 
     @property
     def functions(self) -> Transmission:

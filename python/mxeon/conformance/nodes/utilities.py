@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.ports import COMPONENTS, Port
 from mxeon.conformance.nodes.rows import RowSubject
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
@@ -14,9 +15,8 @@ from mxeon.models.nodes.utilities import UTILITIES, UtilityNode
 from mxeon.models.nodes.utilities import Values as Outputs
 from mxeon.shaders.nodes import document_text, input_text, node_text
 
-VALUES, OSL_VALUES = "utility values", "utility values in OSL"  # kinds of probes
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
-KINDS = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
+TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
 SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # edges of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
@@ -57,7 +57,7 @@ class UtilitySubject(RowSubject[Outputs]):
     row: UtilityNode
     output: str
 
-    kind: ClassVar[str] = VALUES
+    kind: ClassVar[str] = kinds.UTILITY
 
     @property
     def closure(self) -> bool:
@@ -137,7 +137,7 @@ class UtilitySubject(RowSubject[Outputs]):
         return whole
 
     def _kind(self, name: str) -> str:
-        return KINDS[self._shape(name)]
+        return TYPES[self._shape(name)]
 
     def _shape(self, name: str) -> tuple[int, ...]:
         return np.shape(self.row.inputs[name])

@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 from typing import ClassVar
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.samples.batch import Values
@@ -14,7 +15,7 @@ SIZE = 64  # of pictures
 class BsdfPictureProbe(PictureProbe):
     """A node of pbrlib on a sphere."""
 
-    shown: ClassVar[str] = "bsdf pictures"
+    shown: ClassVar[str] = kinds.BSDF_PICTURE
     size: ClassVar[int] = SIZE
 
     subject: BsdfSubject

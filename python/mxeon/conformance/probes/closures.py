@@ -6,7 +6,7 @@ from typing import TypeVar, cast
 
 import numpy as np
 
-from mxeon.conformance.nodes.closures import closure_kind
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.reference.evaluated import evaluated
@@ -29,7 +29,7 @@ class ClosureSamples(Probe):
 
     @classmethod
     def kind_of(cls, subject: Subject) -> str:
-        return closure_kind(super().kind_of(subject))
+        return kinds.closure_kind(super().kind_of(subject))
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:

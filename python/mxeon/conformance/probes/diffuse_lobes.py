@@ -6,6 +6,7 @@ from typing import ClassVar, cast
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.diffuse import DiffuseLobe
 from mxeon.conformance.probes.pictures import (
     PICTURE_INPUTS,
@@ -25,7 +26,7 @@ class DiffuseLobeProbe(PictureProbe):
     model, shows how much of the light reaches the lobe and comes back.
     """
 
-    shown: ClassVar[str] = "lobes"
+    shown: ClassVar[str] = kinds.LOBE
     size: ClassVar[int] = PICTURE_SIZE // 4  # the shaders are long
 
     subject: DiffuseLobe

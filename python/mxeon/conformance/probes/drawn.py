@@ -4,6 +4,7 @@
 from collections.abc import Mapping
 from typing import ClassVar
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.diffuse import DiffuseLobe
 from mxeon.conformance.nodes.subject import Subject
@@ -30,7 +31,7 @@ class DrawnProbe(PictureProbe):
 
     @classmethod
     def kind_of(cls, subject: Subject) -> str:
-        return f"{cls.precision} {subject.kind}"
+        return kinds.drawn_kind(cls.precision, subject.kind)
 
 
 class HalfProbe(DrawnProbe):

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.emission import (
-    PICTURES,
     SURFACE_COLOR,
     EmissionSubject,
     SurfaceSubject,
@@ -27,7 +27,7 @@ OPACITIES = (0.0, 0.25, 1.0)
 class EmissionPictureProbe(NodeProbe, ValueProbe):
     """An EDF node on a sphere in the dark."""
 
-    shown: ClassVar[str] = PICTURES
+    shown: ClassVar[str] = kinds.EMISSION_PICTURE
 
     subject: EmissionSubject
 

@@ -3,14 +3,14 @@
 
 from collections.abc import Mapping
 
-from mxeon.conformance.nodes import bsdf, emission, transmission, utilities
+from mxeon.conformance.nodes import bsdf, emission, kinds, transmission, utilities
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
 from mxeon.conformance.nodes.hair import HAIRS
 from mxeon.conformance.nodes.media import MEDIUM_NODES
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.subsurface import SUBSURFACES
-from mxeon.conformance.nodes.surface_shaders import SHADERS, WHOLE
+from mxeon.conformance.nodes.surface_shaders import SHADERS
 from mxeon.conformance.nodes.thin_films import FILMS
 from mxeon.conformance.probes.bsdf import (
     BsdfProbe,
@@ -83,30 +83,30 @@ HOST_PROBES: dict[str, type[PairProbe] | type[PictureProbe]] = {
     "coarse facets": CoarseFacetProbe,
     "facet pairs": FacetPairProbe,
 }
-BSDF_KINDS = (*bsdf.KINDS, bsdf.COMBINED, bsdf.NESTED)
+BSDF_KINDS = (*kinds.BSDFS, kinds.COMBINED, kinds.NESTED)
 # Probes of nodes that shine by themselves or of which it is only asked whether they are there.
 IN_THE_DARK: Mapping[str, type[Probe]] = {
-    emission.MEDIUM: MediumProbe,
-    emission.SURFACES: SurfaceEmissionProbe,
-    emission.ABSENT: NodeProbe,
+    kinds.MEDIUM: MediumProbe,
+    kinds.EMITTING_SURFACE: SurfaceEmissionProbe,
+    kinds.ABSENT: NodeProbe,
 }
-PICTURED = ("lobes", emission.SURFACES)  # kinds whose probes ask for pictures
+PICTURED = (kinds.LOBE, kinds.EMITTING_SURFACE)  # kinds whose probes ask for pictures
 # On a host that evaluates pairs of directions.
 EVALUATED: Mapping[str, type[Probe]] = {
-    "lobes": DiffuseLobeProbe,
-    **dict.fromkeys((bsdf.CLOSED, bsdf.SHEEN), BsdfProbe),
-    bsdf.FITTED: FittedProbe,
-    **dict.fromkeys(bsdf.MICROFACET_KINDS, MicrofacetProbe),
-    **dict.fromkeys((bsdf.COMBINED, bsdf.NESTED), CombinedProbe),
-    bsdf.HAIR: HairProbe,
-    bsdf.SUBSURFACE: SubsurfaceProbe,
-    bsdf.FILM_PAIRS: FilmProbe,
-    **dict.fromkeys(transmission.KINDS, TransmissionProbe),
-    **dict.fromkeys(emission.KINDS, EmissionProbe),
-    emission.CONE: ConeProbe,
+    kinds.LOBE: DiffuseLobeProbe,
+    **dict.fromkeys((kinds.CLOSED, kinds.SHEEN), BsdfProbe),
+    kinds.FITTED: FittedProbe,
+    **dict.fromkeys(kinds.MICROFACETS, MicrofacetProbe),
+    **dict.fromkeys((kinds.COMBINED, kinds.NESTED), CombinedProbe),
+    kinds.HAIR: HairProbe,
+    kinds.SUBSURFACE: SubsurfaceProbe,
+    kinds.FILM: FilmProbe,
+    **dict.fromkeys(kinds.TRANSMISSIONS, TransmissionProbe),
+    **dict.fromkeys(kinds.EMISSIONS, EmissionProbe),
+    kinds.CONE_EMISSION: ConeProbe,
     **IN_THE_DARK,
-    utilities.VALUES: UtilityProbe,
-    WHOLE: SurfaceShaderProbe,
+    kinds.UTILITY: UtilityProbe,
+    kinds.SURFACE_SHADER: SurfaceShaderProbe,
 }
 # By the class of a host's own probes, then by the kind of a node. A picture of a solid shows light that
 # enters and leaves it, which no equation of a node that transmits has.
@@ -117,19 +117,19 @@ PROBES: Mapping[type[Probe], Mapping[str, type[Probe]]] = {
     },
     PictureProbe: {
         **dict.fromkeys(BSDF_KINDS, BsdfPictureProbe),
-        **dict.fromkeys(emission.KINDS, EmissionPictureProbe),
+        **dict.fromkeys(kinds.EMISSIONS, EmissionPictureProbe),
         **IN_THE_DARK,
-        utilities.VALUES: UtilityOslProbe,
+        kinds.UTILITY: UtilityOslProbe,
     },
     RenderedProbe: {
-        **{kind: rendered_of(EVALUATED[kind]) for kind in (*BSDF_KINDS, bsdf.SUBSURFACE)},
-        "lobes": RenderedLobeProbe,
+        **{kind: rendered_of(EVALUATED[kind]) for kind in (*BSDF_KINDS, kinds.SUBSURFACE)},
+        kinds.LOBE: RenderedLobeProbe,
     },
-    DrawnProbe: {"lobes": DrawnLobeProbe, **dict.fromkeys(bsdf.KINDS, DrawnBsdfProbe)},
+    DrawnProbe: {kinds.LOBE: DrawnLobeProbe, **dict.fromkeys(kinds.BSDFS, DrawnBsdfProbe)},
     # Storm takes an enumerated input for its default: no node of another mode is shown there.
     HalfProbe: {
-        "lobes": HalfLobeProbe,
-        **dict.fromkeys((bsdf.CLOSED, bsdf.FITTED, *bsdf.MICROFACET_KINDS), HalfBsdfProbe),
+        kinds.LOBE: HalfLobeProbe,
+        **dict.fromkeys((kinds.CLOSED, kinds.FITTED, *kinds.MICROFACETS), HalfBsdfProbe),
     },
 }
 
@@ -141,6 +141,6 @@ def probe_type(host: str) -> type[PairProbe] | type[PictureProbe] | None:
 
 def probe_type_of(subject: Subject, probe: type[Probe]) -> type[Probe] | None:
     """Class of a subject's probes on a host whose own probes have a class; None if it has none."""
-    if subject.kind == "pairs":  # a rough diffuse node, of which each host has a probe
+    if subject.kind == kinds.DIFFUSE:  # a rough diffuse node, of which each host has a probe
         return probe
     return PROBES.get(probe, {}).get(subject.kind)

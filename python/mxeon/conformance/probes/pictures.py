@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.subject import LobeSubject
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.samples.batch import RIM, Array, Batch, Values
@@ -37,7 +38,7 @@ Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and which of them are ju
 class PictureProbe(LobeProbe):
     """A node on a host that makes pictures: the lit points of a sphere are its pairs."""
 
-    shown: ClassVar[str] = "pictures"
+    shown: ClassVar[str] = kinds.PICTURE
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     size: ClassVar[int] = PICTURE_SIZE
 

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.probes.cases import BLACK
 from mxeon.conformance.probes.pictures import (
     PICTURE_INPUTS,
@@ -27,7 +28,7 @@ SHORTEST = 2.0**-10  # wo + wi of special pairs: Fresnel's formulas square its c
 class FacetProbe(ExactProbe):
     """A node of a renderer's own on a polyhedron, with noise under an environment."""
 
-    shown: ClassVar[str] = "facets"
+    shown: ClassVar[str] = kinds.FACET
     size: ClassVar[int] = PICTURE_SIZE
 
     @cached_property
@@ -56,13 +57,13 @@ class FacetProbe(ExactProbe):
 class CoarseFacetProbe(FacetProbe):
     """A node on the polyhedron, by a renderer that keeps light in a few bits."""
 
-    shown: ClassVar[str] = "coarse facets"
+    shown: ClassVar[str] = kinds.COARSE_FACET
 
 
 class FacetPairProbe(FacetProbe):
     """A node that its renderer evaluates for any pairs; the polyhedron shows its environment."""
 
-    shown: ClassVar[str] = "facet pairs"
+    shown: ClassVar[str] = kinds.FACET_PAIR
     usual: ClassVar[Counts] = Counts(1 << 13)  # a renderer's own function is called for each
 
     @cached_property

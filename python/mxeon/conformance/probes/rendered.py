@@ -9,9 +9,9 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.nodes.diffuse import DiffuseLobe
-from mxeon.conformance.nodes.rendered import rendered_kind
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.cases import BLACK, WHITE
 from mxeon.conformance.probes.pairs import PairProbe
@@ -57,7 +57,7 @@ class RenderedSamples(Probe):
 
     @classmethod
     def kind_of(cls, subject: Subject) -> str:
-        return rendered_kind(super().kind_of(subject))
+        return kinds.rendered_kind(super().kind_of(subject))
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:

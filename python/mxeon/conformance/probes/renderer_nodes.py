@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.probes.pictures import PICTURE_SIZE, Mask, PictureProbe, scene_of
 from mxeon.conformance.results import Claims
@@ -51,7 +52,7 @@ class NativeProbe(PictureProbe):
 class ExactProbe(NativeProbe):
     """A node of a renderer's own, on a sphere whose points and light have no error but rounding."""
 
-    shown: ClassVar[str] = "exact"
+    shown: ClassVar[str] = kinds.EXACT
     size: ClassVar[int] = PICTURE_SIZE // 2
 
     @property

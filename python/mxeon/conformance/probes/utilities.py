@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from mxeon.conformance.nodes.utilities import OSL_VALUES, UtilitySubject
+from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.utilities import UtilitySubject
 from mxeon.conformance.probes.probe import ValueProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts
 from mxeon.hosts.calls import GRAPH
@@ -58,7 +59,7 @@ class UtilityProbe(ValueProbe):
 class UtilityOslProbe(UtilityProbe):
     """An output of a utility node on a renderer with OSL, which has mathematics of its own."""
 
-    shown: ClassVar[str] = OSL_VALUES
+    shown: ClassVar[str] = kinds.UTILITY_OSL
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
