@@ -47,8 +47,8 @@ class Engine:
 
 
 def test_the_error_of_an_engines_power_is_that_of_a_value_of_the_sheen():
-    assert engine.power_error(Engine(0.0)) == 0.0
-    assert engine.power_error(Engine(1e-4)) == pytest.approx(1e-4, rel=1e-2)
+    assert engine.sheen_error(Engine(0.0)) == 0.0
+    assert engine.sheen_error(Engine(1e-4)) == pytest.approx(1e-4, rel=1e-2)
 
 
 def test_only_a_sheen_of_powers_takes_the_engine_into_its_tolerance():

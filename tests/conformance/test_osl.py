@@ -9,7 +9,7 @@ import pytest
 
 from mxeon.conformance.accuracy.accuracy import ACCURACY
 from mxeon.conformance.accuracy.closures import GRAPH
-from mxeon.conformance.accuracy.emission import widen_for_functions
+from mxeon.conformance.accuracy.engine import widen_for_engine
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.probes.cases import frame_cases, value_cases
 from mxeon.conformance.probes.families import ALL_SUBJECTS, ClosureProbe, probe_type_of
@@ -222,7 +222,7 @@ def first_case(probe: Probe) -> list[Case]:
 def excess(probe: Probe, host: Host, cases=first_case, quantity="value") -> float:
     """Largest error of a probe over its tolerance; infinity where OSL refuses the text."""
     tolerance = ACCURACY[probe.kind].of(quantity)
-    tolerance = widen_for_functions(tolerance, probe.subject, probe.kind, evaluated(host))
+    tolerance = widen_for_engine(tolerance, probe.subject, probe.kind, evaluated(host))
     try:
         found = list(cases(probe))
     except ShaderError:

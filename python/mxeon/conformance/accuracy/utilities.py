@@ -1,27 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tolerances of the checks of the utility nodes, by output, with the errors of an engine's own functions.
+"""Tolerances of the checks of the utility nodes, by output.
 
 An error is relative to the largest component where that exceeds 1; of an artistic index it is in units
 in which its roundings are alike, see `measures`.
 """
 
-from functools import lru_cache
-
-import numpy as np
-
-from mxeon.conformance.nodes import kinds
-from mxeon.conformance.nodes.subject import Subject
-from mxeon.conformance.samples.batch import SEED
 from mxeon.conformance.samples.measurement import absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
-from mxeon.hosts.base import Host
 
-COUNT = 1 << 12
-LEAST = 1e-4  # of numbers whose logarithm is measured
-FUNCTIONS = {
-    "pow": "float mxeon_pow(float x, float y)\n{\n    return pow(x, y);\n}\n",
-    "log": "float mxeon_log(float x)\n{\n    return log(x);\n}\n",
-}
 UNIT = "relative above 1"
 ALPHA = Tolerance(
     rounded_up((12 + 0.25 / 0.02) * ROUNDING),
@@ -112,33 +98,3 @@ def color_tolerance(error: float) -> Tolerance:
         f"a square of 12 roundings of float32, 2^-24 each, and the error of the engine's own logarithm, "
         f"{error:.1e}, times 2 x 6.9 / 3.4^2; rounded up",
     )
-
-
-def utility_tolerance(_: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
-    """The tolerance of an output on a host, in place of the one that the table has."""
-    title, node = subject.title, subject.node
-    if node == "blackbody":
-        return BLACKBODY if kind == kinds.UTILITY else OSL_BLACKBODY
-    if node == "chiang_hair_roughness":
-        return power_tolerance(function_error(host, "pow"))
-    if node == "deon_hair_absorption_from_melanin":
-        return melanin_tolerance(function_error(host, "log"))
-    if node == "chiang_hair_absorption_from_color":
-        return color_tolerance(function_error(host, "log"))
-    return TOLERANCES[title]
-
-
-@lru_cache(maxsize=16)
-def function_error(host: Host, name: str) -> float:
-    """Largest error of an engine's own 20th and 22nd power in [0, 1], or of its logarithm below 1."""
-    rng = np.random.default_rng(SEED)
-    x = np.append(rng.random(COUNT), 1.0).astype(np.float32).astype(np.float64)
-    if name == "pow":
-        exponent = np.where(np.arange(len(x)) % 2, 20.0, 22.0)
-        arguments, exact = [x, exponent], x**exponent
-    else:
-        x = LEAST ** (1.0 - x)
-        x = x.astype(np.float32).astype(np.float64)
-        arguments, exact = [x], np.log(x)
-    measured = host.execute(FUNCTIONS[name], f"mxeon_{name}", *arguments)[:, 0]
-    return float(np.abs(measured - exact).max())

@@ -3,6 +3,7 @@
 
 from mxeon.conformance.accuracy import emission as tolerances
 from mxeon.conformance.accuracy.diffuse import count_of
+from mxeon.conformance.accuracy.engine import widen_for_engine
 from mxeon.conformance.checks import emission_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import gray, mistake, offset, scale, shifted, with_inputs
@@ -61,7 +62,7 @@ CHECKS = (
         gray,
         "value",
         diagnose=diagnosis.diagnose_radiance,
-        adapt=tolerances.widen_for_functions,
+        adapt=widen_for_engine,
     ),
     Check(
         "back",
@@ -73,7 +74,7 @@ CHECKS = (
         pairs=True,
         diagnose=diagnosis.diagnose_back,
         open=True,
-        adapt=tolerances.widen_for_functions,
+        adapt=widen_for_engine,
     ),
     Check(
         "exitance",
@@ -83,7 +84,7 @@ CHECKS = (
         scale("the radiance is 0.99 times as large", 0.99),
         "integral",
         diagnose=diagnosis.diagnose_radiance,
-        adapt=tolerances.widen_for_functions,
+        adapt=widen_for_engine,
     ),
     Check(
         "transmittance",
@@ -93,7 +94,7 @@ CHECKS = (
         shifted,
         "value",
         diagnose=diagnosis.diagnose_medium,
-        adapt=tolerances.widen_for_functions,
+        adapt=widen_for_engine,
     ),
     Check(
         "opacity",

@@ -12,7 +12,8 @@ import numpy as np
 
 from mxeon.conformance.accuracy import utilities as tolerances
 from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.accuracy.utilities import ALPHA, utility_tolerance
+from mxeon.conformance.accuracy.engine import widen_for_engine
+from mxeon.conformance.accuracy.utilities import ALPHA
 from mxeon.conformance.checks import measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
@@ -48,7 +49,7 @@ def explained(probe: Probe) -> Diagnosis:
         replace(each, values=partial(_in_unit, unit, each.values))
         for each in probe.value_candidates
     ]
-    tolerance = utility_tolerance(ALPHA, probe.subject, probe.kind, probe.host)
+    tolerance = widen_for_engine(ALPHA, probe.subject, probe.kind, probe.host)
     return diagnosis.diagnose_cases(probe, list(output(probe)), candidates, tolerance)
 
 
@@ -130,7 +131,7 @@ CHECKS = (
         "value",
         diagnose=explained,
         open=True,
-        adapt=tolerances.utility_tolerance,
+        adapt=widen_for_engine,
     ),
     Check(
         "round_trip",

@@ -17,7 +17,7 @@ from mxeon.conformance.accuracy.diffuse import INVERSION, ROUND_TRIP
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.results import Place, Result
-from mxeon.conformance.samples.batch import SEED, Array
+from mxeon.conformance.samples.batch import SEED, Array, float32
 from mxeon.conformance.samples.measurement import Measurement, absolute
 from mxeon.conformance.samples.tolerance import Tolerance
 from mxeon.conformance.text.syntax import braces
@@ -70,7 +70,7 @@ class InversionProbe:
         """Random colors and roughnesses, an eighth of each on either end of its range."""
         rng = np.random.default_rng(SEED)
         columns = np.clip(1.25 * rng.random((POINTS, 4)) - 0.125, 0.0, 1.0)
-        columns = columns.astype(np.float32).astype(np.float64)
+        columns = float32(columns)
         return columns[:, :3], columns[:, 3]
 
     @cached_property

@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.conformance.samples.batch import GRAZING, SEED, Array, directions
+from mxeon.conformance.samples.batch import GRAZING, SEED, Array, directions, float32
 from mxeon.models import sampling
 from mxeon.models.diffuse import albedo, formulas
 from mxeon.models.sampling import cltc, eon, hemisphere, ltc
@@ -140,7 +140,7 @@ def random_columns() -> Columns:
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     return {
-        name: np.asarray(values, np.float32).astype(np.float64)
+        name: float32(values)
         for name, values in {
             **unit,
             "wo": wo,

@@ -12,6 +12,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from mxeon.conformance.accuracy.diffuse import DENSITY, LOSS, PART, VALUE, direction_of
+from mxeon.conformance.accuracy.engine import TURN
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.functions import numpy_functions
@@ -28,11 +29,6 @@ ROTATIONS = ("eon_around", "eon_azimuth_frame", "eon_rotate_z", "eon_towards")
 SAMPLES = re.compile(rf"\w+_(sample|draw|clipped|transformed)|{'|'.join(ROTATIONS)}")
 DENSITIES = re.compile(r"\w+_pdf|ltc_(density|[abcd])")
 STEP = 2.0**-22  # of the arguments by which a function's condition is measured
-ENGINE = """float mxeon_engine(float u)
-{
-    return max(abs(cos(6.28318530718 * u)), abs(sin(6.28318530718 * u)));
-}
-"""
 
 
 @dataclass(frozen=True)
@@ -74,9 +70,7 @@ class FunctionProbe:
     @cached_property
     def sine_error(self) -> float:
         """Error of the engine's own cosine and sine over a turn, of which samples are made."""
-        u = numpy_functions.random_columns()["u2"]
-        exact = np.maximum(np.abs(np.cos(2.0 * np.pi * u)), np.abs(np.sin(2.0 * np.pi * u)))
-        return float(np.abs(self.host.execute(ENGINE, "mxeon_engine", u)[:, 0] - exact).max())
+        return float(TURN.errors(self.host, numpy_functions.random_columns()["u2"]).max())
 
     def _values(self, scale: float) -> Mapping[str, Array]:
         """Values of the functions, in one call; each of them has POINTS rows."""

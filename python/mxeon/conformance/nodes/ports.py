@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples.batch import Array, Changes, Values
+from mxeon.conformance.samples.batch import Array, Changes, Values, float32
 from mxeon.conformance.samples.edge_cases import with_edges
 
 COMPONENTS = {"float": (), "vector2": (2,), "vector3": (3,), "color3": (3,)}  # shape by type
@@ -83,7 +83,7 @@ def _drawn(rng: np.random.Generator, count: int, port: Port) -> Array:
         values[::2] = port.often
     if port.equal:
         values[::2] = values[::2, :1]
-    return values.astype(np.float32).astype(np.float64)
+    return float32(values)
 
 
 def draw_edges(rng: np.random.Generator, count: int, ports: Iterable[Port]) -> dict[str, Array]:

@@ -8,7 +8,16 @@ import numpy as np
 
 from mxeon.conformance.nodes.emission import EmissionSubject
 from mxeon.conformance.probes.probe import Probe, ValueProbe
-from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, Values, directions, rounded
+from mxeon.conformance.samples.batch import (
+    SEED,
+    Array,
+    Batch,
+    Counts,
+    Values,
+    directions,
+    float32,
+    rounded,
+)
 from mxeon.conformance.samples.edge_cases import GRID, turned_directions, turned_frames
 from mxeon.errors import DocumentError, NotRun
 from mxeon.hosts.base import Host
@@ -170,6 +179,6 @@ def _nodes(stops: Array, count: int) -> tuple[Array, Array]:
     low, high = stops[:, :-1, np.newaxis], stops[:, 1:, np.newaxis]
     t = 0.5 * (x + 1.0)  # high - mu = t^2 (high - low): dense at the upper end, where powers root
     mu = high - t * t * (high - low)
-    mu = mu.astype(np.float32).astype(np.float64)
+    mu = float32(mu)
     weights = 2.0 * mu * (high - low) * w * t
     return mu.reshape(len(stops), -1), weights.reshape(len(stops), -1)

@@ -12,7 +12,7 @@ from mxeon.conformance.nodes.surface_shaders import SurfaceShader
 from mxeon.conformance.probes.bsdf import LEAST_VIEW, reflected
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions, float32
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 from mxeon.shaders.document.values import Plain
@@ -115,9 +115,7 @@ class SurfaceShaderProbe(PairProbe):
     def _views(self, rng: np.random.Generator, count: int) -> Array:
         """Random directions, none so grazing that a sheen's own equations gain energy."""
         wo = directions(rng, count)
-        return (
-            np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo).astype(np.float32).astype(float)
-        )
+        return float32(np.where(wo[:, 2:] < LEAST_VIEW, [0.6, 0.0, 0.8], wo))
 
     @cached_property
     def _document(self) -> Shader:

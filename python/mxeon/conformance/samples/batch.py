@@ -158,7 +158,7 @@ def directions(rng: np.random.Generator, count: int) -> Array:
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
     rng.shuffle(mu)
-    mu = mu.astype(np.float32).astype(np.float64)
+    mu = float32(mu)
     radius, azimuth = np.sqrt(1.0 - mu * mu), 2.0 * np.pi * rng.random(count)
     return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
 
@@ -183,9 +183,14 @@ def rounded_roughness(roughness: Array, row: Model) -> Array:
     return np.minimum(roughness.astype(np.float32), largest).astype(np.float64)
 
 
+def float32(values: ArrayLike) -> Array:
+    """Values rounded to float32, in float64."""
+    return np.asarray(values, np.float32).astype(np.float64)
+
+
 def rounded(columns: Iterable[Array]) -> Array:
     """Columns as rows of float32 numbers in float64."""
-    return np.stack(list(columns), axis=-1).astype(np.float32).astype(np.float64)
+    return float32(np.stack(list(columns), axis=-1))
 
 
 class FilmViews(NamedTuple):

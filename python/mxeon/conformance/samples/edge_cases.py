@@ -10,6 +10,7 @@ from mxeon.conformance.samples.batch import (
     Array,
     Batch,
     directions,
+    float32,
     random_inputs,
     rounded,
     rounded_roughness,
@@ -132,11 +133,11 @@ def with_edges(rng: np.random.Generator, values: Array, edges: ArrayLike) -> Arr
     """Values of which half are replaced by random edges, as float32 numbers."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
     mixed = np.where(rng.random(np.shape(values)) < 0.5, picked, values)
-    return mixed.astype(np.float32).astype(np.float64)
+    return float32(mixed)
 
 
 def _directions(mu: Array, azimuth: Array) -> Array:
     """Directions of given cosines, float32 numbers, and azimuths."""
-    mu = np.asarray(mu, np.float32).astype(np.float64)
+    mu = float32(mu)
     radius = np.sqrt(1.0 - mu * mu)
     return rounded([radius * np.cos(azimuth), radius * np.sin(azimuth), mu])
