@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mxeon.conformance import known_issues
-from mxeon.conformance.diagnosis.candidates import diagnose_value
+from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
@@ -88,7 +88,7 @@ def test_every_page_that_a_check_refers_to_is_there():
 @pytest.mark.parametrize("subject", [EON, QON], ids=lambda subject: subject.title)
 def test_stock_materialx_in_cycles_is_called_by_its_name(hosts, subject):
     probe = PictureProbe(hosts("cycles"), subject, "stock")
-    assert "nearest known model: EON with rho^3 (rms " in diagnose_value(probe).text
+    assert "nearest known model: EON with rho^3 (rms " in VALUE.diagnose(probe).text
 
 
 def test_what_stock_materialx_has_right_passes(stock):

@@ -83,7 +83,7 @@ def test_a_wrong_lobe_is_named():
             return self.expected(batch.altered(coat=np.zeros(len(batch.wo))))
 
     probe = Coated(None, SHADERS[0], "eonlib")
-    assert ROWS["lobes"].diagnose(probe).text == "the layer equation holds without the coat"
+    assert ROWS["lobes"].explain(probe).text == "the layer equation holds without the coat"
 
 
 @pytest.mark.parametrize("shader", SHADERS, ids=lambda shader: shader.node)

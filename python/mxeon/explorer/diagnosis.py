@@ -3,8 +3,9 @@
 
 from functools import lru_cache
 
-from mxeon.conformance.accuracy.diffuse import VALUE
-from mxeon.conformance.diagnosis.candidates import INEXACT, diagnose_albedo, diagnose_value
+from mxeon.conformance.accuracy import diffuse as tolerances
+from mxeon.conformance.diagnosis.candidates import INEXACT
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.errors import NotRun
@@ -45,9 +46,9 @@ def _nearest(probe: PairProbe) -> str:
     rows = {row.title: row for row in KNOWN_DEFECTS + MODELS}
     value, albedo = (
         min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))
-        for diagnosis in (diagnose_value(probe), diagnose_albedo(probe))
+        for diagnosis in (VALUE.diagnose(probe), ALBEDO.diagnose(probe))
     )
-    if value[1] > INEXACT * VALUE.value:
+    if value[1] > INEXACT * tolerances.VALUE.value:
         return ""
     same = albedo[0] and rows[albedo[0]].brdf is rows[value[0]].brdf
     return rows[albedo[0] if same else value[0]].name

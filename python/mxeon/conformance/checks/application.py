@@ -92,7 +92,7 @@ def judge_check(check: Check, probe: Probe) -> Result:
             right = check.measured(probe, tolerance.metric)
             wrong = check.measured(check.control.make(probe), tolerance.metric)
             if right.error > tolerance.value:
-                diagnosis = check.diagnose(probe)
+                diagnosis = check.explain(probe)
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
     # A permitted function excuses an open check alone.

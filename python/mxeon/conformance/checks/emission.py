@@ -8,8 +8,8 @@ from mxeon.conformance.checks import emission_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import gray, mistake, offset, scale, shifted, with_inputs
 from mxeon.conformance.checks.names import EMITTER, MEDIUM_NAMES
-from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.comparisons import BACK, RADIANCE, TRANSMITTANCE, VALUE
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.emission import (
     UNIMPLEMENTED,
@@ -17,7 +17,6 @@ from mxeon.conformance.nodes.emission import (
 from mxeon.conformance.probes.cases import (
     back_cases,
     conditioned,
-    transmittance_cases,
     value_cases,
 )
 from mxeon.conformance.probes.probe import Probe
@@ -61,7 +60,7 @@ CHECKS = (
         conditioned(value_cases),
         gray,
         "value",
-        diagnose=diagnosis.diagnose_radiance,
+        diagnose=RADIANCE.diagnose,
         adapt=widen_for_engine,
     ),
     Check(
@@ -72,7 +71,7 @@ CHECKS = (
         offset,
         "value",
         pairs=True,
-        diagnose=diagnosis.diagnose_back,
+        diagnose=BACK.diagnose,
         open=True,
         adapt=widen_for_engine,
     ),
@@ -83,26 +82,23 @@ CHECKS = (
         measures.exitance,
         scale("the radiance is 0.99 times as large", 0.99),
         "integral",
-        diagnose=diagnosis.diagnose_radiance,
+        diagnose=RADIANCE.diagnose,
         adapt=widen_for_engine,
     ),
     Check(
         "transmittance",
         "A medium passes what its coefficients leave over one meter.",
         MEDIUM_NAMES,
-        transmittance_cases,
+        TRANSMITTANCE,
         shifted,
-        "value",
-        diagnose=diagnosis.diagnose_medium,
         adapt=widen_for_engine,
     ),
     Check(
         "opacity",
         "The light that a surface emits is scaled by its opacity.",
         (kinds.EMITTING_SURFACE,),
-        value_cases,
+        VALUE,
         with_inputs("the opacity is 1", opacity=1.0),
-        "value",
         diagnose=diagnose_opacity,
     ),
 )

@@ -8,15 +8,9 @@ from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, mistake, pass_all, scale, shifted
 from mxeon.conformance.checks.names import COMBINATION, OTHERS
-from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, TRANSMISSION, VALUE
 from mxeon.conformance.nodes.combinations import SINGLE
-from mxeon.conformance.probes.cases import (
-    albedo_cases,
-    layering_cases,
-    transmission_cases,
-    value_cases,
-)
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.models.nodes import NODES
@@ -38,19 +32,15 @@ CHECKS = (
         "layering",
         "The throughput of a layer is 1 - E for light from above, for every weight.",
         LAYERS,
-        layering_cases,
+        THROUGHPUT,
         pass_all,
-        "throughput",
-        diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
         "transmission",
         "The throughput of a layer is 1 - E for light through the base as well.",
         LAYERS,
-        transmission_cases,
+        TRANSMISSION,
         pass_all,
-        "throughput",
-        diagnose=diagnosis.diagnose_transmission,
     ),
     Check(
         "dip",
@@ -61,7 +51,7 @@ CHECKS = (
         tolerances.DIP,
         pairs=True,
         lit=True,
-        diagnose=diagnosis.diagnose_throughput,
+        diagnose=THROUGHPUT.diagnose,
     ),
     Check(
         "denser",
@@ -72,7 +62,7 @@ CHECKS = (
         tolerances.UNFITTED,
         pairs=True,
         lit=True,
-        diagnose=diagnosis.diagnose_throughput,
+        diagnose=THROUGHPUT.diagnose,
     ),
     Check(
         "layer",
@@ -81,7 +71,7 @@ CHECKS = (
         measures.layer,
         pass_all,
         "light",
-        diagnose=diagnosis.diagnose_throughput,
+        diagnose=THROUGHPUT.diagnose,
     ),
     Check(
         "integral",
@@ -107,20 +97,17 @@ COMBINED_CHECKS = (
         "combination",
         "The value of two lobes together is that of the node's equation.",
         COMBINATION,
-        value_cases,
+        VALUE,
         shifted,
-        "value",
         pairs=True,
     ),
     Check(
         "combined_albedo",
         "The environment branch of two lobes together gives their albedo.",
         COMBINATION,
-        albedo_cases,
+        ALBEDO,
         shifted,
-        "albedo",
         pairs=True,
-        diagnose=diagnosis.diagnose_albedo,
     ),
     Check(
         "combined_throughput",
@@ -129,7 +116,7 @@ COMBINED_CHECKS = (
         measures.passing,
         pass_all,
         "throughput",
-        diagnose=diagnosis.diagnose_throughput,
+        diagnose=THROUGHPUT.diagnose,
         open=True,
     ),
     Check(

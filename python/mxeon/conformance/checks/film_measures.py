@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.checks.controls import Altered, mistake
-from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis, diagnose_albedo
+from mxeon.conformance.diagnosis.candidates import NEAR, Diagnosis
+from mxeon.conformance.diagnosis.comparisons import ALBEDO
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.bsdf import LEAST_INDEX
 from mxeon.conformance.probes.cases import WHITE
@@ -148,7 +149,7 @@ def diagnose_average(probe: Probe) -> Diagnosis:
 
 def diagnose_visible(probe: Probe) -> Diagnosis:
     """The explanation of a film's albedo, or the weights of the facets where that is right."""
-    explained = diagnose_albedo(probe)
+    explained = ALBEDO.diagnose(probe)
     if RIGHT not in explained.text:
         return explained
     return Diagnosis("the visible facets are not weighted by masking and shadowing")

@@ -7,8 +7,8 @@ from dataclasses import replace
 from mxeon.conformance.accuracy.hair import HAIR_REGION
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import with_inputs
-from mxeon.conformance.diagnosis import candidates as diagnosis
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
+from mxeon.conformance.diagnosis.faults import DIRECT
 from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.probes.cases import over_condition
 from mxeon.conformance.probes.probe import Probe
@@ -46,7 +46,7 @@ def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
         case = _case(probe, key)
         brightest = min(float(case.expected.max()), 1.0)
         tolerance = replace(HAIR_REGION, metric=scaled, value=brightest * HAIR_REGION.value)
-        return diagnosis.diagnose_case(probe, case, candidates, tolerance)
+        return explain(probe, [case], candidates, DIRECT, tolerance)
 
     return diagnose
 

@@ -22,9 +22,9 @@ from mxeon.conformance.checks.names import (
     OTHERS,
     shows_exactly,
 )
-from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import DiffuseLobe, DiffuseSubject
 from mxeon.conformance.nodes.hair import HAIRS
@@ -32,11 +32,9 @@ from mxeon.conformance.nodes.renderer_nodes import RendererNode
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.nodes.subsurface import SUBSURFACES
 from mxeon.conformance.probes.cases import (
-    albedo_cases,
     dead_inputs,
     frame_cases,
     surroundings_case,
-    value_cases,
 )
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.subsurface import ON_SPHERES, sphere_cases
@@ -61,7 +59,7 @@ ROUGH = (*ANY, "fon")
 def diagnose_sphere(probe: Probe) -> Diagnosis:
     """The explanation of light on a sphere."""
     cases = list(sphere_cases(probe))
-    return diagnosis.diagnose_cases(probe, cases, ON_SPHERES, bsdf_tolerances.RINGS)
+    return explain(probe, cases, ON_SPHERES, (), bsdf_tolerances.RINGS)
 
 
 def has_flag(subject: Subject, host: str) -> bool:
@@ -100,9 +98,8 @@ CHECKS = (
         "value",
         "The value is the model's for every pair of directions, back-lit and grazing ones included.",
         (*ROUGH, *OTHERS),
-        value_cases,
+        VALUE,
         gray,
-        "value",
         applies=is_node,
         open=True,
         adapt=widen_for_engine,
@@ -111,20 +108,17 @@ CHECKS = (
         "lobe",
         "The diffuse lobe of the surface shader is the model's.",
         (*ANY, *SMOOTH),
-        value_cases,
+        VALUE,
         gray,
-        "value",
         applies=is_lobe,
     ),
     Check(
         "environment",
         "The environment branch gives the directional albedo.",
         (*ROUGH, *OTHERS, *SMOOTH),
-        albedo_cases,
+        ALBEDO,
         gray,
-        "albedo",
         applies=has_environment,
-        diagnose=diagnosis.diagnose_albedo,
         open=True,
     ),
     Check(
@@ -143,7 +137,7 @@ CHECKS = (
         with_inputs("reflectance is 0.99", color=(0.99, 0.99, 0.99)),
         "albedo",
         applies=has_environment,
-        diagnose=diagnosis.diagnose_albedo,
+        diagnose=ALBEDO.diagnose,
     ),
     Check(
         "black",

@@ -5,12 +5,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from mxeon.conformance.accuracy import surface_shaders as tolerances
 from mxeon.conformance.accuracy.diffuse import count_of
-from mxeon.conformance.accuracy.surface_shaders import MEAN, VALUE
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import Altered, Mistake, scale, shifted
 from mxeon.conformance.checks.measures import counted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
 from mxeon.conformance.nodes.surface_shaders import SHADERS, SurfaceShader
 from mxeon.conformance.probes.cases import albedo_cases, value_cases
 from mxeon.conformance.probes.probe import Probe, subject_of
@@ -76,7 +77,7 @@ def diagnose_lobes(probe: Probe) -> Diagnosis:
         if names := tuple(name for name in inputs if name in batch.inputs):
             errors[lobe] = _error(probe, pairs, names)
     lobe = min(errors, key=errors.__getitem__)
-    if errors[lobe] <= VALUE.value:
+    if errors[lobe] <= tolerances.VALUE.value:
         return Diagnosis(f"the layer equation holds without the {lobe}")
     least = " and ".join(sorted(errors, key=errors.__getitem__)[:2])
     return Diagnosis(f"no lobe alone explains it; the error is least without {least}")
@@ -116,18 +117,16 @@ CHECKS = (
         "lobes",
         "Direct light is that of all lobes by the layer equation.",
         MODELS,
-        value_cases,
+        VALUE,
         shifted,
-        "value",
         diagnose=diagnose_lobes,
     ),
     Check(
         "lobes_albedo",
         "The environment branch gives the albedo of all lobes by the layer equation.",
         MODELS,
-        albedo_cases,
+        ALBEDO,
         shifted,
-        "albedo",
         diagnose=diagnose_sum,
     ),
     Check(
@@ -136,7 +135,7 @@ CHECKS = (
         MODELS,
         mean,
         scale("every value is a hundredth lower", 0.99),
-        MEAN,
+        tolerances.MEAN,
         lit=True,
         diagnose=diagnose_sum,
     ),

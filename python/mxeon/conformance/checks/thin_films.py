@@ -21,19 +21,17 @@ from mxeon.conformance.checks.film_measures import (
     film_visible,
     thicker,
 )
-from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
+from mxeon.conformance.diagnosis.comparisons import ALBEDO, THROUGHPUT, VALUE
 from mxeon.conformance.nodes.thin_films import FILM_MODELS, LAYERED
-from mxeon.conformance.probes.cases import albedo_cases, layering_cases, value_cases
 
 CHECKS = (
     Check(
         "film",
         "The value under a thin film has the film's Airy reflectance.",
         FILM_MODELS,
-        value_cases,
+        VALUE,
         thicker,
-        "value",
         open=True,
     ),
     Check(
@@ -79,11 +77,9 @@ CHECKS = (
         "film_environment",
         "The environment branch has the film's directional albedo.",
         FILM_MODELS,
-        albedo_cases,
+        ALBEDO,
         thicker,
-        "albedo",
         lit=True,
-        diagnose=diagnosis.diagnose_albedo,
         open=True,
     ),
     Check(
@@ -131,11 +127,9 @@ CHECKS = (
         "film_throughput",
         "The throughput of a layer under a film is 1 - E of the film.",
         LAYERED,
-        layering_cases,
+        THROUGHPUT,
         pass_all,
-        "throughput",
         lit=True,
-        diagnose=diagnosis.diagnose_throughput,
     ),
     Check(
         "film_finite",

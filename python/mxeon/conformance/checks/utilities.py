@@ -17,9 +17,8 @@ from mxeon.conformance.accuracy.utilities import ALPHA
 from mxeon.conformance.checks import measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import drop_changes, no_number, shifted
-from mxeon.conformance.diagnosis import candidates as diagnosis
 from mxeon.conformance.diagnosis import inputs as input_diagnosis
-from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.probes.cases import dead_inputs
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
@@ -50,7 +49,7 @@ def explained(probe: Probe) -> Diagnosis:
         for each in probe.value_candidates
     ]
     tolerance = widen_for_engine(ALPHA, probe.subject, probe.kind, probe.host)
-    return diagnosis.diagnose_cases(probe, list(output(probe)), candidates, tolerance)
+    return explain(probe, list(output(probe)), candidates, (), tolerance)
 
 
 def finite_outputs(probe: Probe) -> Measurement:

@@ -1,24 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The diagnosis of a failure: the known model, defect or fault that explains it, or its place."""
+"""The explanation of cases: the known model, defect or fault that gives their values, or their place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache, partial
 
 import numpy as np
 
-from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
-from mxeon.conformance.diagnosis.faults import DIRECT, ENVIRONMENT, Fault, scaled_by
+from mxeon.conformance.diagnosis.faults import Fault, scaled_by
 from mxeon.conformance.diagnosis.regions import Mask, smallest
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.probes.cases import (
-    albedo_cases,
-    back_cases,
-    layering_cases,
-    transmission_cases,
-    transmittance_cases,
-    value_cases,
-)
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 from mxeon.conformance.samples.measurement import Case, mean_error
@@ -70,99 +60,30 @@ def sentence(distances: Sequence[tuple[str, float]]) -> str:
     return f"nearest known model: {first} (rms {least:.2g}){then}"
 
 
-@lru_cache(maxsize=2)  # several checks of a subject fail for one reason
-def diagnose_value(probe: Probe) -> Diagnosis:
-    """The explanation of the probe's values for pairs of directions."""
-    candidates = probe.value_candidates
-    return _explained(
-        probe, list(value_cases(probe)), candidates, DIRECT, _tolerance(probe, "value")
-    )
-
-
-def diagnose_case(
-    probe: Probe, case: Case, candidates: Sequence[Candidate], tolerance: Tolerance
-) -> Diagnosis:
-    """The explanation of values of one case, for pairs of directions, by candidates."""
-    return _explained(probe, [case], candidates, DIRECT, tolerance)
-
-
-@lru_cache(maxsize=2)
-def diagnose_albedo(probe: Probe) -> Diagnosis:
-    """The explanation of the probe's environment branch."""
-    candidates = probe.albedo_candidates
-    cases = list(albedo_cases(probe))
-    return _explained(probe, cases, candidates, ENVIRONMENT, _tolerance(probe, "albedo"))
-
-
-@lru_cache(maxsize=2)
-def diagnose_throughput(probe: Probe) -> Diagnosis:
-    """The explanation of the throughput of a layer for light from above."""
-    return _of_rest(probe, list(layering_cases(probe)))
-
-
-@lru_cache(maxsize=2)
-def diagnose_transmission(probe: Probe) -> Diagnosis:
-    """The explanation of the throughput of a layer for light through the base."""
-    return _of_rest(probe, list(transmission_cases(probe)))
-
-
-@lru_cache(maxsize=2)
-def diagnose_radiance(probe: Probe) -> Diagnosis:
-    """The explanation of what an emission is from the front."""
-    return _of_emission(probe, list(value_cases(probe)))
-
-
-def diagnose_back(probe: Probe) -> Diagnosis:
-    """The explanation of what an emission is from the back."""
-    return _of_emission(probe, list(back_cases(probe)))
-
-
-def diagnose_medium(probe: Probe) -> Diagnosis:
-    """The explanation of the transmittance of a medium."""
-    return _of_emission(probe, list(transmittance_cases(probe)))
-
-
-def _of_emission(probe: Probe, cases: Sequence[Case]) -> Diagnosis:
-    """The explanation of radiances and transmittances."""
-    return _explained(probe, cases, probe.value_candidates, (), _tolerance(probe, "value"))
-
-
-def diagnose_cases(
-    probe: Probe, cases: Sequence[Case], candidates: Sequence[Candidate], tolerance: Tolerance
-) -> Diagnosis:
-    """The explanation of cases by candidates, its own model first."""
-    return _explained(probe, cases, candidates, (), tolerance)
-
-
-def _of_rest(probe: Probe, cases: Sequence[Case]) -> Diagnosis:
-    """The explanation of throughputs, by albedos or by none."""
-    *albedos, nothing = probe.albedo_candidates
-    candidates = [Candidate(each.title, partial(_rest, each), each.permitted) for each in albedos]
-    candidates.append(Candidate("all light passes", partial(_rest, nothing)))
-    return _explained(probe, cases, candidates, (), _tolerance(probe, "throughput"))
-
-
-def _rest(candidate: Candidate, batch: Batch) -> Array:
-    """The light that a candidate's albedo leaves."""
-    return np.maximum(1.0 - candidate.values(batch), 0.0)
-
-
-def _tolerance(probe: Probe, quantity: Quantity) -> Tolerance:
-    """The tolerance of a quantity; that of a value where a probe has no other."""
-    accuracy = ACCURACY[probe.kind]
-    tolerance = accuracy.of(quantity) or accuracy.value
-    assert tolerance is not None, f"nothing is asked of {probe.kind}"
-    return tolerance
-
-
-def _explained(
+def explain(
     probe: Probe,
     cases: Sequence[Case],
     candidates: Sequence[Candidate],
     faults: Sequence[Fault],
     tolerance: Tolerance,
 ) -> Diagnosis:
-    """The explanation of cases, by candidates and by faults on the way to the first, the own one."""
+    """The explanation of cases, by candidates and by faults on the way to the first, the own one.
+
+    Parameters
+    ----------
+    probe : Probe
+    cases : sequence of Case
+    candidates : sequence of Candidate
+        Functions that may give the values, its own model first.
+    faults : sequence of Fault
+        Of the way from the inputs to that model.
+    tolerance : Tolerance
+        Up to which a value is right.
+
+    Returns
+    -------
+    Diagnosis
+    """
     # What is not finite has no distance to anything.
     unbounded = not_finite(cases)
     if unbounded:

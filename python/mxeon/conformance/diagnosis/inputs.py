@@ -10,10 +10,10 @@ from mxeon.conformance.accuracy.diffuse import OPAQUE, SURROUNDINGS
 from mxeon.conformance.diagnosis.candidates import (
     NEAR,
     Diagnosis,
-    diagnose_value,
     not_finite,
     region,
 )
+from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.diagnosis.faults import normal_ignored
 from mxeon.conformance.diagnosis.regions import smallest
 from mxeon.conformance.nodes.diffuse import SUBJECTS
@@ -58,10 +58,10 @@ def diagnose_flag(probe: Probe) -> Diagnosis:
     for subject in SUBJECTS:
         if subject.node == probe.subject.node:
             other = probe if subject.title == probe.subject.title else probe.of(subject)
-            text = diagnose_value(other).text
+            text = VALUE.diagnose(other).text
             states.setdefault(text, []).append(str(subject.flag).lower())
     texts = (f"{FLAG} {' and '.join(flags)}: {text}" for text, flags in states.items())
-    return Diagnosis("; ".join(texts), diagnose_value(probe).distances)
+    return Diagnosis("; ".join(texts), VALUE.diagnose(probe).distances)
 
 
 def diagnose_inputs(probe: Probe) -> Diagnosis:
@@ -118,12 +118,12 @@ def diagnose_frame(probe: Probe) -> Diagnosis:
 
 def diagnose_tangent(probe: Probe) -> Diagnosis:
     """Whether the tangent is dropped."""
-    return Diagnosis(without_effect(probe, "tangent") or diagnose_value(probe).text)
+    return Diagnosis(without_effect(probe, "tangent") or VALUE.diagnose(probe).text)
 
 
 def diagnose_retroreflection(probe: Probe) -> Diagnosis:
     """Whether the flag is dropped."""
-    return Diagnosis(without_effect(probe, "retroreflective") or diagnose_value(probe).text)
+    return Diagnosis(without_effect(probe, "retroreflective") or VALUE.diagnose(probe).text)
 
 
 def without_effect(probe: Probe, name: str) -> str:

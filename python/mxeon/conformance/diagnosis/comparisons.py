@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a probe's values are compared with, by quantity, and what may explain a difference: one row each."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache, partial
+
+import numpy as np
+
+from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
+from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
+from mxeon.conformance.diagnosis.faults import DIRECT, ENVIRONMENT, Fault
+from mxeon.conformance.probes.cases import (
+    albedo_cases,
+    back_cases,
+    layering_cases,
+    transmission_cases,
+    transmittance_cases,
+    value_cases,
+)
+from mxeon.conformance.probes.probe import Probe
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
+from mxeon.conformance.samples.measurement import Case
+from mxeon.conformance.samples.tolerance import Tolerance
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Values of a quantity against the ones expected.
+
+    Attributes
+    ----------
+    quantity : Quantity
+        By whose accuracy they are judged.
+    cases : callable (probe) -> iterable of Case
+        Measured and expected values.
+    candidates : callable (probe) -> sequence of Candidate
+        Functions that may explain them, its own model first.
+    faults : sequence of Fault
+        Of the way from the inputs to that model.
+    """
+
+    quantity: Quantity
+    cases: Callable[[Probe], Iterable[Case]]
+    candidates: Callable[[Probe], Sequence[Candidate]]
+    faults: Sequence[Fault] = ()
+
+    def __call__(self, probe: Probe) -> Iterable[Case]:
+        """Its cases, as a check measures them."""
+        return self.cases(probe)
+
+    def diagnose(self, probe: Probe) -> Diagnosis:
+        """The explanation of a probe's values."""
+        return _diagnosis(self, probe)
+
+    def tolerance(self, kind: str) -> Tolerance:
+        """The tolerance of a kind of probe; that of a value where it has no other."""
+        accuracy = ACCURACY[kind]
+        tolerance = accuracy.of(self.quantity) or accuracy.value
+        assert tolerance is not None, f"nothing is asked of {kind}"
+        return tolerance
+
+
+@lru_cache(maxsize=8)  # several checks of a subject fail for one reason
+def _diagnosis(row: Comparison, probe: Probe) -> Diagnosis:
+    cases = list(row.cases(probe))
+    return explain(probe, cases, row.candidates(probe), row.faults, row.tolerance(probe.kind))
+
+
+def _values(probe: Probe) -> Sequence[Candidate]:
+    return probe.value_candidates
+
+
+def _albedos(probe: Probe) -> Sequence[Candidate]:
+    return probe.albedo_candidates
+
+
+def _rests(probe: Probe) -> Sequence[Candidate]:
+    """Functions that may explain throughputs: what each albedo leaves, or all light."""
+    *albedos, nothing = probe.albedo_candidates
+    rests = (Candidate(each.title, partial(_rest, each), each.permitted) for each in albedos)
+    return (*rests, Candidate("all light passes", partial(_rest, nothing)))
+
+
+def _rest(candidate: Candidate, batch: Batch) -> Array:
+    """The light that a candidate's albedo leaves."""
+    return np.maximum(1.0 - candidate.values(batch), 0.0)
+
+
+VALUE = Comparison("value", value_cases, _values, DIRECT)
+ALBEDO = Comparison("albedo", albedo_cases, _albedos, ENVIRONMENT)
+THROUGHPUT = Comparison("throughput", layering_cases, _rests)  # of a layer, for light from above
+TRANSMISSION = Comparison("throughput", transmission_cases, _rests)  # for light through the base
+RADIANCE = Comparison("value", value_cases, _values)  # of an emission from the front
+BACK = Comparison("value", back_cases, _values)  # of an emission from the back
+TRANSMITTANCE = Comparison("value", transmittance_cases, _values)  # of a medium
