@@ -9,7 +9,7 @@ everywhere, or that a mix leaves out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, partial
 from operator import itemgetter
 from typing import TypeAlias
@@ -18,9 +18,10 @@ import MaterialX as mx
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mxeon.conformance.reference.elements import Elements, Path, graph_output
 from mxeon.conformance.reference.images import lookup
 from mxeon.conformance.reference.inner import VOLUMES, over_volume
-from mxeon.conformance.reference.measured import CLOSURES, DRAWN, Measure
+from mxeon.conformance.reference.measured import DRAWN, Measure
 from mxeon.conformance.reference.nodes import (
     COMBINATIONS,
     LOBES,
@@ -29,46 +30,28 @@ from mxeon.conformance.reference.nodes import (
     combined,
     definition,
     node_lobe,
-    plain,
 )
-from mxeon.conformance.reference.operations import OPERATIONS, Operation, Value, Values, fitted
-from mxeon.conformance.reference.pbr_operations import UTILITIES, emissions
+from mxeon.conformance.reference.operations import (
+    OPERATIONS,
+    Operation,
+    Value,
+    Values,
+    computed,
+    fitted,
+    same,
+)
+from mxeon.conformance.reference.pbr_operations import UTILITIES, emissions, surfaces
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.conformance.reference.walk import evaluated
 from mxeon.errors import NotRun
-from mxeon.io.srgb import srgb_decoded
 from mxeon.models.core.layering import Bsdf
 from mxeon.shaders.document.graphs import reachable
 
-Path: TypeAlias = tuple[str, ...]  # see Graph
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
-# Where nothing is connected: black, and for a lobe zero, which hides nothing.
-UNCONNECTED: dict[str, Value] = {
-    "BSDF": NOTHING,
-    "EDF": np.zeros(3),
-    "surfaceshader": np.zeros(3),
-    "VDF": None,
-}
 NUMBERS = ("float", "boolean", "integer")
-DISTANCE = "distance"  # type of units
-# A surface with its opacity and what it emits, or its lobes alone.
-SURFACES: dict[bool, Operation] = {
-    True: (("bsdf", "edf", "opacity"), lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity),
-    False: (("bsdf",), lambda bsdf: bsdf.value),
-}
 # Operations in which hosts differ: jumps and ties, and the arc functions of drivers. They are measured.
 HOSTS_OWN = ("round", "floor", "ceil", "modulo", "asin", "acos")
-# A surface that only emits.
-UNLIT: Operation = (
-    ("emission", "emission_color", "opacity"),
-    lambda emission, color, opacity: emission * color * opacity,
-)
-# The same for light that is transmitted alone.
-TRANSMITTED: dict[str, Operation] = {
-    "surface": (("bsdf", "opacity"), lambda bsdf, opacity: bsdf.value * opacity),
-    "surface_unlit": ((), lambda: np.zeros(3)),
-}
 
 
 class Graph:
@@ -93,11 +76,6 @@ class Graph:
         Names of the inputs whose values were measured, each behind the name of its node.
     lobes : list of ShownLobe
         Those that were evaluated.
-
-    Notes
-    -----
-    A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the
-    outermost first.
     """
 
     def __init__(
@@ -109,18 +87,15 @@ class Graph:
         measure: Measure | None = None,
     ) -> None:
         # Keep what is asked for.
-        self._document = document
-        self._points = points
-        self._inputs = inputs or {}
-        self._emits = emits
-        self._measure = measure
+        self._document, self._points, self._inputs = document, points, inputs or {}
+        self._emits, self._measure = emits, measure
         self.measured: dict[str, None] = {}
         self.lobes: list[ShownLobe] = []
         # Prepare what is found on the way.
         self._shader: Path | None = None  # the surface shader that is a nodegraph
         self._tops: list[Path] = []  # of layers: their throughputs are needed
         self._hiding: set[Path] = set()  # and those of what they are made of
-        self._elements: dict[Path, mx.Element] = {(): document}
+        self._elements = Elements(document, points)
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Values:
@@ -133,14 +108,11 @@ class Graph:
         """
         element = self._document.getDescendant(name_path)
         graph = element.getParent()
-        around = self._inner((), graph) if graph.isA(mx.NodeGraph) else ()
-        with np.errstate(
-            divide="ignore", invalid="ignore"
-        ):  # of values that another node leaves out
-            if element.isA(mx.Output):
-                path = self._connected(around, element)
-            else:
-                path = self._inner(around, element)
+        around = self._elements.inner((), graph) if graph.isA(mx.NodeGraph) else ()
+        # Ignore what is not finite: another node may leave it out.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            find = self._connected if element.isA(mx.Output) else self._elements.inner
+            path = find(around, element)
             self._parts([path])
             self._hiding.update(self._parts(self._tops))
             return np.asarray(fitted("color3", self._evaluate(path)), np.float64)
@@ -167,15 +139,15 @@ class Graph:
             return self._combination(path, node)
         # Numbers, colors and surfaces.
         if category == "image":
-            return lookup(node, self._points.texcoord, self._linear), ()
+            return lookup(node, self._points.texcoord, self._elements.linear), ()
         if category in self._operations and not (self._measure and category in HOSTS_OWN):
             ports, operation = self._operations[category]
-            return partial(_computed, kind, operation), self._sources(path, ports)
+            return partial(computed, kind, operation), self._sources(path, ports)
         # A nodegraph that defines the node, or nothing of what has no weight.
         if kind == "surfaceshader" and self._shader is None:
             self._shader = path
         if inner := self._inside(path, node):
-            return _same, (inner,)
+            return same, (inner,)
         if kind == "BSDF" and not self._weighs(path, node):
             return lambda: NOTHING, ()
         raise NotRun(f"reference: there is no model for node {category!r}")
@@ -183,25 +155,13 @@ class Graph:
     @cached_property
     def _operations(self) -> dict[str, Operation]:
         """Nodes that compute numbers or colors, some of them by the points."""
-        surfaces: dict[str, Operation] = {
-            "surface": SURFACES[self._emits],
-            "surface_unlit": UNLIT,
-            "surfacematerial": (("surfaceshader",), _same),
-        }
-        if self._points.behind:
-            surfaces |= TRANSMITTED
-        return {**OPERATIONS, **UTILITIES, **VOLUMES, **emissions(self._points), **surfaces}
+        shown = surfaces(self._emits, self._points.behind)
+        return {**OPERATIONS, **UTILITIES, **VOLUMES, **emissions(self._points), **shown}
 
     def _inside(self, path: Path, node: mx.Node, output: str = "") -> Path | None:
         """Path of what an output of a node has in its nodegraph; None if that is none."""
-        graph = node.getImplementation()
-        outputs: Sequence[mx.Output] = (
-            graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else ()
-        )
-        named = [each for each in outputs if each.getName() == output] or outputs
-        if len(named) != 1 or not named[0].getConnectedNode():
-            return None
-        return self._connected(path, named[0])
+        port = graph_output(node, output)
+        return self._connected(path, port) if port else None
 
     def _weighs(self, path: Path, node: mx.Node) -> bool:
         """Whether a lobe without a model has a weight that is not 0 everywhere."""
@@ -229,7 +189,7 @@ class Graph:
             share = self._evaluate(self._source(path, "mix"))
             for port, none in (("bg", 0.0), ("fg", 1.0)):
                 if np.all(share == none):
-                    return _same, self._sources(path, (port,))
+                    return same, self._sources(path, (port,))
         # A layer asks its top for a throughput; a volume below must be empty.
         if category == "layer":
             self._tops.append(self._source(path, "top"))
@@ -238,7 +198,7 @@ class Graph:
                     return over_volume, self._sources(path, ports)
                 if not self._points.round:
                     self._assert_empty(path)
-                return _same, self._sources(path, ("top",))
+                return same, self._sources(path, ("top",))
         return partial(combined, node.getNamePath(), operation), self._sources(path, ports)
 
     def _assert_empty(self, path: Path) -> None:
@@ -258,37 +218,30 @@ class Graph:
         """Path of an input's value: of the node connected to it, or of a constant."""
         # Follow the interfaces around the node outwards.
         owner = path
-        while not self._is_given(path, name):
-            port = self._port(path, name)
+        while (given := self._given(path, name)) is None:
+            port = self._elements.port(path, name)
             if not port.hasInterfaceName():
                 break
             path, name = path[:-1], port.getInterfaceName()
         else:
-            return self._constant(path, name, self._given(path, name))
+            return self._constant(path, name, given)
         # Take what is connected, or else the value.
         if port.getConnectedNode():
-            shown = f"{port.getParent().getName()}.{name}" if self._lights(owner, path) else ""
+            shown = (
+                f"{port.getParent().getName()}.{name}"
+                if self._elements.scatter(owner, path)
+                else ""
+            )
             return self._connected(path[:-1], port, shown)
-        return self._constant(path, name, self._value(path, name, port))
+        return self._constant(path, name, self._elements.value(path, name, port))
 
-    def _lights(self, path: Path, outer: Path) -> bool:
-        """Whether a node, or one around it up to another path, scatters light or combines what does."""
-        ends = range(len(outer), len(path) + 1)
-        nodes = (self._elements.get(path[:end]) for end in ends)
-        return any(node is not None and node.getType() in CLOSURES for node in nodes)
-
-    def _is_given(self, path: Path, name: str) -> bool:
-        """Whether one of the inputs that were handed in takes the place of a node's."""
-        if name not in self._inputs:
-            return False
-        if self._shader is not None:
-            return path == self._shader
+    def _given(self, path: Path, name: str) -> Values | None:
+        """Value that was handed in for an input, (N, 1) if it is one number for each point; or None."""
         element = self._elements.get(path)
-        return element is not None and element.getCategory() in LOBES
-
-    def _given(self, path: Path, name: str) -> Values:
-        """Value that was handed in, (N, 1) if it is one number for each point."""
-        number = self._port(path, name).getType() in NUMBERS
+        lobe = element is not None and element.getCategory() in LOBES
+        if name not in self._inputs or not (path == self._shader if self._shader else lobe):
+            return None
+        number = self._elements.port(path, name).getType() in NUMBERS
         value = np.asarray(self._inputs[name])
         return np.reshape(value, (-1, 1)) if number else value
 
@@ -306,8 +259,8 @@ class Graph:
         if port.isA(mx.Input):
             scope = scope.getParent()
         if graph.getNamePath() != scope.getNamePath():
-            around = self._inner((), graph)
-        path, output = self._inner(around, node), source.getOutputString()
+            around = self._elements.inner((), graph)
+        path, output = self._elements.inner(around, node), source.getOutputString()
         # Measure what cannot be computed.
         kind = port.getType()
         if not (shown and self._measure and kind in DRAWN):
@@ -336,77 +289,12 @@ class Graph:
     def _measurement(self, path: Path, kind: str, output: str) -> Path:
         """Path of a node's value as the host has it."""
         assert self._measure is not None
-        elements = [self._elements[path[:end]] for end in range(1, len(path) + 1)]
         part = (*path, f"={output}")
-        self._steps[part] = partial(self._measure, elements, kind, output), ()
+        self._steps[part] = partial(self._measure, self._elements.along(path), kind, output), ()
         return part
-
-    def _value(self, path: Path, name: str, port: mx.Input) -> Value:
-        """Value of an input without a connection, in the document's color space."""
-        # A vector of the surface, if the definition says so.
-        element = self._elements[path]
-        nodedef = element.getNodeDef() if element.isA(mx.Node) else None
-        declared = nodedef.getActiveInput(name) if nodedef else port
-        if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
-            return self._points.geometry(declared.getDefaultGeomPropString())
-        # The value that is written, or else the default.
-        value = port.getValue()
-        if value is None and declared:  # a connection that MaterialX ignores
-            value = declared.getValue()
-        if port.getType() in UNCONNECTED:
-            return UNCONNECTED[port.getType()]
-        constant = plain(value)
-        if isinstance(constant, np.ndarray):
-            if port.getType() == "color3":
-                return self._linear(port, constant)
-            if port.hasUnit():
-                return constant * self._meters(port)
-        return constant
-
-    def _meters(self, port: mx.Input) -> float:
-        """Factor from the unit of an input, a length, to that of shaders, which is a meter."""
-        library = self._document.getDataLibrary() or self._document
-        definition = library.getUnitTypeDef(DISTANCE)
-        scales = mx.LinearUnitConverter.create(definition).getUnitScale() if definition else {}
-        return float(scales.get(port.getUnit(), 1.0))
-
-    def _port(self, path: Path, name: str) -> mx.Input:
-        """Input of a node, or else of its nodedef."""
-        element = self._elements.get(path)
-        nodedef = element.getNodeDef() if element and path else None
-        port = element and element.getInput(name)
-        port = port or (nodedef and nodedef.getActiveInput(name))
-        if not port:
-            raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
-        return port
-
-    def _inner(self, around: Path, element: mx.Element) -> Path:
-        """Path of an element within another path."""
-        path = (*around, element.getNamePath())
-        self._elements[path] = element
-        return path
 
     def _constant(self, path: Path, name: str, value: Value) -> Path:
         """Path of a value that has no parts."""
         constant = (*path, f":{name}")
         self._steps[constant] = (lambda: value), ()
         return constant
-
-    def _linear(self, element: mx.Element, value: Values) -> Values:
-        """Color in the document's linear space, as the generators' color management has it."""
-        space = element.getActiveColorSpace()
-        if not self._document.getColorSpace():  # no color management
-            return value
-        if space in ("", "none", self._document.getColorSpace()):
-            return value
-        if space != "srgb_texture":
-            raise NotRun(f"reference: there is no transform for color space {space!r}")
-        return srgb_decoded(value)
-
-
-def _same(value: Value) -> Value:
-    return value
-
-
-def _computed(kind: str, operation: Callable[..., Value], *values: Value) -> Value:
-    return fitted(kind, operation(*values))

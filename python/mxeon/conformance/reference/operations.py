@@ -148,3 +148,13 @@ OPERATIONS: dict[str, Operation] = {
     "ifgreatereq": (COMPARED, _when(np.greater_equal)),
     "ifequal": (COMPARED, _when(np.equal)),
 }
+
+
+def same(value: Value) -> Value:
+    """The value of a node that passes its input on."""
+    return value
+
+
+def computed(kind: str, operation: Callable[..., Value], *values: Value) -> Value:
+    """Value of an operation, fitted to the type of its node."""
+    return fitted(kind, operation(*values))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of pbrlib beside the lobes, as operations of a graph: emissions, and what computes inputs of lobes."""
+"""Nodes of pbrlib beside the lobes, as operations of a graph: emissions, surfaces, and what computes inputs of lobes."""
 
 from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 
-from mxeon.conformance.reference.operations import Operation, Values
+from mxeon.conformance.reference.operations import Operation, Values, same
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
 from mxeon.models.nodes import utilities
@@ -58,3 +58,32 @@ def _values(row: utilities.UtilityNode, *values: Values) -> Values | Mapping[str
 UTILITIES: dict[str, Operation] = {
     row.category: (tuple(row.inputs), partial(_values, row)) for row in utilities.UTILITIES
 }
+
+
+def surfaces(emits: bool, behind: bool) -> dict[str, Operation]:
+    """Category -> its inputs, and the radiance of a surface by them.
+
+    Parameters
+    ----------
+    emits : bool
+        Whether opacity and emission count, or the lobes alone.
+    behind : bool
+        Whether light is seen that is transmitted, to which no emission adds.
+    """
+    shown: dict[str, Operation] = {
+        "surface": (("bsdf",), lambda bsdf: bsdf.value),
+        "surface_unlit": (
+            ("emission", "emission_color", "opacity"),
+            lambda emission, color, opacity: emission * color * opacity,
+        ),
+        "surfacematerial": (("surfaceshader",), same),
+    }
+    if behind:
+        shown["surface"] = (("bsdf", "opacity"), lambda bsdf, opacity: bsdf.value * opacity)
+        shown["surface_unlit"] = ((), lambda: np.zeros(3))
+    elif emits:
+        shown["surface"] = (
+            ("bsdf", "edf", "opacity"),
+            lambda bsdf, edf, opacity: (bsdf.value + edf) * opacity,
+        )
+    return shown

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Elements of a document by their paths, with their ports and the values that are written there."""
+
+from typing import TypeAlias
+
+import MaterialX as mx
+import numpy as np
+
+from mxeon.conformance.reference.measured import CLOSURES
+from mxeon.conformance.reference.nodes import NOTHING, plain
+from mxeon.conformance.reference.operations import Value, Values
+from mxeon.conformance.reference.points import ShadingPoints
+from mxeon.errors import NotRun
+from mxeon.io.srgb import srgb_decoded
+
+Path: TypeAlias = tuple[str, ...]  # of a node: names of the nodegraphs around it, and its own
+
+# Where nothing is connected: black, and for a lobe zero, which hides nothing.
+UNCONNECTED: dict[str, Value] = {
+    "BSDF": NOTHING,
+    "EDF": np.zeros(3),
+    "surfaceshader": np.zeros(3),
+    "VDF": None,
+}
+DISTANCE = "distance"  # type of units
+
+
+class Elements:
+    """Elements of a document, each found under a path before it is asked for.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+    points : ShadingPoints
+        Whose vectors are the values of inputs that a definition connects to the surface.
+
+    Notes
+    -----
+    A path names a node within the nodes and nodegraphs around it: a tuple of name paths, the
+    outermost first.
+    """
+
+    def __init__(self, document: mx.Document, points: ShadingPoints) -> None:
+        self._document, self._points = document, points
+        self._elements: dict[Path, mx.Element] = {(): document}
+
+    def __getitem__(self, path: Path) -> mx.Element:
+        return self._elements[path]
+
+    def get(self, path: Path) -> mx.Element | None:
+        """Element at a path; None where there is none."""
+        return self._elements.get(path)
+
+    def along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
+        """Those at a path and around it, up to one within another path, the outermost first."""
+        ends = range(max(len(outer), 1), len(path) + 1)
+        return [self._elements[path[:end]] for end in ends if path[:end] in self._elements]
+
+    def scatter(self, path: Path, outer: Path) -> bool:
+        """Whether a node, or one around it up to another path, scatters light or combines what does."""
+        return any(each.getType() in CLOSURES for each in self.along(path, outer))
+
+    def inner(self, around: Path, element: mx.Element) -> Path:
+        """Path of an element within another path."""
+        path = (*around, element.getNamePath())
+        self._elements[path] = element
+        return path
+
+    def port(self, path: Path, name: str) -> mx.Input:
+        """Input of a node, or else of its nodedef."""
+        element = self._elements.get(path)
+        nodedef = element.getNodeDef() if element and path else None
+        port = element and element.getInput(name)
+        port = port or (nodedef and nodedef.getActiveInput(name))
+        if not port:
+            raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
+        return port
+
+    def value(self, path: Path, name: str, port: mx.Input) -> Value:
+        """Value of an input without a connection, in the document's color space."""
+        # A vector of the surface, if the definition says so.
+        element = self._elements[path]
+        nodedef = element.getNodeDef() if element.isA(mx.Node) else None
+        declared = nodedef.getActiveInput(name) if nodedef else port
+        if declared and declared.hasDefaultGeomPropString():  # nothing else sets it
+            return self._points.geometry(declared.getDefaultGeomPropString())
+        # The value that is written, or else the default.
+        value = port.getValue()
+        if value is None and declared:  # a connection that MaterialX ignores
+            value = declared.getValue()
+        if port.getType() in UNCONNECTED:
+            return UNCONNECTED[port.getType()]
+        constant = plain(value)
+        if isinstance(constant, np.ndarray):
+            if port.getType() == "color3":
+                return self.linear(port, constant)
+            if port.hasUnit():
+                return constant * self._meters(port)
+        return constant
+
+    def _meters(self, port: mx.Input) -> float:
+        """Factor from the unit of an input, a length, to that of shaders, which is a meter."""
+        library = self._document.getDataLibrary() or self._document
+        definition = library.getUnitTypeDef(DISTANCE)
+        scales = mx.LinearUnitConverter.create(definition).getUnitScale() if definition else {}
+        return float(scales.get(port.getUnit(), 1.0))
+
+    def linear(self, element: mx.Element, value: Values) -> Values:
+        """Color in the document's linear space, as the generators' color management has it."""
+        space = element.getActiveColorSpace()
+        if not self._document.getColorSpace():  # no color management
+            return value
+        if space in ("", "none", self._document.getColorSpace()):
+            return value
+        if space != "srgb_texture":
+            raise NotRun(f"reference: there is no transform for color space {space!r}")
+        return srgb_decoded(value)
+
+
+def graph_output(node: mx.Node, output: str = "") -> mx.Output | None:
+    """Output of a node in its nodegraph, or the only one, where that has a node; None if there is none."""
+    graph = node.getImplementation()
+    outputs = graph.getOutputs() if graph and graph.isA(mx.NodeGraph) else []
+    named = [each for each in outputs if each.getName() == output] or outputs
+    return named[0] if len(named) == 1 and named[0].getConnectedNode() else None
