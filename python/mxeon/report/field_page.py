@@ -17,7 +17,7 @@ from mxeon.conformance.results import Result
 from mxeon.io.images import difference, difference_scale, read_image
 from mxeon.io.srgb import srgb_encoded
 from mxeon.report.field import CHECKS, Entry
-from mxeon.report.page import LOOKS, number, share, vector
+from mxeon.report.formats import LOOKS, number, share, vector
 from mxeon.report.plots import difference_gradient, difference_pixels, picture_uri
 
 # Column -> its heading, and what it tells.

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How pages of reports write numbers, verdicts and what explains them."""
+
+import math
+import re
+from collections.abc import Mapping
+
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.known_issues import issues_of, link
+from mxeon.conformance.known_issues.issue import Issue
+from mxeon.conformance.results import (
+    DIFFERS,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    Result,
+)
+
+# CSS class of each verdict, and a sign for readers who cannot see the color.
+LOOKS = {
+    PASSED: ("passed", "✓"),
+    DIFFERS: ("differs", "≠"),
+    FAILED: ("failed", "✗"),
+    NOT_RUN: ("not-run", "–"),
+}
+
+
+def share(result: Result) -> float:
+    """Error over tolerance; infinite if the error is missing or not finite."""
+    error, tolerance = result.error, result.tolerance
+    if error is None or not math.isfinite(error):
+        return math.inf
+    if not tolerance:
+        return math.inf if error > 0.0 else 0.0
+    return error / tolerance
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number as text, or a dash for None.
+
+    Examples
+    --------
+    >>> number(2.3456e-07), number(0.25), number(None)
+    ('2.35e-7', '0.25', '–')
+    """
+    return "–" if value is None else re.sub(r"e([+-])0*", r"e\1", f"{value:.{digits}g}")
+
+
+def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
+    """Title and distance of the nearest models, and the share of the largest distance shown."""
+    rows = sorted(distances.items(), key=lambda pair: pair[1])[:count]
+    largest = max((distance for _, distance in rows), default=0.0) or 1.0
+    return [(title, distance, distance / largest) for title, distance in rows]
+
+
+def linked(result: Result, excess: str = "") -> Markup:
+    """What explains a result, as HTML: words, its diagnosis, and links to its known issues."""
+    see = Markup('see <a href="{}">{}</a>')
+    links = [see.format(page_address(issue), issue.title) for issue in issues_of(result)]
+    return Markup("; ").join([each for each in (excess, result.diagnosis, *links) if each])
+
+
+def page_address(issue: Issue) -> str:
+    """Address of the page of an issue from a report: on the site, or beside the report."""
+    found = link(issue)
+    return found if "://" in found else f"upstream/{issue.page}.md"
+
+
+def vector(values: ArrayLike) -> str:
+    """One or more numbers as text.
+
+    Examples
+    --------
+    >>> vector([1.0]), vector((0.5, 0.25))
+    ('1', '(0.5, 0.25)')
+    """
+    words = [number(float(value), 4) for value in np.ravel(values)]
+    return words[0] if len(words) == 1 else f"({', '.join(words)})"
