@@ -15,7 +15,7 @@ from pathlib import Path
 from docs.upstream import patches
 from docs.upstream.ledger import FOLDER, rows
 from mxeon.io.files import write_text
-from mxeon.shaders.library import TESTED
+from mxeon.shaders.versions import TESTED
 from tests.reliability.versions import run
 from tests.support.wheels import MAIN, wheel
 

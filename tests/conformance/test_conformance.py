@@ -11,7 +11,7 @@ from mxeon.conformance.accuracy.accuracy import ACCURACY
 from mxeon.conformance.checks.application import applies, judge_subject
 from mxeon.conformance.checks.controls import Mistake
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.diagnosis.candidates import diagnose_value
+from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.functions.shader_functions import (
     FUNCTION_CHECKS,
     FunctionProbe,
@@ -38,7 +38,7 @@ from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import HOSTS
 from mxeon.hosts.base import Host, Identity
-from mxeon.jobs import dask
+from mxeon.jobs import cluster
 from mxeon.models import table as reference
 from mxeon.shaders.generation import TARGETS
 from tests.conformance.conftest import EXAMPLES
@@ -252,7 +252,7 @@ def test_what_does_not_run_is_never_passed(error, verdict):
 
 
 def test_the_nearest_model_comes_with_the_next_one():
-    words = diagnose_value(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
+    words = VALUE.diagnose(PairProbe(ModelHost(reference.model("fon")), EON, "eonlib")).text
     assert words.startswith("nearest known model: Fujii Oren-Nayar (FON) (rms ")
     assert ", then EON with rho^3 (0.0" in words
 
@@ -368,7 +368,7 @@ def test_a_black_material_passes(tmp_path, monkeypatch):
 
 def test_misuse_leaves_the_journal_of_an_earlier_run_alone(tmp_path, monkeypatch):
     keep_checks(monkeypatch, plan.HOST)
-    monkeypatch.setattr(dask, "ANSWER", 1.0)
+    monkeypatch.setattr(cluster, "ANSWER", 1.0)
     check(EXAMPLES[:1], ["msl"], folder=tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     for wrong in ({"workers": -1}, {"timeout": 0.0}, {"scheduler": "tcp://127.0.0.1:9"}):

@@ -14,7 +14,7 @@ import pytest
 import mxeon
 from mxeon.conformance.run import check
 from mxeon.errors import InputError, NotRun
-from mxeon.jobs import dask as cluster
+from mxeon.jobs import cluster, dask
 from mxeon.jobs.pool import Outcome
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import need, once, process, square
@@ -32,7 +32,7 @@ EXAMPLE = examples_folder() / "plaster.mtlx"
 
 def run(work, items, address, timeout=60.0):
     with cluster.connect(address) as workers:
-        return dict(cluster.run(work, items, workers, timeout, NotRun))
+        return dict(dask.run(work, items, workers, timeout, NotRun))
 
 
 @contextmanager
@@ -147,13 +147,13 @@ def test_workers_that_all_restart_are_waited_for(monkeypatch):
 def test_workers_that_do_not_come_are_one_line(answers):
     rule = "no compatible Dask worker came within 0.01 s; raise it with --waitForWorkers"
     with pytest.raises(NotRun, match=rule):
-        list(cluster.run(square, [1], cluster.Workers(Client(*answers), 0.01), 1.0, NotRun))
+        list(dask.run(square, [1], cluster.Workers(Client(*answers), 0.01), 1.0, NotRun))
 
 
 def test_a_scheduler_that_ends_is_one_line():
     workers = cluster.Workers(Client(SOMEBODY, SOMEBODY, {}), 60.0)
     with pytest.raises(NotRun, match="scheduler must run until the end; it answers no more"):
-        list(cluster.run(square, [1], workers, 1.0, NotRun))
+        list(dask.run(square, [1], workers, 1.0, NotRun))
 
 
 @pytest.mark.parametrize("error", [OSError("closed"), CancelledError()], ids=["comm", "future"])
@@ -164,7 +164,7 @@ def test_a_scheduler_whose_connection_breaks_is_one_line(error):
     client = Client(SOMEBODY)
     client.submit = submit
     with pytest.raises(NotRun, match=f"^{cluster.GONE}$"):
-        list(cluster.run(square, [1], cluster.Workers(client, 60.0), 1.0, NotRun))
+        list(dask.run(square, [1], cluster.Workers(client, 60.0), 1.0, NotRun))
 
 
 def test_what_dask_tells_by_itself_is_silent():

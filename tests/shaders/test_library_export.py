@@ -12,8 +12,9 @@ import pytest
 import mxeon
 from mxeon.cli import main
 from mxeon.conformance.results import FAILED, PASSED
-from mxeon.shaders.library import TESTED, data_folder, eonlib_folder
+from mxeon.shaders.library import data_folder, eonlib_folder
 from mxeon.shaders.library_export import export_library, recipes
+from mxeon.shaders.versions import TESTED
 from tests.support.wheels import run_with, verdicts_with
 from tests.support.wrong_libraries import wrong_copy
 

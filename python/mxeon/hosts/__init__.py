@@ -288,7 +288,7 @@ def open_engine(name: str, *others: Row) -> Host | RendererHost:
 def _no_generator(row: Row) -> str:
     import MaterialX as mx
 
-    from mxeon.shaders.library import TESTED
+    from mxeon.shaders.versions import TESTED
 
     return (
         f"{row.name}: MaterialX must have a generator for {row.target}; {mx.__version__} has none: "

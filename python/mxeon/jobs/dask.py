@@ -2,65 +2,25 @@
 """Work on many items on the machines of a Dask cluster. Needs the `dask` extra.
 
 Dask places the items, restarts workers and tries items again. This module adds what Dask does not
-have: which workers are compatible, items that only some machines can do, and timeouts.
+have: items that only some machines can do, and timeouts. Which workers are compatible says `cluster`.
 """
 
 from __future__ import annotations
 
 import faulthandler
-import logging
 import sys
-import time
-import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
-from queue import Empty, SimpleQueue
-from threading import Thread
 from typing import Any
 
-import mxeon
-from mxeon.errors import InputError, NotRun, PackageError
+from mxeon.errors import NotRun
+from mxeon.jobs.cluster import GONE, POLL, Workers
 from mxeon.jobs.pool import Outcome, log_bug
-from mxeon.jobs.timeouts import WAIT, check_timeout
 
 WINDOW = 2  # items under way for each worker: results do not pile up, newcomers get their share
-ANSWER = 10.0  # seconds until a scheduler answers
-GONE = "scheduler must run until the end; it answers no more"
-LOGGERS = ("distributed", "tornado", "asyncio")
-POLL = 1.0  # seconds between looks at the workers that come and go
-
-
-@contextmanager
-def connect(address: str, wait: float = WAIT) -> Iterator[Workers]:
-    """Connect to the workers of a cluster.
-
-    Parameters
-    ----------
-    address : str
-        Of the scheduler, "tcp://host:8786".
-    wait : float
-        Seconds that the cluster may be without a compatible worker, now and later.
-
-    Raises
-    ------
-    InputError
-        If no scheduler answers at the address, none of its workers is compatible, or `wait` is out
-        of range.
-    NotRun
-        If it has no workers and none comes in time.
-    PackageError
-        If Dask is not installed; says what to install.
-    """
-    check_timeout(wait, "waitForWorkers")
-    client = _client(address, wait)
-    try:
-        yield Workers(client, wait)
-    finally:
-        _in_time(partial(client.close, timeout=ANSWER), 2.0 * ANSWER)
 
 
 def run(
@@ -156,53 +116,6 @@ class WorkerUnavailable(Exception):
         return str(self.args[0])
 
 
-def _client(address: str, wait: float) -> Any:
-    try:
-        from distributed import Client
-    except ModuleNotFoundError:
-        raise PackageError("--scheduler needs distributed: pip install 'mxeon[dask]'") from None
-    # Silence what is told here in one line.
-    for name in (*LOGGERS, *logging.root.manager.loggerDict):
-        if name.partition(".")[0] in LOGGERS:  # what these tell is told here in one line
-            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
-    rule = f"scheduler must be the address of a running Dask scheduler; got {address!r}"
-    if not address.strip():
-        raise InputError(rule)
-    # Connect.
-    try:
-        client = _in_time(partial(Client, address, timeout=min(ANSWER, wait)), wait)
-    except (OSError, ValueError) as error:
-        raise InputError(f"{rule}: {str(error).partition(chr(10))[0]}") from None
-    if client is None:
-        raise InputError(f"{rule}: no answer within {wait:g} s; raise it with --waitForWorkers")
-    return client
-
-
-def _in_time(work: Callable[[], Any], seconds: float) -> Any:
-    """What work returns, or raises, within some seconds; None if it goes on, in a thread of its own.
-
-    Dask waits for a scheduler that takes a connection and says nothing for minutes.
-    """
-    # Work in a thread that nobody waits for.
-    answers: SimpleQueue[tuple[Any, Exception | None]] = SimpleQueue()
-
-    def answer() -> None:
-        try:
-            answers.put((work(), None))
-        except Exception as error:
-            answers.put((None, error))
-
-    Thread(target=answer, daemon=True).start()
-    # Take its answer.
-    try:
-        value, error = answers.get(timeout=seconds)
-    except Empty:
-        return None
-    if error:
-        raise error
-    return value
-
-
 def _progress(
     future: Any, task: _Task, compatible: frozenset[str]
 ) -> tuple[Outcome | None, _Task | None]:
@@ -229,59 +142,6 @@ def _outcome(future: Any) -> Outcome:
     return Outcome(None, " ".join(f"{type(error).__name__}: {error}".split()))
 
 
-class Workers:
-    """The workers of a cluster; those that have this version and one thread are compatible."""
-
-    def __init__(self, client: Any, wait: float) -> None:
-        self.client = client
-        self._wait = wait
-        self._compatible: dict[str, bool] = {}
-        if not self.compatible() and self._compatible:  # these workers will not change
-            raise InputError(
-                f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
-                f"got {len(self._compatible)} others"
-            )
-        self.await_compatible()
-
-    def await_compatible(self) -> None:
-        """Wait for a compatible worker.
-
-        Raises
-        ------
-        NotRun
-            If none comes in time.
-        """
-        end = time.monotonic() + self._wait
-        while not self.compatible():
-            if time.monotonic() > end:
-                raise NotRun(
-                    f"no compatible Dask worker came within {self._wait:g} s; "
-                    "raise it with --waitForWorkers"
-                )
-            time.sleep(min(POLL, self._wait))
-
-    def compatible(self) -> frozenset[str]:
-        """Addresses of the compatible workers; warns once of each other one."""
-        # List the workers.
-        info = self.client.scheduler_info(n_workers=-1)
-        if "workers" not in info:  # the client has closed
-            raise NotRun(GONE)
-        threads = {address: worker["nthreads"] for address, worker in info["workers"].items()}
-        # Ask new ones for their versions, and warn of those that differ.
-        new = sorted(threads.keys() - self._compatible.keys())
-        versions = self.client.run(_version, workers=new, on_error="return") if new else {}
-        for address, version in versions.items():
-            reason = _incompatibility(version, threads[address])
-            self._compatible[address] = not reason
-            if reason:
-                warnings.warn(f"worker {address} gets no work: {reason}", stacklevel=2)
-        return frozenset(address for address in threads if self._compatible.get(address))
-
-    def submit(self, *task: Any, on: frozenset[str]) -> Any:
-        """The future of a task that some of the workers may do."""
-        return self.client.submit(*task, workers=sorted(on), pure=False)
-
-
 def _work_timed(
     work: Callable[[Any], Any], item: Any, timeout: float, unavailable: type[Exception]
 ) -> Any:
@@ -295,15 +155,3 @@ def _work_timed(
         raise WorkerUnavailable(str(reason), get_worker().address) from None
     finally:
         faulthandler.cancel_dump_traceback_later()
-
-
-def _incompatibility(version: object, threads: int) -> str:
-    if version != mxeon.__version__:
-        return f"it must have mxeon {mxeon.__version__}; got {version}"
-    if threads != 1:
-        return f"it must have one thread, --nthreads 1, as OpenGL needs; got {threads}"
-    return ""
-
-
-def _version() -> str:
-    return mxeon.__version__

@@ -3,30 +3,23 @@
 
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
 libraries. Which implementations MaterialX chooses is then checked: see `implementations`.
-
-No version of MaterialX is refused by its number: the methods that mxeon needs are looked up in it,
-and generated code is checked against the closure interface of eonlib's sources.
 """
 
 import os
 import warnings
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
 
 import MaterialX as mx
-import MaterialX.PyMaterialXGenShader as mx_gen
 
-import mxeon
-from mxeon.errors import InputError, LibraryError, PackageError, assert_known, meant
+from mxeon.errors import InputError, LibraryError, assert_known, meant
 from mxeon.io.files import AnyPath
-from mxeon.shaders.library_files import check_files, check_sources, read_options
+from mxeon.shaders.library_files import check_definitions, check_files, check_sources, read_options
+from mxeon.shaders.versions import UntestedVersionWarning, check_version, untested
 
-TESTED = ("1.39.3", "1.39.4", "1.39.5")  # versions of MaterialX; others run with a warning
 SOURCE_FOLDERS = ("genglsl", "genosl")
 SOURCES = (".mtlx", ".glsl", ".osl")  # endings of the files that a library is made of
-REQUIRED = ((mx.Document, "setDataLibrary"), (mx_gen.ShaderGenerator, "registerTypeDefs"))
 
 # eonlib as a whole, its diffuse nodes alone, and MaterialX as it comes.
 LIBRARIES = ("eonlib", "diffuse", "stock")
@@ -35,10 +28,6 @@ LOADED = 16  # libraries that a process keeps, of some 10 MB each
 
 # Targets of generators; 1.39.5 alone has all.
 TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl")
-
-
-class UntestedVersionWarning(UserWarning):
-    """A version of MaterialX that mxeon has not been tested with."""
 
 
 @dataclass(frozen=True)
@@ -225,7 +214,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
     if library not in LIBRARIES:
         check_sources(document, library_name(library))
     if definitions:
-        _check_definitions(document, load_library(library, profile), definitions)
+        check_definitions(document, load_library(library, profile), definitions)
     if library in ("eonlib", "diffuse"):
         assert_ours(document, library, profile)
     return document
@@ -237,45 +226,6 @@ def _documents(folder: AnyPath, rule: str, remedy: str = "") -> list[Path]:
     if not documents:
         raise InputError(f"{rule}; got {str(folder)!r}{remedy}")
     return documents
-
-
-def _check_definitions(document: mx.Document, base: mx.Document, folders: Iterable[str]) -> None:
-    """Raise InputError if folders of definitions replace names or implementations of a library."""
-    for folder in folders:
-        check_sources(document, folder)
-        for each in document.getChildren():
-            file = each.getActiveSourceUri()
-            if Path(folder) in Path(file).parents and _replaces(each, base):
-                raise InputError(
-                    f"{file}: {each.getName()} must replace nothing of the library, which has it: "
-                    "give it another name, or load the folder by --library"
-                )
-
-
-def _replaces(element: mx.Element, base: mx.Document) -> bool:
-    """Whether a library has an element of that name, or an implementation of that node and target."""
-    if base.getChild(element.getName()):
-        return True
-    implements = element.isA(mx.Implementation) or element.isA(mx.NodeGraph)
-    definition = base.getNodeDef(element.getNodeDefString()) if implements else None
-    return bool(definition and definition.getImplementation(element.getTarget()))
-
-
-def check_version() -> None:
-    """Raise ImportError unless this MaterialX has every method of REQUIRED."""
-    for owner, method in REQUIRED:
-        if not hasattr(owner, method):
-            raise PackageError(
-                f"MaterialX {mx.getVersionString()} lacks {owner.__name__}.{method}; "
-                f"install {TESTED[0]} or later: pip install materialx=={TESTED[-1]}"
-            )
-
-
-def untested(version: str) -> str:
-    """Note that mxeon has not been tested with a version of MaterialX; "" if it has."""
-    if version in TESTED:
-        return ""
-    return f"MaterialX {version} has not been tested with mxeon {mxeon.__version__}"
 
 
 def implementations(

@@ -85,3 +85,25 @@ def _find(search: mx.FileSearchPath, name: str, local: Path) -> str:
     path = mx.FileSearchPath(str(local))
     path.append(search)
     return str(path.find(name).getNormalized().asString())
+
+
+def check_definitions(document: mx.Document, base: mx.Document, folders: Iterable[str]) -> None:
+    """Raise InputError if folders of definitions replace names or implementations of a library."""
+    for folder in folders:
+        check_sources(document, folder)
+        for each in document.getChildren():
+            file = each.getActiveSourceUri()
+            if Path(folder) in Path(file).parents and _replaces(each, base):
+                raise InputError(
+                    f"{file}: {each.getName()} must replace nothing of the library, which has it: "
+                    "give it another name, or load the folder by --library"
+                )
+
+
+def _replaces(element: mx.Element, base: mx.Document) -> bool:
+    """Whether a library has an element of that name, or an implementation of that node and target."""
+    if base.getChild(element.getName()):
+        return True
+    implements = element.isA(mx.Implementation) or element.isA(mx.NodeGraph)
+    definition = base.getNodeDef(element.getNodeDefString()) if implements else None
+    return bool(definition and definition.getImplementation(element.getTarget()))

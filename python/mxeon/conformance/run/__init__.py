@@ -17,11 +17,11 @@ from mxeon.conformance.run.selection import assert_known_names
 from mxeon.conformance.run.survey import survey_documents
 from mxeon.conformance.run.tasks import Findings, Plan, Task
 from mxeon.errors import InputError, NotRun
-from mxeon.jobs import dask as cluster
-from mxeon.jobs import pool
+from mxeon.jobs import cluster, dask, pool
 from mxeon.jobs.timeouts import TIMEOUT, WAIT, check_timeout
 from mxeon.shaders.document.policy import DEFAULT, Policy
-from mxeon.shaders.library import library_name, untested
+from mxeon.shaders.library import library_name
+from mxeon.shaders.versions import untested
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
@@ -223,7 +223,7 @@ def _executor(
     if scheduler is not None:
         with cluster.connect(scheduler, wait) as remote:
             job = partial(work, policy)
-            yield partial(cluster.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
+            yield partial(dask.run, job, workers=remote, timeout=timeout, unavailable=NotRun)
     elif workers:
         job = partial(work_or_not_run, policy)
         yield partial(pool.run, job, workers=workers, timeout=timeout, group=_subject)

@@ -8,7 +8,7 @@ from mxeon.conformance.run.survey import Survey
 from mxeon.conformance.run.tasks import DOCUMENT, Task
 from mxeon.errors import InputError, assert_known
 from mxeon.hosts import host_names, host_row
-from mxeon.shaders.library import check_version
+from mxeon.shaders.versions import check_version
 
 ALL, COMMON = "all", "common"  # in place of the nodes' names
 
