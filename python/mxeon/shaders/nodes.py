@@ -90,10 +90,6 @@ BSDF_INPUTS: dict[str, dict[str, str]] = {
     },
 }
 
-SURFACE = """  <surface name="shading" type="surfaceshader">
-    <input name="bsdf" type="BSDF" nodename="lobe" />
-  </surface>
-"""
 DOCUMENT = """<?xml version="1.0"?>
 <materialx version="1.39">
 {nodes}  <surfacematerial name="{name}" type="material">
@@ -143,9 +139,24 @@ def input_text(name: str, kind: str, value: ArrayLike) -> str:
     return f'    <input name="{name}" type="{kind}" value="{value_text(value)}" />\n'
 
 
+def connection_text(name: str, kind: str, node: str, output: str = "") -> str:
+    """XML of an input that is connected to a node, or to an output of it."""
+    port = f' output="{output}"' if output else ""
+    return f'    <input name="{name}" type="{kind}" nodename="{node}"{port} />\n'
+
+
 def node_text(category: str, kind: str, name: str, inputs: str = "") -> str:
     """XML of a node around that of its inputs."""
     return f'  <{category} name="{name}" type="{kind}">\n{inputs}  </{category}>\n'
+
+
+def vector_text(name: str, value: ArrayLike) -> str:
+    """XML of a node that is a vector."""
+    return node_text("constant", "vector3", name, input_text("value", "vector3", value))
+
+
+# Of a surface whose BSDF is the node `lobe`.
+SURFACE = node_text("surface", "surfaceshader", "shading", connection_text("bsdf", "BSDF", "lobe"))
 
 
 def with_input(nodes: str, node: str, name: str, kind: str, value: ArrayLike) -> str:
@@ -188,10 +199,8 @@ def lobe_text(
     for each, value in inputs.items():
         if each in FRAME:
             source = f"{name}_{each}"
-            constants += node_text(
-                "constant", "vector3", source, input_text("value", "vector3", value)
-            )
-            text += f'    <input name="{each}" type="vector3" nodename="{source}" />\n'
+            constants += vector_text(source, value)
+            text += connection_text(each, "vector3", source)
         else:
             text += input_text(each, kinds[each], value)
     return constants + node_text(category, "BSDF", name, text)

@@ -28,6 +28,7 @@ from mxeon.shaders.nodes import (
     INVERSIONS,
     OREN_NAYAR,
     SURFACE,
+    connection_text,
     document_text,
     input_text,
     node_text,
@@ -79,7 +80,7 @@ class InversionProbe:
         ports = input_text("color", "color3", (0.2, 0.5, 0.8)) + input_text(
             "roughness", "float", 0.5
         )
-        color = f'    <input name="color" type="color3" nodename="{NAME}" />\n'
+        color = connection_text("color", "color3", NAME)
         nodes = node_text(self.node, "color3", NAME, ports)
         nodes += node_text(OREN_NAYAR, "BSDF", "lobe", color)
         shader = self.host.compile(document_text(nodes + SURFACE), library=self.library)[0]

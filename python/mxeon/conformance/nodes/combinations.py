@@ -19,6 +19,7 @@ from mxeon.models.nodes.combinations import (
 )
 from mxeon.shaders.nodes import (
     SURFACE,
+    connection_text,
     document_text,
     input_text,
     lobe_text,
@@ -29,10 +30,7 @@ from mxeon.shaders.nodes import (
 
 def node_over(category: str, name: str = "lobe", value: str = "", **lobes: str) -> str:
     """XML of a node over other nodes, by port; a value is what an evaluation sets."""
-    ports = "".join(
-        f'    <input name="{port}" type="BSDF" nodename="{lobe}" />\n'
-        for port, lobe in lobes.items()
-    )
+    ports = "".join(connection_text(port, "BSDF", lobe) for port, lobe in lobes.items())
     return node_text(category, "BSDF", name, ports + value)
 
 
@@ -100,10 +98,10 @@ class CombinedSubject(BsdfSubject):
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a material that is this node over sheens."""
         text = NODES[self.model]
-        kinds = {port.name: port.kind for port in self.drawn}
-        for path in kinds.keys() & (inputs or {}).keys():
+        types = {port.name: port.kind for port in self.drawn}
+        for path in types.keys() & (inputs or {}).keys():
             node, name = path.split("/")
-            text = with_input(text, node, name, kinds[path], (inputs or {})[path])
+            text = with_input(text, node, name, types[path], (inputs or {})[path])
         return document_text(text + SURFACE)
 
 

@@ -22,16 +22,12 @@ from mxeon.models.nodes.emissions import (
     Emission,
     Value,
 )
-from mxeon.shaders.nodes import document_text, input_text, node_text
+from mxeon.shaders.nodes import connection_text, document_text, input_text, node_text, vector_text
 
-EMITTER = """  <surface name="shading" type="surfaceshader">
-    <input name="edf" type="EDF" nodename="emission" />
-  </surface>
-"""
-PORT = '    <input name="{}" type="EDF" nodename="{}" />\n'
+EMITTED = connection_text("edf", "EDF", "emission")
+EMITTER = node_text("surface", "surfaceshader", "shading", EMITTED)
 SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
 BLACK = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
-EMITTED = '    <input name="edf" type="EDF" nodename="emission" />\n'
 LEAST_FALLOFF = 1.0  # degrees of full angle between the cones
 EXPONENTS = (1.0, 8.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
@@ -112,19 +108,17 @@ class EmissionSubject(RowSubject[Value]):
     def emission_text(self, inputs: Values | None = None) -> str:
         """XML of the node and of those that it takes, with a value of each input."""
         # The inputs of each node, the normal by a node of its own.
-        kinds = {port.name: port.kind for port in self.ports}
+        types = {port.name: port.kind for port in self.ports}
         values = {port.name: _default(port) for port in self.drawn} | dict(inputs or {})
         ports = {name: "" for name in ("emission", *self.sources)}
         axis = ""
         for path, value in values.items():
             node, _, name = path.rpartition("/")
             if name == "normal":  # of which MaterialX ignores a value
-                axis = node_text(
-                    "constant", "vector3", "axis", input_text("value", "vector3", value)
-                )
-                ports["emission"] += '    <input name="normal" type="vector3" nodename="axis" />\n'
+                axis = vector_text("axis", value)
+                ports["emission"] += connection_text("normal", "vector3", "axis")
             else:
-                ports[node or "emission"] += input_text(name, kinds[path], value)
+                ports[node or "emission"] += input_text(name, types[path], value)
         # The emissions that are combined, then the node.
         nodes = (node_text("uniform_edf", "EDF", name, ports[name]) for name in self.sources)
         return (
@@ -218,7 +212,7 @@ class SurfaceSubject:
         emission = node_text(
             "uniform_edf", "EDF", "emission", input_text("color", "color3", SURFACE_COLOR)
         )
-        lobe = '    <input name="bsdf" type="BSDF" nodename="lobe" />\n' if self.lit else ""
+        lobe = connection_text("bsdf", "BSDF", "lobe") if self.lit else ""
         opacity = input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
         surface = node_text("surface", "surfaceshader", "shading", lobe + EMITTED + opacity)
         return document_text((BLACK if self.lit else "") + emission + surface)
@@ -234,16 +228,21 @@ def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
     return {INNER: angles[:, 0], OUTER: angles[:, 1]}
 
 
+def _connected(**sources: str) -> str:
+    """XML of inputs that are connected to emissions."""
+    return "".join(connection_text(port, "EDF", node) for port, node in sources.items())
+
+
 BOTH = ("first", "second")
 _MIX, _ADD, *_SCALED = COMBINED_EMISSIONS
-_CURVED = PORT.format("base", "base")
+_CURVED = _connected(base="base")
 EDFS = tuple(
     EmissionSubject(row, *((_CURVED, ("base",)) if BASE in row.inputs else ())) for row in EMISSIONS
 )
 COMBINED_EDFS = (
-    EmissionSubject(_MIX, PORT.format("fg", "first") + PORT.format("bg", "second"), BOTH),
-    EmissionSubject(_ADD, PORT.format("in1", "first") + PORT.format("in2", "second"), BOTH),
-    *(EmissionSubject(row, PORT.format("in1", "first"), BOTH[:1]) for row in _SCALED),
+    EmissionSubject(_MIX, _connected(fg="first", bg="second"), BOTH),
+    EmissionSubject(_ADD, _connected(in1="first", in2="second"), BOTH),
+    *(EmissionSubject(row, _connected(in1="first"), BOTH[:1]) for row in _SCALED),
 )
 ABSENT_NODES = (
     AbsentSubject(

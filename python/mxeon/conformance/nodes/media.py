@@ -11,24 +11,24 @@ from mxeon.conformance.nodes.ports import COMPONENTS, Port, color, draw
 from mxeon.conformance.nodes.rows import RowSubject, broadcast_inputs
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Values
 from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, MEDIA, Medium, Value
-from mxeon.shaders.nodes import SURFACE, document_text, input_text, node_text
+from mxeon.shaders.nodes import (
+    SURFACE,
+    connection_text,
+    document_text,
+    input_text,
+    lobe_text,
+    node_text,
+)
 
 LEAST, LARGEST = 1e-3, 16.0  # coefficients, 1/m: of 1e-3 and 1 - 1e-7 of the light
 LARGEST_FACTOR = 3.0  # of a multiple
-INTERFACE = """  <dielectric_bsdf name="top" type="BSDF">
-    <input name="weight" type="float" value="1.0" />
-    <input name="scatter_mode" type="string" value="T" />
-  </dielectric_bsdf>
-"""
-PORT = '    <input name="{}" type="VDF" nodename="{}" />\n'
+INTERFACE = lobe_text("dielectric_bsdf", {"weight": 1.0, "scatter_mode": "T"}, "top")
 SOURCES = {  # names of the media that a node takes, by its port
     "mix": {"fg": "first", "bg": "second"},
     "add": {"in1": "first", "in2": "second"},
     "multiply": {"in1": "first"},
 }
-PORTS = """    <input name="top" type="BSDF" nodename="top" />
-    <input name="base" type="VDF" nodename="medium" />
-"""
+PORTS = connection_text("top", "BSDF", "top") + connection_text("base", "VDF", "medium")
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,9 @@ class MediumSubject(RowSubject[Value]):
             node, _, name = port.name.rpartition("/")
             value = np.full(COMPONENTS[port.kind], 0.5)
             ports[node or "medium"] += input_text(name, port.kind, value)
-        ports["medium"] += "".join(PORT.format(*each) for each in sources.items())
+        ports["medium"] += "".join(
+            connection_text(port, "VDF", name) for port, name in sources.items()
+        )
         # The media that are combined, the node, and a surface over it.
         media = [
             node_text("anisotropic_vdf", "VDF", name, ports[name]) for name in sources.values()

@@ -13,7 +13,7 @@ from mxeon.conformance.nodes.rows import RowSubject
 from mxeon.conformance.samples.batch import Array, Batch, Candidate, Changes, Values
 from mxeon.models.nodes.utilities import UTILITIES, UtilityNode
 from mxeon.models.nodes.utilities import Values as Outputs
-from mxeon.shaders.nodes import document_text, input_text, node_text
+from mxeon.shaders.nodes import connection_text, document_text, input_text, node_text
 
 NAME, COLOR = "value", "color"  # of the node in its document, and of its conversion to a color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # types of the inputs by shape
@@ -103,10 +103,12 @@ class UtilitySubject(RowSubject[Outputs]):
         # Its output as a color, which a surface emits.
         source, port = NAME, "" if single else self.output
         if kind != "color3":
-            text += node_text("convert", "color3", COLOR, _connected("in", kind, NAME, port))
+            text += node_text("convert", "color3", COLOR, connection_text("in", kind, NAME, port))
             source, port = COLOR, ""
-        text += node_text("uniform_edf", "EDF", "lobe", _connected("color", "color3", source, port))
-        surface = _connected("edf", "EDF", "lobe")
+        text += node_text(
+            "uniform_edf", "EDF", "lobe", connection_text("color", "color3", source, port)
+        )
+        surface = connection_text("edf", "EDF", "lobe")
         return document_text(text + node_text("surface", "surfaceshader", "shading", surface))
 
     def outside_inputs(self, rng: np.random.Generator, count: int) -> dict[str, Array]:
@@ -151,12 +153,6 @@ def _filled(port: Port, value: ArrayLike | None) -> ArrayLike:
     """A number in each component of a port."""
     filled: list[float] | float = np.full(COMPONENTS[port.kind], value).tolist()
     return filled
-
-
-def _connected(name: str, kind: str, node: str, output: str = "") -> str:
-    """XML of an input that is connected to a node's output."""
-    port = f' output="{output}"' if output else ""
-    return f'    <input name="{name}" type="{kind}" nodename="{node}"{port} />\n'
 
 
 UTILITY_SUBJECTS = tuple(UtilitySubject(row, output) for row in UTILITIES for output in row.outputs)
