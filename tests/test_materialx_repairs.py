@@ -43,11 +43,12 @@ print(json.dumps(results))
 """
 
 
+LEDGER = ledger.rows()
 # The repairs that main needs: those of pages that no pull request there repairs.
 OF_MAIN = [
     change
     for change in repairs.REPAIRS
-    for row in ledger.rows()
+    for row in LEDGER
     if row.page == change.page and not row.pull
 ]
 
@@ -60,7 +61,7 @@ def rows_of(pages):
     """The rows of pages, and with what diagnosis a check may fail."""
     return {
         (check, subject, row.issue.get("host", "gl")): words
-        for row in ledger.rows()
+        for row in LEDGER
         if row.page in pages
         for words, pairs in {"": row.repaired, **row.remains}.items()
         for check, subject in pairs

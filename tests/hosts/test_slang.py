@@ -10,12 +10,14 @@ from mxeon.errors import NotRun
 from mxeon.hosts import slang
 
 OPEN = """
+import sys
 from mxeon.errors import NotRun
 from mxeon.hosts.slang import Host
 try:
     Host()
 except NotRun as reason:
     print(reason)
+print("torch" in sys.modules)
 """
 
 
@@ -32,3 +34,4 @@ def test_a_missing_compiler_is_not_run_and_names_the_remedy(tmp_path):
     )
     assert done.stdout.startswith("slang: no kernel for the CPU; ")
     assert "apt-get install g++" in done.stdout
+    assert done.stdout.endswith("\nFalse\n")  # slangpy would import PyTorch, in two seconds

@@ -8,8 +8,9 @@ the text calls its BSDF. Arguments arrive in buffers, one row per thread.
 from __future__ import annotations
 
 import itertools
+import sys
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,12 +21,27 @@ from mxeon.hosts.base import TURN, Array, Identity, Inputs
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
-try:
-    import slangpy
-except ImportError:
-    slangpy = None
-
 Resource: TypeAlias = Any  # an object of slangpy, whose types are known where it is installed
+
+
+def _slangpy() -> Resource:
+    """slangpy; None where it is not installed.
+
+    It imports PyTorch where that is installed, which takes two seconds and serves no buffer of ours.
+    """
+    modules = cast(dict[str, object], sys.modules)
+    unused = modules.setdefault("torch", None) is None  # as if it were not installed
+    try:
+        import slangpy
+    except ImportError:
+        return None
+    finally:
+        if unused:
+            del modules["torch"]
+    return slangpy
+
+
+slangpy = _slangpy()
 
 ENTRY = "mxeon_main"
 THREADS = 64  # in a group
