@@ -28,9 +28,9 @@ def smooth_errors(category, material, _, mu):
 # What is measured, by name: errors, size of a set, and the ranges of its films.
 MEASURED = {
     "all orders": (fit.curve_errors, probes.CURVES, probes.ORDERED),
-    "F_ss": (fit.average_errors, probes.FILMS, probes.FRINGED),
-    "compensation in two cosines": (smooth_errors, probes.FILMS, probes.FRINGED),
-    "visible facets": (fit.visible_errors, probes.FILMS, probes.STEEP),
+    "F_ss": (fit.average_errors, probes.FEW_FILMS, probes.FRINGED),
+    "compensation in two cosines": (smooth_errors, probes.FEW_FILMS, probes.FRINGED),
+    "visible facets": (fit.visible_errors, probes.FEW_FILMS, probes.STEEP),
 }
 
 

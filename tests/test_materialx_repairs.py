@@ -26,7 +26,8 @@ PAGES = {change.page for change in repairs.REPAIRS}
 JUDGE = """
 import json, sys
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.tasks import EVERY_NODE, SOURCE, Task
+from mxeon.conformance.results import SOURCE
+from mxeon.conformance.run.tasks import EVERY_NODE, Task
 from mxeon.shaders.document.policy import DEFAULT
 judge = Judge(DEFAULT)
 results = {}

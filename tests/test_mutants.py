@@ -10,8 +10,8 @@ import pytest
 from benchmarks.mutants import trial
 from benchmarks.mutants.mutant import FOLDERS, read_table
 from benchmarks.mutants.quick import Quick
+from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.judge import Judge
-from mxeon.conformance.run.tasks import SOURCE
 from mxeon.shaders.document.policy import DEFAULT
 
 TABLE = read_table()

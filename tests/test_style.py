@@ -84,6 +84,37 @@ def test_no_class_name_stands_twice():
     assert {name: modules for name, modules in names.items() if len(modules) > 1} == {}
 
 
+def constants_imported(package):
+    """Modules that define each constant of the conformance suite that is imported by its name."""
+    home, imported = "mxeon.conformance", set()
+    defined = defaultdict(list)
+    for path in package.rglob("*.py"):
+        tree = ast.parse(path.read_text())
+        module = ".".join(path.relative_to(package.parent).with_suffix("").parts)
+        stored = [each for node in tree.body for each in targets(node) if each.isupper()]
+        # These are read as `tolerances.VALUE`, `kinds.SHEEN` and `lobes.CHECKS`.
+        spaces = (f"{home}.accuracy.", f"{home}.checks.", f"{home}.nodes.kinds")
+        if module.startswith(home) and not module.startswith(spaces):
+            for name in stored:
+                defined[name].append(module)
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(home):
+                imported |= {each.name for each in node.names if each.name.isupper()}
+    return {name: modules for name, modules in defined.items() if name in imported}
+
+
+def targets(node):
+    """Names that a statement assigns to."""
+    assigned = getattr(node, "targets", [getattr(node, "target", None)])
+    return [each.id for one in assigned if one for each in ast.walk(one) if type(each) is ast.Name]
+
+
+def test_a_constant_that_others_import_stands_once():
+    names = constants_imported(ROOT / "python" / "mxeon")
+    assert len(names) > 100
+    assert {name: modules for name, modules in names.items() if len(modules) > 1} == {}
+
+
 @pytest.mark.parametrize("tool", TOOLS)
 def test_the_code_passes(tool):
     command = [sys.executable, "-m", *TOOLS[tool]]

@@ -12,8 +12,9 @@ from xml.etree import ElementTree
 from benchmarks.mutants.mutant import ROOT, Mutant
 from mxeon.conformance.nodes.combinations import COMBINED_NODES
 from mxeon.conformance.probes.families import PBR_SUBJECTS
+from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.tasks import EVERY_NODE, SOURCE, Task
+from mxeon.conformance.run.tasks import EVERY_NODE, Task
 from mxeon.shaders.library import load_library
 
 DOCUMENTS = (

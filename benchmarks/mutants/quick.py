@@ -16,8 +16,8 @@ from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.diagnosis.verdicts import renderer_warnings
 from mxeon.conformance.probes.families import PBR_SUBJECTS, probe_type, probe_type_of
-from mxeon.conformance.results import PASSED
-from mxeon.conformance.run.tasks import SOURCE, Task
+from mxeon.conformance.results import PASSED, SOURCE
+from mxeon.conformance.run.tasks import Task
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Metric
 from mxeon.conformance.text.entries import check_entries

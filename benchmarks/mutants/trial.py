@@ -16,10 +16,10 @@ from benchmarks.mutants.nodes import changed_nodes, node_tasks
 from benchmarks.mutants.quick import Quick
 from benchmarks.mutants.reference import TESTS, trial_of_reference
 from mxeon.conformance.nodes.diffuse import SUBJECTS
-from mxeon.conformance.results import PASSED, Result
+from mxeon.conformance.results import PASSED, SOURCE, Result
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
-from mxeon.conformance.run.tasks import CURVE, PICTURE, SOURCE, Task
+from mxeon.conformance.run.tasks import CURVE, PICTURE, Task
 from mxeon.errors import MxeonError
 from mxeon.shaders import generators, library
 from mxeon.shaders.generation import generate

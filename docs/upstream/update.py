@@ -31,10 +31,10 @@ from docs.upstream.transmission_quantities import OF_TRANSMISSION
 from mxeon.conformance.known_issues import ISSUES, RENDERERS
 from mxeon.conformance.known_issues.issue import STOCK
 from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
+from mxeon.conformance.results import SOURCE
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.selection import ALL
-from mxeon.conformance.run.tasks import SOURCE
 from mxeon.errors import NotRun
 from mxeon.io.files import write_text
 from mxeon.models.diffuse import albedo, formulas

@@ -32,7 +32,7 @@ from mxeon.conformance.results import FAILED, NOT_RUN, PASSED, PORTRAIT, SHADER_
 from mxeon.conformance.run import check, judge, plan
 from mxeon.conformance.samples.batch import GRAZING, PAIRS, Batch
 from mxeon.conformance.samples.edge_cases import turned_frames
-from mxeon.conformance.samples.uneven_environment import ROWS, sky
+from mxeon.conformance.samples.uneven_environment import SKY_ROWS, sky
 from mxeon.conformance.text import check_texts
 from mxeon.conformance.text.sources import TEXT_ONLY
 from mxeon.errors import InputError, NotRun, ShaderError
@@ -383,5 +383,5 @@ def test_turned_normals_point_to_middles_of_texels_which_every_filter_reads_alik
     assert np.allclose(np.linalg.det(frames), 1.0, atol=1e-14)
     for x, y, z in (frames[:, :, 2].T, -frames[:, :, 2].T):
         # Rows and columns of MaterialX's latitude-longitude map, from 0.
-        row, column = ROWS * np.arccos(y) / np.pi, ROWS * np.arctan2(x, -z) / np.pi
+        row, column = SKY_ROWS * np.arccos(y) / np.pi, SKY_ROWS * np.arctan2(x, -z) / np.pi
         assert np.allclose(row % 1.0, 0.5, atol=1e-9) and np.allclose(column % 1.0, 0.5, atol=1e-9)

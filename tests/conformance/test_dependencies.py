@@ -10,7 +10,7 @@ from mxeon.cli import main
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.run import check, plan, read_run
 from mxeon.conformance.run.dependencies import digests
-from mxeon.conformance.run.journal_lines import NAME
+from mxeon.conformance.run.journal_lines import JOURNAL
 from mxeon.hosts.base import Identity
 from mxeon.hosts.gl import Host
 from mxeon.shaders.document.policy import Policy
@@ -159,7 +159,7 @@ def test_a_driver_that_changed_is_named_once_its_tasks_go_on(run, monkeypatch):
 
 def interrupt(folder):
     """Take the last item from a journal."""
-    path = folder / NAME
+    path = folder / JOURNAL
     path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from mxeon.conformance.run import check, read_run, to_run
 from mxeon.conformance.run.journal import LOCK, PREVIOUS, read_journal
-from mxeon.conformance.run.journal_lines import NAME
+from mxeon.conformance.run.journal_lines import JOURNAL
 from mxeon.shaders.library import examples_folder
 from tests.support.journals import FILES, FINDINGS, PIXELS, PLAN, TASKS, journal
 from tests.support.plans import keep_checks
@@ -39,7 +39,7 @@ def test_a_torn_last_line_is_dropped_and_its_task_done_again(tmp_path):
     with journal(tmp_path) as kept:
         kept.add(0, FINDINGS)
         kept.add(1, FINDINGS)
-    path = tmp_path / NAME
+    path = tmp_path / JOURNAL
     whole = path.read_bytes()
     path.write_bytes(whole[:-7])
     with journal(tmp_path, resume=True) as kept:
@@ -102,10 +102,10 @@ def test_nothing_is_touched_before_a_journal_is_entered(tmp_path):
 def test_a_new_run_keeps_the_old_journal_beside(tmp_path):
     with journal(tmp_path) as kept:
         kept.add(0, FINDINGS)
-    before = (tmp_path / NAME).read_bytes()
+    before = (tmp_path / JOURNAL).read_bytes()
     with journal(tmp_path) as kept:
         assert kept.findings == {}
-    assert (tmp_path / PREVIOUS / Path(NAME).name).read_bytes() == before
+    assert (tmp_path / PREVIOUS / Path(JOURNAL).name).read_bytes() == before
 
 
 def test_one_folder_has_one_writer(tmp_path):
@@ -115,26 +115,26 @@ def test_one_folder_has_one_writer(tmp_path):
 
 @pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"format": 0}\n', "\0\n", '{"format": 4}\n'])
 def test_what_is_no_journal_is_one_line(tmp_path, text):
-    (tmp_path / NAME).parent.mkdir()
-    (tmp_path / NAME).write_text(text)
-    with pytest.raises(ValueError, match=f"{NAME}: must be a journal of format 4; ") as error:
+    (tmp_path / JOURNAL).parent.mkdir()
+    (tmp_path / JOURNAL).write_text(text)
+    with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 4; ") as error:
         read_journal(tmp_path)
     assert "\n" not in str(error.value)
 
 
 def test_a_folder_without_a_journal_is_one_line(tmp_path):
-    with pytest.raises(ValueError, match=f"must hold the {NAME} of a run; there is none"):
+    with pytest.raises(ValueError, match=f"must hold the {JOURNAL} of a run; there is none"):
         read_run(tmp_path)
 
 
-@pytest.mark.parametrize("name", [NAME, "journal/*.npy"])
+@pytest.mark.parametrize("name", [JOURNAL, "journal/*.npy"])
 def test_a_pipe_in_place_of_a_file_of_the_journal_blocks_nobody(tmp_path, name):
     with journal(tmp_path) as kept:
         kept.add(0, FINDINGS)
     (path,) = tmp_path.glob(name)
     path.unlink()
     os.mkfifo(path)
-    if name == NAME:
+    if name == JOURNAL:
         with pytest.raises(OSError, match="not a regular file"):
             read_journal(tmp_path)
     else:
@@ -157,10 +157,10 @@ def test_pictures_are_on_disk_before_the_line_that_names_them(tmp_path, monkeypa
 def test_a_full_disk_loses_nothing_that_was_finished(tmp_path):
     with journal(tmp_path) as kept:
         kept.add(0, FINDINGS)
-        before = (tmp_path / NAME).read_bytes()
+        before = (tmp_path / JOURNAL).read_bytes()
         with room_for(len(before) + 100), pytest.raises(OSError, match="File too large"):
             kept.add(1, replace(FINDINGS, pictures=()))
-        assert (tmp_path / NAME).read_bytes() == before
+        assert (tmp_path / JOURNAL).read_bytes() == before
         kept.add(1, FINDINGS)
     assert list(read_journal(tmp_path)[1]) == [0, 1]
 
@@ -202,13 +202,13 @@ def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
     monkeypatch.chdir(Path(__file__).parents[2])
     command = [sys.executable, "-c", SHORT, "check", str(EXAMPLE), "--report", str(tmp_path)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    wait_for_lines(tmp_path / NAME, 4, process)
+    wait_for_lines(tmp_path / JOURNAL, 4, process)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     done = read_journal(tmp_path)[1].keys()
     assert read_run(tmp_path).missing
     finished = subprocess.run([*command, "--resume"], capture_output=True, text=True)
     assert finished.returncode == 0, finished.stderr
-    lines = (tmp_path / NAME).read_text().splitlines()[1:]
+    lines = (tmp_path / JOURNAL).read_text().splitlines()[1:]
     assert len(lines) == len(set(lines)) and len(done) > 0
     assert read_run(tmp_path).results == check([EXAMPLE]).results

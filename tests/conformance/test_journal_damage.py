@@ -11,7 +11,7 @@ import pytest
 
 from mxeon.conformance.run import read_run
 from mxeon.conformance.run.journal import read_journal
-from mxeon.conformance.run.journal_lines import NAME, to_line
+from mxeon.conformance.run.journal_lines import JOURNAL, to_line
 from tests.support.journals import FINDINGS, PIXELS, PLAN, TASKS, journal
 
 
@@ -63,7 +63,7 @@ def test_what_is_called_by_its_digest_and_is_no_picture_does_not_count(tmp_path,
 def forge_picture(folder, stem, content):
     """A journal whose only line is right, and names a picture of these bytes."""
     forge(folder, lambda record: named(record, f"{stem}.npy"))
-    (folder / NAME).with_name(f"{stem}.npy").write_bytes(content)
+    (folder / JOURNAL).with_name(f"{stem}.npy").write_bytes(content)
 
 
 def named(record, name):
@@ -74,11 +74,11 @@ def forge(folder, change):
     """A journal whose only line was changed, with a digest that is right."""
     with journal(folder) as kept:
         kept.add(1, FINDINGS)
-    header, line = (folder / NAME).read_bytes().splitlines(keepends=True)
+    header, line = (folder / JOURNAL).read_bytes().splitlines(keepends=True)
     record = json.loads(line)
     del record["digest"]
     change(record)
-    (folder / NAME).write_bytes(header + to_line(record, json.loads(header)["digest"]))
+    (folder / JOURNAL).write_bytes(header + to_line(record, json.loads(header)["digest"]))
 
 
 def changed(**values):
@@ -117,9 +117,9 @@ def test_an_edited_line_does_not_count(tmp_path, before, after):
     with journal(tmp_path) as kept:
         kept.add(1, FINDINGS)
         kept.add(2, FINDINGS)
-    header, line, last = (tmp_path / NAME).read_bytes().splitlines(keepends=True)
+    header, line, last = (tmp_path / JOURNAL).read_bytes().splitlines(keepends=True)
     assert before in line
-    (tmp_path / NAME).write_bytes(header + line.replace(before, after) + last)
+    (tmp_path / JOURNAL).write_bytes(header + line.replace(before, after) + last)
     with pytest.warns(UserWarning, match="does it again: line 2$"):
         assert list(read_journal(tmp_path)[1]) == [2]
 
@@ -130,7 +130,7 @@ def test_an_edited_line_does_not_count(tmp_path, before, after):
 def test_a_line_that_is_no_record_costs_no_other(tmp_path, line):
     with journal(tmp_path) as kept:
         kept.add(1, FINDINGS)
-    with (tmp_path / NAME).open("ab") as file:
+    with (tmp_path / JOURNAL).open("ab") as file:
         file.write(line + b"\n")
     with pytest.warns(UserWarning, match="does it again: line 3$"):
         assert list(read_journal(tmp_path)[1]) == [1]
@@ -143,9 +143,9 @@ def test_findings_of_another_run_do_not_count(tmp_path):
     for name, version in (("a", "1.0"), ("b", "2.0")):
         with journal(tmp_path / name, replace(PLAN, version=version)) as kept:
             kept.add(1, FINDINGS)
-    header, _ = (tmp_path / "a" / NAME).read_bytes().splitlines(keepends=True)
-    _, line = (tmp_path / "b" / NAME).read_bytes().splitlines(keepends=True)
-    (tmp_path / "a" / NAME).write_bytes(header + line)
+    header, _ = (tmp_path / "a" / JOURNAL).read_bytes().splitlines(keepends=True)
+    _, line = (tmp_path / "b" / JOURNAL).read_bytes().splitlines(keepends=True)
+    (tmp_path / "a" / JOURNAL).write_bytes(header + line)
     with pytest.warns(UserWarning, match="line 2"):
         assert read_journal(tmp_path / "a")[1] == {}
 

@@ -9,7 +9,7 @@ import psutil
 
 from mxeon.conformance.run import read_run
 from mxeon.conformance.run.journal import read_journal
-from mxeon.conformance.run.journal_lines import NAME
+from mxeon.conformance.run.journal_lines import JOURNAL
 from mxeon.jobs.processes import PYTHON
 from mxeon.shaders.library import examples_folder
 
@@ -29,7 +29,7 @@ def start(folder, *options, files=(DOCUMENT,), capture=True):
 
 def finished(folder):
     """How many items a run has finished; 0 before it has begun."""
-    path = Path(folder, NAME)
+    path = Path(folder, JOURNAL)
     return max(0, path.read_bytes().count(b"\n") - 1) if path.exists() else 0
 
 

@@ -10,7 +10,7 @@ from mxeon.conformance.samples.batch import LOBE_RIM, RIM
 from mxeon.conformance.samples.edge_cases import TURNED
 from mxeon.conformance.samples.measurement import absolute, mean_error, relative, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
-from mxeon.conformance.samples.uneven_environment import ROWS, SLOPE
+from mxeon.conformance.samples.uneven_environment import SKY_ROWS, SLOPE
 from mxeon.shaders.facets import NARROWEST
 
 HALF_ROUNDING = 2.0**-11  # of float16
@@ -108,7 +108,9 @@ FRAME = Tolerance(
     "times 4 by s / t, times 3 by a sine, and times 2 by s and the cosine itself; rounded up",
 )
 SURROUNDINGS = Tolerance(
-    rounded_up(SLOPE * (math.sqrt(2.0) * math.pi / ROWS * FILTER_STEP + ARC_SINE) + HALF_ROUNDING),
+    rounded_up(
+        SLOPE * (math.sqrt(2.0) * math.pi / SKY_ROWS * FILTER_STEP + ARC_SINE) + HALF_ROUNDING
+    ),
     "irradiance",
     absolute,
     "half floats, 2^-11, of numbers up to 1; and the slope of the map, 1/2, times 2^-8 of a texel, pi / 128 "

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.accuracy.bsdf import LEAST_ALPHA, LEAST_COSINE
+from mxeon.conformance.accuracy import bsdf as tolerances
 from mxeon.conformance.nodes.bsdf import BsdfSubject
 from mxeon.conformance.probes.cases import WHITE, layering_cases
 from mxeon.conformance.probes.probe import Probe, subject_of
@@ -19,7 +19,7 @@ from mxeon.models.nodes.combinations import FACTOR
 
 FEW = 1 << 12
 ROUNDED = 1e-9  # difference of two albedos that are the same
-LEAST_INDEX = 1.2  # of a dielectric whose values are divided
+LEAST_DIVIDED = 1.2  # of a dielectric whose values are divided
 LEAST_VALUE = 1e-3  # pi f cos of values whose ratio is asked
 
 
@@ -98,7 +98,8 @@ def shape(probe: Probe) -> Iterable[Case]:
     batch, other = (_clear(each.first(FEW)) for each in probe.mirrored)
     first, second = probe.expected(batch), probe.expected(other)
     lit = (np.minimum(first, second) > LEAST_VALUE).any(axis=1)
-    lit &= np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2])) >= LEAST_COSINE
+    least = np.minimum(batch.wo[:, 2], np.minimum(batch.wi[:, 2], other.wi[:, 2]))
+    lit &= least >= tolerances.LEAST_COSINE
     scale = (first * second).max(axis=1, keepdims=True)
     with np.errstate(invalid="ignore"):
         measured = probe.direct(batch) * second / scale
@@ -113,7 +114,7 @@ def _clear(batch: Batch) -> Batch:
     """
     changes: dict[str, ArrayLike] = {}
     if np.ndim(batch.inputs.get("ior", 0.0)) == 1:
-        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_INDEX)
+        changes["ior"] = np.maximum(batch.inputs["ior"], LEAST_DIVIDED)
     if "color82" in batch.inputs:
         changes["color82"] = np.maximum(batch.inputs["color82"], LEAST_COLOR82)
     return batch.altered(**changes)
@@ -132,8 +133,8 @@ def retroreflection(probe: Probe) -> Iterable[Case]:
 def anisotropy(probe: Probe) -> Iterable[Case]:
     """Values with a turned tangent against those of directions turned the other way."""
     batch = probe.mirrored[0].first(FEW)
-    batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= LEAST_COSINE)
-    batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], LEAST_ALPHA))
+    batch = batch.where(np.minimum(batch.wo[:, 2], batch.wi[:, 2]) >= tolerances.LEAST_COSINE)
+    batch = batch.altered(roughness=np.maximum(batch.inputs["roughness"], tolerances.LEAST_ALPHA))
     angle = np.linspace(0.0, 2.0 * np.pi, len(batch.wo))
     cosine, sine, zero = np.cos(angle), np.sin(angle), np.zeros(len(angle))
     tangent = rounded([cosine, sine, zero])

@@ -19,7 +19,7 @@ from mxeon.conformance.samples.measurement import Case
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 
 Values = Callable[[Batch], Array]
-TURNED = (-1.0, -1.0, 1.0)
+MIRRORED = (-1.0, -1.0, 1.0)
 ROUGHNESSES = (1.0, 0.3)  # with much and with little compensation
 SMOOTH = (0.04, 0.005)  # with next to none, for whose average a shader may take fewer cosines
 RIGHT = "every value is right by itself"  # of an explanation that found nothing
@@ -134,7 +134,7 @@ def diagnose_average(probe: Probe) -> Diagnosis:
     """Whether F at one cosine stands in the place of its average."""
     batch, measured, expected = average_case(probe, probe.films.fringed)
     direct, model = _sides(probe)
-    slanted = replace(batch, wo=view_at(2.0 / 3.0, batch), wi=view_at(2.0 / 3.0, batch) * TURNED)
+    slanted = replace(batch, wo=view_at(2.0 / 3.0, batch), wi=view_at(2.0 / 3.0, batch) * MIRRORED)
     others = {
         "at the half vector": _averages(probe, direct, batch)[0],
         "at the cosine 2/3": _averages(probe, model, slanted)[0],

@@ -8,7 +8,7 @@ from mxeon.conformance.accuracy.hair import HAIR_REGION
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import with_inputs
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
-from mxeon.conformance.diagnosis.faults import DIRECT
+from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS
 from mxeon.conformance.nodes.hair_regions import REGIONS
 from mxeon.conformance.probes.cases import over_condition
 from mxeon.conformance.probes.probe import Probe
@@ -46,12 +46,14 @@ def _diagnose(key: str) -> Callable[[Probe], Diagnosis]:
         case = _case(probe, key)
         brightest = min(float(case.expected.max()), 1.0)
         tolerance = replace(HAIR_REGION, metric=scaled, value=brightest * HAIR_REGION.value)
-        return explain(probe, [case], candidates, DIRECT, tolerance)
+        return explain(probe, [case], candidates, DIRECT_FAULTS, tolerance)
 
     return diagnose
 
 
-TURNED = with_inputs("the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995))
+TURN_FIBER = with_inputs(
+    "the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995)
+)
 
 CHECKS = tuple(
     Check(
@@ -59,7 +61,7 @@ CHECKS = tuple(
         claim,
         (HAIR_NODE.name,),
         _measure(key),
-        TURNED,
+        TURN_FIBER,
         HAIR_REGION,
         lit=True,
         diagnose=_diagnose(key),

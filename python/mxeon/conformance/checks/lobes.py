@@ -47,8 +47,12 @@ from mxeon.shaders.nodes import FLAG
 
 EON = ("eon", "eon_fitted")
 ANY = (*EON, "qon")
-OPAQUE = (*(row.name for row in NODES if not row.layerable), HAIR_NODE.name, SUBSURFACE_NODE.name)
-BLACK = tuple(subject.model for subject in (*BSDFS, *HAIRS, *SUBSURFACES) if subject.black)
+LAYERLESS = (
+    *(row.name for row in NODES if not row.layerable),
+    HAIR_NODE.name,
+    SUBSURFACE_NODE.name,
+)
+BLACKENED = tuple(subject.model for subject in (*BSDFS, *HAIRS, *SUBSURFACES) if subject.black)
 # Nodes that look an environment up at a normal, beside the rough diffuse ones.
 LOOKED_UP = (*(row.name for row in LOBE_NODES), HAIR_NODE.name, SUBSURFACE_NODE.name)
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
@@ -142,7 +146,7 @@ CHECKS = (
     Check(
         "black",
         "A black surface scatters nothing.",
-        (*ROUGH, *BLACK, *SMOOTH),
+        (*ROUGH, *BLACKENED, *SMOOTH),
         measures.black,
         offset,
         tolerances.ZERO,
@@ -211,7 +215,7 @@ CHECKS = (
     Check(
         "throughput",
         "No light from below passes: the throughput is 0 in every branch and for every weight.",
-        (*ANY, *OPAQUE),
+        (*ANY, *LAYERLESS),
         measures.throughput,
         take_response,
         tolerances.OPAQUE,

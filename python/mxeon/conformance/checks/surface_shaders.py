@@ -13,16 +13,15 @@ from mxeon.conformance.checks.measures import counted
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.comparisons import ALBEDO, VALUE
 from mxeon.conformance.nodes.surface_shaders import SHADERS, SurfaceShader
-from mxeon.conformance.probes.cases import albedo_cases, value_cases
+from mxeon.conformance.probes.cases import SCATTERING, albedo_cases, value_cases
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import Case, scaled
 
 MODELS = tuple(shader.model for shader in SHADERS)
-BRANCHES = ("direct", "environment", "transmission")
 WORST = 32  # pairs that are looked at
 # Inputs that take a lobe away, by its name.
-LOBES = {
+LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
     "sheen": ("sheen", "fuzz_weight", "sheen_color"),
     "metal": ("metalness", "base_metalness", "metallic"),
@@ -58,7 +57,7 @@ def without_effect(probe: Probe) -> list[str]:
     """Inputs that change no value in any branch."""
     names = subject_of(probe, SurfaceShader).inputs
     effective = np.zeros(len(names), bool)
-    for branch in BRANCHES:
+    for branch in SCATTERING:
         values = probe.response(probe.changed, branch).reshape(len(names), 2, -1)
         effective |= (values[:, 0] != values[:, 1]).any(axis=1)
     return [name for name, each in zip(names, effective, strict=True) if not each]
@@ -73,7 +72,7 @@ def diagnose_lobes(probe: Probe) -> Diagnosis:
     pairs = batch.where(worst)
     # Find their error without each lobe.
     errors = {}
-    for lobe, inputs in LOBES.items():
+    for lobe, inputs in LOBE_INPUTS.items():
         if names := tuple(name for name in inputs if name in batch.inputs):
             errors[lobe] = _error(probe, pairs, names)
     lobe = min(errors, key=errors.__getitem__)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from mxeon.conformance.nodes.transmission import TransmissionSubject
+from mxeon.conformance.probes.cases import SCATTERING
 from mxeon.conformance.probes.probe import Probe, subject_of
 from mxeon.conformance.samples.batch import Array, Batch, rounded
 from mxeon.conformance.samples.edge_cases import aimed
@@ -15,10 +16,9 @@ from mxeon.conformance.samples.uneven_environment import sky, sky_map, texel_mid
 from mxeon.models.microfacet.ggx import smith_g1
 from mxeon.models.transmission.refraction import refraction_direction
 
-BRANCHES = ("direct", "environment", "transmission")
 COUNT = 1 << 9  # views of smooth surfaces
 FEW = 1 << 6  # views whose inputs are changed
-LEAST_VIEW = 0.05  # cosine of them
+LEAST_SEEN = 0.05  # cosine of them
 CRITICAL = 0.05  # distance from the critical angle, in its cosine: F has an infinite slope there
 LEAST_PASSED = 0.01  # light of which the place is asked
 NORMAL = (0.0, 0.0, 1.0)
@@ -80,7 +80,7 @@ def kept(probe: Probe) -> Iterable[Case]:
             cases.append(
                 Case(batch, getattr(probe, output)(batch), _reflection(probe, output, batch))
             )
-        for branch in BRANCHES if subject_of(probe, TransmissionSubject).reflects else BRANCHES[:2]:
+        for branch in SCATTERING[: 3 if subject_of(probe, TransmissionSubject).reflects else 2]:
             expected = (
                 probe.reflection.throughput(batch, branch)
                 if subject_of(probe, TransmissionSubject).reflects
@@ -147,7 +147,7 @@ def through_sphere(wo: Array, index: Array) -> Array:
 def _smooth(probe: Probe) -> Batch:
     """Views of smooth surfaces of all indices, with the node's colors."""
     batch: Batch = probe.few[0].first(COUNT)
-    batch = batch.where(batch.wo[:, 2] >= LEAST_VIEW)
+    batch = batch.where(batch.wo[:, 2] >= LEAST_SEEN)
     return batch.altered(roughness=(0.0, 0.0))
 
 

@@ -20,7 +20,7 @@ from mxeon.shaders.nodes import FLAG
 # called the nearest.
 SAME, NEAR = 0.03, 0.3
 INEXACT = 30.0  # tolerances up to which the right model is called inexact, and not another one
-LIT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
+LEAST_LIGHT = 1e-3  # cosine of the light up to which factors of it cannot be told apart
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def _distance(
 ) -> float:
     """Root-mean-square distance of the measured values from those of a candidate with a fault.
 
-    A roughness above 1 is left out, which not every model takes; and light up to LIT. Where the
+    A roughness above 1 is left out, which not every model takes; and light up to LEAST_LIGHT. Where the
     tolerance is that of a mean, values have noise and means are compared.
     """
     errors = []
@@ -142,7 +142,7 @@ def _distance(
         values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
         kept = case.batch.rough <= 1.0
         if "albedo" not in tolerance.unit:
-            kept &= np.abs(case.batch.wi[:, 2]) > LIT
+            kept &= np.abs(case.batch.wi[:, 2]) > LEAST_LIGHT
         error = ((case.measured - values) / tolerance.scale(case.expected))[kept]
         errors.append(
             error.mean(axis=0, keepdims=True) if tolerance.metric is mean_error else error

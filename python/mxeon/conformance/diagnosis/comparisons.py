@@ -9,7 +9,7 @@ import numpy as np
 
 from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
-from mxeon.conformance.diagnosis.faults import DIRECT, ENVIRONMENT, Fault
+from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS, ENVIRONMENT_FAULTS, Fault
 from mxeon.conformance.probes.cases import (
     albedo_cases,
     back_cases,
@@ -87,8 +87,8 @@ def _rest(candidate: Candidate, batch: Batch) -> Array:
     return np.maximum(1.0 - candidate.values(batch), 0.0)
 
 
-VALUE = Comparison("value", value_cases, _values, DIRECT)
-ALBEDO = Comparison("albedo", albedo_cases, _albedos, ENVIRONMENT)
+VALUE = Comparison("value", value_cases, _values, DIRECT_FAULTS)
+ALBEDO = Comparison("albedo", albedo_cases, _albedos, ENVIRONMENT_FAULTS)
 THROUGHPUT = Comparison("throughput", layering_cases, _rests)  # of a layer, for light from above
 TRANSMISSION = Comparison("throughput", transmission_cases, _rests)  # for light through the base
 RADIANCE = Comparison("value", value_cases, _values)  # of an emission from the front

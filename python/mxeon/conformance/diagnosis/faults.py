@@ -107,14 +107,14 @@ def _of_weight() -> Iterator[Fault]:
     yield Fault("the weight is applied twice", values=_scaled(_column("weight")))
 
 
-COMMON = (
+INPUT_FAULTS = (
     *_of_weight(),
     *_of_colors(),
     *_of_roughness(),
 )
 
-DIRECT = (
-    *COMMON,
+DIRECT_FAULTS = (
+    *INPUT_FAULTS,
     Fault("the occlusion is ignored", _input("occlusion", np.ones_like)),
     Fault("the occlusion is applied twice", values=_scaled(_column("occlusion"))),
     Fault("the cosine of the light is missing", values=_scaled(lambda batch: 1.0 / batch.wi[:, 2])),
@@ -133,8 +133,8 @@ DIRECT = (
     ),
 )
 
-ENVIRONMENT = (
-    *COMMON,
+ENVIRONMENT_FAULTS = (
+    *INPUT_FAULTS,
     Fault(
         "the occlusion is applied, as the caller does once more",
         values=_scaled(_column("occlusion")),

@@ -5,8 +5,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.accuracy.accuracy import ACCURACY
-from mxeon.conformance.accuracy.diffuse import OPAQUE, SURROUNDINGS
 from mxeon.conformance.diagnosis.candidates import (
     NEAR,
     Diagnosis,
@@ -30,10 +30,10 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.batch import Array, Batch
 from mxeon.conformance.samples.measurement import absolute
 from mxeon.conformance.samples.uneven_environment import sky, sky_behind
+from mxeon.models.nodes.frames import UP
 from mxeon.shaders.nodes import FLAG
 
 UNKNOWN = "no known fault explains it"
-UP = (0.0, 0.0, 1.0)
 
 # The irradiance that a wrong look-up finds, by what it does.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {
@@ -79,7 +79,7 @@ def diagnose_throughput(probe: Probe) -> Diagnosis:
     branches: dict[str, list[str]] = {}
     for branch in BRANCHES:
         cases = list(throughput_cases(probe, branch))
-        wrong = [absolute(case.measured, case.expected) > OPAQUE.value for case in cases]
+        wrong = [absolute(case.measured, case.expected) > tolerances.OPAQUE.value for case in cases]
         values = np.concatenate(
             [case.measured[bad] for case, bad in zip(cases, wrong, strict=True)]
         )
@@ -150,13 +150,13 @@ def diagnose_stretched(probe: Probe) -> Diagnosis:
 
 def diagnose_surroundings(probe: Probe) -> Diagnosis:
     """The direction at which the environment is looked up."""
-    case = surroundings_case(probe)
+    case, limit = surroundings_case(probe), tolerances.SURROUNDINGS.value
     for words, found in LOOKUPS.items():
-        if np.sqrt(np.mean((case.measured - found(case.batch)) ** 2)) <= SURROUNDINGS.value:
+        if np.sqrt(np.mean((case.measured - found(case.batch)) ** 2)) <= limit:
             return Diagnosis(f"the environment is looked up {words}")
-    if np.sqrt(np.mean((case.measured - sky_behind(case.expected)) ** 2)) <= SURROUNDINGS.value:
+    if np.sqrt(np.mean((case.measured - sky_behind(case.expected)) ** 2)) <= limit:
         return Diagnosis("the environment is looked up on the other side of the surface")
-    wrong = absolute(case.measured, case.expected) > SURROUNDINGS.value
+    wrong = absolute(case.measured, case.expected) > limit
     return Diagnosis(not_finite([case]) or region([case.batch], [wrong]) or UNKNOWN)
 
 

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from mxeon.conformance.accuracy.diffuse import INVERSION, ROUND_TRIP
+from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
 from mxeon.conformance.results import Place, Result
@@ -34,13 +34,12 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 
-CHECK = "inversion"
 POINTS = 4096
 VARIANT = "roughness is 5 % off"
 FUNCTION = re.compile(r"^\w+ (\w+)\([^()]*\)\s*(?=\{)", re.MULTILINE)
 # Its variables must not be those of a nodegraph.
 NAME = "mxeon_node"
-VALUE = re.compile(
+CALL = re.compile(
     rf"(?:vec3|float3) {NAME}_out = [^;]*;(?:\s*\w+\([^;]*\b{NAME}_out\);)?", re.MULTILINE
 )
 WRAPPER = f"""
@@ -85,7 +84,7 @@ class InversionProbe:
         nodes += node_text(OREN_NAYAR, "BSDF", "lobe", color)
         shader = self.host.compile(document_text(nodes + SURFACE), library=self.library)[0]
         text = shader.stages["pixel"]
-        value = VALUE.search(text)
+        value = CALL.search(text)
         if value is None:
             raise NotRun(f"the code of {self.node} is not a function of its inputs alone")
         return _functions(text, value[0]) + WRAPPER.format(value=value[0])
@@ -105,15 +104,15 @@ def judge_inversion(probe: InversionProbe) -> tuple[Result, ...]:
     """Results of the checks of an inversion node on a host."""
     rows: tuple[tuple[str, str, Tolerance, Errors], ...] = (
         (
-            CHECK,
+            "inversion",
             "The node gives the reflectance of the NumPy function of its name.",
-            INVERSION,
+            tolerances.INVERSION,
             _value,
         ),
         (
             "round_trip",
             "EON with the reflectance that the node gives has the color as its albedo.",
-            ROUND_TRIP,
+            tolerances.ROUND_TRIP,
             _round_trip,
         ),
     )

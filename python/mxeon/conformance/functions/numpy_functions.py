@@ -47,7 +47,7 @@ def _upper_root(m: Array) -> Array:
 
 
 # Functions that have another name in NumPy, or other parameters.
-OTHERS: Mapping[str, Callable[..., Array]] = {
+NAMED: Mapping[str, Callable[..., Array]] = {
     "eon_around": lambda mu, S, u2: hemisphere.around(mu, S, u2),
     "eon_azimuth_frame": _frame,
     "eon_gray_weight": lambda gray, roughness: formulas.eon_multiple_weight(gray, roughness),
@@ -113,8 +113,8 @@ def _takes_gray(function: str) -> bool:
 def _version(function: str) -> tuple[Callable[..., Array], bool]:
     """NumPy's version of a shader function, and whether colors have their channels first."""
     # Functions of the package, under their public names.
-    if function in OTHERS:
-        return OTHERS[function], False
+    if function in NAMED:
+        return NAMED[function], False
     for module in (sampling, albedo):
         if hasattr(module, function):
             return getattr(module, function), False

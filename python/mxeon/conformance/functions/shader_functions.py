@@ -11,7 +11,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from mxeon.conformance.accuracy.diffuse import DENSITY, LOSS, PART, VALUE, direction_of
+from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.accuracy.engine import TURN
 from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
@@ -146,35 +146,35 @@ FUNCTION_CHECKS = (
         "The shader functions of models and albedos are the NumPy models.",
         lambda name: "_brdf" in name or "_albedo_" in name,
         value_error,
-        lambda probe: VALUE,
+        lambda probe: tolerances.VALUE,
     ),
     FunctionCheck(
         "loss",
         "1 - E keeps its relative accuracy down to a cosine of 1e-6.",
         lambda name: name == "fon_loss",
         loss_error,
-        lambda probe: LOSS,
+        lambda probe: tolerances.LOSS,
     ),
     FunctionCheck(
         "samples",
         "The shader functions that sample directions give NumPy's.",
         lambda name: bool(SAMPLES.fullmatch(name)),
         part_error,
-        lambda probe: direction_of(probe.sine_error),
+        lambda probe: tolerances.direction_of(probe.sine_error),
     ),
     FunctionCheck(
         "densities",
         "The densities of samples, and the matrix of linearly transformed cosines, are NumPy's.",
         lambda name: bool(DENSITIES.fullmatch(name)),
         part_error,
-        lambda probe: DENSITY,
+        lambda probe: tolerances.DENSITY,
     ),
     FunctionCheck(
         "parts",
         "The functions that models and samples are made of are those of NumPy.",
         lambda name: True,
         part_error,
-        lambda probe: PART,
+        lambda probe: tolerances.PART,
     ),
 )
 VARIANT = "the last argument is 5 % off"

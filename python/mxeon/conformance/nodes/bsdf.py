@@ -17,7 +17,8 @@ from mxeon.models import nodes as pbrlib
 from mxeon.models.nodes.node import Inputs, PbrNode, Scattering
 from mxeon.shaders.nodes import input_types, material_text
 
-BLACK = ("color", "tint", "color0", "color90")  # inputs that are 0 where nothing is scattered
+# Inputs that are 0 where nothing is scattered.
+BLACK_INPUTS = ("color", "tint", "color0", "color90")
 
 LEAST_ALPHA = 1e-3  # of random pairs
 FILM = {"thinfilm_thickness": 400.0}
@@ -129,7 +130,7 @@ class BsdfSubject(RowSubject[Scattering]):
 
     @property
     def black(self) -> Values:
-        return {name: (0.0, 0.0, 0.0) for name in BLACK if name in self.row.inputs}
+        return {name: (0.0, 0.0, 0.0) for name in BLACK_INPUTS if name in self.row.inputs}
 
     @property
     def anisotropic(self) -> bool:

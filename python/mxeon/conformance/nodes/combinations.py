@@ -36,22 +36,22 @@ def node_over(category: str, name: str = "lobe", value: str = "", **lobes: str) 
 
 TOP, BASE = (lobe_text("sheen_bsdf", {"mode": "zeltner"}, name) for name in ("top", "base"))
 SUM = TOP + BASE + node_over("add", "sum", in1="top", in2="base")
-HALF, ONE = input_text("mix", "float", 0.5), input_text("in2", "float", 1.0)
-WHITE = input_text("in2", "color3", (1.0, 1.0, 1.0))
+HALF_TEXT, ONE_TEXT = input_text("mix", "float", 0.5), input_text("in2", "float", 1.0)
+WHITE_TEXT = input_text("in2", "color3", (1.0, 1.0, 1.0))
 NODES = {  # XML of each row
     "layer": TOP + BASE + node_over("layer", top="top", base="base"),
-    "mix": TOP + BASE + node_over("mix", value=HALF, fg="top", bg="base"),
+    "mix": TOP + BASE + node_over("mix", value=HALF_TEXT, fg="top", bg="base"),
     "add": TOP + BASE + node_over("add", in1="top", in2="base"),
-    "multiply_float": TOP + node_over("multiply", value=ONE, in1="top"),
-    "multiply_color3": TOP + node_over("multiply", value=WHITE, in1="top"),
-    "multiply_sum": SUM + node_over("multiply", value=WHITE, in1="sum"),
-    "mix_sum": SUM + node_over("mix", value=HALF, fg="sum", bg="top"),
+    "multiply_float": TOP + node_over("multiply", value=ONE_TEXT, in1="top"),
+    "multiply_color3": TOP + node_over("multiply", value=WHITE_TEXT, in1="top"),
+    "multiply_sum": SUM + node_over("multiply", value=WHITE_TEXT, in1="sum"),
+    "mix_sum": SUM + node_over("mix", value=HALF_TEXT, fg="sum", bg="top"),
     "layer_sum": SUM
-    + node_over("mix", "mixed", HALF, fg="sum", bg="top")
+    + node_over("mix", "mixed", HALF_TEXT, fg="sum", bg="top")
     + node_over("layer", top="mixed", base="base"),
     "mix_layer": SUM
     + node_over("layer", "layered", top="sum", base="base")
-    + node_over("mix", value=HALF, fg="layered", bg="top"),
+    + node_over("mix", value=HALF_TEXT, fg="layered", bg="top"),
     "layer_colored": SUM + node_over("layer", top="sum", base="base"),
 }
 TITLES = {

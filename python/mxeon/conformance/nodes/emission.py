@@ -25,9 +25,9 @@ from mxeon.models.nodes.emissions import (
 from mxeon.shaders.nodes import connection_text, document_text, input_text, node_text, vector_text
 
 EMITTED = connection_text("edf", "EDF", "emission")
-EMITTER = node_text("surface", "surfaceshader", "shading", EMITTED)
+EMITTING_TEXT = node_text("surface", "surfaceshader", "shading", EMITTED)
 SURFACE_COLOR = (0.2, 0.5, 2.0)  # radiance of a surface
-BLACK = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
+BLACK_LOBE = '  <oren_nayar_diffuse_bsdf name="lobe" type="BSDF" />\n'
 LEAST_FALLOFF = 1.0  # degrees of full angle between the cones
 EXPONENTS = (1.0, 8.0)
 BLUE, ORANGE = (0.2, 0.5, 0.8), (2.0, 0.4, 0.1)  # radiances of the materials in pictures
@@ -103,7 +103,7 @@ class EmissionSubject(RowSubject[Value]):
 
     def document(self, inputs: Values | None = None) -> str:
         """MaterialX text of a surface that emits by this node alone, with these inputs."""
-        return document_text(self.emission_text(inputs) + EMITTER, "look")
+        return document_text(self.emission_text(inputs) + EMITTING_TEXT, "look")
 
     def emission_text(self, inputs: Values | None = None) -> str:
         """XML of the node and of those that it takes, with a value of each input."""
@@ -182,7 +182,7 @@ UNIMPLEMENTED = AbsentSubject(
   </nodedef>
 """
     + node_text("mxeon_absent", "EDF", "emission")
-    + EMITTER,
+    + EMITTING_TEXT,
 )
 
 
@@ -215,7 +215,7 @@ class SurfaceSubject:
         lobe = connection_text("bsdf", "BSDF", "lobe") if self.lit else ""
         opacity = input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
         surface = node_text("surface", "surfaceshader", "shading", lobe + EMITTED + opacity)
-        return document_text((BLACK if self.lit else "") + emission + surface)
+        return document_text((BLACK_LOBE if self.lit else "") + emission + surface)
 
 
 def random_cones(rng: np.random.Generator, count: int) -> dict[str, Array]:
@@ -246,7 +246,7 @@ COMBINED_EDFS = (
 )
 ABSENT_NODES = (
     AbsentSubject(
-        "measured_edf", "measured_edf", node_text("measured_edf", "EDF", "emission") + EMITTER
+        "measured_edf", "measured_edf", node_text("measured_edf", "EDF", "emission") + EMITTING_TEXT
     ),
 )
 SURFACE_NODES = (

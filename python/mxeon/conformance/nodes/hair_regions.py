@@ -9,8 +9,8 @@ from mxeon.conformance.samples.batch import Values
 from mxeon.models.hair import TINTS
 from mxeon.models.hair.defects import BESSEL, CLAMPED, UNIFORM
 
-LOBES = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
-APART: Values = {**LOBES, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
+LOBE_TINTS = {name: tuple(map(float, row)) for name, row in zip(TINTS, np.eye(3), strict=True)}
+APART: Values = {**LOBE_TINTS, "tint_TRT": (0.0, 0.0, 0.0)}  # R and TT in two channels
 STRAIGHT = 0.05  # azimuth, in radian, up to which a view counts as along the normal
 SLANTED = (0.3, 1.2)  # azimuths of other views
 
@@ -45,7 +45,7 @@ class Region:
 
 # By the key of the check.
 REGIONS = {
-    "each_lobe": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBES, form=UNIFORM),
+    "each_lobe": Region(SLANTED, (0.2, 1.0), (0.2, 1.0), LOBE_TINTS, form=UNIFORM),
     "narrow_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.0, form=BESSEL),
     "tilted_lobes": Region(SLANTED, (1e-3, 0.1), (0.9, 1.0), APART, tilt=0.5, form=BESSEL),
     "wide_lobes": Region(SLANTED, (1.0, 100.0), (1.0, 10.0), APART, form=CLAMPED),

@@ -21,7 +21,7 @@ RANGES = {
 }
 # The mean free path below the surface, which shows on a curved one: an evaluation has a plane.
 FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale")
-TURNED = {"normal": (0.0, 0.6, 0.8), "tangent": (0.6, 0.8, 0.0)}
+TURNED_FRAME = {"normal": (0.0, 0.6, 0.8), "tangent": (0.6, 0.8, 0.0)}
 
 
 def _ports(**names: str) -> tuple[Port, ...]:
@@ -106,8 +106,8 @@ STANDARD = Inputs(
         transmission_dispersion=20.0,
         subsurface_anisotropy=0.5,
         thin_walled=True,
-        coat_normal=TURNED["normal"],
-        **TURNED,
+        coat_normal=TURNED_FRAME["normal"],
+        **TURNED_FRAME,
     ),
     without_effect=(
         "transmission_depth",
@@ -164,10 +164,10 @@ OPEN_PBR = Inputs(
         transmission_dispersion_abbe_number=40.0,
         subsurface_scatter_anisotropy=0.5,
         geometry_thin_walled=True,
-        geometry_normal=TURNED["normal"],
-        geometry_tangent=TURNED["tangent"],
-        geometry_coat_normal=TURNED["normal"],
-        geometry_coat_tangent=TURNED["tangent"],
+        geometry_normal=TURNED_FRAME["normal"],
+        geometry_tangent=TURNED_FRAME["tangent"],
+        geometry_coat_normal=TURNED_FRAME["normal"],
+        geometry_coat_tangent=TURNED_FRAME["tangent"],
     ),
     without_effect=(
         "transmission_scatter",
@@ -218,8 +218,8 @@ GLTF = Inputs(
         attenuation_distance=2.0,
         attenuation_color=CHANGED_COLOR,
         dispersion=0.5,
-        clearcoat_normal=TURNED["normal"],
-        **TURNED,
+        clearcoat_normal=TURNED_FRAME["normal"],
+        **TURNED_FRAME,
     ),
     without_effect=("thickness", "attenuation_distance", "attenuation_color", "dispersion"),
     white={

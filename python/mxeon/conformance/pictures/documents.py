@@ -11,8 +11,8 @@ from mxeon.shaders.document.notes import DocumentWarning, MissingFileWarning
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import TARGETS, CodeWarning, generate
 
-CHECK = "document"
-CLAIM = "Shaders are generated from every material of the document."
+DOCUMENT_KEY = "document"
+DOCUMENT_CLAIM = "Shaders are generated from every material of the document."
 
 
 def generate_document(
@@ -50,8 +50,8 @@ def generate_document(
     error = float(not shaders)
     caught = _refused(file.read_bytes(), target, library)
     result = Result(
-        CHECK,
-        CLAIM,
+        DOCUMENT_KEY,
+        DOCUMENT_CLAIM,
         file.name,
         host,
         library,

@@ -10,7 +10,8 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.samples.measurement import Case
 from mxeon.conformance.samples.uneven_environment import sky_map
 
-BRANCHES = ("direct", "environment", "transmission", "emission")
+SCATTERING = ("direct", "environment", "transmission")  # branches of light that is scattered
+BRANCHES = (*SCATTERING, "emission")
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 LEAST_LIGHT = 0.01  # of a uniform environment, where the place of an uneven one is asked
 

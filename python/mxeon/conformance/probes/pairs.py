@@ -29,7 +29,7 @@ from mxeon.conformance.samples.edge_cases import (
 if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
-TURNED = 1 << 12  # pairs in frames of their own
+FRAMES = 1 << 12  # pairs in frames of their own
 LEAN = 0.3  # slope of their tangents
 
 Draw: TypeAlias = Callable[[np.random.Generator, int], dict[str, Array]]
@@ -72,14 +72,14 @@ class PairProbe(LobeProbe):
 
     @cached_property
     def turned(self) -> Batch:
-        """TURNED pairs in frames of their own.
+        """FRAMES pairs in frames of their own.
 
         Half of the normals face away from the viewer. Tangents lean out of the surface by up to LEAN,
         as those of a geometry do where a picture turns the normal.
         """
         # Frames, and directions in them.
         rng = np.random.default_rng(SEED)
-        frames = turned_frames(rng, TURNED)
+        frames = turned_frames(rng, FRAMES)
         count = len(frames)
         wo, wi = turned_directions(rng, count), turned_directions(rng, count)
         # Normals on both sides, and tangents that lean.

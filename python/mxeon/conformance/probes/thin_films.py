@@ -29,7 +29,7 @@ FRINGED = {**STEEP, "thickness": (50.0, 1000.0)}  # see `FilmViews`
 SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `FilmViews`
 ORDERED = {"alpha": (1e-3, 1e-3), "mu": (0.1, 0.2), "thickness": (40.0, 100.0)}  # see `FilmViews`
 # Films whose errors have one mean: fits/thin_film_sets.py bounds it for sets of these sizes.
-FILMS, CURVES = 1 << 6, 1 << 10
+FEW_FILMS, CURVES = 1 << 6, 1 << 10
 LEAST_OIL = 1.2  # index of these films, or there is none to see
 LEAST_FACET = 0.1  # cosine with the half vector: next to grazing all orders of a film count
 
@@ -74,10 +74,10 @@ class FilmProbe(MicrofacetProbe):
             *(
                 film_views(self.subject, count, ranges)
                 for count, ranges in (
-                    (FILMS, STEEP),
-                    (FILMS, FRINGED),
+                    (FEW_FILMS, STEEP),
+                    (FEW_FILMS, FRINGED),
                     (CURVES, ORDERED),
-                    (FILMS, SHARP),
+                    (FEW_FILMS, SHARP),
                 )
             )
         )

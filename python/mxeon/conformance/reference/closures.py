@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference.lobes import Values, diffuse
+from mxeon.conformance.reference.nodes import NOTHING
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
 from mxeon.hosts.osl.carriers import LAYER, MIX, OPERATIONS, SUM
@@ -21,6 +22,7 @@ from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.media.volume import transmittance
 from mxeon.models.nodes import node
+from mxeon.models.nodes.frames import ALONG, UP
 from mxeon.models.nodes.hair import HAIR_NODE
 from mxeon.models.nodes.media import METER
 from mxeon.models.nodes.node import PbrNode
@@ -32,8 +34,6 @@ Arguments: TypeAlias = Mapping[str, Values]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `Host.evaluate`
 ONE = np.ones((1, 1))
 LEAST_HAIR = 1e-12  # roughness, below which the model is a delta
-UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-NOTHING = Bsdf(np.zeros(3), np.ones(3))
 HAIR_LOBES = ("R", "TT", "TRT")
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", "chiang_hair_bsdf"
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface

@@ -69,7 +69,7 @@ def _blur(reach: float) -> Values:
 
 
 # Share of a uniform environment that is transmitted, by the name of a row.
-PASSED: dict[str, Callable[[Values, Inputs], Values]] = {
+LET_THROUGH: dict[str, Callable[[Values, Inputs], Values]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
 # Radiance over irradiance of what takes light from all sides, without a cosine.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from mxeon.conformance.reference.inner import AROUND, PASSED
+from mxeon.conformance.reference.inner import AROUND, LET_THROUGH
 from mxeon.errors import NotRun
 from mxeon.models import table
 from mxeon.models.core.layering import Bsdf, throughput
@@ -87,7 +87,7 @@ def furnace(wo: Values, radiance: float, most: float = np.inf, behind: bool = Fa
     def lobe(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
         every = np.ones(len(wo), bool)
         value = left = np.zeros(wo.shape)
-        share = PASSED.get(node.name) if behind else node.integral or node.albedo
+        share = LET_THROUGH.get(node.name) if behind else node.integral or node.albedo
         if share:
             value = _albedo(share, node, wo, inputs, every, most)
         if layered and node.layerable:

@@ -11,7 +11,7 @@ import numpy as np
 
 from mxeon.conformance.reference.inner import INNER_NODES
 from mxeon.conformance.reference.lobes import diffuse, weighted
-from mxeon.conformance.reference.operations import Values
+from mxeon.conformance.reference.operations import WIDTHS, Values
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import NotRun, OutsideModel
 from mxeon.models.core import layering
@@ -22,7 +22,6 @@ from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
 MATRICES = (mx.Matrix33, mx.Matrix44)
-COMPONENTS = {"color3": 3, "vector2": 2, "vector3": 3}
 DIFFUSE = {False: diffuse("qon", OREN_NAYAR), True: diffuse("eon", EON)}
 ROWS = (*NODES, *INNER_NODES)
 LOBES = {
@@ -163,7 +162,7 @@ def _shaped(node: mx.Node, port: str, value: Values) -> Values:
     if port == "roughness":  # OpenPBR stretches a lobe beyond 1, and shaders take 1
         array = np.clip(array, 0.0, 1.0)
     return np.broadcast_to(
-        array, (len(array), COMPONENTS[definition(node).getActiveInput(port).getType()])
+        array, (len(array), WIDTHS[definition(node).getActiveInput(port).getType()])
     )
 
 

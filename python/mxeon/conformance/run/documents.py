@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from mxeon.conformance.pictures.documents import CHECK as DOCUMENT
+from mxeon.conformance.pictures.documents import DOCUMENT_KEY
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
 from mxeon.errors import InputError
 
@@ -17,7 +17,7 @@ REFUSED = "refused"
 NO_REFERENCE = "no reference"  # whose pixels are numbers
 FROM_HOST = "as the reference's, with inputs that the host computed"
 WHOLE = "as the reference's"
-VERDICTS = (
+STATES = (
     FAILED,
     NOT_RUN,
     REFUSED,
@@ -26,7 +26,7 @@ VERDICTS = (
     PASSED,
 )  # the first decides about a document
 QUOTED = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # names of one document in a reason
-CHECKS = ("picture", "finite", DOCUMENT)
+KEYS = ("picture", "finite", DOCUMENT_KEY)
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class DocumentVerdict:
     host, library : str
         "" where the document was refused.
     verdict : str
-        One of VERDICTS.
+        One of STATES.
     cause : str
         Why, in words that documents share.
     referenced : bool
@@ -82,7 +82,7 @@ def document_verdicts(run: Run) -> tuple[DocumentVerdict, ...]:
     # Sort the results by document, host and library.
     results: dict[tuple[str, str, str], list[Result]] = {}
     for each in run.results:
-        if each.check in CHECKS:
+        if each.check in KEYS:
             name = each.subject.split(": ")[0]
             results.setdefault((name, each.host, each.library), []).append(each)
     # Judge each document.
@@ -98,7 +98,7 @@ def causes(verdicts: Sequence[DocumentVerdict]) -> dict[tuple[str, str], tuple[s
     groups: dict[tuple[str, str], list[str]] = {}
     for each in verdicts:
         groups.setdefault((each.verdict, each.cause), []).append(each.document)
-    order = sorted(groups, key=lambda key: (VERDICTS.index(key[0]), -len(groups[key])))
+    order = sorted(groups, key=lambda key: (STATES.index(key[0]), -len(groups[key])))
     return {key: tuple(groups[key]) for key in order}
 
 
@@ -106,7 +106,7 @@ def _verdict(
     document: str, key: tuple[str, str, str], results: Sequence[Result]
 ) -> DocumentVerdict:
     """The verdict on a document with results, by the worst of them."""
-    worst = min(results, key=lambda each: (VERDICTS.index(each.verdict), each.check != "finite"))
+    worst = min(results, key=lambda each: (STATES.index(each.verdict), each.check != "finite"))
     finite = worst.check == "finite" and worst.verdict == PASSED
     measured = tuple(dict.fromkeys(name for each in results for name in each.measured))
     return DocumentVerdict(
@@ -123,7 +123,7 @@ def _cause(result: Result, measured: Sequence[str]) -> str:
     """Why a document has its verdict, by the result that decides."""
     if result.verdict == PASSED and result.check == "picture":
         return FROM_HOST if measured else WHOLE
-    if result.verdict == PASSED and result.check == DOCUMENT:
+    if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
     reason = (result.reason or result.diagnosis).split("; last output:")[0]
     return QUOTED.sub("...", reason.removeprefix("reference: ")) or result.excess

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.conformance.results.records import StoredImage, make_converter
 from mxeon.conformance.run.journal_lines import (
     FORMAT,
-    NAME,
+    JOURNAL,
     PLAN,
     read_lines,
     to_line,
@@ -69,7 +69,7 @@ class Journal:
 
     def __init__(self, folder: str | os.PathLike[str], plan: Plan, resume: bool = False) -> None:
         self._folder, self._plan, self._resume = Path(folder), plan, resume
-        self._path = self._folder / NAME
+        self._path = self._folder / JOURNAL
         self._exit = ExitStack()
         self.findings: dict[int, Findings] = {}
 

@@ -19,7 +19,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import regular
 
 FORMAT = 4
-NAME = "journal/items.jsonl"
+JOURNAL = "journal/items.jsonl"
 HALF = b"\\ud"  # begins the escape of half of a character
 PLAN = -1  # number of the plan among the lines
 
@@ -53,13 +53,13 @@ def read_lines(folder: Path) -> Contents:
         If there is none, or none that this version reads.
     """
     # The plan, on the first line.
-    path = folder / NAME
+    path = folder / JOURNAL
     converter = make_converter(path.parent)
     try:
         with open(path, "rb", opener=regular) as file:
             header, *lines = list(file) or [b""]
     except FileNotFoundError:
-        raise InputError(f"{folder}: must hold the {NAME} of a run; there is none") from None
+        raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None
     plan, seed = _header(header, path, converter)
     # Findings, of which a torn or damaged line has none.
     valid = {PLAN: header}

@@ -13,14 +13,13 @@ from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_fu
 from mxeon.conformance.known_issues import with_pages
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
-from mxeon.conformance.pictures.documents import CLAIM as DOCUMENT_CLAIM
-from mxeon.conformance.pictures.documents import generate_document
+from mxeon.conformance.pictures.documents import DOCUMENT_CLAIM, generate_document
 from mxeon.conformance.pictures.node_pictures import comparison_pictures
 from mxeon.conformance.probes.families import ALL_SUBJECTS, probe_type, probe_type_of
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.reference import Host as Reference
-from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Picture, Result
+from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, SOURCE, Picture, Result
 from mxeon.conformance.run.plan import subjects
 from mxeon.conformance.run.tasks import (
     CURVE,
@@ -30,7 +29,6 @@ from mxeon.conformance.run.tasks import (
     HOST,
     INVERSION,
     PICTURE,
-    SOURCE,
     Findings,
     Task,
 )

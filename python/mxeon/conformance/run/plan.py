@@ -29,7 +29,7 @@ from mxeon.conformance.probes.families import (
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
-from mxeon.conformance.results import SHADER_FUNCTIONS
+from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.selection import (
     ALL,
@@ -48,7 +48,6 @@ from mxeon.conformance.run.tasks import (
     HOST,
     INVERSION,
     PICTURE,
-    SOURCE,
     Plan,
     Task,
 )

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from mxeon.conformance.results import AlbedoCurve, Picture, Result
 from mxeon.hosts.base import Identity
 
-HOST, DEFINITION, SOURCE = "host", "definition", "source"
+HOST, DEFINITION = "host", "definition"
 CURVE, PICTURE = "curve", "picture"
 FUNCTIONS, INVERSION, DOCUMENT = "twins", "inversion", "document"
 EVERY_NODE = "every node"

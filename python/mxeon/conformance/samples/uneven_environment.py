@@ -10,7 +10,7 @@ from mxeon.conformance.samples.batch import Array
 from mxeon.hosts.base import TURN
 from mxeon.hosts.textures import latlong_directions
 
-ROWS = 128  # of its map, which has twice as many columns
+SKY_ROWS = 128  # of its map, which has twice as many columns
 SLOPE = 0.5  # of the irradiance over a component of the normal
 
 
@@ -26,9 +26,9 @@ def sky_behind(values: Array) -> Array:
 
 @lru_cache(maxsize=1)
 def sky_map() -> NDArray[np.float32]:
-    """The irradiance over pi as a latitude-longitude map, (ROWS, 2 ROWS, 3)."""
-    directions, _ = latlong_directions(ROWS, 2 * ROWS)
-    return sky(directions @ TURN[:3, :3]).reshape(ROWS, 2 * ROWS, 3).astype(np.float32)
+    """The irradiance over pi as a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
+    directions, _ = latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
+    return sky(directions @ TURN[:3, :3]).reshape(SKY_ROWS, 2 * SKY_ROWS, 3).astype(np.float32)
 
 
 def texel_middles(near: Array) -> Array:
@@ -38,7 +38,7 @@ def texel_middles(near: Array) -> Array:
     """
     polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
     azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5
-    row = np.minimum((ROWS * polar).astype(int), ROWS - 1)
-    column = (2 * ROWS * azimuth).astype(int) % (2 * ROWS)
-    middles, _ = latlong_directions(ROWS, 2 * ROWS)
-    return np.asarray(middles[2 * ROWS * row + column])
+    row = np.minimum((SKY_ROWS * polar).astype(int), SKY_ROWS - 1)
+    column = (2 * SKY_ROWS * azimuth).astype(int) % (2 * SKY_ROWS)
+    middles, _ = latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
+    return np.asarray(middles[2 * SKY_ROWS * row + column])

@@ -36,7 +36,7 @@ TINTS = {
     "qon": "black, as without energy_compensation",
 }
 WHITE_LOBE = "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run"
-DEFINITION = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
+ASSIGNED = re.compile(r"\b(?:BSDF|material) lobe_out = ([^;]*);")
 FLOAT_FLAG = re.compile(rf'"{FLAG}", *[\d.]*\.')  # OSL looks a keyword up by its type as well
 FILLED = re.compile(r"\b(\w+)\(([^;]*), lobe_out\);")
 
@@ -75,7 +75,7 @@ def _judge(subject: DiffuseSubject, target: str, profile: str | None, library: s
 def _without_weight(text: str) -> str:
     """The text whose lobe has a weight of 1."""
     word = re.compile(rf"\b{variable('weight')}\b")
-    for pattern in (FILLED, DEFINITION):
+    for pattern in (FILLED, ASSIGNED):
         text = pattern.sub(lambda match: word.sub("1.0", match[0]), text)
     return text
 
@@ -126,7 +126,7 @@ def _closures(renderer: Renderer, text: str, inputs: Inputs) -> tuple[Closure, .
     # Its call, or its definition.
     if call := FILLED.search(text):
         closures = interpreter.value(f"{call[1]}({call[2]})", variables)
-    elif definition := DEFINITION.search(text):
+    elif definition := ASSIGNED.search(text):
         closures = interpreter.value(definition[1], variables)
     else:
         raise NotRun("the lobe is computed in a way that is not read")

@@ -16,7 +16,7 @@ from mxeon.shaders.nodes import FLAG
 
 Closures = tuple[Closure, ...]
 Builder = Callable[[Mapping[str, Value]], Closures]
-WHITE, BLACK = np.ones((1, 1)), np.zeros((1, 1))
+ONES, ZEROS = np.ones((1, 1)), np.zeros((1, 1))
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 
 
@@ -85,7 +85,7 @@ class Renderer:
                 kind = f"keyword {name}" if '"' in name else f"argument {name}"
                 self.faults.append(f"{kind} is not known to OSL")
         # Read those that it has, of which Cycles lacks the flag.
-        values = {FLAG: arguments.get(keyword, BLACK)}
+        values = {FLAG: arguments.get(keyword, ZEROS)}
         if self.profile == "cycles" and keyword in arguments:
             self.faults.append(f"keyword {keyword} is not known to Cycles")
         for position, name in known.items():
@@ -95,7 +95,7 @@ class Renderer:
     def _diffuse_reflection(self, arguments: Mapping[str, Value]) -> Closures:
         """MDL's closure, with its defaults."""
         names = {"tint": "color", "roughness": "roughness", "multiscatter_tint": None}
-        values = {"color": WHITE, "roughness": BLACK, "multiscatter_tint": BLACK}
+        values = {"color": ONES, "roughness": ZEROS, "multiscatter_tint": ZEROS}
         for name, value in self._named(arguments, names).items():
             values[names[name] or name] = value
         values["roughness"] = self._typed("roughness", values["roughness"])
@@ -107,7 +107,7 @@ class Renderer:
             Closure(each.name, each.weight, {**each.arguments, "normal": known.get("normal")})
             for each in known.get("layer", ())
         )
-        weight = self._typed("weight", known.get("weight", WHITE))
+        weight = self._typed("weight", known.get("weight", ONES))
         return weighted(layer, weight) + weighted(known.get("base", ()), 1.0 - weight)
 
     def _pbrlib(self, arguments: Mapping[str, Value]) -> Closures:
@@ -117,12 +117,12 @@ class Renderer:
             name.removeprefix("mxp_"): value
             for name, value in self._named(arguments, names).items()
         }
-        values = {"multiscatter_tint": known.pop(FLAG, BLACK), **known}
-        weight = values.pop("weight", WHITE)
+        values = {"multiscatter_tint": known.pop(FLAG, ZEROS), **known}
+        weight = values.pop("weight", ONES)
         return weighted(self._closure(values), weight)
 
     def _closure(self, values: Mapping[str, Value]) -> Closures:
-        return (Closure(self.name, WHITE, values),)
+        return (Closure(self.name, ONES, values),)
 
     def _only(self, arguments: Mapping[str, Value], name: str) -> Closures:
         """The one argument, closures, that matters of a structure's."""
