@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from mxeon.conformance.accuracy.diffuse import HALF_ROUNDING
 from mxeon.kit.views import Material, View
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
@@ -28,7 +29,6 @@ QUADRATURE_NODES = 16  # reaches 1e-9 on the models
 GAUSS = 1.0 / np.sqrt(3.0)
 
 # A half has 11 bits: relative rounding 2^-11 at most; its smallest step is 2^-24.
-HALF_ROUNDING = 2.0**-11
 HALF_STEP = 2.0**-24
 
 

@@ -20,8 +20,8 @@ from mxeon.kit.expected import Expected, expected, judged, pixel_means
 from mxeon.kit.noise import CONFIDENCE, Tiles, ratio, tiles
 from mxeon.kit.views import BLACK, FALSE, HALF, LAMBERT, TRUE, WHITE, Material, View
 from mxeon.models import table as reference
+from mxeon.shaders.nodes import FLAG
 
-FLAG = "energy_compensation"
 UNIT = "times what noise, pixels and the mesh allow"
 DERIVATION = (
     "Student's t of each tile's mean error over its noise, Bonferroni over all tiles, channels and "

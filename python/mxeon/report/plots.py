@@ -16,11 +16,11 @@ from PIL import Image
 
 from mxeon.conformance.results import AlbedoCurve
 from mxeon.io.srgb import NOT_FINITE
+from mxeon.models.lobe_plot import CHANNEL_COLORS
 
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
 SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
-CHANNEL_COLORS = ("#d8505f", "#2f9e63", "#3f7fd1")
 # Stands for the page's text color until the plot is part of the page.
 TEXT_COLOR = "#010203"
 # Without these, matplotlib adds a description of itself, with addresses, to each plot.

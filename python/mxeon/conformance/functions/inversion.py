@@ -16,6 +16,7 @@ import numpy as np
 from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.diagnosis.candidates import SAME, Diagnosis, sentence
 from mxeon.conformance.diagnosis.verdicts import judge_measurements, not_measured
+from mxeon.conformance.functions.numpy_functions import POINTS
 from mxeon.conformance.results import Place, Result
 from mxeon.conformance.samples.batch import SEED, Array, float32
 from mxeon.conformance.samples.measurement import Measurement, absolute
@@ -34,7 +35,6 @@ from mxeon.shaders.nodes import (
     node_text,
 )
 
-POINTS = 4096
 VARIANT = "roughness is 5 % off"
 FUNCTION = re.compile(r"^\w+ (\w+)\([^()]*\)\s*(?=\{)", re.MULTILINE)
 # Its variables must not be those of a nodegraph.

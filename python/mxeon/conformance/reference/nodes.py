@@ -18,6 +18,7 @@ from mxeon.models.core import layering
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.nodes import NODES
 from mxeon.models.nodes.node import PbrNode
+from mxeon.models.thin_film.lobe import FILM
 from mxeon.shaders.document.values import Plain
 from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR, value_text
 
@@ -29,7 +30,6 @@ LOBES = {
     for category in (*DIFFUSE_NODES, *(row.category for row in ROWS))
 }
 
-FILM = ("thinfilm_thickness", "thinfilm_ior")  # of microfacets, where the thickness is not 0
 NOTHING = Bsdf(np.zeros(3), np.ones(3))  # a lobe that is not there
 
 # Nodes that combine lobes: category -> inputs, and the function of them.

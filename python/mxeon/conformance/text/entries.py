@@ -14,6 +14,7 @@ import numpy as np
 
 from mxeon.conformance.results import Result
 from mxeon.conformance.samples.batch import SEED
+from mxeon.conformance.text.closures import ROUNDED
 from mxeon.conformance.text.counts import Claim, counted
 from mxeon.conformance.text.interpreter import Array, Closure, Interpreter
 from mxeon.errors import NotRun, ShaderError
@@ -22,7 +23,6 @@ from mxeon.shaders.functions import expanded
 from mxeon.shaders.library import has_profile, load_library, source_folder
 
 COUNT = 256  # of random inputs
-ROUNDED = 1e-12  # 4500 roundings of float64: no text has as many
 CLAIM = Claim(
     "entry",
     "The entry point in OSL gives the closure of its node, with its weight and its arguments.",

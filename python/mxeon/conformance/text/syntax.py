@@ -11,12 +11,12 @@ from collections.abc import Mapping
 
 from mxeon.conformance.text import tree
 from mxeon.errors import NotRun, ShaderError
+from mxeon.shaders.closure_calls import COMMENT
 
 TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?f?)|(?P<text>\"[^\"]*\")"
     r"|(?P<word>(?:::)?[A-Za-z_]\w*(?:::\w+)*)|(?P<sign>[<>=!]=|&&|\|\||[-+*/<>?:(){},;=!.]))"
 )
-COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 MACRO = re.compile(r"^#define (\w+) (.+)$", re.MULTILINE)
 FUNCTION = re.compile(r"^(?:closure )?[A-Za-z]\w* (\w+)\s*\(([^()]*)\)\s*(?=\{)", re.MULTILINE)
 LOOPS = ("for", "while", "do")
