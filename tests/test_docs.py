@@ -18,6 +18,7 @@ import pytest
 import yaml
 from playwright.sync_api import sync_playwright
 
+from docs import size
 from docs.siblings import names, sections
 from docs.upstream.update import figures, written
 from mxeon import albedo, inversion, models, sampling
@@ -200,6 +201,18 @@ def test_the_design_begins_with_a_table_of_places_that_exist():
     assert len(places) > len(rows)
     for file, name in places:
         assert resolve_name(f"mxeon.{file.replace('/', '.')}:{name}") is not None
+
+
+def test_the_sizes_on_the_design_are_near_those_of_the_package():
+    page = size.TABLE.search(size.PAGE.read_text(encoding="utf-8"))[0]
+    for table in size.tables():
+        for row in table.splitlines()[2:]:
+            name, *counts = row.strip("| ").split(" | ")
+            [shown] = re.findall(rf"^\| {re.escape(name)} \|.* \|$", page, re.MULTILINE)
+            shown = shown.strip("| ").split(" | ")[1:]
+            for one, other in zip(counts, shown, strict=True):
+                now, then = (int(each.replace(",", "")) for each in (one, other))
+                assert abs(now - then) <= max(0.2 * now, 100), f"{row}: python -m docs.size"
 
 
 def test_the_page_on_hosts_says_what_each_host_is_asked():
