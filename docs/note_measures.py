@@ -21,9 +21,9 @@ from mxeon.models import (
     ggx_albedo_dir_anisotropic,
 )
 from mxeon.models.core.quadrature import albedo_dir_quadrature
-from mxeon.models.diffuse.albedo import qon_albedo_dir
 from mxeon.models.diffuse.brdf import oren_nayar_brdf
 from mxeon.models.diffuse.formulas import C1, FON_G, fon_loss
+from mxeon.models.diffuse.qon_albedo import qon_albedo_dir
 from mxeon.models.microfacet.albedo import dielectric_albedo_dir
 from mxeon.models.microfacet.defects import fitted_albedo
 from mxeon.models.transmission.schlick import READINGS

@@ -13,10 +13,9 @@ from mxeon.models.diffuse.albedo import (
     fon_albedo_avg,
     fon_albedo_dir,
     fon_albedo_dir_approx,
-    qon_albedo_avg,
-    qon_albedo_dir,
 )
 from mxeon.models.diffuse.brdf import fon_brdf, qon_brdf
+from mxeon.models.diffuse.qon_albedo import qon_albedo_avg, qon_albedo_dir
 from mxeon.models.table import MODELS, model
 from paper.sheet import Sheet
 

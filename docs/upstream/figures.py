@@ -20,10 +20,10 @@ from docs.upstream.transmission_quantities import inside_albedo
 from mxeon.models import thin_film
 from mxeon.models.core.colorimetry import XYZ_TO_REC709
 from mxeon.models.diffuse import known_defects
-from mxeon.models.diffuse.albedo import qon_albedo_dir
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.models.diffuse.burley import burley_albedo_dir
 from mxeon.models.diffuse.known_defect_albedos import qon_fitted_albedo_dir
+from mxeon.models.diffuse.qon_albedo import qon_albedo_dir
 from mxeon.models.media.blackbody import blackbody_xyz, kang_xyz
 from mxeon.models.media.subsurface import subsurface_albedo, subsurface_reflectance
 from mxeon.models.microfacet.defects import fitted_albedo

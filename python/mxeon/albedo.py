@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Directional and average albedos: the public name of `mxeon.models.diffuse.albedo`."""
+"""Directional and average albedos: their public names."""
 
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.diffuse.albedo import (
@@ -10,9 +10,8 @@ from mxeon.models.diffuse.albedo import (
     fon_albedo_dir,
     fon_albedo_dir_approx,
     fon_loss,
-    qon_albedo_avg,
-    qon_albedo_dir,
 )
+from mxeon.models.diffuse.qon_albedo import qon_albedo_avg, qon_albedo_dir
 from mxeon.models.microfacet.albedo import (
     conductor_albedo_dir,
     dielectric_albedo_dir,

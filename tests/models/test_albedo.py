@@ -14,10 +14,9 @@ from mxeon.models.diffuse.albedo import (
     fon_albedo_dir,
     fon_albedo_dir_approx,
     fon_loss,
-    qon_albedo_avg,
-    qon_albedo_dir,
 )
 from mxeon.models.diffuse.brdf import eon_brdf
+from mxeon.models.diffuse.qon_albedo import qon_albedo_avg, qon_albedo_dir
 from mxeon.models.table import KNOWN_DEFECTS, MODELS, model
 from tests.support import oracle, tolerances
 from tests.support.cases import parameter

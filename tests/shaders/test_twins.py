@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.accuracy.bsdf import CONTY_KULLA_FIT, ESS_FIT
-from mxeon.models.diffuse import albedo, formulas
+from mxeon.models.diffuse import albedo, formulas, qon_albedo
 from mxeon.models.diffuse import brdf as models
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.sampling import cltc, eon, ltc
@@ -35,8 +35,8 @@ VALUES = (
     models.eon_brdf_approx,
 )
 ALBEDOS = (
-    albedo.qon_albedo_dir,
-    albedo.qon_albedo_avg,
+    qon_albedo.qon_albedo_dir,
+    qon_albedo.qon_albedo_avg,
     albedo.fon_albedo_dir,
     albedo.fon_albedo_dir_approx,
     albedo.fon_albedo_avg,

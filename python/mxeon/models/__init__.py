@@ -45,8 +45,9 @@ _LATER = {
     "core.quadrature": "albedo_dir_quadrature",
     "diffuse.albedo": (
         "eon_albedo_avg eon_albedo_dir eon_albedo_dir_approx fon_albedo_avg fon_albedo_dir "
-        "fon_albedo_dir_approx fon_loss qon_albedo_avg qon_albedo_dir"
+        "fon_albedo_dir_approx fon_loss"
     ),
+    "diffuse.qon_albedo": "qon_albedo_avg qon_albedo_dir",
     "diffuse.burley": "burley_albedo_dir burley_brdf",
     "diffuse.inversion": (
         "eon_rho_from_albedo_avg eon_rho_from_albedo_avg_approx "

@@ -12,7 +12,7 @@ from mxeon.models.core.arguments import checked, checked_choice, checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.namespaces import any_array
 from mxeon.models.core.ranges import RANGES
-from mxeon.models.diffuse import albedo, known_defect_albedos, known_defects
+from mxeon.models.diffuse import albedo, known_defect_albedos, known_defects, qon_albedo
 from mxeon.models.diffuse import brdf as models
 from mxeon.models.diffuse.burley import burley_albedo_dir, burley_brdf
 
@@ -122,8 +122,8 @@ MODELS = (
         "qualitative Oren-Nayar (QON)",
         models.qon_brdf,
         "sigma",
-        _tinted(albedo.qon_albedo_dir),
-        _tinted(albedo.qon_albedo_avg),
+        _tinted(qon_albedo.qon_albedo_dir),
+        _tinted(qon_albedo.qon_albedo_avg),
     ),
     Model("qon_footnote", "QON with the footnote's constant", models.qon_footnote_brdf, "sigma"),
     Model("qon_fujii", "QON with Fujii's coefficients", models.qon_fujii_brdf, "sigma"),

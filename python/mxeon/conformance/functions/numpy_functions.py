@@ -14,7 +14,7 @@ import numpy as np
 
 from mxeon.conformance.samples.batch import GRAZING, SEED, Array, directions, float32
 from mxeon.models import sampling
-from mxeon.models.diffuse import albedo, formulas
+from mxeon.models.diffuse import albedo, formulas, qon_albedo
 from mxeon.models.sampling import cltc, eon, hemisphere, ltc
 from mxeon.shaders import functions
 
@@ -115,7 +115,7 @@ def _version(function: str) -> tuple[Callable[..., Array], bool]:
     # Functions of the package, under their public names.
     if function in NAMED:
         return NAMED[function], False
-    for module in (sampling, albedo):
+    for module in (sampling, albedo, qon_albedo):
         if hasattr(module, function):
             return getattr(module, function), False
     # Functions of parts of a model.

@@ -78,7 +78,7 @@ def albedo_dir_quadrature(
 def hemisphere_nodes(mu: float, nodes: int) -> tuple[Array, Array, Array]:
     """wo at azimuth 0, wi in half the hemisphere, and their weights, which sum to pi."""
     # Split the polar angle at wo, graded towards it.
-    x, weight = _unit_interval_rule(nodes)
+    x, weight = unit_rule(nodes)
     theta_o = np.arccos(mu)
     rest = np.pi / 2.0 - theta_o
     theta = np.concatenate([theta_o * (1.0 - x**5), theta_o + rest * x])
@@ -95,7 +95,7 @@ def hemisphere_nodes(mu: float, nodes: int) -> tuple[Array, Array, Array]:
 
 
 @lru_cache(maxsize=8)  # the rule takes longer than what it is used for
-def _unit_interval_rule(nodes: int) -> tuple[Array, Array]:
+def unit_rule(nodes: int) -> tuple[Array, Array]:
     """Nodes and weights of Gauss-Legendre on [0, 1]."""
     x, weight = np.polynomial.legendre.leggauss(nodes)
     return 0.5 * (1.0 + x), 0.5 * weight

@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Directional and average albedos of the Oren-Nayar family, in closed form and by quadrature.
 
-The albedos of QON and FON are those at unit reflectance: multiply by rho. All functions broadcast
+Those of QON are in `qon_albedo`. The albedos of FON are those at unit reflectance: multiply by rho. All functions broadcast
 and work on the closed domain; of numbers alone, those without channels return a number. H is
 `fon_loss`.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked_colors, checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.edges import root
 from mxeon.models.core.namespaces import any_array
 from mxeon.models.diffuse import formulas
-from mxeon.models.diffuse.formulas import C1, C2, fon_a, qon_a, qon_b
+from mxeon.models.diffuse.formulas import C1, C2, fon_a
 
 
 @any_array
@@ -54,81 +51,12 @@ def fon_loss(mu: ArrayLike) -> Array:
 
 
 @any_array
-def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
-    """Directional albedo of QON at unit reflectance.
-
-        E(mu) = A + B G(mu) / pi,  G = pi (c1 - H(mu)) + 2/3 sqrt(1 - mu^2)
-
-    Errors as those of `eon_albedo_dir`.
-
-    Parameters
-    ----------
-    mu : array_like, shape (...)
-        Cosine of the polar angle, dimensionless, in [0, 1].
-    sigma : array_like, shape (...)
-        Deviation of the facets' slope angle, in radian, in [0, pi/2].
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        Dimensionless, positive; above 1, to 1.02, near grazing for sigma < 0.6.
-
-    Notes
-    -----
-    Accuracy: relative error below 1e-15.
-
-    References
-    ----------
-    [Portsmouth2025], Eqs. (5), (8).
-
-    Examples
-    --------
-    >>> qon_albedo_dir([0.0, 1.0], 0.5).round(6)
-    array([0.949924, 0.784483])
-    """
-    mu, sigma = checked_numbers(mu=mu, sigma=sigma)
-    g_over_pi = C1 - formulas.fon_loss(mu) + 2.0 / (3.0 * np.pi) * root((1.0 - mu) * (1.0 + mu))
-    return qon_a(sigma) + qon_b(sigma) * g_over_pi
-
-
-@any_array
-def qon_albedo_avg(sigma: ArrayLike) -> Array:
-    """Average albedo of QON at unit reflectance.
-
-        <E> = A + (2/3 - 64 / (45 pi)) B
-
-    Errors as those of `eon_albedo_dir`.
-
-    Parameters
-    ----------
-    sigma : array_like, shape (...)
-        Deviation of the facets' slope angle, in radian, in [0, pi/2].
-
-    Returns
-    -------
-    float64 or ndarray, shape (...)
-        Dimensionless, in (0, 1].
-
-    References
-    ----------
-    [Portsmouth2025], Eq. (9).
-
-    Examples
-    --------
-    >>> qon_albedo_avg(0.5).round(6)
-    np.float64(0.855278)
-    """
-    (sigma,) = checked_numbers(sigma=sigma)
-    return qon_a(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * np.pi)) * qon_b(sigma)
-
-
-@any_array
 def fon_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of FON at unit reflectance.
 
         E(mu) = 1 - roughness A H(mu),  A = 1 / (1 + c1 roughness)
 
-    Errors as those of `eon_albedo_dir`. Result as that of `qon_albedo_avg`.
+    Errors as those of `eon_albedo_dir`. Result as that of `mxeon.models.diffuse.qon_albedo.qon_albedo_avg`.
 
     Parameters
     ----------
@@ -188,7 +116,7 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
 
         <E> = (1 + c2 roughness) / (1 + c1 roughness),  c2 = 2/3 - 28 / (15 pi)
 
-    Errors as those of `eon_albedo_dir`. Result as that of `qon_albedo_avg`.
+    Errors as those of `eon_albedo_dir`. Result as that of `mxeon.models.diffuse.qon_albedo.qon_albedo_avg`.
 
     Parameters
     ----------

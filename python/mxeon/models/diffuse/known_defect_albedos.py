@@ -8,7 +8,8 @@ import numpy as np
 from mxeon.models.core.arguments import checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.diffuse import formulas
-from mxeon.models.diffuse.albedo import eon_albedo_dir, fon_albedo_dir, qon_albedo_dir
+from mxeon.models.diffuse.albedo import eon_albedo_dir, fon_albedo_dir
+from mxeon.models.diffuse.qon_albedo import qon_albedo_dir
 
 
 def qon_tinted_twice_albedo_dir(mu: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:

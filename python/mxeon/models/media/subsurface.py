@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Subsurface scattering, as in [MaterialX2026], section `subsurface_bsdf` and its appendix.
 
-The albedo inversion is that of van de Hulst's fit for a half space, solved for its variable; see
-`subsurface_reflectance`. NumPy only.
+The albedo inversion is that of van de Hulst's fit for a half space: `subsurface_reflectance`.
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ import numpy as np
 
 from mxeon.models.core.arguments import broadcastable, checked, checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.quadrature import unit_rule
 
 # Of the text's inversion, with its digits: the quotients of van de Hulst's fit, rounded.
 LINEAR = (4.09712, 4.20863)
@@ -104,8 +104,7 @@ def subsurface_reflectance(single_scatter: ArrayLike, scatter_anisotropy: ArrayL
     >>> subsurface_reflectance(0.911709).round(4).item()
     0.5
     """
-    values = {"single_scatter": single_scatter, "scatter_anisotropy": scatter_anisotropy}
-    w, g = checked_numbers(**values)
+    w, g = checked_numbers(single_scatter=single_scatter, scatter_anisotropy=scatter_anisotropy)
     with np.errstate(invalid="ignore", divide="ignore"):
         s = np.sqrt(np.where(w == 1.0, 0.0, (1.0 - w) / (1.0 - g * w)))
     return np.asarray((1.0 - s) * (1.0 - LOSS * s) / (1.0 + GAIN * s))
@@ -122,12 +121,10 @@ def subsurface_coefficients(
 
     Parameters
     ----------
-    rho : array_like
-        Diffuse reflectance, dimensionless, in [0, 1].
+    rho, scatter_anisotropy
+        As those of `subsurface_albedo`.
     radius : array_like, broadcasts with rho
         Mean free path l, a length, in [1e-150, 1e150].
-    scatter_anisotropy : array_like, broadcasts with rho
-        Mean cosine g of a scattering, dimensionless, in [-1, 1].
 
     Returns
     -------
@@ -170,8 +167,7 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
 
     References
     ----------
-    [MaterialX2026], Normalized Diffusion Profile; [Christensen2015], where l is divided by a number
-    s that depends on the reflectance.
+    [MaterialX2026], Normalized Diffusion Profile; [Christensen2015], where l is divided by s(rho).
 
     Examples
     --------
@@ -179,9 +175,8 @@ def diffusion_profile(separation: ArrayLike, radius: ArrayLike) -> Array:
     0.043147
     """
     r, length = checked_numbers(separation=separation, radius=radius)
-    return np.asarray(
-        (np.exp(-r / length) + np.exp(-r / (3.0 * length))) / (8.0 * np.pi * length * r)
-    )
+    shares = np.exp(-r / length) + np.exp(-r / (3.0 * length))
+    return np.asarray(shares / (8.0 * np.pi * length * r))
 
 
 def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
@@ -189,12 +184,7 @@ def diffusion_cdf(separation: ArrayLike, radius: ArrayLike) -> Array:
 
         C(r) = 1 - exp(-r / l) / 4 - 3 exp(-r / (3 l)) / 4
 
-    Errors as those of `subsurface_albedo`.
-
-    Parameters
-    ----------
-    separation, radius : array_like
-        As in `diffusion_profile`.
+    Parameters and errors as those of `diffusion_profile`.
 
     Returns
     -------
@@ -238,9 +228,7 @@ def diffusion_sample(u: ArrayLike, radius: ArrayLike) -> Array:
     2.5
     """
     share, length = checked_numbers(u=u, radius=radius)
-    rest = 1.0 - share
-    with np.errstate(divide="ignore"):
-        logarithm = np.log(2.0 * np.sinh(np.arcsinh(2.0 * rest) / 3.0))
+    logarithm = np.log(2.0 * np.sinh(np.arcsinh(2.0 * (1.0 - share)) / 3.0))
     return np.asarray(-3.0 * length * np.minimum(logarithm, 0.0))
 
 
@@ -298,9 +286,9 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
 @cache
 def _rule() -> tuple[Array, Array]:
     """Nodes in [0, 1] and weights of Gauss-Legendre in PANELS of equal width."""
-    x, w = np.polynomial.legendre.leggauss(NODES)
-    u = (np.arange(PANELS)[:, np.newaxis] + 0.5 * (x + 1.0)).ravel() / PANELS
-    return u, np.tile(0.5 * w / PANELS, PANELS)
+    x, w = unit_rule(NODES)
+    u = (np.arange(PANELS)[:, np.newaxis] + x).ravel() / PANELS
+    return u, np.tile(w / PANELS, PANELS)
 
 
 def _circle(mu: Array, distance: Array) -> Array:

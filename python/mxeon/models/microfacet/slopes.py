@@ -12,7 +12,6 @@ remains but that of F at a critical angle.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -20,6 +19,7 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.edges import hypot
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
+from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx_formulas import mean_alpha, smith_lambda
 
 # Gauss-Legendre nodes in r per panel, panels, and nodes per quadrant of phi.
@@ -29,9 +29,8 @@ SPLIT_NODES, SPLIT_PART = 28, 32
 
 # Least cosine of wo, and largest r: beyond, less than 1e-12 of the light is left.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
-FARTHEST_R = (
-    1e12  # of facets that refract: where those at the horizon do, 1 / r of the light is left
-)
+# That of facets that refract: where those at the horizon do, 1 / r of the light is left.
+FARTHEST_R = 1e12
 
 
 @dataclass(frozen=True)
@@ -262,7 +261,7 @@ def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 def _crowded(panels: int, nodes: int, axes: int) -> tuple[Array, Array]:
     """Nodes and weights of [0, 1] along a first axis, as dense at its ends as squares."""
-    u, weight = _rule(nodes)
+    u, weight = unit_rule(nodes)
     u = np.concatenate([k + u for k in range(panels)]) / panels
     weight = np.tile(weight, panels) / panels
     shape = (-1, *(1,) * axes)
@@ -275,7 +274,7 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
     Halves of an isotropic surface are alike.
     """
     xp = array_namespace(scale)
-    x, weight = (like(v.reshape(-1, *(1,) * scale.ndim), scale) for v in _rule(QUADRANT))
+    x, weight = (like(v.reshape(-1, *(1,) * scale.ndim), scale) for v in unit_rule(QUADRANT))
     extent = xp.asinh(0.5 * np.pi / scale)
     omega = 0.5 * np.pi - scale * xp.sinh(extent * x)
     weight = weight * extent * scale * xp.cosh(extent * x)
@@ -289,7 +288,7 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
 
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     """Nodes and weights of [0, length], denser towards 0 from `scale` on, along the first axis."""
-    xp, (x, weight) = array_namespace(length), _rule(NODES)
+    xp, (x, weight) = array_namespace(length), unit_rule(NODES)
     shape = (-1, *(1,) * (length.ndim - 1))
     x = like((np.concatenate([k + x for k in range(PANELS)]) / PANELS).reshape(shape), length)
     weight = like((np.concatenate([weight] * PANELS) / PANELS).reshape(shape), length)
@@ -299,10 +298,3 @@ def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     half = 0.5 * scale
     # sinh and cosh of one exponential, which takes a third of the time.
     return half * (rise - fall), weight * extent * half * (rise + fall)
-
-
-@lru_cache(maxsize=4)
-def _rule(nodes: int) -> tuple[Array, Array]:
-    """Nodes and weights of Gauss-Legendre on [0, 1]."""
-    x, weight = np.polynomial.legendre.leggauss(nodes)
-    return 0.5 * (1.0 + x), 0.5 * weight

@@ -190,7 +190,8 @@ def generalized_schlick_btdf(
     """
     how = _reading(reading)
     checked_switch("inside", inside)
-    parts, numbers = _parts(how, color0, color82, color90), _power(exponent)
+    parts = _parts(how, color0, color82, color90)
+    numbers = {"exponent": checked("exponent", exponent)}
     directions = {"wo": checked_directions("wo", wo), "wi": checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
     lead_shape(directions | pairs | parts[0][1], numbers)
@@ -253,7 +254,8 @@ def generalized_schlick_transmittance_dir(
     """
     how = _reading(reading)
     checked_switch("inside", inside)
-    parts, numbers = _parts(how, color0, color82, color90), _power(exponent)
+    parts = _parts(how, color0, color82, color90)
+    numbers = {"exponent": checked("exponent", exponent)}
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_roughness(roughness)}
     lead_shape(directions | pairs | parts[0][1], numbers)
@@ -290,10 +292,6 @@ def _parts(
         )
         for channel in range(count)
     ]
-
-
-def _power(exponent: ArrayLike) -> dict[str, Numbers]:
-    return {"exponent": checked("exponent", exponent)}
 
 
 def _reading(name: str) -> Reading:
