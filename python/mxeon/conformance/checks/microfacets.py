@@ -39,7 +39,7 @@ CHECKS = (
         with_inputs("the flag is dropped", retroreflective=False),
         tolerances.RETROREFLECTION,
         pairs=True,
-        diagnose=input_diagnosis.diagnose_retroreflection,
+        diagnose=input_diagnosis.ignored("retroreflective"),
     ),
     Check(
         "anisotropy",
@@ -49,7 +49,7 @@ CHECKS = (
         with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
         tolerances.ANISOTROPY,
         pairs=True,
-        diagnose=input_diagnosis.diagnose_tangent,
+        diagnose=input_diagnosis.ignored("tangent"),
     ),
     Check(
         "anisotropic_albedo",

@@ -116,14 +116,9 @@ def diagnose_frame(probe: Probe) -> Diagnosis:
     return Diagnosis(UNKNOWN)
 
 
-def diagnose_tangent(probe: Probe) -> Diagnosis:
-    """Whether the tangent is dropped."""
-    return Diagnosis(without_effect(probe, "tangent") or VALUE.diagnose(probe).text)
-
-
-def diagnose_retroreflection(probe: Probe) -> Diagnosis:
-    """Whether the flag is dropped."""
-    return Diagnosis(without_effect(probe, "retroreflective") or VALUE.diagnose(probe).text)
+def ignored(name: str) -> Callable[[Probe], Diagnosis]:
+    """Whether an input is dropped, or else the explanation of the values."""
+    return lambda probe: Diagnosis(without_effect(probe, name) or VALUE.diagnose(probe).text)
 
 
 def without_effect(probe: Probe, name: str) -> str:
