@@ -14,10 +14,10 @@ from pathlib import Path
 
 import MaterialX as mx
 
-from mxeon.conformance.known_issues import ISSUES
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.families import PBR_SUBJECTS
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED
+from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.io.files import write_text

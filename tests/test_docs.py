@@ -22,8 +22,8 @@ from docs import size
 from docs.siblings import names, sections
 from docs.upstream.update import figures, written
 from mxeon import albedo, inversion, models, sampling
-from mxeon.conformance.known_issues import ISSUES
-from mxeon.conformance.known_issues.issue import STOCK
+from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.results.known_issues.issue import STOCK
 from mxeon.hosts import HOSTS
 from mxeon.hosts.webgl import program
 from tests.support.tolerances import PRINTED

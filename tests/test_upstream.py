@@ -11,7 +11,7 @@ import pytest
 from docs.upstream import ledger as rows
 from docs.upstream import marks
 from docs.upstream import update as ledger
-from mxeon.conformance.known_issues.issue import Issue, read_issues
+from mxeon.conformance.results.known_issues.issue import Issue, read_issues
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.tolerances import PRINTED

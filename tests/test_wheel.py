@@ -12,7 +12,7 @@ import MaterialX as mx
 import pytest
 
 import mxeon
-from mxeon.conformance.known_issues import ISSUES
+from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.shaders.nodes import EON
 from tests.support.documents import lobe, material
 
@@ -23,7 +23,7 @@ SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
 LOAD = """
 import mxeon
-from mxeon.conformance.known_issues import ISSUES
+from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.library import assert_ours, data_folder, examples_folder, load_library
 print(data_folder())

@@ -17,7 +17,7 @@
     [patch]                                 # for the upstream repository: patches.py tells its keys
     -->
 
-From these come the index, the navigation of the site, and `known_issues/issues.json` of the package.
+From these come the index, the navigation of the site, and `results/known_issues/issues.json` of the suite.
 """
 
 import json
@@ -32,7 +32,7 @@ from docs.upstream.marks import kinds
 
 FOLDER = Path(__file__).parent
 INDEX, NAVIGATION = FOLDER / "README.md", FOLDER.parents[1] / "mkdocs.yml"
-ISSUES = FOLDER.parents[1] / "python/mxeon/conformance/known_issues/issues.json"
+ISSUES = FOLDER.parents[1] / "python/mxeon/conformance/results/known_issues/issues.json"
 ROW = re.compile(r"<!-- ledger\n(.*?)-->\n", re.DOTALL)
 GROUP = re.compile(r"<!-- pages (\w+) -->\n.*?<!-- end -->\n", re.DOTALL)
 PAGES = re.compile(r"(?: {10}- upstream/\w+\.md\n)+")
@@ -74,7 +74,7 @@ class Row:
     differs : bool
         Whether the verdict is *differs*.
     issue : dict
-        The fields of `mxeon.conformance.known_issues.issue.Issue`; empty if no check shows it.
+        The fields of `mxeon.conformance.results.known_issues.issue.Issue`; empty if no check shows it.
     repaired : list of (str, str)
         Results that pass with the repairs.
     remains : dict of str to list of (str, str)

@@ -28,10 +28,10 @@ from docs.upstream.subsurface_quantities import OF_SUBSURFACE
 from docs.upstream.surface_quantities import OF_SURFACES
 from docs.upstream.testrender_quantities import OF_TESTRENDER
 from docs.upstream.transmission_quantities import OF_TRANSMISSION
-from mxeon.conformance.known_issues import ISSUES, RENDERERS
-from mxeon.conformance.known_issues.issue import STOCK
 from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.results import SOURCE
+from mxeon.conformance.results.known_issues import ISSUES, RENDERERS
+from mxeon.conformance.results.known_issues.issue import STOCK
 from mxeon.conformance.run.judge import Judge
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.selection import ALL

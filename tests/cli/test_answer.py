@@ -10,8 +10,7 @@ import pytest
 from mxeon.cli import main
 from mxeon.cli.answer import LINES, answer
 from mxeon.cli.output import Progress, warn
-from mxeon.conformance import known_issues
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run
+from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, Result, Run, known_issues
 from mxeon.conformance.run import check
 from mxeon.errors import MISUSE, InputError, assert_known
 from mxeon.errors import NOT_RUN as DID_NOT_RUN

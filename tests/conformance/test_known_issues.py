@@ -3,8 +3,8 @@
 
 import pytest
 
-from mxeon.conformance.known_issues import ISSUES
-from mxeon.conformance.known_issues.issue import STOCK
+from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.results.known_issues.issue import STOCK
 from tests.conformance import test_bsdfs as bsdfs
 from tests.conformance import test_emission as emission
 from tests.conformance import test_hair as hair

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from mxeon.conformance import known_issues
 from mxeon.conformance.diagnosis.comparisons import VALUE
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.pictures import PictureProbe
-from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
+from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result, known_issues
 
 EON, QON, NODE = SUBJECTS
 

@@ -12,11 +12,11 @@ from docs.upstream import update as ledger
 from mxeon.conformance.accuracy import diffuse as tolerances
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues import ISSUES
-from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.errors import NotRun
 from mxeon.hosts import browser, open_engine
 from mxeon.shaders.nodes import material_text

@@ -14,13 +14,13 @@ import pytest
 from mxeon.conformance.accuracy.diffuse import HALF, HALF_SURROUNDINGS
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues import with_pages
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
 from mxeon.conformance.pictures.document_pictures import judge_document
 from mxeon.conformance.pictures.tolerances import TEXTURED
 from mxeon.conformance.probes.families import HOST_PROBES, probe_type_of
 from mxeon.conformance.results import FAILED, PASSED
+from mxeon.conformance.results.known_issues import with_pages
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
 from mxeon.hosts.documents import PLACE

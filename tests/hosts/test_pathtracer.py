@@ -7,11 +7,11 @@ import pytest
 from docs.upstream import repairs
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
-from mxeon.conformance.known_issues import ISSUES
-from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.polyhedron import FacetPairProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.errors import NotRun
 from mxeon.hosts import browser
 from mxeon.hosts.browser import pathtracer

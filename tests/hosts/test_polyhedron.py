@@ -9,12 +9,12 @@ import pytest
 
 from mxeon.conformance.accuracy.diffuse import COARSE_FACETS, FACET_PAIRS, FACETS
 from mxeon.conformance.checks.application import judge_subject
-from mxeon.conformance.known_issues import with_pages
-from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.families import HOST_PROBES
 from mxeon.conformance.probes.polyhedron import facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
+from mxeon.conformance.results.known_issues import with_pages
+from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.run import check
 from mxeon.errors import NotRun
 from mxeon.hosts import host_row, open_engine

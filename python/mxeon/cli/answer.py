@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from mxeon.conformance.known_issues import issues_of, link
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, Result, Run, counted
+from mxeon.conformance.results.known_issues import issues_of, link
 from mxeon.conformance.run.documents import causes, document_verdicts
 from mxeon.conformance.run.survey import model_of
 from mxeon.errors import one_line

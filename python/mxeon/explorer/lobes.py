@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.known_issues import ISSUES
+from mxeon.conformance.results.known_issues import ISSUES
 from mxeon.shaders.nodes import (
     FLAG,
     OREN_NAYAR,

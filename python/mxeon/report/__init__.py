@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mxeon.conformance.known_issues import issues_of, page_file
 from mxeon.conformance.results import Picture, Run, image_names
+from mxeon.conformance.results.known_issues import issues_of, page_file
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError
 from mxeon.io.files import replacing, write_text

@@ -9,8 +9,6 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.known_issues import issues_of, link
-from mxeon.conformance.known_issues.issue import Issue
 from mxeon.conformance.results import (
     DIFFERS,
     FAILED,
@@ -18,6 +16,8 @@ from mxeon.conformance.results import (
     PASSED,
     Result,
 )
+from mxeon.conformance.results.known_issues import issues_of, link
+from mxeon.conformance.results.known_issues.issue import Issue
 
 # CSS class of each verdict, and a sign for readers who cannot see the color.
 LOOKS = {

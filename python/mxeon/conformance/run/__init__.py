@@ -7,8 +7,8 @@ from contextlib import AbstractContextManager, closing, contextmanager, nullcont
 from functools import lru_cache, partial
 from pathlib import Path
 
-from mxeon.conformance.known_issues import repaired
 from mxeon.conformance.results import Run
+from mxeon.conformance.results.known_issues import repaired
 from mxeon.conformance.run.documents import documents_in
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, not_run

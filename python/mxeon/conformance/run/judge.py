@@ -10,7 +10,6 @@ from mxeon.conformance.checks.application import judge_curve, judge_subject
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.functions.inversion import InversionProbe, judge_inversion
 from mxeon.conformance.functions.shader_functions import FunctionProbe, judge_functions
-from mxeon.conformance.known_issues import with_pages
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.pictures.document_pictures import MATCH, judge_document
 from mxeon.conformance.pictures.documents import DOCUMENT_CLAIM, generate_document
@@ -20,6 +19,7 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import ExactProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.results import DIRECT, FAILED, NOT_RUN, SOURCE, Picture, Result
+from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.run.plan import subjects
 from mxeon.conformance.run.tasks import (
     CURVE,

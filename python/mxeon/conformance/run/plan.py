@@ -16,7 +16,6 @@ import mxeon
 from mxeon.conformance.checks.application import applies
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.functions import shader_functions as functions
-from mxeon.conformance.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES, DiffuseSubject
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.nodes.subject import Subject
@@ -30,6 +29,7 @@ from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE
+from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
 from mxeon.conformance.run.dependencies import digests
 from mxeon.conformance.run.selection import (
     ALL,

@@ -7,8 +7,8 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
-from mxeon.conformance.known_issues.issue import Issue, read_issues
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED, Result
+from mxeon.conformance.results.known_issues.issue import Issue, read_issues
 
 RENDERERS = {
     "cycles": "this Blender",
@@ -36,7 +36,7 @@ def link(issue: Issue) -> str:
 
 def page_file(issue: Issue) -> Path:
     """File of the page of an issue: inside an installed package, else in the checkout."""
-    package, checkout = (Path(__file__).resolve().parents[level] for level in (2, 4))
+    package, checkout = (Path(__file__).resolve().parents[level] for level in (3, 5))
     folder = package / "data" / "upstream"
     return (folder if folder.is_dir() else checkout / "docs" / "upstream") / f"{issue.page}.md"
 
