@@ -31,16 +31,10 @@ def transmitted(probe: Probe) -> list[Case]:
     One is what the BTDF passes, without compensation; the other all that is not reflected. The first is
     the larger for some colors of Schlick's curve, of which the text compensates too much.
     """
-    cases = []
+    cases, subject = [], subject_of(probe, TransmissionSubject)
     for batch in probe.cosines:
         measured = probe.transmitted(batch)
-        cases.append(
-            Case(
-                batch,
-                measured,
-                np.clip(measured, *limits(subject_of(probe, TransmissionSubject), batch)),
-            )
-        )
+        cases.append(Case(batch, measured, np.clip(measured, *limits(subject, batch))))
     return cases
 
 
@@ -75,39 +69,26 @@ def clear(probe: Probe) -> Iterable[Case]:
 def kept(probe: Probe) -> Iterable[Case]:
     """Reflection beside transmission, against that of the node that only reflects, or none."""
     cases = []
+    only = probe.reflection if subject_of(probe, TransmissionSubject).reflects else None
     for batch in probe.cosines:
-        for output in ("direct", "albedo"):
-            cases.append(
-                Case(batch, getattr(probe, output)(batch), _reflection(probe, output, batch))
-            )
-        for branch in SCATTERING[: 3 if subject_of(probe, TransmissionSubject).reflects else 2]:
-            expected = (
-                probe.reflection.throughput(batch, branch)
-                if subject_of(probe, TransmissionSubject).reflects
-                else ONE
-            )
+        none = 0.0 * ONE
+        cases += [
+            Case(batch, probe.direct(batch), only.direct(batch) if only else none),
+            Case(batch, probe.albedo(batch), only.albedo(batch) if only else none),
+        ]
+        for branch in SCATTERING if only else SCATTERING[:2]:
+            expected = only.throughput(batch, branch) if only else ONE
             cases.append(Case(batch, probe.throughput(batch, branch), expected))
     return cases
-
-
-def _reflection(probe: Probe, output: str, batch: Batch) -> Array:
-    """A value of the node that only reflects; 0 where the mode has no reflection."""
-    if not subject_of(probe, TransmissionSubject).reflects:
-        return 0.0 * ONE
-    value: Array = getattr(probe.reflection, output)(batch)
-    return value
 
 
 def critical(probe: Probe) -> Iterable[Case]:
     """Light through smooth surfaces against 1 - F, and against none beyond the critical angle."""
     batch = _smooth(probe)
-    functions, mu = (
-        subject_of(probe, TransmissionSubject).functions,
-        np.minimum(batch.wo[:, 2], 1.0),
-    )
-    index = functions.ior(batch.inputs)
-    edge = np.sqrt(np.maximum(1.0 - index * index, 0.0))
-    batch, mu = (batch.where(np.abs(mu - edge) > CRITICAL), mu[np.abs(mu - edge) > CRITICAL])
+    functions = subject_of(probe, TransmissionSubject).functions
+    index, mu = functions.ior(batch.inputs), np.minimum(batch.wo[:, 2], 1.0)
+    away = np.abs(mu - np.sqrt(np.maximum(1.0 - index * index, 0.0))) > CRITICAL
+    batch, mu = batch.where(away), mu[away]
     passed = functions.tint(batch.inputs) * (1.0 - functions.fresnel(mu, batch.inputs))
     return [Case(batch, probe.transmitted(batch), batch.strength * passed)]
 
