@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tolerances: how exact a node's values are, by kind of probe, each with its derivation."""
+"""Bounds of the checks: the tolerances of each kind of probe, each with its derivation."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How exact each kind of probe is: one row for each, with a tolerance for each quantity."""
+"""How exact each kind of probe is: one row for each, with a tolerance, the bound of a check, for each quantity."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tolerances of the checks of the other BSDF nodes of pbrlib."""
+"""Tolerances of pbrlib's BSDF nodes: Burley, sheens, microfacets, and what combines or transmits."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every tolerance of the checks, as the expression that its derivation describes.
+"""Tolerances of rough diffuse nodes and of what pictures show, as the expressions that derivations describe.
 
 The tests and the benchmarks that judge the same quantities import them.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements of the other BSDF nodes of pbrlib: energy, layering, and their frames."""
+"""Measurements of pbrlib's BSDF nodes: energy, layering, and their frames."""
 
 from collections.abc import Iterable
 from dataclasses import replace

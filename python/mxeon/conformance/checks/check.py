@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A row of the table of checks."""
+"""A row of the table of checks: what is asked of a probe, and where its bound comes from."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects of the checks: the other BSDF nodes of pbrlib, in each of their modes."""
+"""Subjects: pbrlib's BSDF nodes, each mode of a row, and the inputs of each node with their ranges: `PORTS`.
+
+The rough diffuse nodes, hair, and nodes that combine lobes are in `diffuse`, `hair` and `combinations`.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of a node on a host, over batches of pairs, by what the host can show."""
+"""Probes: a node on a host, with its samples, the host's values for them and the expected ones."""

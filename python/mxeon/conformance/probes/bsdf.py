@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Probes of the other BSDF nodes of pbrlib, with the pairs and the quadratures that they need."""
+"""Probes of pbrlib's BSDF nodes, with the pairs and the quadratures that they need."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Probes of the other BSDF nodes of pbrlib on hosts that make pictures."""
+"""Probes of pbrlib's BSDF nodes on hosts that make pictures."""
 
 from collections.abc import Sequence
 from typing import ClassVar

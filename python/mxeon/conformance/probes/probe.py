@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a check may ask of a node on a host; the base class of all probes."""
+"""A probe: a node on a host, and what a check may ask of it; the base class of all."""
 
 from collections.abc import Mapping
 from functools import cached_property
