@@ -13,8 +13,10 @@ import sys
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from unittest.mock import patch
 
 from benchmarks import page, record
+from benchmarks.check import CACHE
 from mxeon.errors import NotRun
 
 GROUPS = (
@@ -43,6 +45,22 @@ def keep(file, kind, group):
     record.write(file, [group], kind)
 
 
+def measure(options, file):
+    """Measure the groups that are asked for, each printed and kept as it is done."""
+    record.write(file, [])
+    for name in options.groups or GROUPS:
+        sizes = dict(QUICK[name]) if options.quick else {}
+        if name == "materials":  # which takes longest: each material is kept as it is done
+            sizes["keep"] = partial(keep, file, options.kind)
+        try:
+            group = import_module(f"benchmarks.{name}").measure(**sizes)
+        except NotRun as reason:
+            print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
+            continue
+        print(page.table(group), flush=True)
+        keep(file, options.kind, group)
+
+
 def main(arguments=None):
     """Run what is asked for; the exit status."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=__doc__.splitlines()[0])
@@ -59,19 +77,8 @@ def main(arguments=None):
         parser.error(f"group must be one of {', '.join(GROUPS)}; got {', '.join(unknown)}")
     file = options.output / "performance.json"
     if not options.page:
-        os.environ["MESA_SHADER_CACHE_DISABLE"] = "true"  # or a compilation is read from a file
-        record.write(file, [])
-        for name in options.groups or GROUPS:
-            sizes = dict(QUICK[name]) if options.quick else {}
-            if name == "materials":  # which takes longest: each material is kept as it is done
-                sizes["keep"] = partial(keep, file, options.kind)
-            try:
-                group = import_module(f"benchmarks.{name}").measure(**sizes)
-            except NotRun as reason:
-                print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
-                continue
-            print(page.table(group), flush=True)
-            keep(file, options.kind, group)
+        with patch.dict(os.environ, {CACHE: "true"}):  # or a compilation is read from a file
+            measure(options, file)
     groups = page.write(options.output, file)
     wrong = [each.name for group in groups for each in group.checks if not each.passed]
     if wrong:
