@@ -10,6 +10,7 @@ Exit status: 0, or 1 if a value that was timed is wrong. A missed goal is shown 
 import argparse
 import os
 import sys
+import time
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -34,15 +35,15 @@ QUICK = {
     "models": {"rounds": 3, "pairs": (10_000, 100_000)},
     "values": {"rounds": 2, "pairs": 100_000, "calls": 200},
     "tool": {"rounds": 2, "counts": (1, 10), "documents": 10},
-    "check": {"rounds": 1, "field": False},
+    "check": {"rounds": 1, "whole": False},
     "parts": {"rounds": 1},
 }
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
 
-def keep(file, kind, group):
+def keep(file, kind, start, group):
     """Write a group's figures as far as they are, so that no later failure loses them."""
-    record.write(file, [group], kind)
+    record.write(file, [group], kind, time.monotonic() - start)
 
 
 def measure(options, file):
@@ -50,15 +51,16 @@ def measure(options, file):
     record.write(file, [])
     for name in options.groups or GROUPS:
         sizes = dict(QUICK[name]) if options.quick else {}
+        kept = partial(keep, file, options.kind, time.monotonic())
         if name == "materials":  # which takes longest: each material is kept as it is done
-            sizes["keep"] = partial(keep, file, options.kind)
+            sizes["keep"] = kept
         try:
             group = import_module(f"benchmarks.{name}").measure(**sizes)
         except NotRun as reason:
             print(f"benchmarks: {name} not run: {reason}", file=sys.stderr)
             continue
         print(page.table(group), flush=True)
-        keep(file, options.kind, group)
+        kept(group)
 
 
 def main(arguments=None):

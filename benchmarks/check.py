@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon check` as a user starts it: time and memory, with Mesa's cache of compiled shaders filled."""
+"""`mxeon check` as a user starts it: time and memory, with and without Mesa's cache of compiled shaders.
+
+The caches are folders of this benchmark alone, so that no row depends on what ran before it.
+"""
 
 import json
 import os
+import shutil
+import statistics
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
+from pathlib import Path
 from subprocess import Popen
 
 import numpy as np
@@ -15,11 +21,16 @@ import numpy as np
 from benchmarks.rounds import Check, Group, figure, ratio
 from mxeon.errors import NotRun
 from mxeon.hosts import open_engine
+from mxeon.shaders.library import eonlib_folder
 
 OTHERS = ("webgl", "vulkan", "wgsl", "slang", "cycles")
-FIELD = ("--host", "all", "--library", "eonlib", "--library", "stock")
-CACHE = "MESA_SHADER_CACHE_DISABLE"
+BOTH = ("--library", "eonlib", "--library", "stock")
+FIELD = ("--host", "all", *BOTH)
+CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
 NONE, TWO = "gl, no workers", "gl, 2 workers"
+MEMORY = 600.0  # MiB
+# A coefficient of EON's albedo, and a wrong one, of which the first digits are right.
+RIGHT, WRONG = "#define EON_Q0 0.527481849\n", "#define EON_Q0 0.52\n"
 
 
 @dataclass(frozen=True)
@@ -31,9 +42,10 @@ class Job:
     wrong: float
 
 
-def job(*options):
-    """The command with options, in a process of its own."""
+def job(*options, cache=None):
+    """The command with options, in a process of its own; the driver's cache is a folder."""
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
+    environment |= {} if cache is None else {FOLDER: str(cache)}
     arguments = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
     with tempfile.TemporaryFile() as output, open(os.devnull, "w", encoding="ascii") as nothing:
         start = time.perf_counter()
@@ -47,24 +59,84 @@ def job(*options):
     return Job(seconds, usage.ru_maxrss / 1024.0, wrong)
 
 
-def main_job(rounds, files):
-    """Figures and checks of the examples on gl, without and with workers in turn."""
+def memory(name, jobs, goal=None):
+    """Figure of the largest process of some runs."""
+    return figure(f"{name}, largest process", "MiB", [max(each.memory for each in jobs)], goal)
+
+
+def main_job(rounds, files, cache):
+    """Figures and checks of the examples on gl, without and with workers in turn; and its seconds."""
     options = {NONE: (*files, "--workers", "0"), TWO: (*files, "--workers", "2")}
-    job(*options[TWO])  # fills the cache for both
+    cold = job(*options[TWO], cache=cache)  # fills the cache for both
     found = {name: [] for name in options}
     for _ in range(rounds):
         for name, each in options.items():
-            found[name].append(job(*each))
+            found[name].append(job(*each, cache=cache))
     seconds = {name: [each.seconds for each in jobs] for name, jobs in found.items()}
-    memory = [each.memory for jobs in found.values() for each in jobs]
     figures = [
-        figure(NONE, "s", seconds[NONE]),
-        figure(TWO, "s", seconds[TWO], goal=10.0),
+        figure(NONE, "s", seconds[NONE], goal=12.0),
+        figure(TWO, "s", seconds[TWO], goal=9.0),
         ratio(f"{TWO} / no workers", seconds[TWO], seconds[NONE], goal=1.0),
-        figure("gl, memory of the largest process", "MiB", [max(memory)], goal=600.0),
+        figure("gl, the driver's cache empty", "s", [cold.seconds], goal=30.0),
+        memory("gl", [cold, *found[NONE], *found[TWO]], MEMORY),
     ]
     wrong = [Check(name, max(each.wrong for each in jobs), 0.0) for name, jobs in found.items()]
-    return figures, wrong
+    return figures, wrong, statistics.median(seconds[TWO])
+
+
+@contextmanager
+def wrong_library():
+    """A copy of eonlib with one wrong coefficient."""
+    with tempfile.TemporaryDirectory() as folder:
+        library = shutil.copytree(eonlib_folder(), Path(folder, "eonlib"))
+        path = library / "genglsl" / "eon.glsl"
+        text = path.read_text(encoding="utf-8")
+        assert RIGHT in text
+        path.write_text(text.replace(RIGHT, WRONG), encoding="utf-8")
+        yield library
+
+
+def reporting(files, cache, usual):
+    """Figures of a report, and of the same run again, which finds it finished."""
+    with tempfile.TemporaryDirectory() as folder:
+        options = (*files, "--workers", "2", "--report", folder)
+        first, again = (job(*options, *more, cache=cache) for more in ((), ("--resume",)))
+    return [
+        figure("gl, beyond that with --report", "s", [first.seconds - usual], goal=2.0),
+        figure("gl, again with --resume", "s", [again.seconds], goal=5.0),
+        memory("gl, --report", [first], MEMORY),
+    ]
+
+
+def libraries(files, cache, usual):
+    """Figures and checks of two libraries, and of a wrong one with its diagnosis."""
+
+    def warm(*options):
+        """The second of two runs: the first fills the cache."""
+        return [job(*files, "--workers", "2", *options, cache=cache) for _ in range(2)][1]
+
+    two = warm(*BOTH)
+    with wrong_library() as library:
+        wrong = warm("--library", str(library))
+    figures = [
+        figure("gl, two libraries / one", "x", [two.seconds / usual], goal=1.6),
+        figure("gl, a wrong coefficient / none", "x", [wrong.seconds / usual], goal=1.5),
+        memory("gl, two libraries", [two], MEMORY),
+    ]
+    missed = 0.0 if wrong.wrong > 0.0 else np.inf
+    return figures, [Check("a wrong coefficient is found", missed, 0.0)]
+
+
+def all_nodes(files):
+    """Figures and checks of all nodes, with an empty cache and again."""
+    with tempfile.TemporaryDirectory() as cache:
+        runs = [job(*files, "--workers", "2", "--node", "all", cache=cache) for _ in range(2)]
+    figures = [
+        figure("gl, --node all, the driver's cache empty", "s", [runs[0].seconds], goal=40.0),
+        figure("gl, --node all", "s", [runs[1].seconds], goal=20.0),
+        memory("gl, --node all", runs, MEMORY),
+    ]
+    return figures, [Check("gl, --node all", max(each.wrong for each in runs), 0.0)]
 
 
 def runs(host):
@@ -76,15 +148,30 @@ def runs(host):
     return True
 
 
-def measure(rounds=3, files=(), field=True):
-    """The `Group` of all that; stock MaterialX is expected to fail, so its run has no check."""
-    figures, checks = main_job(rounds, files)
-    if field:
-        jobs = {host: partial(job, "--host", host) for host in OTHERS if runs(host)}
-        for host, run in jobs.items():
-            found = run()
-            figures.append(figure(f"{host}, 2 workers", "s", [found.seconds]))
-            checks.append(Check(f"{host}, 2 workers", found.wrong, 0.0))
-        name = "all hosts, eonlib and stock, 2 workers"
-        figures.append(figure(name, "s", [job(*FIELD).seconds], goal=120.0))
+def hosts(cache):
+    """Figures and checks of the other hosts, and of the whole field, whose stock MaterialX fails."""
+    found = {host: job("--host", host, cache=cache) for host in OTHERS if runs(host)}
+    figures = [figure(f"{host}, 2 workers", "s", [each.seconds]) for host, each in found.items()]
+    checks = [Check(f"{host}, 2 workers", each.wrong, 0.0) for host, each in found.items()]
+    field = job(*FIELD, cache=cache)
+    name = "all hosts, eonlib and stock"
+    return [
+        *figures,
+        figure(f"{name}, 2 workers", "s", [field.seconds], 90.0),
+        memory(name, [field]),
+    ], checks
+
+
+def measure(rounds=3, files=(), whole=True):
+    """The `Group` of all that; of the main job alone unless it is to be whole."""
+    with tempfile.TemporaryDirectory() as cache:
+        figures, checks, usual = main_job(rounds, files, cache)
+        if whole:
+            figures += reporting(files, cache, usual)
+            for found, more in (
+                libraries(files, cache, usual),
+                all_nodes(files),
+                hosts(cache),
+            ):
+                figures, checks = [*figures, *found], [*checks, *more]
     return Group("check", "`mxeon check`, bundled examples", tuple(figures), tuple(checks), {})

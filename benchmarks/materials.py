@@ -21,7 +21,7 @@ from mxeon.shaders.nodes import (
 )
 from mxeon.shaders.scene import SIDE, sphere
 
-SIZE = 1024
+SIZE = 512
 FRAMES = 2
 MESH = 128  # squares along a side of the mesh, few enough to cost nothing beside the pixels
 LIBRARIES = ("eonlib", "stock")
@@ -140,7 +140,7 @@ def first_frame(host, generated, numbers):
     frame.draw(1)
 
 
-def measure(rounds=7, size=SIZE, nodes=tuple(NODES), keep: Callable[[Group], None] | None = None):
+def measure(rounds=3, size=SIZE, nodes=tuple(NODES), keep: Callable[[Group], None] | None = None):
     """The `Group` of materials; `keep` is handed it after each material, as far as it is."""
     host = gl.Host()
     device = host.identity().device

@@ -73,12 +73,14 @@ def _version(name):
 LOAD = machine()["load before"]
 
 
-def write(file, groups, kind=""):
-    """Write the groups; those of an earlier run, or of another kind of machine, stay."""
+def write(file, groups, kind="", seconds=None):
+    """Write the groups, measured in so many seconds; those of another run or kind of machine stay."""
     kept = {}
     if file.is_file():
         kept = json.loads(file.read_text(encoding="utf-8"))["groups"]
     setting = machine() | {"OpenGL": _renderer(), "load before": LOAD}
+    setting["load after"] = round(os.getloadavg()[0], 2)
+    setting |= {} if seconds is None else {"minutes": round(seconds / 60.0, 1)}
     setting |= {"kind": kind} if kind else {}
     for group in groups:
         title = f"{group.title}; {kind}" if kind else group.title

@@ -74,7 +74,7 @@ SMALLEST = {
 
 @pytest.mark.parametrize("name", [*SMALLEST, "check"])
 def test_each_group_is_measured_and_written_to_its_page(gl, tmp_path, monkeypatch, name):
-    small = SMALLEST | {"check": {"rounds": 1, "files": TEXTS, "field": False}}
+    small = SMALLEST | {"check": {"rounds": 1, "files": TEXTS, "whole": False}}
     memory = cache(models.extra_memory)  # one process, not one for each way
     monkeypatch.setattr(models, "extra_memory", lambda way, count: memory("naive", count))
     monkeypatch.setattr(tool, "TARGETS", ("glsl", "osl"))
@@ -127,6 +127,26 @@ TEXTS = (
 
 def test_check_whose_results_fail_is_wrong():
     assert 0.0 < check.job(*TEXTS, "--library", "stock").wrong < np.inf
+
+
+def test_the_rows_of_check_have_their_goals_and_a_cache_of_their_own(monkeypatch):
+    asked = []
+
+    def job(*options, cache=None):
+        asked.append((cache, options))
+        return check.Job(3.0, 100.0, float(any("eonlib" in each for each in options)))
+
+    monkeypatch.setattr(check, "job", job)
+    monkeypatch.setattr(check, "runs", lambda host: host == "webgl")
+    group = check.measure(rounds=1)
+    goals = {each.name: (each.median, each.goal) for each in group.figures if each.goal}
+    assert goals["gl, two libraries / one"] == (1.0, 1.6)
+    assert goals["gl, beyond that with --report"] == (0.0, 2.0)
+    assert len(goals) == 15 and all(np.isfinite([each for each, _ in goals.values()]))
+    assert [each.name for each in group.checks if not each.passed] == []
+    assert all(cache and not os.path.exists(cache) for cache, _ in asked)
+    cold = [asked[0], next(each for each in asked if "all" in each[1])]
+    assert cold[0][0] != cold[1][0]  # both with an empty cache
 
 
 def test_compiled_values_and_errors_are_those_of_the_models():
