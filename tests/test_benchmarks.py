@@ -2,6 +2,7 @@
 """The benchmarks on tiny sizes: every value right, every result kept; no time asserted."""
 
 import os
+import shutil
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,7 @@ from benchmarks import (
     check,
     cycles,
     lights,
+    machine_code,
     materials,
     models,
     noise,
@@ -127,6 +129,15 @@ TEXTS = (
 
 def test_check_whose_results_fail_is_wrong():
     assert 0.0 < check.job(*TEXTS, "--library", "stock").wrong < np.inf
+
+
+@pytest.mark.skipif(shutil.which("objdump") is None, reason="needs objdump of binutils")
+def test_a_square_root_more_is_seen_in_the_machine_code(gl):
+    statements = machine_code.BASES["value"], machine_code.BASES["value"] + " sum += sqrt(mu_o);"
+    device = shaders.Device(64)
+    loops = [machine_code.loop(machine_code.machine_code(device, each)) for each in statements]
+    before, after = (machine_code.kinds(each)["square roots"] for each in loops)
+    assert after == before + 1
 
 
 def test_the_rows_of_check_have_their_goals_and_a_cache_of_their_own(monkeypatch):
