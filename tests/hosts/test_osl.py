@@ -9,6 +9,8 @@ import pytest
 
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts.osl import LINE, carriers, trees
+from mxeon.hosts.osl.kept import KeptTrees, keys_of
+from mxeon.hosts.osl.points import Column
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import document_text, lobe_text, material_text, node_text
 
@@ -32,6 +34,11 @@ def names(tree):
     return (
         [] if tree is None else [tree.name, *(each for part in tree.parts for each in names(part))]
     )
+
+
+def leaf(tree):
+    """The first closure of a tree."""
+    return leaf(tree.parts[0]) if tree.parts else tree
 
 
 @pytest.fixture
@@ -184,3 +191,59 @@ def test_the_root_of_zeltners_roughness_undoes_a_square_to_the_last_bit():
     [found] = trees.with_roots(trees.ClosureTree("mul", (sheen,), {"factor": rough})).parts
     assert np.array_equal(found.arguments["roughness"][1::2], rough[1::2])
     assert np.array_equal(found.arguments["roughness"][::2], squares[::2])
+
+
+@pytest.fixture
+def runs(host, monkeypatch):
+    """Points of each run of the engine."""
+    counts, printed = [], host._engine.printed
+
+    def count(folder, text, points):
+        counts.append(points)
+        return printed(folder, text, points)
+
+    monkeypatch.setattr(host._engine, "printed", count)
+    return counts
+
+
+def test_points_that_were_told_are_not_run_again(host, runs):
+    made = shader("burley_diffuse_bsdf", weight=0.7)
+    host.trees(made, WO, {"color": COLORS})
+    [again] = host.trees(made, WO[:3, ::-1], {"color": COLORS[[4, 1, 1]]})
+    assert runs == [5]
+    assert np.array_equal(leaf(again.tree).arguments["color"], COLORS[[4, 1, 1]])
+    [others] = host.trees(made, WO[:3], {"color": [*COLORS[:2], [0.5, 0.5, 0.25]]})
+    assert runs == [5, 1]
+    assert np.array_equal(leaf(others.tree).arguments["color"][1], COLORS[1])
+
+
+def test_inputs_of_other_names_are_other_points(host, runs):
+    made = shader("burley_diffuse_bsdf", weight=0.6)
+    values = np.linspace(0.1, 0.9, 5)
+    [rough] = host.trees(made, WO, {"roughness": values})
+    [weighed] = host.trees(made, WO, {"weight": values})
+    assert runs == [5, 5]
+    assert leaf(rough.tree).arguments["roughness"][4] == np.float32(0.9)
+    assert leaf(weighed.tree).arguments["roughness"][4] == 0.0
+
+
+def test_a_text_that_reads_the_view_is_run_for_each_view():
+    columns = {"x": Column("float", np.zeros(2))}
+    view = Column("vector", np.eye(3)[:2])
+    assert len(set(keys_of("color c = x;", columns, view, 2))) == 1
+    assert len(set(keys_of("color c = dot(I, N);", columns, view, 2))) == 2
+
+
+def test_closures_of_several_shapes_are_kept_by_point():
+    kept = KeptTrees()
+    keys = [b"0", b"1", b"2"]
+    burley, empty = (
+        trees.ClosureTree("burley_diffuse_bsdf", (), {"roughness": np.arange(2.0)}),
+        None,
+    )
+    kept.add(keys, (trees.TreeRows(np.array([0, 2]), burley), trees.TreeRows(np.array([1]), empty)))
+    assert kept.missing([b"2", b"3", b"3", b"1"]).tolist() == [2]
+    second, first = kept.of([b"1", b"2", b"2", b"0"])
+    assert first.rows.tolist() == [1, 2, 3]
+    assert first.tree.arguments["roughness"].tolist() == [1.0, 1.0, 0.0]
+    assert (second.rows.tolist(), second.tree) == ([0], None)

@@ -135,7 +135,9 @@ class Worker:
 
     def printed(self) -> list[str]:
         """The lines printed since the last request."""
-        text = self.log.read_bytes()[self._read :].decode(errors="replace")
+        with self.log.open("rb") as log:
+            log.seek(self._read)
+            text = log.read().decode(errors="replace")
         return [line.strip() for line in text.splitlines() if line.strip()]
 
     def close(self) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Probes of nodes on a host that tells closures: those of a host that evaluates, over the closures' values."""
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TypeVar, cast
 
@@ -10,7 +11,7 @@ from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.reference.evaluated import evaluated
-from mxeon.conformance.samples.batch import SEED, Batch, Counts
+from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts
 from mxeon.hosts.base import Host
 
 P = TypeVar("P", bound=Probe)
@@ -39,8 +40,12 @@ class ClosureSamples(Probe):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Few of each."""
-        return tuple(batch.first(self.counts.few) for batch in self.batches)
+        """Few of each, together where that is possible: a run takes its time however few they are."""
+        groups: dict[tuple[str, ...], list[Batch]] = {}
+        for batch in self.batches:
+            few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
+            groups.setdefault((*names, str(batch.frame is None)), []).append(few)
+        return tuple(map(_joined, groups.values()))
 
     @cached_property
     def turned(self) -> Batch:
@@ -60,6 +65,23 @@ def closures_of(probe: type[P]) -> type[P]:
     return cast(
         type[P], type(f"Closure{probe.__name__}", (ClosureSamples, probe), {"usual": usual})
     )
+
+
+def _joined(batches: Sequence[Batch]) -> Batch:
+    """One batch of all pairs, whose inputs have the same names."""
+    if len(batches) == 1:
+        return batches[0]
+    wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
+    inputs = {name: np.concatenate([_each(b, name) for b in batches]) for name in batches[0].inputs}
+    frames = [batch.frame for batch in batches if batch.frame is not None]
+    return Batch(wo, wi, inputs, frame=np.concatenate(frames) if frames else None)
+
+
+def _each(batch: Batch, name: str) -> Array:
+    """An input of each pair."""
+    values = np.asarray(batch.inputs[name])
+    constant = values.shape[:1] != (len(batch.wo),)
+    return np.broadcast_to(values, (len(batch.wo), *values.shape)) if constant else values
 
 
 def _weighed(batch: Batch) -> Batch:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from mxeon.conformance.reference.closures import GRAPH, Views, column, radiance
 from mxeon.hosts.base import Array, Host, Identity, Inputs
-from mxeon.hosts.osl.trees import TreeRows
 from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.generation import Shader
 
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
     import MaterialX as mx
 
     from mxeon.io.files import AnyPath
-
-KEPT = 16  # runs whose closures are kept
 
 
 class Evaluated(Host):
@@ -36,7 +33,6 @@ class Evaluated(Host):
 
     def __init__(self, host: Host) -> None:
         self.name, self._host = host.name, host
-        self._kept: dict[int, tuple[TreeRows, ...]] = {}
         self.target, self.profile, self.language = host.target, host.profile, host.language  # type: ignore[misc]
 
     def identity(self) -> Identity:
@@ -82,7 +78,7 @@ class Evaluated(Host):
         values = np.zeros((len(wo), 3))
         occlusion = np.broadcast_to(column(inputs.get("occlusion", 1.0)), (len(wo), 1))
         # Evaluate those of each shape.
-        for points in self._trees(shader, wo, inputs):
+        for points in self._host.trees(shader, wo, inputs):
             rows = points.rows
             if output == "radiance" or branch == GRAPH:
                 values[rows] = radiance(points.tree)
@@ -92,17 +88,6 @@ class Evaluated(Host):
             bsdf = views.bsdf(points.tree, output == "throughput")
             values[rows] = bsdf.throughput if output == "throughput" else bsdf.value
         return values
-
-    def _trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
-        """Closures at some points; the checks of a node ask for the same ones."""
-        parts = [shader.stages["pixel"], *sorted(inputs), wo.tobytes()]
-        parts += [np.asarray(inputs[name], np.float64).tobytes() for name in sorted(inputs)]
-        key = hash(tuple(parts))
-        if key not in self._kept:
-            while len(self._kept) >= KEPT:
-                self._kept.pop(next(iter(self._kept)))
-            self._kept[key] = self._host.trees(shader, wo, inputs)
-        return self._kept[key]
 
 
 @lru_cache(maxsize=4)

@@ -11,7 +11,9 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +24,8 @@ from mxeon.hosts import base
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.blender import Blender
 from mxeon.hosts.osl.carriers import prelude
-from mxeon.hosts.osl.points import Column, row, statements
+from mxeon.hosts.osl.kept import KeptTrees, keys_of
+from mxeon.hosts.osl.points import IMAGE, Column, row, statements
 from mxeon.hosts.osl.testshade import Testshade
 from mxeon.hosts.osl.texts import columns_of, header, indented, with_variables
 from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label, with_roots
@@ -42,6 +45,7 @@ vector mxeon_view()
 #define I mxeon_view()
 """
 ROOT = "root"
+SHADERS = 8  # with the names of their variables, whose closures are kept
 PRINT = '    printf("mxeon %d {root} %s\\n", MXEON_ROW, {text});\n'
 
 
@@ -60,6 +64,7 @@ class Host(base.Host):
 
     def __init__(self) -> None:
         self._engine = Testshade() if os.environ.get(VARIABLES["testshade"]) else Blender()
+        self._kept = lru_cache(maxsize=SHADERS)(lambda text, names: KeptTrees())
 
     def close(self) -> None:
         """End the process and remove its files."""
@@ -67,22 +72,39 @@ class Host(base.Host):
 
     def identity(self) -> Identity:
         """Version of OSL, as its compiler knows it, and of what runs it."""
+        return Identity(self.name, f"{self._version} in {self._engine.version}", "CPU")
+
+    @cached_property
+    def _version(self) -> str:
         number = int(self.execute(VERSION, "version", 0.0)[0, 0])
-        version = f"OSL {number // 10000}.{number // 100 % 100}.{number % 100}"
-        return Identity(self.name, f"{version} in {self._engine.version}", "CPU")
+        return f"OSL {number // 10000}.{number // 100 % 100}.{number % 100}"
 
     def trees(self, shader: Shader, wo: Array, inputs: Inputs) -> tuple[TreeRows, ...]:
         """Closures that a generated shader makes; see `mxeon.hosts.base.Host`."""
-        count = len(wo)
+        # Its inputs and its surface have values of each point.
+        columns, view = columns_of(shader, inputs), Column("vector", wo)
+        keys = keys_of(shader.stages["pixel"], columns, view, len(wo))
+        # Run it where it has not run yet.
+        kept = self._kept(shader.stages["pixel"], tuple(columns))
+        rows = kept.missing(keys)
+        if len(rows):
+            some = {name: each.some(rows) for name, each in columns.items()}
+            kept.add(
+                [keys[row] for row in rows], self._run(shader, some, view.some(rows), len(rows))
+            )
+        return kept.of(keys)
+
+    def _run(
+        self, shader: Shader, columns: Mapping[str, Column], view: Column, count: int
+    ) -> tuple[TreeRows, ...]:
+        """Closures that a shader makes of so many values of its variables."""
         with self._engine.folder() as name:
-            folder = Path(name)
-            # Its inputs and its surface have values of each point.
-            place = self._engine.place
-            block = statements(columns_of(shader, inputs), folder, count, place)
-            [view] = statements({"view": Column("vector", wo)}, folder, count, place)
+            folder, place = Path(name), self._engine.place
             # Print its closures at each point.
+            block = statements(columns, folder / IMAGE, count, place)
+            [read] = statements({"view": view}, folder / "view.tif", count, place)
             shown = with_variables(shader, block, _printed_closure)
-            text = VIEW.format(read=view) + shown.replace('"mx_funcs.h"', f'"{header()}"')
+            text = VIEW.format(read=read) + shown.replace('"mx_funcs.h"', f'"{header()}"')
             rows = self._printed(folder, text, count)
         # Read them as this OSL means them.
         found = read_trees([whole_label(each, ROOT) for each in rows])
@@ -103,7 +125,7 @@ class Host(base.Host):
         count = max((len(column.rows) for column in columns.values()), default=1)
         # Run a shader that prints its value.
         with self._engine.folder() as name:
-            block = indented(statements(columns, Path(name), count, self._engine.place))
+            block = indented(statements(columns, Path(name, IMAGE), count, self._engine.place))
             last = _print(f"mxeon_text((color) {function}({', '.join(columns)}))")
             text = f"{source}\nshader call(output closure color out = 0)\n{{\n{block}{last}}}\n"
             rows = self._printed(Path(name), text, count)

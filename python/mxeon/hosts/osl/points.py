@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,7 +25,12 @@ WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
 ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floor({size} * (x)))
 #define MXEON_ROW MXEON_AT({place})
 """
-READ = 'texture("{image}", {place}, 0.0, 0.0, 0.0, 0.0, "interp", "closest")'
+READ = (
+    'texture("{image}", {place}, 0.0, 0.0, 0.0, 0.0, "interp", "closest", "firstchannel", {first})'
+)
+IMAGE = (
+    "points.tif"  # of the variables of a shader; EXR orders more than ten channels by their names
+)
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,10 @@ class Column:
         """The values, (N or 1, components)."""
         return np.asarray(self.values, np.float32).reshape(-1, WIDTHS.get(self.kind, 1))
 
+    def some(self, rows: NDArray[np.intp]) -> Column:
+        """The column at some points."""
+        return self if len(self.rows) == 1 else Column(self.kind, self.rows[rows])
+
     @property
     def directed(self) -> bool:
         """Whether the values are directions, which turn with the frame of the surface."""
@@ -64,10 +73,8 @@ def row(count: int, place: str) -> str:
     return ROW.format(size=side(count), place=place)
 
 
-def statements(
-    columns: Mapping[str, Column], folder: Path, count: int, place: str
-) -> Iterator[str]:
-    """OSL declarations of variables that have a value for each point; their images are written.
+def statements(columns: Mapping[str, Column], image: Path, count: int, place: str) -> list[str]:
+    """OSL declarations of variables that have a value for each point, in an image that is written.
 
     Each float of a variable is exact: an image of float32, read without a filter.
 
@@ -75,39 +82,38 @@ def statements(
     ----------
     columns : mapping of str to Column
         Variables by name.
-    folder : Path
-        Of the images.
+    image : Path
+        Of all of them, each with channels of its own.
     count : int
         Points.
     place : str
         OSL expressions of the two coordinates at which a point reads its pixel.
     """
-
-    def read(name: str, rows: NDArray[np.float32]) -> str:
-        return READ.format(image=_image(folder, name, rows).as_posix(), place=place)
-
+    lines, values = [], [np.zeros((count, 0), np.float32)]
     for name, column in columns.items():
-        # One row for each point: write them, and read them where the shader runs.
+        # Write one row for each point, and read it where the shader runs.
         rows = np.broadcast_to(column.rows, (count, column.rows.shape[1]))
+        first = sum(each.shape[1] for each in values)
+        values.append(rows)
+        x, y = (READ.format(image=image.as_posix(), place=place, first=first + n) for n in (0, 1))
         # A vector2 and an int are made of floats, as textures have neither.
         if column.kind == "vector2":
-            for axis, part in zip("xy", rows.T, strict=True):
-                yield f"float {name}_{axis} = {read(f'{name}_{axis}', part)};"
-            yield f"vector2 {name} = vector2({name}_x, {name}_y);"
+            lines += [f"float {name}_x = {x};", f"float {name}_y = {y};"]
+            lines += [f"vector2 {name} = vector2({name}_x, {name}_y);"]
         elif column.kind == "int":
-            yield f"float {name}_float = {read(name, rows)};"
-            yield f"int {name} = (int) {name}_float;"
+            lines += [f"float {name}_float = {x};", f"int {name} = (int) {name}_float;"]
         # A normal is read as a vector.
         else:
             kind = "vector" if column.kind == "normal" else column.kind
-            yield f"{kind} {name} = {read(name, rows)};"
+            lines += [f"{kind} {name} = {x};"]
+    if columns:
+        _write(image, np.concatenate(values, axis=1))
+    return lines
 
 
-def _image(folder: Path, name: str, rows: NDArray[np.float32]) -> Path:
-    """Image of the rows of a variable, one pixel for each."""
-    size, image = side(len(rows)), folder / f"{name}.exr"
-    channels = rows.size // len(rows)
+def _write(image: Path, rows: NDArray[np.float32]) -> None:
+    """Write an image with one pixel for each row."""
+    size, channels = side(len(rows)), rows.shape[1]
     pixels = np.zeros((size * size, channels), np.float32)
-    pixels[: len(rows)] = rows.reshape(-1, channels)
-    write_image(image, pixels.reshape(size, size, channels), {})
-    return image
+    pixels[: len(rows)] = rows
+    write_image(image, pixels.reshape(size, size, channels), {"compression": "none"})

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import InputError, NotRun, ShaderError
 from mxeon.hosts import base, fragment
 from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.osl.points import Column, side, statements
+from mxeon.hosts.osl.points import IMAGE, Column, side, statements
 from mxeon.hosts.osl.texts import columns_of, header, with_variables
 from mxeon.hosts.testrender import calls, scenes
 from mxeon.hosts.testrender.programs import find_program, output, version
@@ -118,7 +118,7 @@ class Host(base.Host):
             for name, each in columns_of(shader, inputs).items()
         }
         # Compile the shaders, and write the scene.
-        block = statements(columns, self._folder, len(wo), scenes.PLACE)
+        block = statements(columns, self._folder / IMAGE, len(wo), scenes.PLACE)
         text = with_variables(shader, block, lambda output: last.format(output=output))
         for name, each in {shader.name: text, **HELPERS}.items():
             self._compile(name, each)
