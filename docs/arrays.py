@@ -38,6 +38,11 @@ def takes_any(function):
     return inspect.unwrap(function) is not function
 
 
+def takes_drjit(function):
+    """Whether a function takes arrays of Dr.Jit."""
+    return getattr(function, "takes_drjit", False)
+
+
 def table():
     """Lines of the table, and of the list of the other functions."""
     rows = [
@@ -49,8 +54,12 @@ def table():
         f"`{name.rpartition('.')[2]}`" for name, each in public().items() if not takes_any(each)
     ]
     head = ["| function | arrays, and gradients by |", "|---|---|"]
+    mitsuba = [
+        f"`{name.rpartition('.')[2]}`" for name, each in public().items() if takes_drjit(each)
+    ]
+    compiled = f"These {len(mitsuba)} take arrays of Dr.Jit too: {', '.join(mitsuba)}."
     rest = f"These {len(others)} take arrays of NumPy alone: {', '.join(others)}."
-    return "\n".join([*head, *rows, "", rest, ""])
+    return "\n".join([*head, *rows, "", compiled, "", rest, ""])
 
 
 def page(text):

@@ -18,10 +18,9 @@ import mxeon
 from docs import arrays as table
 from mxeon.albedo import fon_albedo_dir, fon_loss
 from mxeon.models import eon_brdf, lambert_brdf, smith_g1, unchecked
-from mxeon.models.core import edges, namespaces
+from mxeon.models.core import edges
 from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.ranges import RANGES
-from mxeon.models.diffuse import formulas
 from tests.fuzz import arguments
 
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption_coefficient")
@@ -341,16 +340,6 @@ def test_one_rounding_beyond_an_edge_counts_as_the_edge(library):
         fon_loss(1.0 + 1e-6)
 
 
-def test_formulas_take_arrays_of_dr_jit_and_public_functions_refuse_them():
-    drjit = pytest.importorskip("drjit.scalar")
-    mu_o, mu_i, s = np.array([0.3, 1.0, 0.0]), np.array([0.7, 0.4, 0.0]), np.array([0.2, 0.0, -0.5])
-    expected = formulas.eon_brdf_mu(mu_o, mu_i, s, np.array(0.7), np.array(0.4))
-    value = formulas.eon_brdf_mu(*map(drjit.ArrayXf, (mu_o, mu_i, s)), 0.7, 0.4)
-    np.testing.assert_allclose(np.array(value), expected, 1e-6)
-    with pytest.raises(ValueError, match=r"^arrays must not be Dr.Jit's, .* use mxeon.mitsuba"):
-        fon_albedo_dir(drjit.ArrayXf(0.5), 0.5)
-
-
 def test_arrays_of_two_libraries_do_not_mix():
     tensor, array = pytest.importorskip("torch").ones(1), pytest.importorskip("jax").numpy.ones(1)
     with pytest.raises(ValueError, match="^arrays must be of one library; got jax and torch"):
@@ -370,20 +359,14 @@ def test_the_page_lists_the_functions_that_take_other_arrays():
     assert table.page(text.replace("| `albedo.fon_loss` | `mu` |\n", "")) == text
 
 
-@pytest.mark.parametrize("name", ("torch", "jax"))
+@pytest.mark.parametrize("name", ("torch", "jax", "drjit"))
 def test_the_examples_of_the_page_run(name):
     pytest.importorskip(name)
     blocks = re.findall(r"```python\n(.*?)```", table.PAGE.read_text(encoding="utf-8"), re.DOTALL)
-    chosen = [each for each in blocks if f"import {name}\n" in each]
+    chosen = [each for each in blocks if f"import {name}" in each]
     assert chosen
     for block in chosen:
         exec(block, {})
-
-
-def test_functions_of_dr_jit_have_the_names_of_the_standard():
-    drjit = pytest.importorskip("drjit")
-    namespaces._drjit.cache_clear()
-    assert namespaces._drjit().where is drjit.select
 
 
 BY_NAME = {

@@ -296,3 +296,7 @@ SUBSURFACE_SPHERE = 1e-4
 # 1.1e-7 measured; and the weight of a sample, a quotient of two such values, 3.6e-7 measured.
 MITSUBA_EVAL = 3e-7
 MITSUBA_WEIGHT = 1e-6
+
+# Models with arrays of Dr.Jit, of the larger of 1 and the value: some 30 roundings of 2^-24, of which those of
+# sums of cosines near grazing count more; 7.5e-7 measured.
+DRJIT_VALUE = 2e-6

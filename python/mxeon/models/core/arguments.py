@@ -13,6 +13,7 @@ from typing import NoReturn, cast
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.drjit_arrays import Columns, is_drjit
 from mxeon.models.core.namespaces import (
     NUMPY,
     accept,
@@ -98,8 +99,7 @@ def checked_numbers(**values: ArrayLike) -> list[Array]:
 
 def checked_vector(name: str, value: ArrayLike) -> Numbers:
     """Argument inside the range of its name, with at least one axis."""
-    array = checked(name, value)
-    return array if array.ndim else array[np.newaxis]
+    return _with_axis(checked(name, value))
 
 
 def checked_color(name: str, value: ArrayLike) -> Numbers:
@@ -243,7 +243,9 @@ def spread_pair(name: str, array: Numbers) -> Numbers:
     >>> spread_pair("roughness", np.array(0.3))
     array([0.3, 0.3])
     """
-    array = array if array.ndim else array[np.newaxis]
+    array = _with_axis(array)
+    if isinstance(array, Columns) and len(array.parts) == 1:
+        return cast(Numbers, Columns(2 * array.parts))
     if array.shape[-1] == 1:
         return array_namespace(array).broadcast_to(array, (*array.shape[:-1], 2))
     if array.shape[-1] != 2:
@@ -252,6 +254,13 @@ def spread_pair(name: str, array: Numbers) -> Numbers:
             f"write {name}[..., np.newaxis] for a number for each direction"
         )
     return array
+
+
+def _with_axis(array: Numbers) -> Numbers:
+    """Array with at least one axis, which a number of Dr.Jit has not."""
+    if is_drjit(array):
+        return array if isinstance(array, Columns) else cast(Numbers, Columns((array,)))
+    return array if array.ndim else array[np.newaxis]
 
 
 def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:

@@ -61,7 +61,7 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
     twice = 2.0 * y
     last = later = 0.0 * y
     for k in range(len(coefficients) - 1, 0, -1):
-        last, later = twice * last - later + coefficients[k], last
+        last, later = twice * last + (coefficients[k] - later), last
     total: Array = y * last - later + coefficients[0]
     return total
 

@@ -36,6 +36,13 @@ def least_normal(x: Array) -> float:
     return float(array_namespace(x).finfo(x.dtype).tiny)
 
 
+def largest(x: Array) -> float:
+    """Largest number of the precision of x."""
+    if library(x) == "drjit":
+        return float(np.finfo(np.float32).max)
+    return float(array_namespace(x).finfo(x.dtype).max)
+
+
 def at_most(x: Array, high: float) -> Array:
     """The smaller of x and a number; where they are equal the derivative is that of x."""
     xp = array_namespace(x)

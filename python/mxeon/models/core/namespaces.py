@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import lru_cache, wraps
+from functools import wraps
 from importlib import import_module
 from types import SimpleNamespace
 from typing import ParamSpec, Protocol, TypeVar, cast
@@ -18,6 +18,7 @@ from typing import ParamSpec, Protocol, TypeVar, cast
 import numpy as np
 
 from mxeon.models.core.arrays import Array, Numbers
+from mxeon.models.core.drjit_arrays import drjit_namespace, is_drjit, lift, number_type
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -115,8 +116,10 @@ def library(value: object) -> str:
     """
     if isinstance(value, np.ndarray | np.generic | float | int | list | tuple):
         return ""
+    if is_drjit(value):
+        return "drjit"
     name = type(value).__module__.partition(".")[0]
-    if (name == "torch" and hasattr(value, "dtype")) or name == "drjit":
+    if name == "torch" and hasattr(value, "dtype"):
         return name
     return name.removesuffix("lib") if hasattr(value, "__array_namespace__") else ""
 
@@ -143,7 +146,7 @@ def _others_namespace(others: Sequence[object]) -> Namespace:
         raise ValueError(f"arrays must be of one library; got {' and '.join(names)}")
     # Ask those that do not say it themselves.
     if names == ["drjit"]:
-        return _drjit()
+        return cast(Namespace, drjit_namespace())
     if names == ["torch"]:
         try:
             return cast(Namespace, import_module("array_api_compat.torch"))
@@ -153,13 +156,6 @@ def _others_namespace(others: Sequence[object]) -> Namespace:
     return cast(Namespace, _own_namespace(others[0]))
 
 
-@lru_cache(maxsize=1)
-def _drjit() -> Namespace:
-    """Functions of Dr.Jit, which has most names of the standard."""
-    drjit = import_module("drjit")
-    return cast(Namespace, SimpleNamespace(**vars(drjit), where=drjit.select))
-
-
 def _own_namespace(array: object) -> object:
     """What an array of the standard says itself."""
     namespace: Callable[[], object] = array.__array_namespace__  # type: ignore[attr-defined]
@@ -167,11 +163,21 @@ def _own_namespace(array: object) -> object:
 
 
 def any_array(function: Callable[P, R]) -> Callable[P, R]:
-    """Function that takes arrays of any library, and returns arrays of that library.
+    """Function that takes arrays of any library but Dr.Jit, and returns arrays of that library.
 
     Without such arrays it is the function itself, to the last bit. With them numbers, lists and arrays
     of NumPy are brought to their library, precision and device.
     """
+    return _portable(function, drjit=False)
+
+
+def any_array_or_drjit(function: Callable[P, R]) -> Callable[P, R]:
+    """`any_array` of a function that takes arrays of Dr.Jit too."""
+    return _portable(function, drjit=True)
+
+
+def _portable(function: Callable[P, R], drjit: bool) -> Callable[P, R]:
+    """Function that brings its arguments to the library of any of them."""
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -180,7 +186,7 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
         if not others:
             return function(*args, **kwargs)
         # Bring all arguments to that library.
-        convert = _converter(others)
+        convert = _converter(others, drjit)
         values = (convert(each) for each in args)
         named = {name: convert(each) for name, each in kwargs.items()}
         token = _any_array.set(True)
@@ -189,14 +195,15 @@ def any_array(function: Callable[P, R]) -> Callable[P, R]:
         finally:
             _any_array.reset(token)
 
+    vars(wrapper)["takes_drjit"] = drjit
     return wrapper
 
 
-def _converter(others: Sequence[object]) -> Callable[[object], object]:
+def _converter(others: Sequence[object], drjit: bool) -> Callable[[object], object]:
     """What brings an argument to the library, the precision and the device of these arrays."""
     # Find the library's precision and device.
     if library(others[0]) == "drjit":
-        raise ValueError("arrays must not be Dr.Jit's, which have no shape; use mxeon.mitsuba")
+        return _drjit_converter(others, drjit)
     xp = _others_namespace(others)
     arrays = cast("Sequence[Array]", others)
     floating = [each.dtype for each in arrays if xp.isdtype(each.dtype, "real floating")]
@@ -218,6 +225,21 @@ def _converter(others: Sequence[object]) -> Callable[[object], object]:
     return convert
 
 
+def _drjit_converter(others: Sequence[object], accepted: bool) -> Callable[[object], object]:
+    """What brings an argument to Dr.Jit, where a function takes its arrays."""
+    if not accepted:
+        raise ValueError(
+            "arrays must not be Dr.Jit's: the page on arrays lists the functions that take them"
+        )
+    if checking():
+        raise ValueError(
+            "arrays of Dr.Jit have no values until they are evaluated, and cannot be checked; call "
+            "within mxeon.models.unchecked()"
+        )
+    number = number_type(others)
+    return lambda value: value if isinstance(value, bool | str) else lift(number, value)
+
+
 def like(values: Numbers, array: Array) -> Array:
     """Values of NumPy as an array of another's library, precision and device."""
     xp = array_namespace(array)
@@ -232,7 +254,7 @@ def accept(name: str, value: object) -> None:
     if not _any_array.get():
         raise ValueError(
             f"{name} must be an array of NumPy, not of {library(value)}: this function takes no other; "
-            "the page on arrays of PyTorch and JAX lists those that do"
+            "the page on arrays lists those that do"
         )
 
 

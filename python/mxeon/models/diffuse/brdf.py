@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate
-from mxeon.models.core.namespaces import any_array
+from mxeon.models.core.namespaces import any_array_or_drjit
 from mxeon.models.diffuse import formulas
 
 
-@any_array
+@any_array_or_drjit
 def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     """BRDF of a smooth diffuse surface, Lambert's.
 
@@ -45,7 +45,7 @@ def lambert_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike) -> Array:
     return evaluate(formulas.lambert_brdf, wo, wi, rho)
 
 
-@any_array
+@any_array_or_drjit
 def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of the full Oren-Nayar model, interreflection included.
 
@@ -84,7 +84,7 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
     return evaluate(formulas.oren_nayar_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array
+@any_array_or_drjit
 def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of the qualitative Oren-Nayar model.
 
@@ -116,7 +116,7 @@ def qon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> 
     return evaluate(formulas.qon_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array
+@any_array_or_drjit
 def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of QON with 0.57 in place of 0.33 in A, which approximates interreflection.
 
@@ -141,7 +141,7 @@ def qon_footnote_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: Array
     return evaluate(formulas.qon_footnote_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array
+@any_array_or_drjit
 def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLike) -> Array:
     """BRDF of QON with coefficients that match the full model, and with a tinted A.
 
@@ -167,7 +167,7 @@ def qon_fujii_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLik
     return evaluate(formulas.qon_fujii_brdf, wo, wi, rho, sigma=sigma)
 
 
-@any_array
+@any_array_or_drjit
 def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the Fujii Oren-Nayar model.
 
@@ -192,7 +192,7 @@ def fon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
     return evaluate(formulas.fon_brdf, wo, wi, rho, roughness=roughness)
 
 
-@any_array
+@any_array_or_drjit
 def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the energy-preserving Oren-Nayar model.
 
@@ -237,7 +237,7 @@ def eon_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike)
     return evaluate(formulas.eon_brdf, wo, wi, rho, roughness=roughness)
 
 
-@any_array
+@any_array_or_drjit
 def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of EON with the quartic for the albedo of FON.
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from mxeon.models.core.arguments import checked, checked_switch, checked_vector
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.namespaces import any_array
+from mxeon.models.core.namespaces import any_array_or_drjit
 from mxeon.models.microfacet.lobe import (
     CONDUCTOR,
     DIELECTRIC,
@@ -25,7 +25,7 @@ from mxeon.models.microfacet.lobe import (
 )
 
 
-@any_array
+@any_array_or_drjit
 def dielectric_brdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -88,7 +88,7 @@ def dielectric_brdf(
     )
 
 
-@any_array
+@any_array_or_drjit
 def conductor_brdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -137,7 +137,7 @@ def conductor_brdf(
     )
 
 
-@any_array
+@any_array_or_drjit
 def generalized_schlick_brdf(
     wo: ArrayLike,
     wi: ArrayLike,

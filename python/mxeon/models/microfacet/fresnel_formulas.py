@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.drjit_arrays import is_drjit
 from mxeon.models.core.edges import at_most, hypot, power, root, trimmed
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 
@@ -200,6 +201,10 @@ def _split_avg_of_arrays(ior: Array, extinction: Array) -> Array:
 
     The critical angle counts as a constant of the integral, which does not depend on where it is split.
     """
+    if is_drjit(ior):
+        raise ValueError(
+            "arrays of Dr.Jit need compensate=False: the average of a metal is a quadrature"
+        )
     # Find the critical angle, the real part of sqrt(1 - n^2).
     xp = array_namespace(ior, extinction)
     real = extinction * extinction - (ior - 1.0) * (ior + 1.0)

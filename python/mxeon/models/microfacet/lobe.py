@@ -17,6 +17,7 @@ from mxeon.models.core.arguments import (
     refuse_ambiguous,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.drjit_arrays import is_drjit
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import array_namespace
 from mxeon.models.microfacet import fresnel_formulas as fresnel
@@ -43,10 +44,15 @@ class Curve:
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
+def _one_channel(value: Array) -> Array:
+    """Value as that of a channel, which a number of Dr.Jit is."""
+    return value if is_drjit(value) else value[np.newaxis]
+
+
 # `material` may hold a tint, which F leaves alone.
 DIELECTRIC = Curve(
-    lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
-    lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
+    lambda c, ior, tint: _one_channel(fresnel.dielectric(c, ior)),
+    lambda ior, tint: _one_channel(fresnel.dielectric_avg(ior)),
     lambda ior, tint: np.asarray((1.0 - ior) * (1.0 + ior)),
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)

@@ -19,6 +19,7 @@ from mxeon.models.core.chebyshev import (
     chebyshev_polynomials,
     chebyshev_sum,
 )
+from mxeon.models.core.drjit_arrays import is_drjit
 from mxeon.models.core.edges import at_most, cube_root, root
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
@@ -27,6 +28,9 @@ from mxeon.models.microfacet.ggx_albedo import quadrature
 # Nodes in the cube root of s and in the square root of alpha, panels for one of the quadrature that
 # fills the table, and elements at once.
 NODES_S, NODES_ALPHA, REFINED, BLOCK = 80, 28, 2, 2**12
+
+# The polynomials that float32 can tell from the others, whose sum is below 2e-8.
+SINGLE = slice(38), slice(19)
 
 # Cosines of one alpha from which on cubics take the place of the polynomials, the number of their cells,
 # and the alphas that are kept. The cubics are within 3e-14 of the polynomials.
@@ -44,6 +48,8 @@ def missing_light(mu: Array, alpha: Array) -> Array:
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _of_one_alpha(mu, float(alpha.item()))
+    if is_drjit(mu):
+        return _interpolated(mu, alpha)
     numbers = {"mu": mu, "alpha": alpha}
     return evaluate_material(
         lambda mu, alpha: _interpolated(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
@@ -53,7 +59,8 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 def _interpolated(mu: Array, alpha: Array) -> Array:
     """Sum of the table's polynomials, those of alpha first."""
     xp = array_namespace(mu, alpha)
-    powers, table = chebyshev_polynomials(root(alpha), NODES_ALPHA), _table()
+    table = _table()[SINGLE] if is_drjit(mu) else _table()
+    powers = chebyshev_polynomials(root(alpha), table.shape[1])
     if xp is NUMPY:
         rows = np.einsum("ij,j...->i...", table, powers)
     else:

@@ -18,9 +18,9 @@ from mxeon.models.core.arguments import (
     lead_shape,
 )
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.edges import at_most, guarded, least_normal, root
+from mxeon.models.core.edges import at_most, guarded, largest, least_normal, root
 from mxeon.models.core.evaluation import evaluate
-from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace
+from mxeon.models.core.namespaces import NUMPY, any_array, any_array_or_drjit, array_namespace
 from mxeon.models.diffuse.formulas import cosines
 from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
 
@@ -39,7 +39,7 @@ ZELTNER_LEAST_ROUGHNESS = 0.01
 LEAST = 1e-300
 
 
-@any_array
+@any_array_or_drjit
 def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the sheen of Conty and Kulla.
 
@@ -86,7 +86,7 @@ def conty_kulla_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: 
     return _tinted(_conty_kulla_formula, wo, wi, color, roughness)
 
 
-@any_array
+@any_array_or_drjit
 def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: ArrayLike) -> Array:
     """BRDF of the sheen of Zeltner, Burley and Chiang. It is not reciprocal.
 
@@ -214,7 +214,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
         lobe = (1.0 + shape) * xp.exp(shape * log_sine) / (4.0 * np.pi * xp.maximum(divisor, least))
     # Set the limits to 0.
     counted = smooth if xp is not NUMPY else counted
-    return tint * xp.where(counted, at_most(lobe, float(xp.finfo(wo.dtype).max)), 0.0)
+    return tint * xp.where(counted, at_most(lobe, largest(wo)), 0.0)
 
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:

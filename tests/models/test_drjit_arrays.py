@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays of Dr.Jit: values of every function that takes them, and what is refused."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from docs.arrays import takes_drjit
+from mxeon import mitsuba, models
+from mxeon.albedo import fon_albedo_dir
+from mxeon.models import eon_brdf, unchecked
+from mxeon.models.diffuse import formulas
+from tests.fuzz import arguments
+from tests.support.availability import available
+from tests.support.tolerances import DRJIT_VALUE
+
+SEED, PAIRS = 3, 500
+COLOR = (0.25, 0.5, 1.0)  # exact in float32
+MATERIAL = {"sigma": 0.5, "ior": 1.5, "extinction": (3.0, 2.0, 1.0), "exponent": 5.0}
+FUNCTIONS = {n: f for n, f in arguments.functions().items() if takes_drjit(f)}
+
+
+@pytest.fixture
+def llvm():
+    """Dr.Jit's types for LLVM, if it can run."""
+    mi = pytest.importorskip("mitsuba")
+    mi.set_variant("llvm_ad_rgb")
+    with available("mitsuba"):
+        mitsuba.register()
+    return pytest.importorskip("drjit.llvm.ad")
+
+
+def directions(rng):
+    """Unit vectors in float32."""
+    w = rng.normal(size=(PAIRS, 3))
+    w[:, 2] = np.abs(w[:, 2]) + 0.05
+    return (w / np.linalg.norm(w, axis=1, keepdims=True)).astype(np.float32)
+
+
+def material(name, function):
+    """A material of a function, in plain numbers."""
+    names = list(arguments.base(function))
+    row = {key: MATERIAL.get(key, COLOR) for key in names if key not in ("wo", "wi")}
+    row |= {"roughness": 0.5} if "roughness" in row else {}
+    row |= {"ior": (0.25, 0.5, 1.5)} if "conductor" in name else {}
+    switches = {"retroreflective": True, "compensate": "conductor" not in name}
+    return row | {key: value for key, value in switches.items() if key in names}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_values_are_those_of_numpy(llvm, name):
+    rng, function = np.random.default_rng(SEED), FUNCTIONS[name]
+    wo, wi = directions(rng), directions(rng)
+    row = material(name, function)
+    expected = function(wo, wi, **row)
+    with unchecked():
+        value = np.array(function(*(llvm.Array3f(w.T.copy()) for w in (wo, wi)), **row)).T
+    error = np.abs(value - expected) / np.maximum(1.0, expected)  # one value may stand for all
+    assert error.shape == expected.shape and error.max() <= DRJIT_VALUE
+
+
+def test_gradients_by_the_parameters_are_those_of_differences(llvm):
+    import drjit as dr
+
+    rng = np.random.default_rng(SEED)
+    wo, wi = directions(rng), directions(rng)
+    color, roughness = llvm.Array3f(*COLOR), llvm.Float(0.5)
+    dr.enable_grad(color, roughness)
+    with unchecked():
+        value = eon_brdf(llvm.Array3f(wo.T.copy()), wi[0], color, roughness)
+    dr.backward(dr.mean(dr.sum(value, axis=0)))
+    step = 1e-4
+    total = partial(lambda r: eon_brdf(wo, wi[0], COLOR, r).sum() / PAIRS)
+    slope = (total(0.5 + step) - total(0.5 - step)) / (2.0 * step)
+    assert np.array(dr.grad(roughness)).item() == pytest.approx(slope, abs=1e-5)
+    assert np.array(dr.grad(color)).min() > 0.0
+
+
+def test_values_are_not_checked_and_that_is_said(llvm):
+    up = llvm.Array3f(0.0, 0.0, 1.0)
+    with pytest.raises(ValueError, match=r"^arrays of Dr.Jit have no values .* mxeon.models.unch"):
+        eon_brdf(up, up, 0.5, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda up: fon_albedo_dir(up[2], 0.5), "^arrays must not be Dr.Jit's: the page on arrays"),
+        (lambda up: eon_brdf(up, np.eye(3), 0.5, 0.5), r"^beside arrays of Dr.Jit, .* \(3, 3\)"),
+        (
+            lambda up: models.conductor_brdf(up, up, 0.3, 1.0, 1.0),
+            "^arrays of Dr.Jit need compensa",
+        ),
+    ],
+)
+def test_what_they_do_not_do_is_refused(llvm, call, message):
+    with unchecked(), pytest.raises(ValueError, match=message):
+        call(llvm.Array3f(0.0, 0.0, 1.0))
+
+
+def test_formulas_take_scalar_arrays_and_functions_do_not():
+    drjit = pytest.importorskip("drjit.scalar")
+    mu_o, mu_i, s = np.array([0.3, 1.0, 0.0]), np.array([0.7, 0.4, 0.0]), np.array([0.2, 0.0, -0.5])
+    expected = formulas.eon_brdf_mu(mu_o, mu_i, s, np.array(0.7), np.array(0.4))
+    value = formulas.eon_brdf_mu(*map(drjit.ArrayXf, (mu_o, mu_i, s)), 0.7, 0.4)
+    np.testing.assert_allclose(np.array(value), expected, 1e-6)
+    up = drjit.Array3f(0.0, 0.0, 1.0)
+    with unchecked(), pytest.raises(ValueError, match="^arrays of Dr.Jit must be compiled ones"):
+        eon_brdf(up, up, 0.5, 0.5)
