@@ -53,6 +53,8 @@ def test_the_entry_of_the_bibliography_names_the_note():
     fields = dict(re.findall(r"(\w+) += \{(.*)\},?\n", entry))
     title = TEXT.partition("\n")[0].removeprefix("# ")
     assert re.sub(r"[{}]", "", fields["title"]) == title
+    citation = (note.PAGE.parents[1] / "CITATION.cff").read_text(encoding="utf-8")
+    assert "  - name: The mxeon authors\n" in citation  # one name for those who made it
     assert fields["author"] == "{The mxeon authors}" and entry.count("{") == entry.count("}")
 
 

@@ -19,6 +19,17 @@ STEERING = re.compile(
 )
 
 
+def install(extra: str) -> str:
+    """Command that installs what a part of mxeon needs besides.
+
+    Examples
+    --------
+    >>> install("fit")
+    "pip install '.[fit]' in a checkout of mxeon"
+    """
+    return f"pip install '.[{extra}]' in a checkout of mxeon"
+
+
 class MxeonError(Exception):
     """An error whose message is one line for the user.
 

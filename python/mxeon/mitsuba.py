@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from mxeon.errors import NotRun, PackageError
+from mxeon.errors import NotRun, PackageError, install
 from mxeon.models.diffuse import formulas
 from mxeon.models.sampling import eon as sampling
 
@@ -50,7 +50,7 @@ def _mitsuba() -> Mitsuba:
     try:
         mi = import_module("mitsuba")
     except ModuleNotFoundError:
-        raise PackageError("mitsuba is not installed: pip install 'mxeon[mitsuba]'") from None
+        raise PackageError(f"mitsuba is not installed: {install('mitsuba')}") from None
     variant = mi.variant()
     if not variant:
         raise NotRun("mitsuba: no variant is set; call mitsuba.set_variant('llvm_ad_rgb') first")

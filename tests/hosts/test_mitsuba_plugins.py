@@ -203,7 +203,7 @@ def test_a_variant_has_to_be_set_first(monkeypatch):
 
 def test_mitsuba_is_named_where_it_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "mitsuba", None)
-    with pytest.raises(PackageError, match=r"pip install 'mxeon\[mitsuba\]'"):
+    with pytest.raises(PackageError, match=r"pip install '\.\[mitsuba\]'"):
         plugins.register()
 
 

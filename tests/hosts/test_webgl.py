@@ -25,7 +25,7 @@ def started(**options):
 
 def test_a_missing_playwright_is_not_run_and_names_the_remedy(monkeypatch):
     monkeypatch.setattr(webgl, "sync_api", None)
-    with pytest.raises(NotRun, match=r"Playwright is not installed; pip install 'mxeon\[webgl\]'"):
+    with pytest.raises(NotRun, match=r"Playwright is not installed; pip install '\.\[webgl\]'"):
         webgl.Host()
 
 

@@ -327,7 +327,7 @@ def test_a_plot_says_in_its_title_what_it_shows():
 
 def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=re.escape("pip install 'mxeon[report]'")):
+    with pytest.raises(ImportError, match=re.escape("pip install '.[report]'")):
         mxeon.model("eon").plot()
 
 

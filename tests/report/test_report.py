@@ -434,7 +434,7 @@ def test_without_the_report_extra_all_but_the_page_is_written(run, tmp_path, mon
     for name in ("mxeon.report.page", "mxeon.report.plots"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(ImportError, match=rf"{library}: pip install 'mxeon\[report\]'"):
+    with pytest.raises(ImportError, match=rf"{library}: pip install '\.\[report\]'"):
         write(run, tmp_path)
     written = sorted(path.name for path in tmp_path.iterdir())
     assert written == ["junit.xml", "pictures", "results.json"]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from mxeon.doc.ports import PortRow, Table
-from mxeon.errors import DocumentError, PackageError, printable
+from mxeon.errors import DocumentError, PackageError, install, printable
 
 MARKER = re.compile(r"@MX_TABLE_(\w+)@")
 COLUMNS = ("Port", "Description", "Type", "Default", "Accepted Values")
@@ -132,7 +132,7 @@ def _headed_tables(text: str) -> list[tuple[str, list[list[str]]]]:
     try:
         from markdown_it import MarkdownIt
     except ImportError:
-        raise PackageError("doc --compare needs markdown-it-py: pip install 'mxeon[doc]'") from None
+        raise PackageError(f"doc --compare needs markdown-it-py: {install('doc')}") from None
 
     # Collect cells between the marks of headings, tables, rows and cells.
     heading = ""

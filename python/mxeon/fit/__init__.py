@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from mxeon.errors import PackageError, assert_known
+from mxeon.errors import PackageError, assert_known, install
 from mxeon.fit.lobes import FIT_MODELS, dielectric_over_eon, openpbr_base
 from mxeon.fit.measured import MeasuredBrdf, merl_directions, read_merl
 from mxeon.models.core.arrays import Array, ArrayLike
@@ -155,7 +155,7 @@ def _search(
     try:
         from scipy.optimize import least_squares
     except ImportError as error:
-        raise PackageError("mxeon.fit needs scipy: pip install 'mxeon[fit]'") from error
+        raise PackageError(f"mxeon.fit needs scipy: {install('fit')}") from error
     found = least_squares(residuals, start, bounds=(lows, highs), xtol=1e-10, ftol=1e-10)
     return found.x, 2.0 * float(found.cost), found.jac
 

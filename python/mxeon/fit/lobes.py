@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from mxeon.albedo import dielectric_albedo_dir, ggx_albedo_dir
-from mxeon.errors import PackageError
+from mxeon.errors import PackageError, install
 from mxeon.models import (
     dielectric_brdf,
     eon_brdf,
@@ -153,7 +153,7 @@ def _spline(place: Array, values: Array) -> Callable[[Array], Array]:
     try:
         from scipy.interpolate import CubicSpline
     except ImportError as error:
-        raise PackageError("mxeon.fit needs scipy: pip install 'mxeon[fit]'") from error
+        raise PackageError(f"mxeon.fit needs scipy: {install('fit')}") from error
     spline: Callable[[Array], Array] = CubicSpline(place, values)
     return spline
 

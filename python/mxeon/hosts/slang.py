@@ -15,7 +15,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import NotRun, ShaderError, install
 from mxeon.hosts import base, calls, fragment, raster
 from mxeon.hosts.base import TURN, Array, Identity, Inputs
 from mxeon.shaders import functions
@@ -112,7 +112,7 @@ class Host(base.Host):
     def __init__(self) -> None:
         # Check that slangpy is there.
         if slangpy is None:
-            raise NotRun("slang: slangpy is not installed; pip install 'mxeon[slang]'")
+            raise NotRun(f"slang: slangpy is not installed; {install('slang')}")
         slangpy.Logger.get().level = slangpy.LogLevel.error  # it warns of what a CPU lacks
         # Take the first device that fills a texture.
         for device in DEVICES:

@@ -19,7 +19,7 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import NotRun, ShaderError, install
 from mxeon.hosts import fragment, raster
 from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.fragment_host import FragmentHost
@@ -81,7 +81,7 @@ class Host(FragmentHost):
 
     def __init__(self) -> None:
         if wgpu is None:
-            raise NotRun(f"{self.name}: wgpu is not installed; pip install 'mxeon[vulkan]'")
+            raise NotRun(f"{self.name}: wgpu is not installed; {install('vulkan')}")
         for program in self.programs:
             if shutil.which(program) is None:
                 raise NotRun(

@@ -23,7 +23,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import NotRun, ShaderError
+from mxeon.errors import NotRun, ShaderError, install
 from mxeon.hosts import fragment, points, raster
 from mxeon.hosts.base import TURN, Array, Identity
 from mxeon.hosts.fragment_host import FragmentHost
@@ -85,7 +85,7 @@ class Host(FragmentHost):
     def __init__(self, limit: float = 300.0) -> None:
         # Check that Playwright and a browser are there.
         if sync_api is None:
-            raise NotRun("webgl: Playwright is not installed; pip install 'mxeon[webgl]'")
+            raise NotRun(f"webgl: Playwright is not installed; {install('webgl')}")
         self._program = program()
         # Prepare the page, which the first request opens.
         self._limit = 1000.0 * limit

@@ -14,7 +14,7 @@ from threading import Thread
 from typing import Any
 
 import mxeon
-from mxeon.errors import InputError, NotRun, PackageError
+from mxeon.errors import InputError, NotRun, PackageError, install
 from mxeon.jobs.timeouts import WAIT, check_timeout
 
 ANSWER = 10.0  # seconds until a scheduler answers
@@ -56,7 +56,7 @@ def _client(address: str, wait: float) -> Any:
     try:
         from distributed import Client
     except ModuleNotFoundError:
-        raise PackageError("--scheduler needs distributed: pip install 'mxeon[dask]'") from None
+        raise PackageError(f"--scheduler needs distributed: {install('dask')}") from None
     # Silence what is told here in one line.
     for name in (*LOGGERS, *logging.root.manager.loggerDict):
         if name.partition(".")[0] in LOGGERS:  # what these tell is told here in one line

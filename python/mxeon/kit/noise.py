@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import PackageError
+from mxeon.errors import PackageError, install
 
 TILE = 8
 FEWEST = 8  # squares that a tile needs to be judged
@@ -102,7 +102,7 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
     try:
         from scipy.special import stdtrit  # scipy.stats is slow to import
     except ModuleNotFoundError as error:
-        raise PackageError("kit check needs scipy: pip install 'mxeon[kit]'") from error
+        raise PackageError(f"kit check needs scipy: {install('kit')}") from error
 
     total = sum(each.mean.size for each in pictures)
     false_rate = share * (1.0 - CONFIDENCE) / total

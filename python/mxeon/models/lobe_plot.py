@@ -58,7 +58,9 @@ def draw(model: Drawable, inputs: Mapping[str, ArrayLike], path: str | None = No
         from matplotlib import style
         from matplotlib.figure import Figure
     except ImportError:
-        raise ImportError("plot needs matplotlib: pip install 'mxeon[report]'") from None
+        raise ImportError(
+            "plot needs matplotlib: pip install '.[report]' in a checkout of mxeon"
+        ) from None
     # Draw side by side what the model has.
     with style.context(["default", STYLE]):
         columns = 3 if "pdf" in model.functions else 2

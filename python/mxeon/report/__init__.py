@@ -16,7 +16,7 @@ import numpy as np
 from mxeon.conformance.results import Picture, Run, image_names
 from mxeon.conformance.results.known_issues import issues_of, page_file
 from mxeon.conformance.results.records import make_converter
-from mxeon.errors import PackageError
+from mxeon.errors import PackageError, install
 from mxeon.io.files import replacing, write_text
 from mxeon.io.images import difference, write_exr, write_png
 from mxeon.report.junit import to_junit
@@ -205,7 +205,7 @@ def needing_extra(name: str) -> Iterator[None]:
         yield
     except ModuleNotFoundError as error:
         if error.name in ("jinja2", "matplotlib"):
-            remedy = "pip install 'mxeon[report]'"
+            remedy = install("report")
             raise PackageError(f"{name} needs {error.name}: {remedy}") from error
         raise
 

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mxeon.errors import NotRun
+from mxeon.errors import NotRun, install
 from mxeon.hosts import webgl
 from mxeon.hosts.webgl import Answer, Page
 from mxeon.shaders.library import data_folder
@@ -113,7 +113,7 @@ class Browser:
         limit: float = LIMIT,
     ) -> None:
         if sync_api is None:
-            raise NotRun(f"{host}: Playwright is not installed; pip install 'mxeon[webgl]'")
+            raise NotRun(f"{host}: Playwright is not installed; {install('webgl')}")
         # Keep what the page is made of.
         self._host = host
         self._script = page

@@ -17,7 +17,7 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from mxeon.errors import NotRun
+from mxeon.errors import NotRun, install
 from mxeon.hosts.base import Array, Identity
 from mxeon.hosts.process import Worker
 from mxeon.hosts.renderer import RendererHost
@@ -135,6 +135,6 @@ class PolyhedronHost(RendererHost):
     def _missing(self) -> str:
         """How to install the renderer."""
         return (
-            f"{self.name}: not installed: pip install 'mxeon[{self.name}]', or name an interpreter "
+            f"{self.name}: not installed: {install(self.name)}, or name an interpreter "
             f"that has it in {self._variable()}"
         )

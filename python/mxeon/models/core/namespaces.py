@@ -151,8 +151,9 @@ def _others_namespace(others: Sequence[object]) -> Namespace:
         try:
             return cast(Namespace, import_module("array_api_compat.torch"))
         except ImportError:
-            message = "arrays of torch need array-api-compat: pip install 'mxeon[arrays]'"
-            raise ImportError(message) from None
+            raise ImportError(
+                "arrays of torch need array-api-compat: pip install '.[arrays]' in a checkout of mxeon"
+            ) from None
     return cast(Namespace, _own_namespace(others[0]))
 
 
