@@ -36,6 +36,17 @@ def sum_of(directions: int) -> float:
     return SUM_OF_DIRECTIONS / directions
 
 
+def power_of(power_error: float, exponent: float) -> Tolerance:
+    """Tolerance of a sheen's values, which are powers, on an engine whose own power is off by so much."""
+    return Tolerance(
+        rounded_up((32 + exponent) * ROUNDING + power_error),
+        SCALED,
+        scaled,
+        f"32 roundings of float32, 2^-24 each, and one to the power of {exponent:.0f}, of the value or "
+        f"of 1; and the error of the engine's own power in it, {power_error:.1e}; rounded up",
+    )
+
+
 DIFFUSE_VALUE = Tolerance(
     rounded_up((2 * 17 + 7) * ROUNDING),
     SCALED,

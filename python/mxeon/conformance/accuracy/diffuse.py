@@ -18,7 +18,6 @@ ARC_SINE = 4e-4  # largest error of an engine's arc sine: llvmpipe's, of which o
 FILTER_STEP = 2.0**-8  # of a texel: engines keep the weights of filters in eight bits
 FAST_ARC_COSINE = 4.6e-5  # largest error of OpenImageIO's fast_acos, by its source
 HALF_CUT = 2.0**-10  # relative error of float16 where digits are cut off, as llvmpipe does
-PLANE_PIXELS = 128**2  # of a picture of testrender
 FACET_PIXELS = 7169  # of a picture of the polyhedron that lie in one facet and are judged
 LOSS_FIT = 2.7e-7  # relative error of the fit of FON's loss H, see fits/
 
@@ -61,17 +60,6 @@ def direction_of(sine_error: float) -> Tolerance:
         absolute,
         f"16 roundings of float32, 2^-24 each, and four times the error of the engine's own sine and "
         f"cosine, {sine_error:.1e}, which turn a direction twice; rounded up",
-    )
-
-
-def power_of(power_error: float, exponent: float) -> Tolerance:
-    """Tolerance of values that are powers, on an engine whose own power is off by so much."""
-    return Tolerance(
-        rounded_up((32 + exponent) * ROUNDING + power_error),
-        SCALED,
-        scaled,
-        f"32 roundings of float32, 2^-24 each, and one to the power of {exponent:.0f}, of the value or "
-        f"of 1; and the error of the engine's own power in it, {power_error:.1e}; rounded up",
     )
 
 

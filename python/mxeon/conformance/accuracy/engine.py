@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from mxeon.conformance.accuracy import utilities
-from mxeon.conformance.accuracy.diffuse import power_of
+from mxeon.conformance.accuracy.bsdf import power_of
 from mxeon.conformance.accuracy.thin_films import FILM_PHASE, FILM_WAVES
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.emission import EXPONENTS

@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.samples.batch import Batch
-
-Array = NDArray[np.float64]
+from mxeon.conformance.samples.batch import Array, Batch
 
 
 @dataclass(frozen=True)

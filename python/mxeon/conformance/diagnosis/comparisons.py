@@ -8,6 +8,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from mxeon.conformance.accuracy.accuracy import ACCURACY, Quantity
+from mxeon.conformance.accuracy.engine import widen_for_engine
 from mxeon.conformance.diagnosis.candidates import Diagnosis, explain
 from mxeon.conformance.diagnosis.faults import DIRECT_FAULTS, ENVIRONMENT_FAULTS, Fault
 from mxeon.conformance.probes.cases import (
@@ -53,18 +54,20 @@ class Comparison:
         """The explanation of a probe's values."""
         return _diagnosis(self, probe)
 
-    def tolerance(self, kind: str) -> Tolerance:
-        """The tolerance of a kind of probe; that of a value where it has no other."""
-        accuracy = ACCURACY[kind]
+    def tolerance(self, probe: Probe) -> Tolerance:
+        """The tolerance of a probe, a value's with the errors of the engine; a value's where there is no other."""
+        accuracy = ACCURACY[probe.kind]
         tolerance = accuracy.of(self.quantity) or accuracy.value
-        assert tolerance is not None, f"nothing is asked of {kind}"
+        assert tolerance is not None, f"nothing is asked of {probe.kind}"
+        if tolerance is accuracy.value:
+            return widen_for_engine(tolerance, probe.subject, probe.kind, probe.host)
         return tolerance
 
 
 @lru_cache(maxsize=8)  # several checks of a subject fail for one reason
 def _diagnosis(row: Comparison, probe: Probe) -> Diagnosis:
     cases = list(row.cases(probe))
-    return explain(probe, cases, row.candidates(probe), row.faults, row.tolerance(probe.kind))
+    return explain(probe, cases, row.candidates(probe), row.faults, row.tolerance(probe))
 
 
 def _values(probe: Probe) -> Sequence[Candidate]:

@@ -164,7 +164,7 @@ def directions(rng: np.random.Generator, count: int) -> Array:
 
 
 def random_inputs(rng: np.random.Generator, count: int, row: Model) -> dict[str, Array]:
-    """Random colors and roughnesses; an eighth of each lies on either end of its range.
+    """Random colors and roughnesses; a tenth of each lies on either end of its range.
 
     The last colors are gray.
     """
