@@ -56,6 +56,7 @@ class Implementation:
         return bool(self.document) and not folders.isdisjoint(Path(self.document).resolve().parents)
 
 
+@cache
 def data_folder() -> Path:
     """Folder that holds eonlib and its sources: inside an installed package, else the checkout."""
     installed = Path(__file__).resolve().parents[1] / "data"
