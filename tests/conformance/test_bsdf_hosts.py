@@ -8,19 +8,19 @@ import pytest
 
 from mxeon.conformance.accuracy import engine
 from mxeon.conformance.accuracy.accuracy import ACCURACY
-from mxeon.conformance.accuracy.diffuse import BSDF_RAY
+from mxeon.conformance.accuracy.rendered import TRACED_FLAT, TRACED_SHARP
 from mxeon.conformance.checks.application import judge_check
 from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.probes.bsdf import BsdfProbe
-from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe
 from mxeon.conformance.probes.families import HOST_PROBES, RenderedProbe, probe_type_of
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
-from mxeon.conformance.probes.rendered import RenderedSamples
+from mxeon.conformance.probes.rendered import RenderedSamples, TracedSamples
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.text import sources
+from mxeon.models.nodes.cycles import CYCLES_VARIANTS
 
 ROWS = {check.key: check for check in CHECKS}
 SUBJECTS = {subject.model: subject for subject in BSDFS}
@@ -83,7 +83,7 @@ def test_the_repaired_nodes_are_the_specifications_in_other_languages(hosts, nam
 def test_a_host_has_probes_by_what_it_shows():
     for subject in BSDFS:
         assert issubclass(probe_type_of(subject, PairProbe), BsdfProbe)
-        assert probe_type_of(subject, PictureProbe) is BsdfPictureProbe
+        assert issubclass(probe_type_of(subject, PictureProbe), TracedSamples)
         assert issubclass(probe_type_of(subject, RenderedProbe), RenderedSamples)
         assert probe_type_of(subject, NativeProbe) is None
 
@@ -100,15 +100,44 @@ def test_light_comes_from_below_where_a_node_transmits():
     assert all((batch.wi[:, 2] < 0.0).all() and len(batch.wi) for batch in probe.batches[:2])
 
 
-def test_cycles_burley_is_the_model_and_its_microfacets_lose_energy(hosts):
-    host, subject = hosts("cycles"), SUBJECTS["conductor"]
-    assert judged(host, "burley", "value").verdict == PASSED
-    probe = BsdfPictureProbe(host, subject, "stock")
+def traced(host, model, library="stock"):
+    """The probe of a node on Cycles."""
+    return probe_type_of(SUBJECTS[model], PictureProbe)(host, SUBJECTS[model], library)
+
+
+def test_cycles_evaluates_any_pair(hosts):
+    probe = traced(hosts("cycles"), "burley")
     batch = probe.batches[0]
-    single = next(each for each in subject.value_candidates if "no energy" in each.title)
-    values, tolerance = probe.direct(batch), BSDF_RAY.value
-    np.testing.assert_allclose(values, single.values(batch), rtol=tolerance, atol=tolerance)
-    assert (subject.expected(batch) - values).max() > 0.1
+    values = probe.direct(batch)
+    assert len(batch.wo) > 2000
+    assert 0.0 < TRACED_FLAT.metric(values, probe.expected(batch)).max() <= TRACED_FLAT.value / 4.0
+    assert np.array_equal(values, probe.direct(batch))  # without noise
+
+
+@pytest.mark.parametrize("model", ["dielectric", "conductor", "schlick"])
+def test_cycles_microfacets_scatter_once(hosts, model):
+    probe = traced(hosts("cycles"), model)
+    [single] = [each for each in CYCLES_VARIANTS[model] if each.value and "single" in each.title]
+    batch = probe.batches[0].first(512)
+    expected = probe.subject.values(single.value, batch)
+    values = probe.direct(batch)
+    assert TRACED_SHARP.metric(values, expected).max() <= TRACED_SHARP.value
+    # It is none of the others, nor the same in another frame.
+    assert TRACED_SHARP.metric(values, probe.expected(batch)).max() > 0.1
+    turned = batch.altered(roughness=np.asarray(batch.inputs["roughness"])[:, ::-1])
+    other = probe.subject.values(single.value, turned)
+    assert TRACED_SHARP.metric(values, other).max() > 0.1
+
+
+@pytest.mark.parametrize(
+    ("model", "bound"), [("dielectric", 1e-3), ("schlick", 1e-2), ("zeltner", 1e-2)]
+)
+def test_cycles_layers_let_through_what_its_tables_say(hosts, model, bound):
+    probe = traced(hosts("cycles"), model)
+    [albedo] = [each.albedo for each in CYCLES_VARIANTS[model] if not each.value]
+    [batch] = probe.cosines
+    expected = 1.0 - batch.strength * albedo(batch.wo, batch.inputs)
+    assert np.abs(probe.throughput(batch, "direct") - expected).max() <= bound
 
 
 def test_a_closure_that_cycles_lacks_is_not_run_and_is_named(hosts):

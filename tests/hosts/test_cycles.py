@@ -16,6 +16,8 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import cycles
 from mxeon.hosts.cycles import process as cycles_process
+from mxeon.hosts.testrender.scenes import visible
+from mxeon.hosts.tilted_triangles import DISTANCE, HEIGHT, tilted_triangles
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.shaders.generation import ApproximationWarning, generate
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, material_text, node_text
@@ -312,3 +314,24 @@ def test_subsurface_keeps_its_color(host):
         means.append(pixels[sphere(16).mask].mean(axis=0))
     assert np.abs(means[0] - color).max() < CYCLES_SUBSURFACE
     assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE  # stock loses it: every color is white
+
+
+def test_each_triangle_shows_its_pair_and_has_the_shaded_normal():
+    pairs = np.random.default_rng(1).normal(size=(2, 4096, 3))
+    pairs[:, :, 2] = np.abs(pairs[:, :, 2]) + 0.05
+    wo, wi = pairs / np.linalg.norm(pairs, axis=2, keepdims=True)
+    shown = visible(wo, wi)
+    scene = tilted_triangles(wo[shown], wi[shown], 64)
+    points = scene.corners.mean(axis=1)
+    light = np.array([-DISTANCE, 0.0, 0.0]) - points
+    distance = np.linalg.norm(light, axis=1, keepdims=True)
+    np.testing.assert_allclose(
+        scene.turned(wo[shown]), np.tile([0, 0, 1], (len(points), 1)), atol=1e-12
+    )
+    np.testing.assert_allclose(scene.turned(wi[shown]), light / distance, atol=2.0**-22)
+    np.testing.assert_allclose(scene.irradiance, distance**-2)
+    edges = np.diff(scene.corners, axis=1)
+    across = np.cross(edges[:, 0], edges[:, 1])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    np.testing.assert_allclose(across, scene.turned([[0.0, 0.0, 1.0]]), atol=1e-9)
+    assert (points[:, 2] < HEIGHT).all()

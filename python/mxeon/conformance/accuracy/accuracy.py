@@ -144,7 +144,6 @@ LIT: dict[str, Accuracy] = {
         for kind, (value, _) in SHOWN.items()
         if kind != kinds.SHEEN  # Storm takes the mode's default
     },
-    kinds.BSDF_PICTURE: _seen(diffuse.BSDF_RAY, diffuse.BSDF_NOISE),
     kinds.LOBE: _seen(diffuse.LOBE),
     kinds.EXACT: _seen(diffuse.EXACT, diffuse.EXACT_SURROUNDINGS, diffuse.EXACT),
     kinds.FACET: _seen(diffuse.FACETS, diffuse.FACET_NOISE, diffuse.FACETS),
@@ -211,9 +210,9 @@ def _of_closures(shown: Accuracy, value: Tolerance) -> Accuracy:
     return Accuracy(value, value, light, shown.frame, lambert=shown.lambert and value, lit=False)
 
 
-def _rendered(kind: str) -> Accuracy:
+def _rendered(kind: str, flat: Tolerance, sharp: Tolerance) -> Accuracy:
     """Accuracy of a renderer's closures of a kind; its environments have noise."""
-    value = rendered.FLAT if kind in rendered.FLAT_KINDS else rendered.SHARP
+    value = flat if kind in rendered.FLAT_KINDS else sharp
     if kind == kinds.LOBE:
         return Accuracy(rendered.BELOW, pairs=False, lit=False)
     return Accuracy(
@@ -223,7 +222,7 @@ def _rendered(kind: str) -> Accuracy:
         integral=rendered.INTEGRAL,
         light=rendered.LIGHT,
         reciprocity=value,
-        lambert=rendered.FLAT,
+        lambert=flat,
         lit=False,
     )
 
@@ -237,5 +236,14 @@ ACCURACY: Mapping[str, Accuracy] = (
         )
         for kind in kinds.TOLD
     }
-    | {kinds.rendered_kind(kind): _rendered(kind) for kind in kinds.RENDERED}
+    | {
+        kinds.rendered_kind(kind): _rendered(kind, rendered.FLAT, rendered.SHARP)
+        for kind in kinds.RENDERED
+    }
+    | {
+        kinds.rendered_kind(kind, kinds.TRACED): _rendered(
+            kind, rendered.TRACED_FLAT, rendered.TRACED_SHARP
+        )
+        for kind in kinds.RENDERED
+    }
 )

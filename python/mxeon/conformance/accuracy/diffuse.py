@@ -249,12 +249,6 @@ OWN_DENSITY = Tolerance(
 # of a lobe changes at most LOBE_SLOPE times as fast: twice 1 / alpha of a distribution, whose alpha is
 # at least 0.4, and 3 for Fresnel's curve, shadowing and the cosine.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
-BSDF_RAY = Tolerance(
-    rounded_up(LOBE_SLOPE * CYCLES_RAY.value),
-    SCALED,
-    scaled,
-    "8 times the error of a ray in a picture: 5, twice over the least alpha, and 3; rounded up",
-)
 
 
 def drawn_of(value: Tolerance, cut: float = 0.0) -> Tolerance:
@@ -267,11 +261,3 @@ def drawn_of(value: Tolerance, cut: float = 0.0) -> Tolerance:
         f"a number within {value.value:.2g}; in each of two cosines five roundings of float32, 2^-24, over "
         f"the smallest judged, 0.05, times 8: 5, twice over the least alpha, and 3; rounded up{half}",
     )
-
-
-BSDF_NOISE = Tolerance(
-    mean_noise(3212),
-    "mean albedo",
-    mean_error,
-    "that of Cycles' pictures, for the 3212 pixels of a smaller one",
-)

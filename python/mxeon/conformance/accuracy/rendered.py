@@ -5,10 +5,12 @@ import math
 
 from mxeon.conformance.accuracy.diffuse import FAST_ARC_COSINE
 from mxeon.conformance.nodes import kinds
+from mxeon.conformance.samples.batch import RIM
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED
 from mxeon.conformance.samples.measurement import absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
 from mxeon.hosts.testrender.scenes import EYE, NEAREST
+from mxeon.hosts.tilted_triangles import DISTANCE, JITTER, PIXEL
 
 FLAT_KINDS = (kinds.DIFFUSE, kinds.CLOSED, kinds.SUBSURFACE)  # of lobes without a peak
 ANGLE = 3.0 * EYE / NEAREST * ROUNDING  # of a point, which float32 holds along its ray
@@ -25,6 +27,24 @@ SHARP = Tolerance(
     scaled,
     "the same angle times 23: 20, twice over the least alpha, 0.1, and 3 for Fresnel's curve, shadowing and "
     "the cosine; 4.6e-5 for OpenImageIO's fast functions; rounded up",
+)
+TURN = (
+    JITTER * PIXEL / (RIM * DISTANCE)
+)  # of a light, seen from a point of a triangle that is steep
+TRACED_FLAT = Tolerance(
+    rounded_up(8.0 * TURN),
+    SCALED,
+    scaled,
+    "a point lies up to 0.007 pixels of 1/32 beside the middle of its pixel, and 20 times as far along the ray "
+    "where the cosine of the view is 0.05, seen from a light at the distance 256, times 8, the largest slope "
+    "of the diffuse models; rounded up",
+)
+TRACED_SHARP = Tolerance(
+    rounded_up((2.0 / LEAST_TURNED + 3.0) * TURN),
+    SCALED,
+    scaled,
+    "the same angle times 23: 20, twice over the least alpha, 0.1, and 3 for Fresnel's curve, shadowing and "
+    "the cosine; rounded up",
 )
 BELOW = Tolerance(
     rounded_up(4.0 * 16.0 * ANGLE + FAST_ARC_COSINE),

@@ -15,9 +15,10 @@ FRAMED = (*(row.name for row in NODES), "burley_lambert", HAIR_NODE.name)
 OTHERS = (*FRAMED, SUBSURFACE_NODE.name)
 COMBINATION = tuple(row.name for row in COMBINATIONS)
 EMITTER = tuple(row.name for row in (*EMISSIONS, *COMBINED_EMISSIONS))
+SHOWN = ("rendered", "pictures")  # of a host whose camera sees nothing on the horizon
 MEDIUM_NAMES = tuple(row.name for row in (*MEDIA, *COMBINED_MEDIA))
 
 
 def shows_exactly(subject: Subject, host: str) -> bool:
     """Whether a host has directions to the last bit, those on the horizon too."""
-    return all(row.probe != "rendered" for row in HOSTS if row.name == host)
+    return all(row.probe not in SHOWN for row in HOSTS if row.name == host)

@@ -54,6 +54,7 @@ TOLD = (
 )
 # Kinds of which a renderer evaluates the closures.
 RENDERED = (DIFFUSE, *BSDFS, SUBSURFACE, COMBINED, NESTED, LOBE)
+TRACED = "traced"  # in place of "rendered": pairs that a path tracer shows
 
 
 def closure_kind(kind: str) -> str:
@@ -61,9 +62,9 @@ def closure_kind(kind: str) -> str:
     return f"{kind} of closures" if kind in TOLD else kind
 
 
-def rendered_kind(kind: str) -> str:
+def rendered_kind(kind: str, word: str = "rendered") -> str:
     """Kind of a node's probe on a host that evaluates the closures of a renderer, likewise."""
-    return f"rendered {kind}" if kind in RENDERED else kind
+    return f"{word} {kind}" if kind in RENDERED else kind
 
 
 def drawn_kind(precision: str, kind: str) -> str:

@@ -19,7 +19,6 @@ from mxeon.conformance.probes.bsdf import (
     MicrofacetProbe,
     TransmissionProbe,
 )
-from mxeon.conformance.probes.bsdf_pictures import BsdfPictureProbe
 from mxeon.conformance.probes.closures import closures_of
 from mxeon.conformance.probes.diffuse_lobes import DiffuseLobeProbe
 from mxeon.conformance.probes.drawn import (
@@ -38,7 +37,7 @@ from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.pictures import PictureProbe
 from mxeon.conformance.probes.polyhedron import CoarseFacetProbe, FacetPairProbe, FacetProbe
 from mxeon.conformance.probes.probe import Probe
-from mxeon.conformance.probes.rendered import RenderedLobeProbe, rendered_of
+from mxeon.conformance.probes.rendered import RenderedLobeProbe, TracedSamples, rendered_of
 from mxeon.conformance.probes.renderer_nodes import ExactProbe, NativeProbe
 from mxeon.conformance.probes.subsurface import SubsurfaceProbe
 from mxeon.conformance.probes.surface_shaders import SurfaceShaderProbe
@@ -116,7 +115,7 @@ PROBES: Mapping[type[Probe], Mapping[str, type[Probe]]] = {
         kind: closures_of(probe) for kind, probe in EVALUATED.items() if kind not in PICTURED
     },
     PictureProbe: {
-        **dict.fromkeys(BSDF_KINDS, BsdfPictureProbe),
+        **{kind: rendered_of(EVALUATED[kind], TracedSamples) for kind in BSDF_KINDS},
         **dict.fromkeys(kinds.EMISSIONS, EmissionPictureProbe),
         **IN_THE_DARK,
         kinds.UTILITY: UtilityOslProbe,

@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import TypeVar, cast
+from typing import ClassVar, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ from mxeon.conformance.samples.edge_cases import LEAST_TURNED
 from mxeon.hosts.base import Host
 from mxeon.hosts.testrender.scenes import LEAST_SINE, perpendicular, visible
 from mxeon.models.nodes.bsdl import BSDL_VARIANTS
+from mxeon.models.nodes.cycles import CYCLES_VARIANTS
+from mxeon.models.nodes.node import Scattering, Variant
 from mxeon.models.table import model
 
 P = TypeVar("P", bound=Probe)
@@ -48,16 +50,26 @@ class RenderedSamples(Probe):
 
     Both cosines are at least RIM, and no lobe is so sharp that the place of a pixel counts. A roughness is at
     most 1, as OSL's stdosl.h has it, a weight is not negative, and there is no occlusion.
+
+    Attributes
+    ----------
+    word : str
+        Of its kinds.
+    variants : mapping of str to tuple of Variant
+        Functions of the renderer, by the name of a node's row.
     """
+
+    word: ClassVar[str] = "rendered"
+    variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
 
     def __init__(
         self, host: Host, subject: Subject, library: str, counts: Counts | None = None
     ) -> None:
-        super().__init__(host, _with_bsdl(subject), library, counts)
+        super().__init__(host, _with_variants(subject, self.variants), library, counts)
 
     @classmethod
     def kind_of(cls, subject: Subject) -> str:
-        return kinds.rendered_kind(super().kind_of(subject))
+        return kinds.rendered_kind(super().kind_of(subject), cls.word)
 
     @cached_property
     def batches(self) -> tuple[Batch, ...]:
@@ -114,10 +126,17 @@ class RenderedSamples(Probe):
         return taken | {name: np.clip(taken[name], least, 1.0) for name in rough}
 
 
-def rendered_of(probe: type[P]) -> type[P]:
+class TracedSamples(RenderedSamples):
+    """The same, of pairs that Cycles shows."""
+
+    word = kinds.TRACED
+    variants = CYCLES_VARIANTS
+
+
+def rendered_of(probe: type[P], samples: type[RenderedSamples] = RenderedSamples) -> type[P]:
     """The class of the same probes on a host that evaluates a renderer's closures."""
-    name, bases = f"Rendered{probe.__name__}", (RenderedSamples, probe)
-    return cast(type[P], type(name, bases, {"usual": USUAL}))
+    name = f"{samples.word.capitalize()}{probe.__name__}"
+    return cast(type[P], type(name, (samples, probe), {"usual": USUAL}))
 
 
 class RenderedLobeProbe(RenderedSamples, PairProbe):
@@ -170,11 +189,13 @@ def apart(wo: Array, wi: Array) -> Array:
     return np.where(visible(wo, wi)[:, np.newaxis], wi, moved)
 
 
-def _with_bsdl(subject: Subject) -> Subject:
-    """A subject with the functions of BSDL among those that may explain its values."""
-    if not isinstance(subject, BsdfSubject) or subject.row.name not in BSDL_VARIANTS:
+def _with_variants(
+    subject: Subject, known: Mapping[str, tuple[Variant[Scattering], ...]]
+) -> Subject:
+    """A subject with the functions of a renderer among those that may explain its values."""
+    if not isinstance(subject, BsdfSubject) or subject.row.name not in known:
         return subject
-    variants = (*BSDL_VARIANTS[subject.row.name], *subject.row.variants)
+    variants = (*known[subject.row.name], *subject.row.variants)
     return replace(subject, row=replace(subject.row, variants=variants))
 
 

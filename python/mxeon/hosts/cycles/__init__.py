@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
-from mxeon.hosts import base
 from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.cycles import closures, graphs, tracing
+from mxeon.hosts.cycles import closures, graphs, pairs, tracing
 from mxeon.hosts.cycles.process import interpreter
+from mxeon.hosts.pairs import PairHost
 from mxeon.hosts.process import Worker
 from mxeon.io.images import read_image, write_image
 from mxeon.shaders import functions
@@ -62,7 +62,7 @@ shader call(output closure color out = 0)
 READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
 
 
-class Host(base.Host):
+class Host(PairHost):
     """Blender's Cycles, with a process and a temporary folder.
 
     Parameters
@@ -79,9 +79,7 @@ class Host(base.Host):
     """
 
     name = "cycles"
-    target = "osl"
     profile = "cycles"
-    language = "osl"
 
     def __init__(self, sources: Path | None = None, limit: float = 300.0) -> None:
         python = interpreter()
@@ -152,11 +150,23 @@ class Host(base.Host):
         output: str = "response",
         irradiance: Array | None = None,
     ) -> Array:
-        """Values of the shader's graph, the one branch that is none of closures; see `base.Host`."""
+        """Values of closures, or of a graph without any; see `mxeon.hosts.pairs.PairHost`."""
         if branch != graphs.BRANCH:
-            raise self._unsupported("values for pairs of directions", "gl")
+            return super().evaluate(
+                shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
+            )
         source, arguments = graphs.graph_function(shader, inputs)
         return self.execute(_with_header(source), graphs.FUNCTION, *arguments)
+
+    def _pixels(
+        self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
+    ) -> NDArray[np.float64]:
+        """What pairs look like; see `mxeon.hosts.pairs.PairHost`."""
+        with self._folder() as name:
+            folder = Path(name)
+            text, frame, scale = pairs.request(folder, shader, wo, wi, inputs, last, light)
+            pixels = self._render(folder, _with_header(text), **frame)
+        return np.asarray(pixels.reshape(-1, 3)[: len(wo)].astype(np.float64) / scale)
 
     def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
         """Picture of the unit sphere with a node of Blender's on it, rendered without OSL.

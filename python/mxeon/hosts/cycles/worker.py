@@ -23,6 +23,7 @@ os.dup2(2, 1)
 import bpy  # noqa: E402, I001
 import _cycles  # noqa: E402
 import bmesh  # noqa: E402
+import numpy as np  # noqa: E402
 from mathutils import Vector  # noqa: E402
 
 Blender: TypeAlias = Any  # an object of bpy, which has no types
@@ -76,6 +77,7 @@ def set_sampling(scene: Blender, samples: int, bounces: int, osl: bool) -> None:
     # Take every sample as it is.
     cycles.samples = samples
     cycles.use_adaptive_sampling = False
+    cycles.light_sampling_threshold = 0.0
     cycles.use_denoising = False
     cycles.sample_clamp_indirect = 0.0
     # Limit the bounces of each kind.
@@ -121,6 +123,30 @@ def add_plane(scene: Blender, radius: float, material: Blender) -> None:
 
 
 BODIES = {"points": add_sphere, "mesh": add_mesh, "plane": add_plane}
+
+
+def add_triangles(scene: Blender, width: float, corners: str, material: Blender) -> None:
+    """Add the triangles of a file, which neither shade nor light each other, in a picture of a width."""
+    scene.camera.data.ortho_scale = width
+    scene.camera.data.clip_end = 2.0 * scene.camera.location.z
+    points = np.load(corners).reshape(-1, 3)
+    mesh = bpy.data.meshes.new("triangles")
+    mesh.from_pydata(points.tolist(), [], np.arange(len(points)).reshape(-1, 3).tolist())
+    mesh.materials.append(material)
+    triangles = bpy.data.objects.new("triangles", mesh)
+    triangles.visible_diffuse = triangles.visible_glossy = triangles.visible_transmission = False
+    triangles.visible_shadow = False
+    scene.collection.objects.link(triangles)
+
+
+def add_lamp(scene: Blender, distance: float) -> None:
+    """Add a light at the point (-distance, 0, 0), of irradiance 1 at that distance."""
+    lamp = bpy.data.lights.new("light", "POINT")
+    lamp.shadow_soft_size = 0.0
+    lamp.energy = 4.0 * math.pi * distance * distance
+    light = bpy.data.objects.new("light", lamp)
+    light.location.x = -distance
+    scene.collection.objects.link(light)
 
 
 def script_material(shader: str) -> Blender:
@@ -185,8 +211,11 @@ def render(
     body: str,
     shader: str | None = None,
     native: Values | None = None,
+    width: float = 2.0,
+    triangles: str | None = None,
+    lamp: float | None = None,
 ) -> dict[str, str]:
-    """Render the OSL file `shader`, or a node of Blender's, on one of BODIES; return the reply."""
+    """Render the OSL file `shader`, or a node of Blender's, on one of BODIES or on triangles; return the reply."""
     # Compile the shader.
     if shader:
         compiled = os.path.splitext(shader)[0] + ".oso"
@@ -197,7 +226,12 @@ def render(
     set_output(scene, output, size)
     set_sampling(scene, samples, bounces, osl=native is None)
     material = native_material(**native) if native else script_material(compiled)
-    BODIES[body](scene, radius, material)
+    if triangles:
+        add_triangles(scene, width, triangles, material)
+    else:
+        BODIES[body](scene, radius, material)
+    if lamp:
+        add_lamp(scene, lamp)
     if light:
         add_light(scene, light)
     if environment:

@@ -12,28 +12,26 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import InputError, NotRun, ShaderError
-from mxeon.hosts import base, fragment
+from mxeon.errors import NotRun, ShaderError
+from mxeon.hosts import fragment
 from mxeon.hosts.base import Array, Identity, Inputs
 from mxeon.hosts.osl.points import IMAGE, Column, side, statements
 from mxeon.hosts.osl.texts import columns_of, header, with_variables
+from mxeon.hosts.pairs import LAMP, SKY, PairHost
 from mxeon.hosts.testrender import calls, scenes
 from mxeon.hosts.testrender.programs import find_program, output, version
 from mxeon.io.images import read_image, write_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
-PATHS = 1 << 12  # pixels of a picture with a sky, each of SKY_SAMPLES^2 paths
 HELPERS = {
     "mxeon_root": "shader mxeon_root(closure color material = 0) { Ci = material; }",
     "mxeon_light": "shader mxeon_light() { Ci = emission(); }",
     "mxeon_sky": "shader mxeon_sky() { Ci = background(); }",
 }
-DIRECT, TRANSMITTED, EMITTED = "direct", "transmission", "emission"  # branches of `evaluate`
-BASE = "    {output} = layer({output}, uniform_edf(color(1)));\n"  # what shines through a layer
 
 
-class Host(base.Host):
+class Host(PairHost):
     """oslc, testrender and testshade, on PATH or named by variables; see `programs.VARIABLES`.
 
     Raises
@@ -43,8 +41,6 @@ class Host(base.Host):
     """
 
     name = "testrender"
-    target = "osl"
-    language = "osl"
 
     def __init__(self) -> None:
         self._oslc, self._testrender = map(find_program, ("oslc", "testrender"))
@@ -57,61 +53,13 @@ class Host(base.Host):
         """Version of oslc; the device is the CPU."""
         return Identity(self.name, self._version, "CPU")
 
-    def evaluate(
-        self,
-        shader: Shader,
-        wo: Array,
-        wi: Array,
-        inputs: Inputs,
-        branch: str,
-        *,
-        output: str = "response",
-        irradiance: Array | None = None,
-    ) -> Array:
-        """Values that testrender gives to the closures of a shader; see `mxeon.hosts.base.Host`.
-
-        The throughput is what is seen of a white emission below. The environment is sampled, so that it
-        has noise; what comes through the surface is part of it.
-
-        Raises
-        ------
-        Unsupported
-            If the environment is not uniform, or is asked for its light from below alone.
-        ValueError
-            If a pair in the light of a point is not `scenes.visible`.
-        """
-        # Values in the light of a point.
-        through = output == "throughput"
-        if irradiance is not None or (branch == TRANSMITTED and not through):
-            raise self._unsupported("uneven environment, and none below alone", "gl")
-        if branch == DIRECT and output == "response":
-            pixels, scene = self._pixels(shader, wo, wi, inputs, "", True)
-            return np.asarray(pixels / scene.irradiance[:, np.newaxis])
-        # What does not depend on the light: each view has one across it, too small to add to an emission.
-        # A sky is shown by several pixels of each view.
-        sky = not through and branch != EMITTED
-        repeats = max(1, PATHS // len(wo)) if sky else 1
-        rows = np.repeat(np.arange(len(wo)), repeats)
-        spread = {
-            name: np.asarray(each)[rows] if np.shape(each)[:1] == (len(wo),) else each
-            for name, each in inputs.items()
-        }
-        last = BASE if through else ""
-        pixels, _ = self._pixels(
-            shader, wo[rows], scenes.perpendicular(wo)[rows], spread, last, not sky
-        )
-        return np.asarray(pixels.reshape(len(wo), repeats, 3).mean(axis=1))
-
     def _pixels(
-        self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, lit: bool
-    ) -> tuple[NDArray[np.float64], scenes.PairScene]:
-        """Radiance of pairs, (N, 3), with their scene."""
+        self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
+    ) -> NDArray[np.float64]:
+        """What pairs look like; the light of one point is too small to add to an emission."""
+        lit = light != SKY
         # Turn what has a direction into the frame of the scene.
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
-        if not scenes.visible(wo, wi).all():
-            raise InputError(
-                f"testrender: the sine of each pair must be at least {scenes.LEAST_SINE}"
-            )
         scene = scenes.pair_scene(wo, wi, side(len(wo)))
         columns = {
             name: Column(each.kind, scene.turned(each.rows) if each.directed else each.values)
@@ -128,7 +76,8 @@ class Host(base.Host):
         samples = scenes.LIGHT_SAMPLES if lit else scenes.SKY_SAMPLES
         options = ["-t", "1", "-aa", str(samples), "--res", str(scene.size), str(scene.size)]
         pixels = self._image([self._testrender, *options, scenes.SCENE])
-        return pixels[..., :3].reshape(-1, 3)[: len(wo)], scene
+        values = pixels[..., :3].reshape(-1, 3)[: len(wo)]
+        return values / scene.irradiance[:, np.newaxis] if light == LAMP else values
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""

@@ -111,8 +111,8 @@ class PairScene:
     def _model(self) -> str:
         """A triangle about each point, which the light sees from its edge and the camera from above."""
         # Two axes in the plane of the triangle: towards the light, and across.
-        toward = -_unit(self.points)
-        across = _unit(np.cross(toward, self.rays))  # whose normal faces the camera
+        toward = -unit(self.points)
+        across = unit(np.cross(toward, self.rays))  # whose normal faces the camera
         reach = TRIANGLE * np.linalg.norm(self.points - [0.0, 0.0, EYE], axis=1)
         axes = np.stack([toward, across], axis=1) * reach[:, np.newaxis, np.newaxis]
         # Points of the same pixel of an image.
@@ -141,15 +141,15 @@ def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
     points = foot + (np.linalg.norm(foot, axis=1) * cotangent)[:, np.newaxis] * rays
     points = points.astype(np.float32).astype(np.float64)
     # The frames of both pairs, which have the view as their first axis.
-    local = _frame(wo, wi)
-    world = _frame(-rays, -_unit(points))
+    local = frames(wo, wi)
+    world = frames(-rays, -unit(points))
     return PairScene(size, rays, points, world @ np.swapaxes(local, 1, 2))
 
 
 def perpendicular(vectors: Array) -> Vectors:
     """Unit vectors across others, (N, 3)."""
     axes = np.where(np.abs(vectors[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
-    return _unit(np.cross(vectors, axes))
+    return unit(np.cross(vectors, axes))
 
 
 def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
@@ -161,16 +161,16 @@ def _rays(size: int) -> Vectors:
     """Directions of the camera's rays, (size^2, 3)."""
     axis = (np.arange(size) + 0.5) / size - 0.5
     x, y = (each.ravel()[:, np.newaxis] for each in np.meshgrid(axis, -axis))
-    ahead = _unit(np.array([[CENTER, 0.0, -EYE]]))
-    right = _unit(np.cross(ahead, [[0.0, 1.0, 0.0]]))
+    ahead = unit(np.array([[CENTER, 0.0, -EYE]]))
+    right = unit(np.cross(ahead, [[0.0, 1.0, 0.0]]))
     up = np.cross(right, ahead)
     width = np.tan(np.radians(FOV) / 2.0)  # half the usual extent
-    return _unit(ahead + width * (x * right + y * up))
+    return unit(ahead + width * (x * right + y * up))
 
 
-def _frame(first: Vectors, other: Vectors) -> NDArray[np.float64]:
+def frames(first: Vectors, other: Vectors) -> Vectors:
     """Axes as columns, (N, 3, 3): the first vector, what is across both, and what is across these."""
-    across = _unit(np.cross(first, other))
+    across = unit(np.cross(first, other))
     return np.stack([first, across, np.cross(first, across)], axis=-1)
 
 
@@ -179,7 +179,7 @@ def _light_corners() -> Vectors:
     return LIGHT_RADIUS * np.array([(0.0, x, y) for x, y in CORNERS])
 
 
-def _unit(vectors: Vectors) -> Vectors:
+def unit(vectors: Vectors) -> Vectors:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 

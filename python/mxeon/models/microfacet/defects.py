@@ -286,3 +286,9 @@ BSDL = MicrofacetDefect(
     "BSDL's lobe: compensation with F at the half vector, masking of the anisotropic distribution",
     Lobe(_compensated_bsdl, _anisotropic),
 )
+# Of Blender's Cycles, whose closures do not compensate.
+SINGLE = MicrofacetDefect(
+    "single",
+    "single scattering alone, masking of the anisotropic distribution",
+    Lobe(uncompensated, _anisotropic),
+)

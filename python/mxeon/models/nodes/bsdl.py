@@ -50,13 +50,13 @@ def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
     return _dielectric_albedo(wo, {**inputs, "ior": (1.0 + root) / (1.0 - root)})
 
 
-def _gray(albedo: Callable[[Array, Inputs], Array], wo: Array, inputs: Inputs) -> Array:
+def gray(albedo: Callable[[Array, Inputs], Array], wo: Array, inputs: Inputs) -> Array:
     """An albedo times the largest channel of the color, in every channel."""
     largest = np.max(np.broadcast_to(inputs["color"], wo.shape), axis=-1, keepdims=True)
     return np.asarray(np.minimum(albedo(wo, inputs) * largest, 1.0))
 
 
-CONTY_KULLA = partial(_gray, conty_kulla_albedo)
+CONTY_KULLA = partial(gray, conty_kulla_albedo)
 # By the name of the node's row.
 BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "dielectric": (
@@ -79,7 +79,7 @@ BSDL_VARIANTS: Mapping[str, tuple[Variant[Scattering], ...]] = {
     "zeltner": (
         Variant(
             "its albedo times the largest channel of the color",
-            albedo=partial(_gray, untinted(zeltner_albedo_dir)),
+            albedo=partial(gray, untinted(zeltner_albedo_dir)),
         ),
         Variant(
             "MaterialX's fit of the Conty-Kulla albedo, times the largest channel of the color",

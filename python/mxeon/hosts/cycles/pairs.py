@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Requests to Blender's process for pictures that show a pair of directions in each pixel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mxeon.hosts.base import Array, Inputs
+from mxeon.hosts.cycles import tracing
+from mxeon.hosts.osl.points import IMAGE, Column, side, statements
+from mxeon.hosts.osl.texts import columns_of, with_variables
+from mxeon.hosts.pairs import LAMP, SKY
+from mxeon.hosts.tilted_triangles import DISTANCE, HEIGHT, tilted_triangles
+from mxeon.shaders.generation import Shader
+from mxeon.shaders.scene import Scene
+
+SKY_SAMPLES = 64  # paths of a pixel
+
+
+def request(
+    folder: Path, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
+) -> tuple[str, dict[str, object], NDArray[np.float64]]:
+    """Text of a shader, what the worker needs beside it, and what its values are multiplied by.
+
+    Parameters
+    ----------
+    folder : Path
+        For files of the inputs and of the triangles.
+    shader, wo, wi, inputs, last, light
+        As in `mxeon.hosts.pairs.PairHost`.
+    """
+    # Turn what has a direction into the frame of the scene.
+    count, size = len(wo), side(len(wo))
+    scene = tilted_triangles(wo, wi, size)
+    columns = {
+        name: Column(each.kind, scene.turned(each.rows) if each.directed else each.values)
+        for name, each in columns_of(shader, inputs).items()
+    }
+    # Write the inputs that the shader reads, and the triangles.
+    block = statements(columns, folder / IMAGE, count, scene.place)
+    text = with_variables(shader, block, lambda output: last.format(output=output))
+    corners = folder / "triangles.npy"
+    np.save(corners, scene.corners.astype(np.float32))
+    # Ask for the light.
+    frame: dict[str, object] = {**tracing.request(Scene("pairs"), ()), "size": size}
+    frame |= {"radius": 0.5 * HEIGHT, "width": scene.width, "triangles": str(corners)}
+    if light == LAMP:
+        return text, frame | {"lamp": DISTANCE}, DISTANCE**2 * scene.irradiance
+    if light == SKY:
+        frame |= {"samples": SKY_SAMPLES, "environment": 1.0}
+    return text, frame, np.ones((1, 1))
