@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The BSDF nodes of pbrlib on every host: what engines add, and what pictures and texts show."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -20,6 +21,7 @@ from mxeon.conformance.probes.rendered import RenderedSamples, TracedSamples
 from mxeon.conformance.probes.renderer_nodes import NativeProbe
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.text import sources
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.nodes.cycles import CYCLES_VARIANTS
 
 ROWS = {check.key: check for check in CHECKS}
@@ -161,3 +163,22 @@ def test_an_input_that_a_text_drops_is_named(monkeypatch):
     monkeypatch.setattr(sources, "TEXT_ONLY", ("osl",))
     (result,) = sources.check_calls([SUBJECTS["zeltner"]], "stock")
     assert result.verdict == FAILED and "mode" in result.diagnosis
+
+
+def test_cycles_keeps_the_energy_of_facets_of_another_distribution(hosts):
+    probe = traced(hosts("cycles"), "schlick")
+    text = probe._shader.stages["pixel"]
+    view, mirror = np.array([[0.6, 0.0, 0.8]]), {"color0": (1.0, 1.0, 1.0), "roughness": (1.0, 1.0)}
+    albedos = [
+        probe.host.evaluate(
+            replace(probe._shader, stages={"pixel": text.replace('"ggx"', f'"{name}"')}),
+            view,
+            view,
+            mirror,
+            "environment",
+        )[0, 0]
+        for name in ("ggx", "multi_ggx")
+    ]
+    single = ggx_albedo_dir(0.8, 1.0)
+    np.testing.assert_allclose(albedos, [single, 1.0], atol=2e-3)
+    assert single < 0.5

@@ -5,10 +5,12 @@ import math
 
 from mxeon.conformance.accuracy.diffuse import FAST_ARC_COSINE
 from mxeon.conformance.nodes import kinds
+from mxeon.conformance.nodes.subject import Subject
 from mxeon.conformance.samples.batch import RIM
 from mxeon.conformance.samples.edge_cases import LEAST_TURNED
 from mxeon.conformance.samples.measurement import absolute, scaled
 from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
+from mxeon.hosts.base import Host
 from mxeon.hosts.testrender.scenes import EYE, NEAREST
 from mxeon.hosts.tilted_triangles import DISTANCE, JITTER, PIXEL
 
@@ -79,3 +81,9 @@ LIGHT = Tolerance(
     absolute,
     "an integral of values, and a throughput",
 )
+
+
+def widen_for_place(tolerance: Tolerance, subject: Subject, kind: str, host: Host) -> Tolerance:
+    """Tolerance of values of microfacets, which a point beside the middle of its pixel has as well."""
+    traced = kind.startswith(kinds.TRACED)
+    return max(tolerance, TRACED_SHARP, key=lambda each: each.value) if traced else tolerance

@@ -2,6 +2,7 @@
 """Checks of lobes of microfacets alone."""
 
 from mxeon.conformance.accuracy import bsdf as tolerances
+from mxeon.conformance.accuracy.rendered import widen_for_place
 from mxeon.conformance.checks import bsdf_measures as measures
 from mxeon.conformance.checks.check import Check
 from mxeon.conformance.checks.controls import isotropic, rougher, scale, with_inputs
@@ -39,6 +40,7 @@ CHECKS = (
         with_inputs("the flag is dropped", retroreflective=False),
         tolerances.RETROREFLECTION,
         pairs=True,
+        adapt=widen_for_place,
         diagnose=input_diagnosis.ignored("retroreflective"),
     ),
     Check(
@@ -49,6 +51,7 @@ CHECKS = (
         with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
         tolerances.ANISOTROPY,
         pairs=True,
+        adapt=widen_for_place,
         diagnose=input_diagnosis.ignored("tangent"),
     ),
     Check(
