@@ -6,6 +6,7 @@
     host = "gl"                             # that shows it; no host if no check does
     also = ["webgl", "vulkan"]              # other hosts that show it
     library = "stock"                       # that has it; "its own nodes" of a renderer
+    unavoidable = true                      # where no text can repair it: each library has it
     differs = true                          # where the text leaves the choice
     pull = 2961                             # pull request that repairs it after the release
     [rows]                                  # check = subjects: the results of the page's table, if it
@@ -41,6 +42,7 @@ KEYS = {
     "host",
     "also",
     "library",
+    "unavoidable",
     "differs",
     "rows",
     "implied",
@@ -127,6 +129,7 @@ def _row(path):
             "also": table.get("also", []),
             "implied": _pairs(table.get("implied", {})),
             "library": table.get("library", "stock"),
+            "unavoidable": table.get("unavoidable", False),
         }
     return Row(
         path.stem,

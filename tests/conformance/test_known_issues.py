@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rows of the ledger against the tables of what stock MaterialX fails, in the tests of its nodes."""
 
+from dataclasses import replace
+
 import pytest
 
-from mxeon.conformance.results.known_issues import ISSUES
+from mxeon.conformance.results import FAILED, Result
+from mxeon.conformance.results.known_issues import ISSUES, with_pages
 from mxeon.conformance.results.known_issues.issue import STOCK
 from tests.conformance import test_bsdfs as bsdfs
 from tests.conformance import test_emission as emission
@@ -30,3 +33,15 @@ def test_the_ledger_has_each_departure_of_stock_and_shows_no_other(title):
     shown = {check for issue in issues for check, subject in issue.rows if subject == title}
     implied = {check for issue in issues for check, subject in issue.implied if subject == title}
     assert shown <= TABLES[title] <= shown | implied
+
+
+def test_a_failure_that_no_text_can_avoid_has_its_page_with_each_library():
+    failed = [
+        Result("inputs", "", "conductor_bsdf", "osl", library, FAILED, 1.0, "inputs", 0.0)
+        for library in (STOCK, "eonlib")
+    ]
+    pages = ("genosl_dropped_retroreflection",)
+    assert [with_pages(each).pages for each in failed] == [pages, pages]
+    mode = Result("value", "", "sheen_bsdf, mode zeltner", "osl", STOCK, FAILED, 1.0, "inputs", 0.0)
+    assert with_pages(mode).pages == ("genosl_dropped_mode",)
+    assert with_pages(replace(mode, library="eonlib")).pages == ()

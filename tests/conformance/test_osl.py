@@ -10,6 +10,7 @@ import pytest
 from mxeon.conformance.accuracy.accuracy import ACCURACY
 from mxeon.conformance.accuracy.closures import GRAPH
 from mxeon.conformance.accuracy.engine import widen_for_engine
+from mxeon.conformance.checks import transmission_measures
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.probes.cases import frame_cases, value_cases
 from mxeon.conformance.probes.families import ALL_SUBJECTS, ClosureProbe, probe_type_of
@@ -17,7 +18,7 @@ from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.reference.evaluated import evaluated
 from mxeon.conformance.samples.batch import Counts, directions
-from mxeon.conformance.samples.measurement import Case
+from mxeon.conformance.samples.measurement import Case, scaled
 from mxeon.errors import ShaderError
 from mxeon.hosts.base import Host
 from mxeon.shaders.generation import Shader, generate
@@ -263,6 +264,25 @@ def test_the_repair_on_its_page_gives_a_sheen_its_mode(hosts, title):
     stock = excess(probe_of(host, title, "stock"), host)
     assert (stock > 1.0) == title.endswith("zeltner")
     assert excess(probe_of(mode, title, "stock"), host) <= 1.0
+
+
+def largest_kept(probe: Probe) -> float:
+    """The largest error of what a mode with transmission reflects and lets through."""
+    cases = transmission_measures.kept(probe)
+    return max(float(scaled(case.measured, case.expected).max()) for case in cases)
+
+
+def test_mode_t_of_schlicks_curve_reflects_nothing(hosts):
+    host, title = hosts("osl"), "generalized_schlick_bsdf, scatter_mode T"
+    assert largest_kept(probe_of(host, title)) == 0.0
+    tinted = Changed(host, '"T") ? color(0.0)', '"T") ? color(0.5)')
+    assert largest_kept(probe_of(tinted, title)) > 0.01
+
+
+def test_frames_that_a_text_takes_from_the_surface_are_not_asked(hosts):
+    probe = probe_of(hosts("osl"), "standard_surface, every lobe")
+    assert {"coat_normal", "normal", "tangent"} == set(probe.unset)
+    assert not probe_of(hosts("osl"), "conductor_bsdf").unset
 
 
 def shown(name: str) -> list[tuple[Shader, Shader]]:

@@ -50,7 +50,7 @@ def misplaced(probe: Probe) -> list[str]:
     """Inputs that change something where the page says nothing, or the reverse."""
     table = subject_of(probe, SurfaceShader).table
     wrong = set(table.without_effect).symmetric_difference(without_effect(probe))
-    return sorted(wrong.difference(table.curved))
+    return sorted(wrong.difference(table.curved, probe.unset))
 
 
 def without_effect(probe: Probe) -> list[str]:

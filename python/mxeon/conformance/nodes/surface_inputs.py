@@ -177,6 +177,7 @@ OPEN_PBR = Inputs(
         "subsurface_scatter_anisotropy",
     ),
     curved=("subsurface_radius", "subsurface_radius_scale"),
+    needs={"subsurface_weight": {"subsurface_color": CHANGED_COLOR}},  # on a plane, its base else
     white={
         "base_weight": 1.0,
         "base_color": (1.0, 1.0, 1.0),

@@ -9,6 +9,7 @@ import numpy as np
 
 from mxeon.conformance.nodes import kinds
 from mxeon.conformance.nodes.subject import Subject
+from mxeon.conformance.nodes.surface_shaders import SurfaceShader
 from mxeon.conformance.probes.probe import Probe
 from mxeon.conformance.reference.evaluated import evaluated
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts
@@ -46,6 +47,12 @@ class ClosureSamples(Probe):
             few, names = batch.first(self.counts.few), tuple(sorted(batch.inputs))
             groups.setdefault((*names, str(batch.frame is None)), []).append(few)
         return tuple(map(_joined, groups.values()))
+
+    @property
+    def unset(self) -> tuple[str, ...]:
+        """Frames of a surface shader's lobes: its text takes them from the surface, and has no input."""
+        names = self.subject.inputs if isinstance(self.subject, SurfaceShader) else ()
+        return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
     @cached_property
     def turned(self) -> Batch:

@@ -152,6 +152,11 @@ class Probe:
         """A few views for each input: of a material with every lobe, then with a change of it."""
         self._lacks("changed")
 
+    @property
+    def unset(self) -> tuple[str, ...]:
+        """Inputs that its host cannot set."""
+        return ()
+
     def region(self, key: str) -> Batch:
         """Pairs of a part of the domain that a check asks for apart."""
         self._lacks("region")

@@ -42,6 +42,7 @@ MICROFACETS = {
     "conductor_bsdf": node("conductor"),
     "generalized_schlick_bsdf": node("schlick"),
 }
+SCHLICK = MICROFACETS["generalized_schlick_bsdf"]
 ROWS = {
     "burley_diffuse_bsdf": node("burley"),
     "translucent_bsdf": node("translucent"),
@@ -126,12 +127,15 @@ class Views:
         """A lobe in its frame; stdosl.h lets through a layer what its top does not reflect."""
         wo, wi = self._directions(closure)
         inputs = _inputs(closure, row)
+        # Schlick's curve has no tint of its own, and the closure has one.
+        tinted = row is SCHLICK
+        tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
             value = self._value(closure, row, wo, wi, inputs)
-            left = 1.0 - row.albedo(_ended(wo), inputs) if layered else NOTHING.throughput
+            left = 1.0 - tint * row.albedo(_ended(wo), inputs) if layered else NOTHING.throughput
         except ValueError as error:
             raise OutsideModel(f"osl: {closure.name}: {error}") from None
-        return Bsdf(value, left)
+        return Bsdf(value if self.branch == THROUGH else tint * value, left)
 
     def _value(
         self, closure: ClosureTree, row: PbrNode, wo: Values, wi: Values, inputs: Arguments

@@ -92,13 +92,13 @@ def _software_of(issue: Issue, software: Mapping[str, str]) -> str:
 
 
 def _issues(result: Result) -> list[Issue]:
-    """Issues that a result shows that failed or differs, if it is of the library that has them."""
+    """Issues that a result shows that failed or differs, if it is of a library that has them."""
     if result.verdict not in (FAILED, DIFFERS):
         return []
     return [
         issue
         for issue in ISSUES
-        if result.library == issue.library
+        if (result.library == issue.library or issue.unavoidable)
         and result.host in (issue.host, *issue.also)
         and (result.check, result.subject) in (*issue.rows, *issue.implied)
     ]

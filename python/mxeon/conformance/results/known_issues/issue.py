@@ -30,6 +30,8 @@ class Issue:
         Key and subject of other results that fail for it, on those hosts or in the text.
     library : str
         The library that has it; RENDERER_NODES for a renderer's own nodes.
+    unavoidable : bool
+        Whether no text can repair it, so that each library has it.
     """
 
     page: str
@@ -39,6 +41,7 @@ class Issue:
     also: tuple[str, ...] = ()
     implied: tuple[tuple[str, str], ...] = ()
     library: str = STOCK
+    unavoidable: bool = False
 
 
 class _Row(TypedDict):
@@ -51,6 +54,7 @@ class _Row(TypedDict):
     also: list[str]
     implied: list[tuple[str, str]]
     library: str
+    unavoidable: bool
 
 
 def read_issues(text: str) -> tuple[Issue, ...]:
@@ -65,6 +69,7 @@ def read_issues(text: str) -> tuple[Issue, ...]:
             tuple(row["also"]),
             _pairs(row["implied"]),
             row["library"],
+            row["unavoidable"],
         )
         for row in rows
     )
