@@ -35,6 +35,8 @@ GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differ
 RELIABLE = 2e-8  # two steps of differences that agree so far are taken for the derivative
 COMPARED = 0.6  # least share of partial derivatives that differences can judge
 STEP, SLOPE = 1e-4, 3e-5  # of central differences of models by name, and their truncation
+END = 0.999  # of random numbers: beyond are those of the end of the range
+CANCELED = 3e-8  # of samples on the rim of the disk: their height is the root of what cancels
 VALUE = 1e-12  # of the larger of 1 and the value: another library's last digits of sines and powers
 
 PORTABLE = {
@@ -131,7 +133,8 @@ def sampled(function):
             arrays[name] = np.where(rng.random(shape) < 0.25, ends, inside)
     for name in [name for name, value in switches.items() if isinstance(value, dict)]:
         switches |= switches.pop(name)  # named inputs
-    channels = np.ndim(whole(arguments.call(function, arguments.base(function))))
+    value = arguments.call(function, arguments.base(function))
+    channels = 0 if isinstance(value, tuple) else np.ndim(value)  # a sampler has none
     for name in COLORS & set(arrays) if channels else ():
         if name.startswith(TINTS) or "conductor" in function.__name__:
             arrays[name] = arrays[name][:, np.newaxis]
@@ -219,9 +222,13 @@ def assert_gradients(library, name, compensate):
     assert_values(value, function, arrays, switches)
     for argument, gradient in found.items():
         assert np.isfinite(gradient).all(), argument
+        upright = np.zeros(ROWS, bool)
+        if function.__name__.endswith("_sample") and argument == "wo":
+            upright = arrays["wo"][:, 2] == 1.0  # whose azimuth turns with it
         columns, judged = gradient.reshape(ROWS, -1).T, 0
         for k, column in enumerate(columns):
             expected, reliable = differences(function, arrays, switches, argument, k)
+            reliable = reliable & ~upright
             error = np.abs(column - expected) / np.maximum(1.0, np.abs(expected))
             worst = np.where(reliable, error, 0.0).argmax()
             row = {each: value[worst] for each, value in arrays.items()}
@@ -241,7 +248,9 @@ def assert_values(value, function, arrays, switches):
     expected = whole(function(**arrays, **switches))
     assert value.shape == expected.shape
     error = np.abs(value - expected) / np.maximum(1.0, np.abs(expected))
-    assert error.max() <= VALUE
+    u = arrays.get("u", np.full((1, 2), 0.5))
+    rim = ((u == 0.0) | (u > END)).any(axis=1, keepdims=True) & ("_sample" in function.__name__)
+    assert (error <= np.where(rim, CANCELED, VALUE)).all()
 
 
 @pytest.mark.parametrize("name", COMPENSATED)

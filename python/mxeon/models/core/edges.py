@@ -119,11 +119,23 @@ def power(base: Array, exponent: Array) -> Array:
 
 def cube_root(x: Array) -> Array:
     """Cube root; where x is 0 its derivative counts as 0."""
+    return fractional_power(x, 1.0 / 3.0)
+
+
+def fractional_power(x: Array, exponent: float) -> Array:
+    """x^exponent with an exponent in (0, 1); where x is 0 its derivative counts as 0."""
     xp = array_namespace(x)
     if xp is NUMPY:
-        return x ** (1.0 / 3.0)
+        return x**exponent
     positive = x > 0.0
-    return xp.where(positive, xp.where(positive, x, 1.0) ** (1.0 / 3.0), 0.0)
+    return xp.where(positive, xp.where(positive, x, 1.0) ** exponent, 0.0)
+
+
+def below_1(x: Array) -> float:
+    """Largest number below 1 in the precision of x."""
+    if library(x) == "drjit":
+        return float(np.nextafter(np.float32(1.0), np.float32(0.0)))
+    return 1.0 - 0.5 * float(array_namespace(x).finfo(x.dtype).eps)
 
 
 def guarded(x: Array, valid: Numbers, inside: float) -> Array:

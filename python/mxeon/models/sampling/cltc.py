@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_least_0, below_1, fractional_power, root
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.sampling.hemisphere import (
     around,
     checked_draw,
@@ -21,6 +23,7 @@ from mxeon.models.sampling.hemisphere import (
 from mxeon.models.sampling.ltc import ltc_d, ltc_density, ltc_transformed
 
 
+@any_array
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the clipped transformed cosine, and its density.
 
@@ -68,10 +71,11 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
     d = ltc_d(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(*unpack_uniforms(u), d), roughness, d)
     # On the edge of the lune d x + z is zero up to rounding, of either sign.
-    wi[..., 2] = np.maximum(wi[..., 2], 0.0)
+    wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
     return wi, pdf / cltc_kept_fraction(d)
 
 
+@any_array
 def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `cltc_sample` at `wi`, in solid angle.
 
@@ -103,6 +107,7 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return ltc_density(wo, wi, roughness, d) / cltc_kept_fraction(d)
 
 
+@any_array
 def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the paper's mixture of `cltc` and `uniform`, and its density.
 
@@ -135,13 +140,15 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
     # Stretch each side of P_u over [0, 1); rounding may reach 1, which is not in there.
-    v = np.where(is_uniform, u1, u1 - P_u) / np.where(is_uniform, P_u, 1.0 - P_u)
-    v = np.stack(np.broadcast_arrays(np.minimum(v, np.nextafter(1.0, 0.0)), u2), axis=-1)
+    xp = array_namespace(u1, P_u)
+    v = xp.where(is_uniform, u1, u1 - P_u) / xp.where(is_uniform, P_u, 1.0 - P_u)
+    v = xp.stack([xp.minimum(v, below_1(v)), u2 + 0.0 * v], axis=-1)
     clipped, _ = cltc_sample(wo, v, roughness)
-    wi = np.where(is_uniform[..., np.newaxis], uniform_sample(v)[0], clipped)
+    wi = xp.where(is_uniform[..., np.newaxis], uniform_sample(v)[0], clipped)
     return wi, eon_cltc_pdf(wo, wi, roughness)
 
 
+@any_array
 def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `eon_cltc_sample` at `wi`, in solid angle.
 
@@ -170,21 +177,21 @@ def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
     """Probability P_u of the uniform lobe."""
     P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
-    return roughness**0.1 * P_u
+    return fractional_power(roughness, 0.1) * P_u
 
 
 def cltc_kept_fraction(d: Array) -> Array:
     """Fraction of the clamped cosine above d x + z = 0: [Portsmouth2025], below Eq. (26)."""
-    return 0.5 * (1.0 + 1.0 / np.sqrt(1.0 + d * d))
+    return 0.5 * (1.0 + 1.0 / root(1.0 + d * d))
 
 
 def cltc_clipped(u1: Array, u2: Array, d: Array) -> Array:
     """Direction under the clamped cosine with d x + z >= 0: [Portsmouth2025], Listing 3."""
-    wh = around(np.sqrt(1.0 - u1), np.sqrt(u1), u2)
+    wh = around(root(1.0 - u1), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
     # Squeeze the disk's chord at y onto the part of it that is kept.
     kept = cltc_kept_fraction(d)
-    x = np.sqrt(1.0 - y * y) * (1.0 - kept) + x * kept
-    x = np.where(d > 0.0, x, -x)
+    x = root(1.0 - y * y) * (1.0 - kept) + x * kept
+    x = array_namespace(x, d).where(d > 0.0, x, -x)
     # Rounding may leave x^2 + y^2 > 1 on the rim.
-    return stack_xyz(x, y, np.sqrt(np.maximum(1.0 - (x * x + y * y), 0.0)))
+    return stack_xyz(x, y, root(at_least_0(1.0 - (x * x + y * y))))

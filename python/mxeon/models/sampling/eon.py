@@ -26,6 +26,7 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_most, below_1, cube_root, fractional_power, root
 from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.diffuse.formulas import (
     C1,
@@ -44,6 +45,8 @@ from mxeon.models.sampling.hemisphere import (
     stack_xyz,
     unpack_uniforms,
 )
+
+LEAST_COSINE = 2.0**-53  # of a sample
 
 # Our fits, fits/eon_sampling.py. Random number and fitted root of it in [0, 1]; largest relative
 # error of the density 1.27e-5 and 5.7e-6.
@@ -65,6 +68,7 @@ UPPER = (
 )
 
 
+@any_array
 def eon_sample(
     wo: ArrayLike, u: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0
 ) -> tuple[Array, Array]:
@@ -111,17 +115,17 @@ def eon_sample(
     (array([0.      , 0.707107, 0.707107]), 0.225079)
     """
     wo, u, roughness, rho = checked_draw(wo, u, roughness=roughness, rho=rho)
-    if wo.ndim == 1 and u.shape == (3, 2) and rho.shape == (3,):
+    if wo.ndim == 1 and tuple(u.shape) == (3, 2) and tuple(rho.shape) == (3,):
         raise ValueError(
             "rho of shape (3,) beside 3 samples has two meanings: write rho.mean() for a color, or "
             "repeat wo for a number for each sample"
         )
     u1, u2 = unpack_uniforms(u)
     cosine, sine, S_o = azimuth_frame(wo)
-    mu_o, S_o = np.minimum(wo[..., 2], 1.0), np.minimum(S_o, 1.0)
+    mu_o, S_o = at_most(wo[..., 2], 1.0), at_most(S_o, 1.0)
     wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
     # The end of a part may reach the horizon, where the density is 0 and a weight 0/0.
-    wi[..., 2] = np.maximum(wi[..., 2], 0.5 * np.finfo(np.float64).eps)
+    wi = stack_xyz(wi[..., 0], wi[..., 1], array_namespace(wi).maximum(wi[..., 2], LEAST_COSINE))
     return wi, _density(wo, wi, rho, roughness)
 
 
@@ -178,20 +182,23 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     """Direction drawn from one of the four parts; `wo` has azimuth 0."""
     # Choose a part by u1, and stretch what is left of u1 over [0, 1).
     parts = eon_integrals(mu_o, S_o, rho, roughness)
-    ends = np.cumsum(np.stack(np.broadcast_arrays(*parts)), axis=0)
-    ends = ends / ends[-1]
-    starts = [np.zeros_like(ends[0]), *ends[:-1]]
+    xp = array_namespace(*parts)
+    ends = [parts[0]]
+    for part in parts[1:]:
+        ends.append(ends[-1] + part)
+    ends = [end / ends[-1] for end in ends]
+    starts = [0.0 * ends[0], *ends[:-1]]
     v = [_stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
-    lower = eon_lower_cosine(x, np.cbrt(1.0 - x))
-    upper = eon_upper_cosine(v[1] ** 0.4, mu_o, eon_upper_limit(mu_o, S_o))
-    multiple = eon_multiple_cosine(np.cbrt(v[2]))
-    mu = np.where(u1 < ends[0], lower, np.where(u1 < ends[1], upper, multiple))
-    S = np.sqrt((1.0 - mu) * (1.0 + mu))
+    lower = eon_lower_cosine(x, cube_root(1.0 - x))
+    upper = eon_upper_cosine(fractional_power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
+    multiple = eon_multiple_cosine(cube_root(v[2]))
+    mu = xp.where(u1 < ends[0], lower, xp.where(u1 < ends[1], upper, multiple))
+    S = root((1.0 - mu) * (1.0 + mu))
     is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
-    wi = np.where(is_towards, eon_towards(mu, S, u2), around(mu, S, u2))
-    return np.where(is_flat, eon_flat_draw(v[3], u2, roughness * S_o), wi)
+    wi = xp.where(is_towards, eon_towards(mu, S, u2), around(mu, S, u2))
+    return xp.where(is_flat, eon_flat_draw(v[3], u2, roughness * S_o), wi)
 
 
 def eon_integrals(
@@ -221,23 +228,25 @@ def _stretched(u: Array, start: Array, end: Array) -> Array:
 
     It goes there before the division, which would overflow for the shortest intervals.
     """
-    length = np.where(end > start, end - start, 1.0)
-    return np.minimum((np.clip(u, start, end) - start) / length, np.nextafter(1.0, 0.0))
+    xp = array_namespace(u, start, end)
+    length = xp.where(end > start, end - start, 1.0)
+    inside = xp.minimum(xp.maximum(u, start), end)
+    return xp.minimum((inside - start) / length, below_1(length))
 
 
 def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
     """Direction with cosine `mu` and sine `S` at an azimuth whose sine is uniform, towards wo."""
-    return stack_xyz(2.0 * S * np.sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu)
+    return stack_xyz(2.0 * S * root(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu)
 
 
 def eon_lower_cosine(x: Array, S: Array) -> Array:
     """Cosine drawn in proportion to S mu below mu_o: x = 1 - S^3 is uniform."""
-    return array_namespace(x, S).sqrt(x * (1.0 + S) / (1.0 + S + S * S))
+    return root(x * (1.0 + S) / (1.0 + S + S * S))
 
 
 def eon_upper_limit(mu: Array, S: Array) -> Array:
     """y = (K / K(pi / 2))^(2/5) of the angle with this cosine and sine."""
-    return (eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0)) ** 0.4
+    return fractional_power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
 
 
 def eon_upper_quotient(y: Array) -> Array:
@@ -263,7 +272,7 @@ def eon_multiple_cosine(t: Array) -> Array:
     """Cosine drawn in proportion to H(mu) mu, a function of t = v^(1/3)."""
     a, b, c, d, e, f = MULTIPLE
     m = 1.0 - t
-    w = array_namespace(m).sqrt(m)
+    w = root(m)
     even, odd = a + m * (b + m * d), c + m * (e + m * m * f)
     return t * (1.0 + m * (even + m * w * odd))
 
@@ -274,14 +283,13 @@ def eon_flat_draw(v: Array, u2: Array, q: Array) -> Array:
     Along each chord of the disk, x is drawn by its inverse distribution from the uniform point
     (x, y). z is the square root of 1 - x^2 - y^2 without a cancellation.
     """
-    wh = around(np.sqrt(1.0 - v), np.sqrt(v), u2)
+    wh = around(root(1.0 - v), root(v), u2)
     return stack_xyz(*eon_flat_direction(v, wh[..., 0], wh[..., 1], q))
 
 
 def eon_flat_direction(v: Array, x: Array, y: Array, q: Array) -> tuple[Array, Array, Array]:
     """Components of the direction that `eon_flat_draw` makes of a point of the disk, v = x^2 + y^2."""
-    sqrt = array_namespace(v, x, y, q).sqrt
     ahead = 1.0 + q * x
-    root = sqrt(ahead * ahead + q * q * (1.0 - v))
-    z = sqrt(2.0 * (1.0 - v) / (ahead + root))
-    return (q * (1.0 - y * y) + 2.0 * x) / (1.0 + root), y, z
+    length = root(ahead * ahead + q * q * (1.0 - v))
+    z = root(2.0 * (1.0 - v) / (ahead + length))
+    return (q * (1.0 - y * y) + 2.0 * x) / (1.0 + length), y, z

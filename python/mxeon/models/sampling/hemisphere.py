@@ -10,7 +10,7 @@ import numpy as np
 
 from mxeon.models.core.arguments import broadcastable, checked, checked_directions, checked_pairs
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.edges import root
+from mxeon.models.core.edges import hypot, root
 from mxeon.models.core.namespaces import any_array, array_namespace
 
 
@@ -160,10 +160,10 @@ def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
 
     The azimuth of a `wo` along the normal counts as 0.
     """
-    sine = np.hypot(wo[..., 0], wo[..., 1])
+    xp, sine = array_namespace(wo), hypot(wo[..., 0], wo[..., 1])
     tilted = sine > 0.0
-    length = np.where(tilted, sine, 1.0)
-    return np.where(tilted, wo[..., 0] / length, 1.0), wo[..., 1] / length, sine
+    length = xp.where(tilted, sine, 1.0)
+    return xp.where(tilted, wo[..., 0] / length, 1.0), wo[..., 1] / length, sine
 
 
 def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:

@@ -12,6 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_least_0, root
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.sampling.hemisphere import (
     azimuth_frame,
     checked_draw,
@@ -22,6 +24,7 @@ from mxeon.models.sampling.hemisphere import (
 )
 
 
+@any_array
 def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine without the coefficient d, and its density.
 
@@ -65,6 +68,7 @@ def ltc0_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
     return ltc_transformed(wo, cosine_sample(u)[0], roughness, 0.0)
 
 
+@any_array
 def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc0_sample` at `wi`, in solid angle.
 
@@ -95,6 +99,7 @@ def ltc0_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return ltc_density(wo, wi, roughness, 0.0)
 
 
+@any_array
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the transformed cosine, may be below the horizon; and its density.
 
@@ -126,6 +131,7 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     return ltc_transformed(wo, cosine_sample(u)[0], roughness, ltc_d(wo[..., 2], roughness))
 
 
+@any_array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `ltc_sample` at `wi`, above the horizon, in solid angle.
 
@@ -181,7 +187,7 @@ def ltc_transformed(
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_a, ltc_b, ltc_c))
     x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
     wi = stack_xyz(a * x + b * z, c * y, d * x + z)
-    length = np.sqrt(np.sum(wi * wi, axis=-1))
+    length = root(array_namespace(wi).sum(wi * wi, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
     pdf = z / np.pi * length**3 / (c * (a - b * d))
     return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
@@ -197,4 +203,4 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array | float) -> Arr
     # The adjugate of M times wi: wh up to its length.
     wh_z = c * (a * z - d * x)
     squared = (c * (x - b * z)) ** 2 + ((a - b * d) * y) ** 2 + wh_z**2
-    return (det / squared) ** 2 * np.maximum(wh_z, 0.0) / np.pi
+    return (det / squared) ** 2 * at_least_0(wh_z) / np.pi

@@ -16,11 +16,15 @@ from mxeon.models.core.arguments import (
     lead_shape,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.edges import at_least_0, root
 from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.microfacet import ggx_formulas as ggx
-from mxeon.models.sampling.hemisphere import around, unpack_uniforms
+from mxeon.models.sampling.hemisphere import stack_xyz, unpack_uniforms
+
+UP = 0.0, 0.0, 1.0
 
 
+@any_array
 def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction reflected by a visible GGX normal, may be below the horizon; and its density.
 
@@ -60,10 +64,11 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     (array([-0.835004,  0.      ,  0.550244]), 0.649904)
     """
     u1, u2 = unpack_uniforms(u)
-    vectors = {"wo": checked_directions("wo", wo), "u": np.stack([u1, u2], axis=-1)}
+    stacked = array_namespace(u1).stack([u1, u2], axis=-1)
+    vectors = {"wo": checked_directions("wo", wo), "u": stacked}
     view, (u1, u2), alpha = _components(vectors | {"roughness": checked_roughness(roughness)})
     wh = visible_normal(view, u1, u2, alpha)
-    wi = np.moveaxis(2.0 * np.sum(view * wh, axis=0) * wh - view, 0, -1)
+    wi = stack_xyz(*(2.0 * array_namespace(wh).sum(view * wh, axis=0) * wh - view))
     return wi, _density(view, wh, alpha)
 
 
@@ -120,16 +125,18 @@ def _density(wo: Array, wh: Array, roughness: Array) -> Array:
 
 def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
     """Visible normal for two random numbers, components first: [Dupuy2023], Listing 3."""
-    stretched = np.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
-    length = np.sqrt(np.sum(stretched * stretched, axis=0))
+    xp = array_namespace(wo, u1, roughness)
+    stretched = xp.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
+    length = root(xp.sum(stretched * stretched, axis=0))
     # A smooth surface seen at grazing has a length of 0 and one normal, whatever is drawn.
-    stretched = stretched / np.where(length > 0.0, length, 1.0)
+    stretched = stretched / xp.where(length > 0.0, length, 1.0)
     # A point of the cap above -z of the stretched view.
     down = (1.0 + stretched[2]) * u1
-    z = 1.0 - down
-    cap = np.moveaxis(around(z, np.sqrt(down * (1.0 + z)), u2), -1, 0)
-    x, y, z = cap + stretched
-    normal = np.stack([roughness[0] * x, roughness[1] * y, np.maximum(z, 0.0)])
-    length = np.sqrt(np.sum(normal * normal, axis=0))
-    upright = np.stack([0.0 * z, 0.0 * z, 1.0 + 0.0 * z])
-    return np.where(length > 0.0, normal / np.where(length > 0.0, length, 1.0), upright)
+    z, phi = 1.0 - down, 2.0 * np.pi * u2
+    S = root(down * (1.0 + z))
+    x, y, z = S * xp.cos(phi) + stretched[0], S * xp.sin(phi) + stretched[1], z + stretched[2]
+    normal = [roughness[0] * x, roughness[1] * y, at_least_0(z)]
+    length = root(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2])
+    seen = length > 0.0
+    size = xp.where(seen, length, 1.0)
+    return xp.stack([xp.where(seen, each / size, up) for each, up in zip(normal, UP, strict=True)])

@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_most, root
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.sampling.hemisphere import (
     azimuth_frame,
     checked_draw,
@@ -22,6 +24,7 @@ from mxeon.models.sampling.hemisphere import (
 from mxeon.models.sheen import zeltner_matrix
 
 
+@any_array
 def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled proportionally to the Zeltner lobe times the cosine, and its density.
 
@@ -58,15 +61,16 @@ def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[A
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
     wh = cosine_sample(u)[0]
-    a, b = zeltner_matrix(np.minimum(wo[..., 2], 1.0), roughness)
+    a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)
     x, y, z = (wh[..., 0] - b * wh[..., 2]) / a, wh[..., 1] / a, wh[..., 2]
     wi = stack_xyz(x, y, z)
-    length = np.sqrt(np.sum(wi * wi, axis=-1))
+    length = root(array_namespace(wi).sum(wi * wi, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
-    pdf = z / np.pi * length**3 * np.square(a)
+    pdf = z / np.pi * length**3 * (a * a)
     return rotate_z(wi / length[..., np.newaxis], cosine, sine), pdf
 
 
+@any_array
 def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `zeltner_sample` at `wi`, in solid angle.
 
@@ -94,10 +98,11 @@ def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     0.24421
     """
     wo, wi, roughness = checked_pdf(wo, wi, roughness=roughness)
-    a, b = zeltner_matrix(np.minimum(wo[..., 2], 1.0), roughness)
+    a, b = zeltner_matrix(at_most(wo[..., 2], 1.0), roughness)
     cosine, sine, _ = azimuth_frame(wo)
     wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
-    squared = np.square(a * x + b * z) + np.square(a * y) + np.square(z)
-    pdf: Array = z / np.pi * np.square(a / squared)
+    square = array_namespace(a, x).square
+    squared = square(a * x + b * z) + square(a * y) + square(z)
+    pdf: Array = z / np.pi * square(a / squared)
     return pdf
