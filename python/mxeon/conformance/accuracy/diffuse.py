@@ -9,7 +9,7 @@ import math
 from mxeon.conformance.samples.batch import LOBE_RIM, RIM
 from mxeon.conformance.samples.edge_cases import TURNED
 from mxeon.conformance.samples.measurement import absolute, mean_error, relative, scaled
-from mxeon.conformance.samples.tolerance import ROUNDING, SCALED, Tolerance, rounded_up
+from mxeon.conformance.samples.tolerance import ROUNDING, Tolerance, rounded_up
 from mxeon.conformance.samples.uneven_environment import SKY_ROWS, SLOPE
 from mxeon.shaders.facets import NARROWEST
 
