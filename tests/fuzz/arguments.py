@@ -60,6 +60,7 @@ VALID = {
 CHECKS = ("_", "checked", "unpack")  # of functions that check arguments for others
 PLUMBING = (
     "mxeon.models.core.arguments",
+    "mxeon.models.core.shapes",
     "mxeon.models.catalog",
     "mxeon.models.core.evaluation",
     "mxeon.models.lobe_plot",

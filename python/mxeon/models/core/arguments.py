@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Validation of arguments: ranges, directions, shapes, switches and choices.
+"""Validation of arguments: ranges, directions, switches and choices; `shapes` has their shapes.
 
 Directions leave the surface, in a local frame with the normal +z.
 """
@@ -13,16 +13,14 @@ from typing import NoReturn, cast
 import numpy as np
 
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
-from mxeon.models.core.drjit_arrays import Columns, is_drjit
 from mxeon.models.core.namespaces import (
-    NUMPY,
     accept,
-    array_namespace,
     checking,
     host_values,
     library,
 )
 from mxeon.models.core.ranges import CLOSED, RANGES
+from mxeon.models.core.shapes import broadcastable, channel_count, spread_pair, with_axis
 from mxeon.models.core.tiling import blocks, channels_first
 
 # Largest error of the squared length of a direction: directions rounded to float32 pass.
@@ -99,7 +97,7 @@ def checked_numbers(**values: ArrayLike) -> list[Array]:
 
 def checked_vector(name: str, value: ArrayLike) -> Numbers:
     """Argument inside the range of its name, with at least one axis."""
-    return _with_axis(checked(name, value))
+    return with_axis(checked(name, value))
 
 
 def checked_color(name: str, value: ArrayLike) -> Numbers:
@@ -235,53 +233,6 @@ def checked_roughness(value: ArrayLike) -> Numbers:
     return spread_pair("roughness", checked("roughness", value))
 
 
-def spread_pair(name: str, array: Numbers) -> Numbers:
-    """Array of pairs, shape (..., 2), of which a number, or a last axis of 1, counts for both.
-
-    Examples
-    --------
-    >>> spread_pair("roughness", np.array(0.3))
-    array([0.3, 0.3])
-    """
-    array = _with_axis(array)
-    if isinstance(array, Columns) and len(array.parts) == 1:
-        return cast(Numbers, Columns(2 * array.parts))
-    if array.shape[-1] == 1:
-        return array_namespace(array).broadcast_to(array, (*array.shape[:-1], 2))
-    if array.shape[-1] != 2:
-        raise ValueError(
-            f"{name} must be a number or have shape (..., 2); got shape {tuple(array.shape)}: "
-            f"write {name}[..., np.newaxis] for a number for each direction"
-        )
-    return array
-
-
-def _with_axis(array: Numbers) -> Numbers:
-    """Array with at least one axis, which a number of Dr.Jit has not."""
-    if is_drjit(array):
-        return array if isinstance(array, Columns) else cast(Numbers, Columns((array,)))
-    return array if array.ndim else array[np.newaxis]
-
-
-def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
-    """Raise ValueError for a list of N numbers beside N directions, unless it is red, green and blue.
-
-    Examples
-    --------
-    >>> refuse_ambiguous("rho", np.ones(5), (5,))
-    Traceback (most recent call last):
-    ...
-    ValueError: rho of shape (5,) beside 5 directions has two meanings: write rho[:, np.newaxis] for a number for each direction, rho[np.newaxis] for a color of 5 channels
-    """
-    if color.shape == lead and color.ndim == 1 and color.shape[0] not in (1, 3):
-        count = color.shape[0]
-        raise ValueError(
-            f"{name} of shape ({count},) beside {count} directions has two meanings: write "
-            f"{name}[:, np.newaxis] for a number for each direction, {name}[np.newaxis] for a "
-            f"color of {count} channels"
-        )
-
-
 def are_directions(components: Numbers) -> bool:
     """Whether all vectors of shape (3, ...) are unit and on or above the horizon."""
     x, y, z = components
@@ -312,70 +263,6 @@ def refuse_direction(name: str, w: Numbers) -> NoReturn:
         length = np.sum(np.square(w, dtype=np.float64), axis=-1)
     unit = np.abs(length - 1.0) <= UNIT_TOLERANCE
     _refuse(f"{name} must be unit vectors to {UNIT_TOLERANCE}", length, unit, "squared length ")
-
-
-def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> tuple[int, ...]:
-    """Shape to which arguments broadcast, the last axis of `vectors` apart.
-
-    Parameters
-    ----------
-    vectors : dict of str to ndarray
-        Directions, random numbers or colors by name: shapes (..., C).
-    numbers : dict of str to ndarray
-        The others: shapes (...).
-
-    Returns
-    -------
-    tuple of int
-
-    Raises
-    ------
-    ValueError
-        If they do not broadcast; names them and their shapes.
-
-    Examples
-    --------
-    >>> lead_shape({"wo": np.zeros((4, 3))}, {"roughness": np.zeros(5)})
-    Traceback (most recent call last):
-    ...
-    ValueError: wo, roughness must broadcast (last axis of wo apart); got shapes (4, 3), (5,)
-    """
-    arrays = [*vectors.values(), *numbers.values()]
-    leads = [tuple(array.shape[:-1]) for array in vectors.values()]
-    leads += [tuple(array.shape) for array in numbers.values()]
-    try:
-        return np.broadcast_shapes(*leads)
-    except ValueError:
-        names = ", ".join([*vectors, *numbers])
-        apart = f" (last axis of {', '.join(vectors)} apart)" if vectors else ""
-        shapes = ", ".join(str(tuple(array.shape)) for array in arrays)
-        raise ValueError(f"{names} must broadcast{apart}; got shapes {shapes}") from None
-
-
-def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
-    """Checked vectors and numbers, in this order, as float64 arrays whose shapes broadcast."""
-    lead_shape(vectors, numbers)
-    arrays = [*vectors.values(), *numbers.values()]
-    if array_namespace(*arrays) is not NUMPY:
-        return arrays
-    return [np.asarray(array, np.float64) for array in arrays]
-
-
-def channel_count(colors: Mapping[str, Numbers]) -> int:
-    """Number of channels to which colors of shape (..., C) broadcast.
-
-    Raises
-    ------
-    ValueError
-        If they do not; names them and their numbers of channels.
-    """
-    counts = [int(color.shape[-1]) for color in colors.values()]
-    largest = max(counts)
-    if any(count not in (1, largest) for count in counts):
-        raise ValueError(
-            f"{', '.join(colors)} must have equal numbers of channels; got {', '.join(map(str, counts))}"
-        )
-    return largest
 
 
 def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> Numbers:

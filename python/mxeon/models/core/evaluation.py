@@ -16,14 +16,13 @@ from mxeon.models.core.arguments import (
     checked_directions,
     checked_triples,
     checked_vector,
-    lead_shape,
     on_horizon,
-    refuse_ambiguous,
     refuse_direction,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.drjit_arrays import is_drjit, vector
 from mxeon.models.core.namespaces import NUMPY, array_namespace, checking
+from mxeon.models.core.shapes import lead_shape, refuse_ambiguous
 from mxeon.models.core.tiling import BLOCK, blocks, tile, with_axes
 
 _threads: ContextVar[int] = ContextVar("threads", default=1)

@@ -8,8 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_count, lead_shape
+from mxeon.models.core.arguments import checked, checked_count
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.shapes import lead_shape
 
 
 def albedo_dir_quadrature(

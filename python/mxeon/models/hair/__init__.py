@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from mxeon.models.core.arguments import (
-    channel_count,
     checked,
     checked_color,
     checked_directions,
@@ -23,6 +22,7 @@ from mxeon.models.core.arguments import (
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import any_array, array_namespace, library, like
+from mxeon.models.core.shapes import channel_count
 from mxeon.models.hair import formulas as formulas
 from mxeon.models.hair.formulas import LOBES, TEXT, HairForm
 

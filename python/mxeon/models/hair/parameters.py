@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_triples, lead_shape
+from mxeon.models.core.arguments import checked, checked_triples
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.shapes import lead_shape
 
 # Absorption of the pigments in red, green and blue, per radius of the fiber.
 EUMELANIN = (0.419, 0.697, 1.37)

@@ -12,15 +12,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    broadcastable,
-    checked_colors,
-    checked_numbers,
-    checked_sphere,
-)
+from mxeon.models.core.arguments import checked_colors, checked_numbers, checked_sphere
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.edges import at_least_0, at_most, power
 from mxeon.models.core.namespaces import any_array, array_namespace
+from mxeon.models.core.shapes import broadcastable
 
 HALF_TURN = np.pi / 360.0  # radians of half of a full cone angle in degrees
 

@@ -10,9 +10,10 @@ from functools import cache
 
 import numpy as np
 
-from mxeon.models.core.arguments import broadcastable, checked, checked_numbers
+from mxeon.models.core.arguments import checked, checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.quadrature import unit_rule
+from mxeon.models.core.shapes import broadcastable
 
 # Of the text's inversion, with its digits: the quotients of van de Hulst's fit, rounded.
 LINEAR = (4.09712, 4.20863)

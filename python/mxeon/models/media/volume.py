@@ -9,14 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    checked_numbers,
-    checked_pairs,
-    checked_sphere,
-    lead_shape,
-)
+from mxeon.models.core.arguments import checked_numbers, checked_pairs, checked_sphere
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.namespaces import any_array, array_namespace
+from mxeon.models.core.shapes import lead_shape
 
 
 @any_array

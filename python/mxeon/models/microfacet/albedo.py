@@ -11,15 +11,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from mxeon.models.core.arguments import (
-    channel_count,
     checked,
     checked_directions,
     checked_roughness,
     checked_switch,
-    lead_shape,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.shapes import channel_count, lead_shape
 from mxeon.models.microfacet.ggx_albedo import albedo
 from mxeon.models.microfacet.ggx_formulas import mean_alpha
 from mxeon.models.microfacet.lobe import CONDUCTOR, DIELECTRIC, SCHLICK, WHITE, Curve

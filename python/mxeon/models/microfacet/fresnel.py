@@ -10,10 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import channel_count, checked, checked_vector
+from mxeon.models.core.arguments import checked, checked_vector
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import any_array
+from mxeon.models.core.shapes import channel_count
 from mxeon.models.microfacet import fresnel_formulas as formulas
 
 

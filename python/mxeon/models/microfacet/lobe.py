@@ -8,18 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    channel_count,
-    checked_directions,
-    checked_roughness,
-    checked_switch,
-    lead_shape,
-    refuse_ambiguous,
-)
+from mxeon.models.core.arguments import checked_directions, checked_roughness, checked_switch
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.drjit_arrays import is_drjit
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import array_namespace
+from mxeon.models.core.shapes import channel_count, lead_shape, refuse_ambiguous
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.missing import missing_light

@@ -9,10 +9,11 @@ from typing import cast
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, refuse_ambiguous, spread_pair
+from mxeon.models.core.arguments import checked
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.edges import root
 from mxeon.models.core.namespaces import any_array, array_namespace, library
+from mxeon.models.core.shapes import refuse_ambiguous, spread_pair
 from mxeon.models.nodes.parameters import WEIGHT, Parameter
 
 

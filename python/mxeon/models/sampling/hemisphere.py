@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import broadcastable, checked, checked_directions, checked_pairs
+from mxeon.models.core.arguments import checked, checked_directions, checked_pairs
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.edges import hypot, root
 from mxeon.models.core.namespaces import any_array, array_namespace
+from mxeon.models.core.shapes import broadcastable
 
 
 @any_array

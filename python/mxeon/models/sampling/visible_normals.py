@@ -9,15 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    broadcastable,
-    checked_directions,
-    checked_roughness,
-    lead_shape,
-)
+from mxeon.models.core.arguments import checked_directions, checked_roughness
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.edges import at_least_0, root
 from mxeon.models.core.namespaces import any_array, array_namespace
+from mxeon.models.core.shapes import broadcastable, lead_shape
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.sampling.hemisphere import stack_xyz, unpack_uniforms
 

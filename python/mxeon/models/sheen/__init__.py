@@ -10,17 +10,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mxeon.models.core.arguments import (
-    checked,
-    checked_numbers,
-    checked_triples,
-    checked_vector,
-    lead_shape,
-)
+from mxeon.models.core.arguments import checked, checked_numbers, checked_triples, checked_vector
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.edges import at_most, guarded, largest, least_normal, root
 from mxeon.models.core.evaluation import evaluate
 from mxeon.models.core.namespaces import NUMPY, any_array, any_array_or_drjit, array_namespace
+from mxeon.models.core.shapes import lead_shape
 from mxeon.models.diffuse.formulas import cosines
 from mxeon.models.sheen.conty_kulla import conty_kulla_albedo_dir
 

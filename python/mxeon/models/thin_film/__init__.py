@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked, checked_rgb, lead_shape
+from mxeon.models.core.arguments import checked, checked_rgb
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.shapes import lead_shape
 from mxeon.models.thin_film.curve import CIE_RGB, MATERIALX, PRINTED, TEXT, Form, film_curve
 
 __all__ = [

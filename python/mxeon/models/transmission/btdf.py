@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from mxeon.models.core.arguments import (
-    channel_count,
     checked,
     checked_directions,
     checked_roughness,
@@ -26,6 +25,7 @@ from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.edges import guarded, least_normal
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import any_array, array_namespace
+from mxeon.models.core.shapes import channel_count
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.lobe import DIELECTRIC
 from mxeon.models.transmission.refraction import LEAST, Facet

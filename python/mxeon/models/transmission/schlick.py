@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mxeon.models.core.arguments import (
-    channel_count,
     checked,
     checked_choice,
     checked_color,
@@ -21,9 +20,9 @@ from mxeon.models.core.arguments import (
     checked_roughness,
     checked_switch,
     checked_transmitted,
-    lead_shape,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.shapes import channel_count, lead_shape
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.transmission.btdf import evaluate_btdf
 from mxeon.models.transmission.transmittance import evaluate_transmittance

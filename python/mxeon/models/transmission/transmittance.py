@@ -14,7 +14,6 @@ from typing import TypeAlias
 import numpy as np
 
 from mxeon.models.core.arguments import (
-    channel_count,
     checked,
     checked_directions,
     checked_roughness,
@@ -22,6 +21,7 @@ from mxeon.models.core.arguments import (
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.shapes import channel_count
 from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.lobe import DIELECTRIC
 from mxeon.models.microfacet.slopes import refracting_nodes
