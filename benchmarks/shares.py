@@ -15,8 +15,7 @@ NODES = ("dielectric_bsdf", "conductor_bsdf", "generalized_schlick_bsdf")
 PARTS = {
     "nothing": (("", ""),),
     "the film": (("if (fd.airy)\n    {\n        // Look up", "if (false)\n    {\n        // Look up"),),
-    "six orders of the film": (("vec4 orders = thin_film_orders(z, waves);", "vec4 orders = z.xyxy;"),),
-    "colors of the film's substrate": (("dot(colors, vec3(1.0)) > 0.0 ? 3 : 1", "1"),),
+    "orders of the film from the second": (("} while (i < count);", "} while (false);"),),
     "width of the film's cosines": (
         ("- 0.25 * spread2 * spread2", ""),
     ),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of `eonlib/genglsl/thin_film.glsl` against all orders and whole averages: python -m fits.thin_film.
 
-The shader sums six orders and a geometric series after them, averages over the hemisphere in five
-cosines, or in two, and over the visible facets in four, or in one. Each of these cosines stands for those
+The shader sums orders while they count, averages over the hemisphere in five cosines, or in two, and
+over the visible facets in four, or in two. Each of these cosines stands for those
 around it, whose fringes damp each other. This measures what each costs at most, over films of up to 1000
 nm on each kind of substrate. The largest error is searched for: around the worst of random films, in
 ever smaller steps.
@@ -11,47 +11,55 @@ ever smaller steps.
 import numpy as np
 
 from mxeon.conformance.probes.thin_films import LEAST_OIL, SHARP
+from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
 from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import SUBSTRATES, TEXT, film_curve
 from mxeon.models.thin_film.lobe import film_albedo_dir
 
 SEED, COUNT = 1, 1 << 9  # films of a step
 KEPT, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # the worst of them; distances from these, of a range of 1
-NUMBERS, LEAST = (
-    10,
-    1e-3,
-)  # of a film, its substrate and its view; the least, since 0 reflects nothing
+NUMBERS = 10  # of a film, its substrate and its view
+COLORED = 17  # with color82, color90 and the exponent of Schlick's curve as well
+FAR, MOVED = (
+    (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01),
+    0.3,
+)  # then: distances, and the part that moves
+LEAST = 1e-3  # of these numbers, since 0 reflects nothing
 # Each in a range: roughness, cosine of the view, thickness in nm, index.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 CLEAR = {**SHARP, "index": (LEAST_OIL, 2.5)}
 STEP = 1e-6  # of a thickness, relative, by which the slope of a curve is measured
 # Of the shader, chosen by `thin_film_nodes.py`: the width of five cosines; two cosines, their weights and
-# their width; for visible facets, polynomials of the mean of their cosines, of the reach of four nodes
-# around it and of their bend; the width of each of four nodes, and of one alone, as parts of the reach.
+# their width; for visible facets, polynomials of the mean of their cosines, of the reach of two or four
+# nodes around it and of their bend; the width of all together, as a part of the reach.
 WIDTH = 0.07
 PAIR = ((0.294, 0.785), (0.275, 0.725), 0.165)
 STEEP = 0.2
 FACETS = (
-    (3.0211, -0.024078, -5.4469, 2.4636, 0.016408, 2.3342, -2.7778, -7.803, 8.2627, 0.041009),
-    (-0.20527, 4.4118, -5.1988, 0.92353, 3.6844, -7.7366, 3.6534, -2.2933, 3.1415, -0.33986),
-    (0.63084, -1.2769, 1.0363, -0.70252, 0.49459, 0.18617, -1.2792, -1.6739, 2.466, -0.3033),
+    (3.4363, -1.7079, -3.0799, 1.3454, 0.0062777, 2.3748, -2.8494, -7.9176, 8.404, 0.056171),
+    (-0.0072539, 4.8186, -6.3381, 1.4473, 3.6913, -7.7746, 3.6991, -2.4648, 3.3692, -0.38795),
+    (0.42872, -0.9025, 0.79165, -0.59517, 0.78648, -0.40842, -0.75623, -1.8372, 2.2153, -0.0055537),
 )  # fmt: skip
-SHARE, ALONE = 0.22, 0.6
-ALIKE = 0.05  # reach below which one node serves
+SHARE = 1.1
+ALIKE = 0.09  # reach below which two nodes serve
 WHITE = {"color82": 1.0, "color90": 1.0}
+# Orders are summed while they exceed 2^-x, and so many at most: of a value, and of a node of a rule.
+VALUE_ORDERS, MEAN_ORDERS = (17.0, 64.0), (10.0, 24.0)
+LEAST_AMPLITUDE, MOST_AMPLITUDE = 1e-6, np.sqrt(0.999)
+DECAY = min(var for *_, var in film.GAUSSIANS) * (2.0 * np.pi) ** 2 / np.log(2.0)
 
 
 def substrates(unit):
-    """Inputs of the three nodes, by category, from numbers in [0, 1], shape (6, N)."""
+    """Inputs of the three nodes, by category, from numbers in [0, 1], shape (6, N) or (13, N)."""
     count = unit.shape[1]
+    edges = {name: np.full((3, count), value) for name, value in WHITE.items()}
+    edges["exponent"] = np.full(count, 5.0)
+    if len(unit) > 6:
+        edges = {"color82": unit[6:9], "color90": unit[9:12], "exponent": 1.0 + 9.0 * unit[12]}
     return {
         "dielectric_bsdf": {"ior": 1.0 + 2.0 * unit[0], "tint": np.ones((3, 1))},
-        "conductor_bsdf": {"ior": 0.5 + 2.5 * unit[:3], "extinction": 0.2 + 5.8 * unit[3:]},
-        "generalized_schlick_bsdf": {
-            "color0": unit[:3],
-            **{name: np.full((3, count), value) for name, value in WHITE.items()},
-            "exponent": np.full(count, 5.0),
-        },
+        "conductor_bsdf": {"ior": 0.5 + 2.5 * unit[:3], "extinction": 0.2 + 5.8 * unit[3:6]},
+        "generalized_schlick_bsdf": {"color0": unit[:3], **edges},
     }
 
 
@@ -64,39 +72,57 @@ def filmed(category, ranges, unit):
     return substrates(unit[4:])[category] | films, alpha, mu
 
 
-def largest(errors, ranges, category):
-    """The largest error of films in ranges that a search finds."""
+def largest(errors, ranges, category, numbers=NUMBERS):
+    """The largest error of films in ranges that a search finds.
+
+    Where a film has more numbers, more films are kept, and each goes a way along some of its numbers alone.
+    """
     rng = np.random.default_rng(SEED)
-    unit = rng.random((NUMBERS, COUNT))
+    many = numbers > NUMBERS
+    count, kept, steps = (4 * COUNT, 4 * KEPT, FAR) if many else (COUNT, KEPT, STEPS)
+    unit = rng.random((numbers, count))
     found = errors(category, *filmed(category, ranges, unit))
-    for step in STEPS:
-        worst = unit[:, np.argsort(found)[-KEPT:]].repeat(COUNT // KEPT // 4, axis=1)
-        near = np.clip(worst + step * rng.standard_normal(worst.shape), LEAST, 1.0)
+    for step in steps:
+        worst = unit[:, np.argsort(found)[-kept:]].repeat(count // kept // 4, axis=1)
+        way = step * rng.standard_normal(worst.shape)
+        if many:
+            way *= rng.random(worst.shape) < MOVED
+        near = np.clip(worst + way, LEAST, 1.0)
         found = np.append(found, errors(category, *filmed(category, ranges, near)))
         unit = np.append(unit, near, axis=1)
     return float(found.max())
 
 
-def six_orders(spread):
+def counted_orders(spread, limit):
     """The shader's sum of orders, in the place of `formulas._all_orders`.
 
-    `spread` is the standard deviation of the path differences in m, whose fringes damp each other.
+    `spread` is the standard deviation of the path differences in m, whose fringes damp each other. Each
+    polarization has as many orders as it needs, in the shader as many as the one that needs more.
     """
 
     def series(r, phase, opd, _):
         total = np.zeros((3, *np.broadcast_shapes(r.shape, phase.shape, opd.shape)))
+        count = order_count(np.broadcast_to(r, total.shape[1:]), opd, limit)
         for k, v, mu, var in film.GAUSSIANS:
             weight = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
             z = r * np.exp(1j * (2.0 * np.pi * mu * opd + phase))
             decay = var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
-            orders = sum((z**m).real * np.exp(-decay * m * m) for m in range(1, 7))
-            tail = np.exp(-49.0 * decay) * (1.0 - np.exp(-6.0 * decay))
-            ratio = np.exp(-15.0 * decay) * (1.0 - r * r * tail)
-            rest = np.exp(-49.0 * decay) * (z**7 / (1.0 - ratio * z)).real
-            total[k] += weight * (orders + rest)
+            total[k] += weight * sum(
+                np.where(m <= count, (z**m).real * np.exp(-decay * m * m), 0.0)
+                for m in range(1, int(count.max()) + 1)
+            )
         return total
 
     return series
+
+
+def order_count(r, opd, limit):
+    """Orders that the shader sums: r^m k^(m^2) exceeds 2^-bits, and `most` at most."""
+    bits, most = limit
+    largest = r.max(axis=0) if r.ndim > 1 else r
+    a = -np.log2(np.clip(largest, LEAST_AMPLITUDE, MOST_AMPLITUDE))
+    b = DECAY * opd * opd
+    return np.floor(np.minimum(1.0 + 2.0 * bits / (a + np.sqrt(a * a + 4.0 * bits * b)), most))
 
 
 def shader_curve(category, material, mu, width=0.0):
@@ -104,7 +130,8 @@ def shader_curve(category, material, mu, width=0.0):
     n, thickness = material["thinfilm_ior"], material["thinfilm_thickness"]
     mu_t = np.maximum(film.refracted(mu, n), 1e-12)
     all_orders = film._all_orders
-    film._all_orders = six_orders(2.0e-9 * thickness * width * mu / (n * mu_t))
+    spread = 2.0e-9 * thickness * np.asarray(width) * mu / (n * mu_t)
+    film._all_orders = counted_orders(spread, MEAN_ORDERS if np.any(spread) else VALUE_ORDERS)
     try:
         return film_curve(category).at(mu, **material)
     finally:
@@ -188,9 +215,15 @@ def gauss(count):
 
 
 def visible_errors(category, material, alpha, mu):
-    """Errors of the average over the visible facets in four cosines, or in one."""
+    """Errors of the average over the visible facets in four cosines, or in two."""
     exact = visible_average(category, material, alpha, mu)
     return np.abs(visible_mean(category, material, alpha, mu) - exact).max(axis=0)
+
+
+def albedo_errors(category, material, alpha, mu):
+    """Errors of the average over the visible facets and of F_ss, times the light that is lost."""
+    lost = 1.0 - ggx_albedo_dir(mu, alpha)
+    return visible_errors(category, material, alpha, mu) + lost * average_errors(category, material)
 
 
 def visible_average(category, material, alpha, mu):
@@ -205,12 +238,16 @@ def visible_average(category, material, alpha, mu):
     return (film / mirror).T
 
 
-def visible_mean(category, material, alpha, mu, rule=None, count=4):
+def visible_mean(category, material, alpha, mu, coefficients=FACETS, count=4):
     """The same in the shader's cosines, or by other coefficients, or in another number of cosines."""
-    return sum(
-        weight * shader_curve(category, material, cosine, width)
-        for cosine, weight, width in _nodes(mu, alpha, rule or (FACETS, SHARE, ALONE), count)
+    many, few = (
+        sum(
+            weight * shader_curve(category, material, cosine, width)
+            for cosine, weight, width in _nodes(mu, alpha, coefficients, number)
+        )
+        for number in (count, min(count, 2))
     )
+    return np.where(facets(mu, alpha, coefficients)[1] < ALIKE, few, many)
 
 
 MIRRORS = {
@@ -220,15 +257,16 @@ MIRRORS = {
 }
 
 
-def _nodes(mu, alpha, rule, count):
-    """Cosines that stand for the visible facets, their weights and widths."""
-    coefficients, share, alone = rule
+def _nodes(mu, alpha, coefficients, count):
+    """Cosines that stand for the visible facets, their weights and widths.
+
+    These are Gauss's nodes for a semicircle, which has fewer facets at its ends than in its middle.
+    """
     mean, reach, bend = facets(mu, alpha, coefficients)
-    alike = reach < ALIKE
-    x, w = np.polynomial.legendre.leggauss(count)
-    for node, weight in zip(x, 0.5 * w, strict=True):
-        offset = np.where(alike, 0.0, reach * (node + bend * (3.0 * node * node - 1.0)))
-        yield np.clip(mean + offset, 0.0, 1.0), weight, np.where(alike, alone, share) * reach
+    for angle in np.pi * np.arange(1, count + 1) / (count + 1):
+        node, weight = np.cos(angle), 2.0 * np.sin(angle) ** 2 / (count + 1)
+        offset = reach * (node + bend * (4.0 * node * node - 1.0))
+        yield np.clip(mean + offset, 0.0, 1.0), weight, SHARE / count * reach
 
 
 def facets(mu, alpha, coefficients):
@@ -251,18 +289,22 @@ MEASURED = {
     "orders of curves": (curve_errors, CLEAR),
     "slope of curves": (slopes, CLEAR),
     "waves of curves": (wave_slopes, CLEAR),
-    "F_ss": (average_errors, FILMS),
+    "F_ss": (average_errors, FILMS, COLORED),
     "F_ss in two cosines": (pair_errors, FILMS),
     "visible facets": (visible_errors, FILMS),
+    "albedo": (albedo_errors, FILMS),
 }
+
+
+def search(name, category):
+    """The largest error of a name that a search finds."""
+    measured, ranges, *numbers = MEASURED[name]
+    return largest(measured, ranges, category, *numbers)
 
 
 def errors(names):
     """Largest errors by name, each by category."""
-    return {
-        name: {category: largest(*MEASURED[name], category) for category in MIRRORS}
-        for name in names
-    }
+    return {name: {category: search(name, category) for category in MIRRORS} for name in names}
 
 
 if __name__ == "__main__":

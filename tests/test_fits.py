@@ -201,13 +201,19 @@ def test_the_shader_has_the_nodes_of_a_film():
 
     def macros(pattern):
         found = re.findall(rf"#define (?:THIN_FILM|MICROFACET)_{pattern} (.*)", text)
-        return [float(digits) for each in found for digits in re.findall(r"-?\d\.\d+", each)]
+        return [float(digits) for each in found for digits in re.findall(r"-?\d+\.\d+", each)]
 
     cosines, weights, width = thin_film.PAIR
     assert macros(r"PAIR\d") == [cosines[0], weights[0], cosines[1], weights[1]]
     assert macros("PAIR_WIDTH") == [width]
     assert macros("WIDTH") == [thin_film.WIDTH] and macros("ALIKE") == [thin_film.ALIKE]
-    assert macros("SHARE") + macros("ALONE") == [thin_film.SHARE, thin_film.ALONE]
+    assert macros("SHARE") == [thin_film.SHARE]
+    assert macros("ORDERS_VALUE") + macros("ORDERS_MEAN") == [
+        *thin_film.VALUE_ORDERS,
+        *thin_film.MEAN_ORDERS,
+    ]
+    (decay,) = re.findall(r"define THIN_FILM_DECAY (\S+)", text)
+    assert float(decay) == pytest.approx(thin_film.DECAY, rel=1e-4)
     columns = np.transpose(thin_film.FACETS).ravel()
     assert macros(r"FACETS_\d\d") == list(columns)
     np.testing.assert_allclose(

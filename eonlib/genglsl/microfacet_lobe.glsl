@@ -11,30 +11,31 @@
 // float32 adds nothing to 1. With ior 0 the curve of eonlib reflects everything.
 #define MICROFACET_LEAST_IOR 1e-3
 
-// Gauss's rule of four nodes on [-1, 1]: two of them, and weights that add up to 1.
-#define MICROFACET_INNER vec2(0.33998104, 0.32607258)
-#define MICROFACET_OUTER vec2(0.86113631, 0.17392742)
+// Gauss's rules of two and of four nodes for a semicircle over [-1, 1]: positive nodes, and weights that
+// add up to 1.
+#define MICROFACET_HALF vec2(0.5, 0.5)
+#define MICROFACET_INNER vec2(0.30901699, 0.36180340)
+#define MICROFACET_OUTER vec2(0.80901699, 0.13819660)
 
 // Mean, reach and bend of four nodes for visible facets, fitted to the averages of random films. Source:
-// fits/thin_film_nodes.py. Domain: mu and alpha in [0, 1]. Largest error of a reflectance: 2.8e-2.
-#define MICROFACET_FACETS_00 vec3(3.0211, -0.20527, 0.63084)
-#define MICROFACET_FACETS_01 vec3(-0.024078, 4.4118, -1.2769)
-#define MICROFACET_FACETS_02 vec3(-5.4469, -5.1988, 1.0363)
-#define MICROFACET_FACETS_03 vec3(2.4636, 0.92353, -0.70252)
-#define MICROFACET_FACETS_10 vec3(0.016408, 3.6844, 0.49459)
-#define MICROFACET_FACETS_11 vec3(2.3342, -7.7366, 0.18617)
-#define MICROFACET_FACETS_12 vec3(-2.7778, 3.6534, -1.2792)
-#define MICROFACET_FACETS_20 vec3(-7.803, -2.2933, -1.6739)
-#define MICROFACET_FACETS_21 vec3(8.2627, 3.1415, 2.466)
-#define MICROFACET_FACETS_30 vec3(0.041009, -0.33986, -0.3033)
+// fits/thin_film_nodes.py. Domain: mu and alpha in [0, 1]. Largest error of a reflectance: 3.1e-2.
+#define MICROFACET_FACETS_00 vec3(3.4363, -0.0072539, 0.42872)
+#define MICROFACET_FACETS_01 vec3(-1.7079, 4.8186, -0.9025)
+#define MICROFACET_FACETS_02 vec3(-3.0799, -6.3381, 0.79165)
+#define MICROFACET_FACETS_03 vec3(1.3454, 1.4473, -0.59517)
+#define MICROFACET_FACETS_10 vec3(0.0062777, 3.6913, 0.78648)
+#define MICROFACET_FACETS_11 vec3(2.3748, -7.7746, -0.40842)
+#define MICROFACET_FACETS_12 vec3(-2.8494, 3.6991, -0.75623)
+#define MICROFACET_FACETS_20 vec3(-7.9176, -2.4648, -1.8372)
+#define MICROFACET_FACETS_21 vec3(8.404, 3.3692, 2.2153)
+#define MICROFACET_FACETS_30 vec3(0.056171, -0.38795, -0.0055537)
 
-// Width of each of four nodes, and of one alone, relative to their reach; reach below which one serves.
-#define MICROFACET_SHARE 0.22
-#define MICROFACET_ALONE 0.6
-#define MICROFACET_ALIKE 0.05
+// Width of all nodes together, relative to their reach; reach below which two serve.
+#define MICROFACET_SHARE 1.1
+#define MICROFACET_ALIKE 0.09
 
 // Compensation below which two cosines serve for F_ss.
-#define MICROFACET_LITTLE 0.005
+#define MICROFACET_LITTLE 0.01
 
 // Weights whose sums tell lobes under films apart, in one pixel: of mu_o, alpha, thickness and index of the
 // film, and of the curve's average without it and its kind.
@@ -111,13 +112,6 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     return lobe;
 }
 
-// Node i of Gauss's rule in four, and its weight.
-vec2 microfacet_gauss(int i)
-{
-    vec2 node = i == 0 || i == 3 ? MICROFACET_OUTER : MICROFACET_INNER;
-    return i < 2 ? vec2(-node.x, node.y) : node;
-}
-
 // Mean of the cosines of wo with the visible facets, reach of the nodes around it, and their bend.
 vec3 microfacet_facets(float mu, float alpha)
 {
@@ -131,16 +125,15 @@ vec3 microfacet_facets(float mu, float alpha)
     return vec3(mu + s * s * C.x, s * C.y, C.z);
 }
 
-// Node i of 1 or 4 for visible facets: cosine, weight and width. Four are Gauss's, x, bent to
-// x + bend (3 x^2 - 1), which has the same mean.
+// Node i of 2 or 4 for visible facets: cosine, weight and width. They are Gauss's, x, bent to
+// x + bend (4 x^2 - 1), which has the same mean.
 vec3 microfacet_visible(int i, int count, vec3 facets)
 {
-    vec2 node = microfacet_gauss(i);
-    float bent = node.x + facets.z * (3.0 * node.x * node.x - 1.0);
-    vec3 one = vec3(facets.x, 1.0, MICROFACET_ALONE * facets.y);
-    float mu = clamp(facets.x + facets.y * bent, 0.0, 1.0);
-    vec3 four = vec3(mu, node.y, MICROFACET_SHARE * facets.y);
-    return count == 1 ? one : four;
+    vec2 node = i == 0 || i == 3 ? MICROFACET_OUTER : MICROFACET_INNER;
+    node = count == 2 ? MICROFACET_HALF : node;
+    float x = 2 * i < count ? -node.x : node.x;
+    float mu = facets.x + facets.y * (x + facets.z * (4.0 * x * x - 1.0));
+    return vec3(clamp(mu, 0.0, 1.0), node.y, MICROFACET_SHARE / float(count) * facets.y);
 }
 
 // Put a film's reflectances in the place of those without one, in one loop: of the visible facets and of the
@@ -160,7 +153,7 @@ void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFr
 
         // Count the nodes.
         vec3 reached = microfacet_facets(lobe.mu_o, lobe.alpha);
-        int facets = reached.y < MICROFACET_ALIKE ? 1 : 4;
+        int facets = reached.y < MICROFACET_ALIKE ? 2 : 4;
         int cosines = 1.0 - lobe.albedo < MICROFACET_LITTLE * lobe.albedo ? 2 : 5;
         int last = facets + cosines;
         int end = lobe.closure == CLOSURE_TYPE_REFLECTION ? last + 1 : last;

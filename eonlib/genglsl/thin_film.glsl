@@ -32,99 +32,85 @@
 // Two quotients of 0 by 0 are kept finite: of a vanishing root, and of full reflection at grazing.
 #define THIN_FILM_LEAST 1e-12
 
-// Waves of a path difference: 2 pi mu opd, and exp(-k (2 pi sigma opd)^2) by k.
-struct ThinFilmWaves
-{
-    vec4 cosine;
-    vec4 sine;
-    vec4 k1;
-    vec4 k4;
-    vec4 k9;
-    vec4 k16;
-    vec4 k25;
-    vec4 k36;
-    vec4 k49;
-    vec4 k15;
-    vec4 tail; // by how much the ratio of the series falls below k15 at full reflection
-};
+// Orders are summed while they exceed 2^-x, and y at most: of a value, and of a node of a rule.
+#define THIN_FILM_ORDERS_VALUE vec2(17.0, 64.0)
+#define THIN_FILM_ORDERS_MEAN vec2(10.0, 24.0)
+#define THIN_FILM_DECAY 2.465e11  // (2 pi sigma)^2 / log(2) of the least sigma
 
-// Waves of path differences around opd, of standard deviation `width`. Wide fringes are seen by the
-// nodes of a rule, narrow ones vanish from its mean: exp(-(2 pi mu width)^4 / 4).
-ThinFilmWaves thin_film_waves(float opd, float width)
+// Red, green and blue of what X, X, Y and Z respond with.
+vec3 thin_film_color(vec4 response)
 {
+    return vec3(dot(THIN_FILM_RED, response), dot(THIN_FILM_GREEN, response),
+                dot(THIN_FILM_BLUE, response));
+}
+
+// Multiply complex numbers, one for each channel.
+void thin_film_multiply(inout vec3 re, inout vec3 im, vec3 x, vec3 y)
+{
+    vec3 product = re * x - im * y;
+    im = re * y + im * x;
+    re = product;
+}
+
+// Orders m of an amplitude r of square R up to which r^m k^(m^2) exceeds a limit. With a = -log2 r and
+// b = -log2 k, the k of the narrowest sensitivity: m a + m^2 b = limit. A node of a rule has a width.
+int thin_film_count(float R, float opd, float width)
+{
+    vec2 limit = width > 0.0 ? THIN_FILM_ORDERS_MEAN : THIN_FILM_ORDERS_VALUE;
+    float a = -0.5 * log2(clamp(R, THIN_FILM_LEAST, 0.999));
+    float b = THIN_FILM_DECAY * opd * opd;
+    return int(min(1.0 + 2.0 * limit.x / (a + sqrt(a * a + 4.0 * limit.x * b)), limit.y));
+}
+
+// Sums over orders m of the colors of Re z^m S_m, z of each polarization and channel, S_m = k^(m^2)
+// exp(2 pi i mu m opd) of each sensitivity, k = exp(-(2 pi sigma opd)^2). A color of S_m serves all z.
+// `imaginary` is 0 where all z are real, which spares compilers half of a step.
+void thin_film_orders(vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, float opd, float width, int count,
+                      float imaginary, out vec3 orders_s, out vec3 orders_p)
+{
+    // The first order, and its ratio to the second. Wide fringes are seen by the nodes of a rule,
+    // narrow ones vanish from its mean: exp(-(2 pi mu width)^4 / 4).
     float phase = 2.0 * M_PI * opd;
     vec4 spread = THIN_FILM_POSITIONS * (2.0 * M_PI * width);
     vec4 spread2 = spread * spread;
-    ThinFilmWaves waves;
-    waves.cosine = mx_cos(THIN_FILM_POSITIONS * phase);
-    waves.sine = mx_sin(THIN_FILM_POSITIONS * phase);
-    waves.k1 = exp(-THIN_FILM_VARIANCES * (phase * phase) - 0.25 * spread2 * spread2);
-    vec4 k2 = waves.k1 * waves.k1;
-    waves.k4 = k2 * k2;
-    vec4 k8 = waves.k4 * waves.k4;
-    waves.k9 = k8 * waves.k1;
-    waves.k16 = k8 * k8;
-    waves.k25 = waves.k16 * waves.k9;
-    waves.k36 = waves.k16 * waves.k16 * waves.k4;
-    waves.k49 = waves.k25 * k8 * waves.k16;
-    waves.k15 = k8 * waves.k4 * k2 * waves.k1;
-    waves.tail = waves.k15 * waves.k49 * (1.0 - waves.k4 * k2);
-    return waves;
-}
+    vec4 k = exp(-THIN_FILM_VARIANCES * (phase * phase) - 0.25 * spread2 * spread2);
+    vec4 k2 = k * k;
+    vec4 wave_re = k * mx_cos(THIN_FILM_POSITIONS * phase);
+    vec4 wave_im = k * mx_sin(THIN_FILM_POSITIONS * phase);
+    vec4 ratio_re = k2 * wave_re;
+    vec4 ratio_im = k2 * wave_im;
 
-// Sum of r^m S(m opd, m phi) over all orders m, for r exp(i phi) = z: six by Clenshaw's recurrence,
-// b_m = h_m + 2 Re w b_(m + 1) - r^2 b_(m + 2), w = z exp(2 pi i mu opd), and a geometric series.
-// Its heights are k^(7 + j)^2 = k^49 k^(14 j + j^2). Where r is small or the film thick its ratio is
-// k^15, which agrees at j = 1, the one that counts. Where r is near 1 and the film thin, k near 1, it
-// is close to k^21, which agrees at j = 7: terms before it err in the other direction than later ones.
-vec4 thin_film_orders(vec2 z, ThinFilmWaves waves)
-{
-    float r2 = dot(z, z);
-    vec4 w = z.x * waves.cosine - z.y * waves.sine;
-    vec4 twice = 2.0 * w;
-    vec4 ratio = waves.k15 - r2 * waves.tail;
-    vec4 next = twice - r2 * ratio;
-    vec4 b7 = waves.k49 / max(1.0 - ratio * next, THIN_FILM_LEAST);
-    vec4 b6 = waves.k36 + next * b7;
-    vec4 b5 = waves.k25 + twice * b6 - r2 * b7;
-    vec4 b4 = waves.k16 + twice * b5 - r2 * b6;
-    vec4 b3 = waves.k9 + twice * b4 - r2 * b5;
-    vec4 b2 = waves.k4 + twice * b3 - r2 * b4;
-    vec4 b1 = waves.k1 + twice * b2 - r2 * b3;
-    return w * b1 - r2 * b2;
-}
-
-// Sums of orders of both polarizations, by channel: a channel of a polarization in each step of one
-// loop, of which compilers make one copy. Channels that are all alike have one sum.
-void thin_film_sums(vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, ThinFilmWaves waves, int channels,
-                    out vec3 orders_s, out vec3 orders_p)
-{
+    // Add order by order.
     orders_s = vec3(0.0);
     orders_p = vec3(0.0);
+    vec3 power_re_s = re_s;
+    vec3 power_im_s = im_s;
+    vec3 power_re_p = re_p;
+    vec3 power_im_p = im_p;
     int i = 0;
     do  // a loop that asks first takes one step more on llvmpipe
     {
-        bool is_s = i < channels;
-        int k = is_s ? i : i - channels;
-        vec3 channel = vec3(k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0);
-        vec2 z = vec2(dot(is_s ? re_s : re_p, channel), dot(is_s ? im_s : im_p, channel));
-        vec4 orders = thin_film_orders(z, waves);
-        vec3 sums = vec3(dot(THIN_FILM_RED, orders), dot(THIN_FILM_GREEN, orders),
-                         dot(THIN_FILM_BLUE, orders));
-        sums *= channels == 1 ? vec3(1.0) : channel;
-        orders_s += is_s ? sums : vec3(0.0);
-        orders_p += is_s ? vec3(0.0) : sums;
+        vec3 color_re = thin_film_color(wave_re);
+        vec3 color_im = thin_film_color(wave_im);
+        orders_s += power_re_s * color_re - power_im_s * color_im;
+        orders_p += power_re_p * color_re - power_im_p * color_im;
+        thin_film_multiply(power_re_s, power_im_s, re_s, im_s);
+        thin_film_multiply(power_re_p, power_im_p, re_p, im_p);
+        power_im_s *= imaginary;
+        power_im_p *= imaginary;
+        vec4 next_re = wave_re * ratio_re - wave_im * ratio_im;
+        wave_im = wave_re * ratio_im + wave_im * ratio_re;
+        wave_re = next_re;
+        ratio_re *= k2;
+        ratio_im *= k2;
         i++;
-    } while (i < 2 * channels);
+    } while (i < count);
 }
 
-// Reflectance of one polarization from the sums of its orders: r12 is the amplitude of the upper
-// interface, re + i im that of the lower one.
-vec3 thin_film_polarized(float r12, vec3 re, vec3 im, vec3 orders)
+// Reflectance of one polarization from the sum of its orders and the reflectances of both interfaces.
+vec3 thin_film_polarized(float R12, vec3 R23, vec3 orders)
 {
-    float R12 = r12 * r12;
     float T12 = 1.0 - R12;
-    vec3 R23 = re * re + im * im;
     vec3 trapped = max(1.0 - R12 * R23, THIN_FILM_LEAST);
     return R12 + T12 * (T12 * R23 - 2.0 * (1.0 - R23) * orders) / trapped;
 }
@@ -193,17 +179,23 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     vec3 re_s, im_s, re_p, im_p;
     thin_film_lower(mu_t, n, sin2, fd, re_s, im_s, re_p, im_p);
 
+    float R12_s = r_s * r_s;
+    float R12_p = r_p * r_p;
+    vec3 R23_s = re_s * re_s + im_s * im_s;
+    vec3 R23_p = re_p * re_p + im_p * im_p;
+
     // Sum the orders between both. The slope of 2 n mu_t d is 2 d mu / (n mu_t).
     float twice = 2.0e-9 * fd.tf_thickness;
     float nu = n * mu_t;
-    ThinFilmWaves waves = thin_film_waves(twice * nu, twice * width * mu / max(nu, THIN_FILM_LEAST));
-    vec3 colors = abs(re_s - re_s.x) + abs(im_s - im_s.x) + abs(re_p - re_p.x) + abs(im_p - im_p.x);
-    int channels = dot(colors, vec3(1.0)) > 0.0 ? 3 : 1;
+    vec3 R = max(R12_s * R23_s, R12_p * R23_p);
+    int count = thin_film_count(max(R.x, max(R.y, R.z)), twice * nu, width);
+    float imaginary = fd.model == FRESNEL_MODEL_SCHLICK ? 0.0 : 1.0;
     vec3 orders_s, orders_p;
-    thin_film_sums(-r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p, waves, channels, orders_s,
-                   orders_p);
-    vec3 F_s = thin_film_polarized(r_s, re_s, im_s, orders_s);
-    vec3 F_p = thin_film_polarized(r_p, re_p, im_p, orders_p);
+    thin_film_orders(-r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p, twice * nu,
+                     twice * width * mu / max(nu, THIN_FILM_LEAST), count, imaginary, orders_s,
+                     orders_p);
+    vec3 F_s = thin_film_polarized(R12_s, R23_s, orders_s);
+    vec3 F_p = thin_film_polarized(R12_p, R23_p, orders_p);
     return clamp(0.5 * (F_s + F_p), 0.0, 1.0);
 }
 
