@@ -52,7 +52,7 @@ def measure(options, file):
     for name in options.groups or GROUPS:
         sizes = dict(QUICK[name]) if options.quick else {}
         kept = partial(keep, file, options.kind, time.monotonic())
-        if name == "materials":  # which takes longest: each material is kept as it is done
+        if name in ("materials", "check"):  # which take longest: each part is kept as it is done
             sizes["keep"] = kept
         try:
             group = import_module(f"benchmarks.{name}").measure(**sizes)

@@ -11,19 +11,18 @@ import statistics
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from subprocess import Popen
 
 import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, ratio
-from mxeon.errors import NotRun
-from mxeon.hosts import open_engine
 from mxeon.shaders.library import eonlib_folder
 
-OTHERS = ("webgl", "vulkan", "wgsl", "slang", "cycles")
 BOTH = ("--library", "eonlib", "--library", "stock")
 FIELD = ("--host", "all", *BOTH)
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
@@ -101,11 +100,12 @@ def reporting(files, cache, usual):
     with tempfile.TemporaryDirectory() as folder:
         options = (*files, "--workers", "2", "--report", folder)
         first, again = (job(*options, *more, cache=cache) for more in ((), ("--resume",)))
-    return [
+    figures = [
         figure("gl, beyond that with --report", "s", [first.seconds - usual], goal=2.0),
         figure("gl, again with --resume", "s", [again.seconds], goal=5.0),
         memory("gl, --report", [first], MEMORY),
     ]
+    return figures, []
 
 
 def libraries(files, cache, usual):
@@ -139,39 +139,31 @@ def all_nodes(files):
     return figures, [Check("gl, --node all", max(each.wrong for each in runs), 0.0)]
 
 
-def runs(host):
-    """Whether a host can run here."""
-    try:
-        open_engine(host).close()
-    except NotRun:
-        return False
-    return True
-
-
-def hosts(cache):
-    """Figures and checks of the other hosts, and of the whole field, whose stock MaterialX fails."""
-    found = {host: job("--host", host, cache=cache) for host in OTHERS if runs(host)}
-    figures = [figure(f"{host}, 2 workers", "s", [each.seconds]) for host, each in found.items()]
-    checks = [Check(f"{host}, 2 workers", each.wrong, 0.0) for host, each in found.items()]
-    field = job(*FIELD, cache=cache)
+def field(cache):
+    """Figures of all hosts that run here with both libraries, of which stock MaterialX fails."""
+    found = job(*FIELD, cache=cache)
     name = "all hosts, eonlib and stock"
     return [
-        *figures,
-        figure(f"{name}, 2 workers", "s", [field.seconds], 90.0),
-        memory(name, [field]),
-    ], checks
+        figure(f"{name}, 2 workers", "s", [found.seconds], goal=90.0),
+        memory(name, [found]),
+    ], []
 
 
-def measure(rounds=3, files=(), whole=True):
-    """The `Group` of all that; of the main job alone unless it is to be whole."""
+def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None = None):
+    """The `Group` of all that, or of the main job alone; `keep` is handed it after each part."""
     with tempfile.TemporaryDirectory() as cache:
         figures, checks, usual = main_job(rounds, files, cache)
-        if whole:
-            figures += reporting(files, cache, usual)
-            for found, more in (
-                libraries(files, cache, usual),
-                all_nodes(files),
-                hosts(cache),
-            ):
-                figures, checks = [*figures, *found], [*checks, *more]
-    return Group("check", "`mxeon check`, bundled examples", tuple(figures), tuple(checks), {})
+        parts = (
+            partial(reporting, files, cache, usual),
+            partial(libraries, files, cache, usual),
+            partial(all_nodes, files),
+            partial(field, cache),
+        )
+        for part in (lambda: ([], []), *(parts if whole else ())):
+            found, more = part()
+            figures, checks = [*figures, *found], [*checks, *more]
+            title = "`mxeon check`, bundled examples"
+            group = Group("check", title, tuple(figures), tuple(checks), {})
+            if keep:
+                keep(group)
+    return group
