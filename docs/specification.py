@@ -34,7 +34,8 @@ HOSTS = {
     "wgsl": "WGSL's GLSL",
     "slang": "Slang",
     "osl": "OSL, its closures by the models",
-    "cycles": "OSL",
+    "testrender": "OSL's own renderer, its closures",
+    "cycles": "Blender's Cycles, its closures",
 }
 HOST, LIBRARIES = "gl", ("stock", "eonlib")  # the host of the page and its summaries
 MARKS = {PASSED: "", DIFFERS: " (differs)", FAILED: " (failed)", NOT_RUN: "not run"}
@@ -69,9 +70,10 @@ TARGETS_HEAD = """# The specification on every target
 
 Each check of [the specification, executable](specification.md) on every host that evaluates or draws
 generated shaders: the error with stock MaterialX / with eonlib. An error without a word passed; *differs*
-is permitted by the text; an empty cell is a check that the host cannot be asked. On Cycles the errors are
-of pictures, relative to the values, and the allowed ones are its own; eonlib leaves these closures
-to the renderer, so that there stands stock's figure alone. `python docs/specification.py` measures them again.
+is permitted by the text; an empty cell is a check that the host cannot be asked. `osl` is what OSL's text says;
+`testrender` and `cycles` are renderers with closures of their own, whose allowed errors are their own:
+[OSL](osl.md) says what each makes of them. On Cycles eonlib leaves closures to the renderer, so that there stands
+stock's figure alone, and rough diffuse nodes are judged by pictures. `python docs/specification.py` measures them again.
 
 """
 HEAD = "| check | mode | allowed | stock | eonlib | stock's defect |\n|---|---|---|---|---|---|\n"
