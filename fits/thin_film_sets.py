@@ -31,6 +31,7 @@ MEASURED = {
     "F_ss": (fit.average_errors, probes.FEW_FILMS, probes.FRINGED),
     "compensation in two cosines": (smooth_errors, probes.FEW_FILMS, probes.FRINGED),
     "visible facets": (fit.visible_errors, probes.FEW_FILMS, probes.STEEP),
+    "visible facets that are much alike": (fit.visible_errors, probes.FEW_FILMS, probes.GLOSSY),
 }
 
 

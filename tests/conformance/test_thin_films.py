@@ -43,6 +43,7 @@ STOCK = {
         "film_average": (DIFFERS, AVERAGE),
         "film_smooth": (DIFFERS, AVERAGE),
         "film_visible": (DIFFERS, f"{CHOICES}, in light from all sides"),
+        "film_glossy": (DIFFERS, f"{CHOICES}, in light from all sides"),
         "film_throughput": (FAILED, f"{CHOICES}: {FITTED}"),
     },
     "conductor_bsdf": {
@@ -54,6 +55,7 @@ STOCK = {
         "film_average": (DIFFERS, AVERAGE),
         "film_smooth": (DIFFERS, AVERAGE),
         "film_visible": (DIFFERS, f"{CHOICES}, in light from all sides"),
+        "film_glossy": (DIFFERS, f"{CHOICES}, in light from all sides"),
     },
     "generalized_schlick_bsdf": {
         "film": (FAILED, f"{HALF}, and its compensation"),
@@ -64,6 +66,7 @@ STOCK = {
         "film_average": (DIFFERS, AVERAGE),
         "film_smooth": (DIFFERS, AVERAGE),
         "film_visible": (FAILED, f"{HALF}, in light from all sides"),
+        "film_glossy": (FAILED, f"{HALF}, in light from all sides"),
         "film_throughput": (FAILED, f"{HALF}: {FITTED}"),
     },
 }
@@ -83,6 +86,7 @@ SETS = {
     "F_ss": tolerances.FILM_MEAN.value,
     "compensation in two cosines": tolerances.FILM_SMOOTH_MEAN.value,
     "visible facets": tolerances.FILM_STEEP.value,
+    "visible facets that are much alike": tolerances.FILM_GLOSSY.value,
 }
 FILMS_IN = ("eonlib/genglsl/thin_film.glsl", "eonlib/genglsl/microfacet_lobe.glsl")
 # By name: node, text of the film, the text in its place, key of the check.
@@ -112,6 +116,9 @@ WRONG = {
     ),
     "facets of a smooth surface": (
         "conductor_bsdf", "mu + s * s * C.x", "mu", "film_visible",
+    ),
+    "two facets in one place": (
+        "conductor_bsdf", "MICROFACET_HALF vec2(0.5, 0.5)", "MICROFACET_HALF vec2(0.0, 0.5)", "film_glossy",
     ),
     "half of the film": (
         "generalized_schlick_bsdf", "F.visible += i < facets ? curve",

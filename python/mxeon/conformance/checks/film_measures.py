@@ -117,7 +117,16 @@ def average_case(probe: Probe, batch: Batch) -> Case:
 
 def film_visible(probe: Probe) -> Iterable[Case]:
     """A film's mean over the visible facets, from its albedo, against that of the equations."""
-    batch: Batch = probe.films.steep
+    return _visible_cases(probe, probe.films.steep)
+
+
+def film_glossy(probe: Probe) -> Iterable[Case]:
+    """The same of lobes whose facets are much alike."""
+    return _visible_cases(probe, probe.films.glossy)
+
+
+def _visible_cases(probe: Probe, batch: Batch) -> Iterable[Case]:
+    """Means over the visible facets of films whose curve is not next to 0."""
     albedos = (
         lambda each: probe.albedo(each) / probe.albedo(_mirror(probe, each)),
         probe.expected_albedo,

@@ -26,6 +26,7 @@ from mxeon.conformance.samples.edge_cases import special_directions
 HARD = {"alpha": (0.08, 0.8), "mu": (0.1, 0.35), "thickness": (200.0, 1000.0)}  # see `cosines`
 STEEP = {"alpha": (0.6, 1.0), "mu": (0.6, 1.0), "thickness": (50.0, 100.0)}  # see `FilmViews`
 FRINGED = {**STEEP, "thickness": (50.0, 1000.0)}  # see `FilmViews`
+GLOSSY = {**STEEP, "alpha": (0.03, 0.1)}  # see `FilmViews`
 SHARP = {"alpha": (1e-3, 1e-3), "mu": (0.3, 1.0), "thickness": (200.0, 1000.0)}  # see `FilmViews`
 ORDERED = {"alpha": (1e-3, 1e-3), "mu": (0.1, 0.2), "thickness": (40.0, 100.0)}  # see `FilmViews`
 # Films whose errors have one mean: fits/thin_film_sets.py bounds it for sets of these sizes.
@@ -76,6 +77,7 @@ class FilmProbe(MicrofacetProbe):
                 for count, ranges in (
                     (FEW_FILMS, STEEP),
                     (FEW_FILMS, FRINGED),
+                    (FEW_FILMS, GLOSSY),
                     (CURVES, ORDERED),
                     (FEW_FILMS, SHARP),
                 )

@@ -202,6 +202,8 @@ class FilmViews(NamedTuple):
         Rough lobes under films of few fringes, of which masking takes the facets whose curve is another.
     fringed : Batch
         The same under films of up to many fringes.
+    glossy : Batch
+        Lobes whose visible facets are much alike, so that few cosines stand for them, under films of few fringes.
     ordered : Batch
         Smooth lobes at grazing under films so thin that all orders count.
     sharp : Batch
@@ -210,5 +212,6 @@ class FilmViews(NamedTuple):
 
     steep: Batch
     fringed: Batch
+    glossy: Batch
     ordered: Batch
     sharp: Batch
