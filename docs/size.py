@@ -9,6 +9,7 @@ import io
 import re
 import tokenize
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 from mxeon.io.files import write_text
@@ -32,6 +33,7 @@ SUBJECTS = {
 }
 
 
+@cache
 def lines(path):
     """Lines of a file, by COLUMNS."""
     text = path.read_text(encoding="utf-8")

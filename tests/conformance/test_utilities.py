@@ -14,7 +14,6 @@ from mxeon.conformance.nodes.utilities import UTILITY_SUBJECTS
 from mxeon.conformance.probes.utilities import UtilityOslProbe, UtilityProbe
 from mxeon.conformance.results import DIFFERS, FAILED, PASSED
 from mxeon.conformance.samples.batch import Batch
-from mxeon.errors import Unsupported
 from mxeon.hosts import open_host
 from mxeon.models.nodes.utilities import UTILITIES
 from mxeon.shaders.library import standard_folders
@@ -256,8 +255,6 @@ def test_a_shader_without_a_uniform_edf_has_no_graph_in_osl(cycles):
     shader = cycles.compile(text, library="stock")[0]
     with pytest.raises(ValueError, match="element 'look' must call a uniform EDF"):
         cycles.evaluate(shader, wo, wo, {}, "graph")
-    with pytest.raises(Unsupported, match="no values for pairs of directions; gl has"):
-        cycles.evaluate(shader, wo, wo, {}, "direct")
 
 
 def test_the_bound_of_a_black_body_is_no_less_than_the_error_of_its_fit():

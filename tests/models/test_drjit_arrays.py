@@ -10,6 +10,7 @@ from docs.arrays import takes_drjit
 from mxeon import mitsuba, models
 from mxeon.albedo import fon_albedo_dir
 from mxeon.models import eon_brdf, unchecked
+from mxeon.models.core import drjit_arrays
 from mxeon.models.diffuse import formulas
 from tests.fuzz import arguments
 from tests.support.availability import available
@@ -108,3 +109,9 @@ def test_formulas_take_scalar_arrays_and_functions_do_not():
     up = drjit.Array3f(0.0, 0.0, 1.0)
     with unchecked(), pytest.raises(ValueError, match="^arrays of Dr.Jit must be compiled ones"):
         eon_brdf(up, up, 0.5, 0.5)
+
+
+def test_the_logarithm_of_what_is_next_to_1_keeps_its_digits(llvm):
+    x = np.geomspace(1e-7, 10.0, 64, dtype=np.float32)
+    log1p = drjit_arrays.drjit_namespace.__wrapped__().log1p
+    assert np.array(log1p(llvm.Float(x))) == pytest.approx(np.log1p(x), rel=DRJIT_VALUE)

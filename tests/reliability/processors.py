@@ -56,6 +56,7 @@ COARSE = (
     "browser",
     "cycles",
     "docs",
+    "drjit_arrays",
     "document_hosts",
     "gl",
     "hosts",

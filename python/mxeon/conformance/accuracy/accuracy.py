@@ -244,6 +244,6 @@ ACCURACY: Mapping[str, Accuracy] = (
         kinds.rendered_kind(kind, kinds.TRACED): _rendered(
             kind, rendered.TRACED_FLAT, rendered.TRACED_SHARP
         )
-        for kind in kinds.RENDERED
+        for kind in kinds.TRACED_CLOSURES
     }
 )

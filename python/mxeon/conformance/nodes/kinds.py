@@ -55,6 +55,11 @@ TOLD = (
 # Kinds of which a renderer evaluates the closures.
 RENDERED = (DIFFUSE, *BSDFS, SUBSURFACE, COMBINED, NESTED, LOBE)
 TRACED = "traced"  # in place of "rendered": pairs that a path tracer shows
+TRACED_CLOSURES = (
+    *BSDFS,
+    COMBINED,
+    NESTED,
+)  # those it is asked for; pictures show the diffuse ones
 
 
 def closure_kind(kind: str) -> str:

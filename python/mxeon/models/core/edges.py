@@ -133,8 +133,6 @@ def fractional_power(x: Array, exponent: float) -> Array:
 
 def below_1(x: Array) -> float:
     """Largest number below 1 in the precision of x."""
-    if library(x) == "drjit":
-        return float(np.nextafter(np.float32(1.0), np.float32(0.0)))
     return 1.0 - 0.5 * float(array_namespace(x).finfo(x.dtype).eps)
 
 
