@@ -46,12 +46,15 @@ def job(*options, cache=None):
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     environment |= {} if cache is None else {FOLDER: str(cache)}
     arguments = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
-    with tempfile.TemporaryFile() as output, open(os.devnull, "w", encoding="ascii") as nothing:
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         start = time.perf_counter()
-        process = Popen(arguments, stdout=output, stderr=nothing, env=environment)
+        process = Popen(arguments, stdout=output, stderr=errors, env=environment)
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - start
         process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode not in (0, 1):
+            errors.seek(0)
+            raise RuntimeError(f"{' '.join(arguments)}: {errors.read().decode().strip()}")
         output.seek(0)
         counts = json.load(output)["counts"]
     wrong = np.inf if not counts["passed"] else float(counts["failed"])
