@@ -52,11 +52,12 @@ def job(*options, cache=None):
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - start
         process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode not in (0, 1):
-            errors.seek(0)
-            raise RuntimeError(f"{' '.join(arguments)}: {errors.read().decode().strip()}")
         output.seek(0)
-        counts = json.load(output)["counts"]
+        errors.seek(0)
+        text = output.read()
+        if not text:
+            raise RuntimeError(f"{' '.join(arguments)}: {errors.read().decode().strip()}")
+        counts = json.loads(text)["counts"]
     wrong = np.inf if not counts["passed"] else float(counts["failed"])
     return Job(seconds, usage.ru_maxrss / 1024.0, wrong)
 
