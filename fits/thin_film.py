@@ -45,6 +45,7 @@ ALIKE = 0.09  # reach below which two nodes serve
 WHITE = {"color82": 1.0, "color90": 1.0}
 # Orders are summed while they exceed 2^-x, and so many at most: of a value, and of a node of a rule.
 VALUE_ORDERS, MEAN_ORDERS = (17.0, 64.0), (10.0, 24.0)
+# Amplitudes whose orders are counted: a sum of none needs no logarithm of 0, and the largest count holds long before 0.999.
 LEAST_AMPLITUDE, MOST_AMPLITUDE = 1e-6, np.sqrt(0.999)
 DECAY = min(var for *_, var in film.GAUSSIANS) * (2.0 * np.pi) ** 2 / np.log(2.0)
 

@@ -24,7 +24,7 @@ void conical_edf(ClosureData closureData, vec3 color, vec3 N, float inner_angle,
         float mu = max(dot(N, closureData.V), 0.0);
         float inner = conical_edf_cosine(inner_angle);
         float outer = conical_edf_cosine(outer_angle);
-        // Rounded cosines of close angles may be equal, or exchanged.
+        // Rounded cosines of close angles may be equal, or exchanged; 1e-8 is less than a step between two.
         if (outer_angle > inner_angle)
         {
             float t = clamp((mu - outer) / max(inner - outer, 1e-8), 0.0, 1.0);
