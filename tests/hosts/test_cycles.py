@@ -16,7 +16,7 @@ from mxeon.conformance.reference import Host as Reference
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import cycles
 from mxeon.hosts.cycles import process as cycles_process
-from mxeon.hosts.testrender.scenes import visible
+from mxeon.hosts.pair_frames import visible
 from mxeon.hosts.tilted_triangles import DISTANCE, HEIGHT, tilted_triangles
 from mxeon.models.diffuse.brdf import eon_brdf
 from mxeon.shaders.generation import ApproximationWarning, generate

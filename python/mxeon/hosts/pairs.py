@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError
 from mxeon.hosts import base
 from mxeon.hosts.base import Array, Inputs
-from mxeon.hosts.testrender.scenes import LEAST_SINE, perpendicular, visible
+from mxeon.hosts.pair_frames import LEAST_SINE, perpendicular, visible
 from mxeon.shaders.generation import Shader
 
 PATHS = 1 << 12  # pixels of a picture with a sky, each of the host's own number of paths
@@ -47,7 +47,7 @@ class PairHost(base.Host):
         Unsupported
             If the environment is not uniform, or is asked for its light from below alone.
         ValueError
-            If a pair in the light of a point is not `mxeon.hosts.testrender.scenes.visible`.
+            If a pair in the light of a point is not `mxeon.hosts.pair_frames.visible`.
         """
         # Values in the light of a point.
         through = output == "throughput"

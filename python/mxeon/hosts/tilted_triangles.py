@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.base import Array
-from mxeon.hosts.testrender.scenes import CORNERS, frames, unit
+from mxeon.hosts.pair_frames import CORNERS, frames, unit
 
 Vectors = NDArray[np.float64]
 PIXEL = 2.0**-5  # width

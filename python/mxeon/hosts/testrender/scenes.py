@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.base import Array
+from mxeon.hosts.pair_frames import CORNERS, frames, unit
 
 Vectors = NDArray[np.float64]
 
@@ -29,8 +30,6 @@ FOV = 5.725  # degrees, of the whole frame, which is tan(FOV / 2) wide at distan
 LIGHT_RADIUS = 2.0**-18
 # Of a triangle, over its distance: the camera's rays are off by some 2^-24, and what is small hides no light.
 TRIANGLE = 2e-5
-LEAST_SINE = 0.08  # of the angle between view and light: the camera would see the light, or have points behind it
-CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # of a triangle
 PLACE = "u, v"  # where a point reads an image
 # Paths of a pixel, squared: the light is a point as far as float32 can tell, the sky is not.
 LIGHT_SAMPLES, SKY_SAMPLES = 1, 8
@@ -146,17 +145,6 @@ def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
     return PairScene(size, rays, points, world @ np.swapaxes(local, 1, 2))
 
 
-def perpendicular(vectors: Array) -> Vectors:
-    """Unit vectors across others, (N, 3)."""
-    axes = np.where(np.abs(vectors[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
-    return unit(np.cross(vectors, axes))
-
-
-def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
-    """Which pairs of directions a scene can show, (N,)."""
-    return np.asarray(np.linalg.norm(np.cross(wo, wi), axis=1) >= LEAST_SINE)
-
-
 def _rays(size: int) -> Vectors:
     """Directions of the camera's rays, (size^2, 3)."""
     axis = (np.arange(size) + 0.5) / size - 0.5
@@ -168,19 +156,9 @@ def _rays(size: int) -> Vectors:
     return unit(ahead + width * (x * right + y * up))
 
 
-def frames(first: Vectors, other: Vectors) -> Vectors:
-    """Axes as columns, (N, 3, 3): the first vector, what is across both, and what is across these."""
-    across = unit(np.cross(first, other))
-    return np.stack([first, across, np.cross(first, across)], axis=-1)
-
-
 def _light_corners() -> Vectors:
     """Corners of the light, which faces the middle of the picture."""
     return LIGHT_RADIUS * np.array([(0.0, x, y) for x, y in CORNERS])
-
-
-def unit(vectors: Vectors) -> Vectors:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
 def _model(corners: NDArray[np.float64], places: Vectors | None = None) -> str:
