@@ -103,4 +103,6 @@ def _strict_piece(piece: re.Match[str]) -> str:
         return "\n" * text.count("\n")
     if text.startswith(("<!", "<?")):
         return text
+    if "&" not in text and "<" not in text[1:]:
+        return text
     return QUOTED.sub(lambda value: AMPERSAND.sub("&amp;", value[0]).replace("<", "&lt;"), text)

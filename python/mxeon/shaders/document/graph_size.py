@@ -60,12 +60,13 @@ def check_inheritance(document: mx.Document, policy: Policy) -> None:
     policy.check_limit("depth", deepest, rule, "definitions that inherit each other")
 
 
-def check_interfaces(document: mx.Document, policy: Policy) -> None:
+def check_interfaces(
+    document: mx.Document, elements: Sequence[mx.Element], policy: Policy
+) -> None:
     """Raise DocumentError if an element has too many inputs, or there are too many tokens."""
-    tokens = 0
-    for element in document.traverseTree():
-        tokens += element.isA(mx.Token)
-        policy.check_limit("inputs", _inputs(element), f"{location(element)} must have", "inputs")
+    widest = max(elements, key=_inputs)
+    policy.check_limit("inputs", _inputs(widest), f"{location(widest)} must have", "inputs")
+    tokens = sum(element.isA(mx.Token) for element in elements)
     policy.check_limit("tokens", tokens, f"{label(document)}: must have", "tokens")
 
 
@@ -133,4 +134,4 @@ def _definition(element: mx.Element) -> str:
 
 def _inputs(element: mx.Element | None) -> int:
     """Number of an element's inputs; 0 for one that cannot have any."""
-    return len(element.getInputs()) if element and element.isA(mx.InterfaceElement) else 0
+    return element.getInputCount() if element and element.isA(mx.InterfaceElement) else 0

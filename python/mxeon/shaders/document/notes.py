@@ -42,8 +42,14 @@ def numbers(element: mx.ValueElement) -> tuple[float, ...]:
     return cast(tuple[float, ...], values)
 
 
-def warn_of_elements(document: mx.Document) -> None:
+def warn_of_elements(document: mx.Document, elements: Iterable[mx.Element]) -> None:
     """Warn of values that MaterialX reads otherwise than written or that leave a model's range.
+
+    Parameters
+    ----------
+    document : MaterialX.Document
+    elements : iterable of MaterialX.Element
+        All of the document.
 
     Warns
     -----
@@ -52,7 +58,6 @@ def warn_of_elements(document: mx.Document) -> None:
     CodeWarning
         If the document brings shader code of its own.
     """
-    elements = list(document.traverseTree())
     values = [each for each in elements if each.isA(mx.ValueElement) and each.getValueString()]
     for note in (_misread, _out_of_range, _unknown_space):
         _warn(DocumentWarning, [text for text in map(note, values) if text])
@@ -118,6 +123,8 @@ def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None
     DocumentWarning
         Once.
     """
+    if not any(each.isA(mx.NodeGraph) for each in document.getChildren()):
+        return  # within one graph no two nodes have one name
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
     rule = "must have different names; MaterialX gives both the values of one"
     _warn(DocumentWarning, [f"{label(document)}: nodes {pair} {rule}" for pair in pairs])

@@ -8,6 +8,7 @@ generation: their text before MaterialX reads it (`xml`), their elements after.
 
 import math
 import os
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeGuard
@@ -104,15 +105,16 @@ def read_document(
     else:
         raise DocumentError(f"document must be a readable file; got {str(source)!r}")
     # Check what the content says.
-    _check_tokens(content)
-    _resolve_files(content, [folder(content), *map(Path, policy.path)])
+    elements = tuple(content.traverseTree())
+    _check_tokens(elements)
+    _resolve_files(content, elements, [folder(content), *map(Path, policy.path)])
     content.setDataLibrary(data)
-    _check(content, policy)
+    _check(content, elements, policy)
     # Limit what shaders would grow from it.
-    elements = _renderables(content)
-    nodes = check_shaders(content, elements, policy)
-    warn_of_elements(content)
-    return Document(content, elements, nodes)
+    renderables = _renderables(content)
+    nodes = check_shaders(content, renderables, policy)
+    warn_of_elements(content, elements)
+    return Document(content, renderables, nodes)
 
 
 def _is_text(source: AnyPath) -> TypeGuard[str]:
@@ -121,9 +123,9 @@ def _is_text(source: AnyPath) -> TypeGuard[str]:
     return starts and not os.path.isfile(source)
 
 
-def _check_tokens(document: mx.Document) -> None:
+def _check_tokens(elements: Iterable[mx.Element]) -> None:
     """Raise DocumentError for tokens of names: MaterialX resolves them by themselves, for ever."""
-    for element in document.traverseTree():
+    for element in elements:
         if element.isA(mx.Token) and element.getType() in ("filename", "geomname"):
             raise DocumentError(
                 f"{location(element)} must not have the type {element.getType()}, which ends "
@@ -131,13 +133,15 @@ def _check_tokens(document: mx.Document) -> None:
             )
 
 
-def _resolve_files(document: mx.Document, folders: list[Path]) -> None:
+def _resolve_files(
+    document: mx.Document, elements: Iterable[mx.Element], folders: list[Path]
+) -> None:
     """Make names of files that lie in one of the folders absolute, also of sets of files."""
     path = mx.FileSearchPath()
     for each in folders:
         path.append(mx.FilePath(str(each)))
     mx.flattenFilenames(document, path)
-    for element in document.traverseTree():
+    for element in elements:
         name = element.getValueString() if element.isA(mx.ValueElement) else ""
         if "<" in name and element.getType() == "filename":
             sets = (each / name for each in folders if files(each / name))
@@ -219,15 +223,15 @@ class _Reader:
         self.read_file(document, path)
 
 
-def _check(document: mx.Document, policy: Policy) -> None:
+def _check(document: mx.Document, elements: Sequence[mx.Element], policy: Policy) -> None:
     """Check a document that MaterialX has read. Later checks rely on earlier ones."""
     _check_version(document, label(document))
     check_inheritance(document, policy)
-    check_interfaces(document, policy)
+    check_interfaces(document, elements, policy)
     check_code(document, policy)
-    check_words(document)
+    check_words(document, elements)
     _check_types(document)
-    for element in document.traverseTree():
+    for element in elements:
         if element.isA(mx.ValueElement) and element.getValueString():
             _check_value(element, policy)
     _check_validity(document)

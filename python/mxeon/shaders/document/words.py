@@ -8,7 +8,7 @@ which do; whatever else an attribute says (`doc`, `uiname`, an application's own
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from functools import cache
 
 import MaterialX as mx
@@ -73,14 +73,14 @@ ENDS_A_STRING = re.compile(r'["\\\x00-\x1f\x7f]')
 Choices = Callable[[], Collection[str]]
 
 
-def check_words(document: mx.Document) -> None:
-    """Raise DocumentError unless names and text values of a document are plain words.
+def check_words(document: mx.Document, elements: Iterable[mx.Element]) -> None:
+    """Raise DocumentError unless names and text values of a document's elements are plain words.
 
     Of the value of an input that names a variable, one word is permitted. The data library of the
     document is not checked.
     """
     choices = cache(lambda: _choices(document))  # of a whole library, which few documents need
-    for element in document.traverseTree():
+    for element in elements:
         for name in ("name", *element.getAttributeNames()):
             text = element.getName() if name == "name" else element.getAttribute(name)
             if text and (rule := _broken(element, name, text, choices)):

@@ -80,7 +80,8 @@ class XmlChecker:
         self._limit("attributes", self._attributes, "attributes, with all that it includes")
         # Limit the attributes, and refuse control characters.
         for key, value in attributes.items():
-            self._limit("length", len(value), f"characters in {key!r} of {category!r}")
+            if len(value) > self._policy.length:
+                self._limit("length", len(value), f"characters in {key!r} of {category!r}")
             if STEERING.search(value):
                 rule = f"must have no control characters in {key!r}"
                 self._refuse(f"{category} {rule}; got {value!r}")
