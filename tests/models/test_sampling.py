@@ -167,6 +167,12 @@ def test_clipped_cosine_keeps_the_side_of_the_lune_that_lands_above_the_horizon(
     assert (d * wh[..., 0] + wh[..., 2] >= -tolerances.LUNE).all()
 
 
+def test_clipped_cosine_keeps_its_digits_on_the_rim():
+    rest, u2 = 2.0 ** -np.arange(1.0, 54.0)[:, np.newaxis], np.linspace(0.0, 1.0, 64, False)
+    z = cltc.cltc_clipped(1.0 - rest, u2, np.float64(0.0))[..., 2]  # nothing is cut
+    np.testing.assert_allclose(z, np.sqrt(rest + 0.0 * u2), rtol=tolerances.RIM)
+
+
 def test_listing_3_keeps_the_wrong_side_where_d_is_positive():
     d = float(ltc.ltc_d(1.0, 1.0))
     # Whatever the sign, the listing does what `cltc_clipped` does for a negative one.

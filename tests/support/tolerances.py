@@ -154,9 +154,12 @@ SAMPLE_PDF = 160.0 * ROUNDING
 # 3.2, and a density changes by at most (1 + 2 x 3.2) / pi = 2.4 per radian.
 TURNED_PDF = 2.4 * TURNED_DIRECTION
 
-# Side of the lune, absolute: z is the root of a difference of squares, so that it is off by at most
-# the root of 4 roundings, and by less where z is larger.
-LUNE = 2.2e-8
+# Height of a clipped cosine, relative: the root of a product of positive terms, four roundings of the
+# chord's ends and six of the terms, halved, and the root's own.
+RIM = 6 * ROUNDING
+
+# Side of the lune, absolute: x and z are at most 1, and off by 4 roundings and a function, and by RIM.
+LUNE = (4 + FUNCTION) * ROUNDING + RIM
 
 # Integral of a density with a kink, absolute. The line where CLTC ends, at most pi long, crosses
 # Gauss panels whose nodes are h <= pi/2 / 64 apart; the slope jumps by at most 1 per steradian and

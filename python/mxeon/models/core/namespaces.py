@@ -7,11 +7,12 @@ no NumPy besides is marked by `any_array`, and returns arrays of the library tha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
 from importlib import import_module
+from inspect import signature
 from types import SimpleNamespace
 from typing import ParamSpec, Protocol, TypeVar, cast
 
@@ -179,17 +180,20 @@ def any_array_or_drjit(function: Callable[P, R]) -> Callable[P, R]:
 
 def _portable(function: Callable[P, R], drjit: bool) -> Callable[P, R]:
     """Function that brings its arguments to the library of any of them."""
+    parameters = signature(function).parameters
+    defaults = {n: each.default for n, each in parameters.items() if type(each.default) is float}
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         # Call it as it is without another library's arrays.
-        others = [each for each in (*args, *kwargs.values()) if library(each)]
+        others = [each for each in _values((*args, *kwargs.values())) if library(each)]
         if not others:
             return function(*args, **kwargs)
-        # Bring all arguments to that library.
+        # Bring all arguments to that library, and numbers that are defaults.
         convert = _converter(others, drjit)
         values = (convert(each) for each in args)
-        named = {name: convert(each) for name, each in kwargs.items()}
+        left = {n: each for n, each in defaults.items() if n not in [*parameters][: len(args)]}
+        named = {name: convert(each) for name, each in (left | kwargs).items()}
         token = _any_array.set(True)
         try:
             return cast(Callable[..., R], function)(*values, **named)
@@ -198,6 +202,12 @@ def _portable(function: Callable[P, R], drjit: bool) -> Callable[P, R]:
 
     vars(wrapper)["takes_drjit"] = drjit
     return wrapper
+
+
+def _values(arguments: Iterable[object]) -> Iterator[object]:
+    """Arguments, of a mapping by names what it holds."""
+    for each in arguments:
+        yield from each.values() if isinstance(each, Mapping) else (each,)
 
 
 def _converter(others: Sequence[object], drjit: bool) -> Callable[[object], object]:
@@ -213,6 +223,8 @@ def _converter(others: Sequence[object], drjit: bool) -> Callable[[object], obje
 
     # Leave switches and words alone.
     def convert(value: object) -> object:
+        if isinstance(value, Mapping):
+            return {name: convert(each) for name, each in value.items()}
         if library(value):
             array = cast(Array, value)
             return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)

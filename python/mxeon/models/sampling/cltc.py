@@ -17,7 +17,7 @@ from mxeon.models.sampling.hemisphere import (
     checked_draw,
     checked_pdf,
     stack_xyz,
-    uniform_sample,
+    uniform_direction,
     unpack_uniforms,
 )
 from mxeon.models.sampling.ltc import ltc_d, ltc_density, ltc_transformed
@@ -68,11 +68,8 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
     True
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
-    d = ltc_d(wo[..., 2], roughness)
-    wi, pdf = ltc_transformed(wo, cltc_clipped(*unpack_uniforms(u), d), roughness, d)
-    # On the edge of the lune d x + z is zero up to rounding, of either sign.
-    wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
-    return wi, pdf / cltc_kept_fraction(d)
+    u1, u2 = unpack_uniforms(u)
+    return _draw(wo, u1, 1.0 - u1, u2, roughness)
 
 
 @any_array
@@ -141,10 +138,12 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     is_uniform = u1 < P_u
     # Stretch each side of P_u over [0, 1); rounding may reach 1, which is not in there.
     xp = array_namespace(u1, P_u)
-    v = xp.where(is_uniform, u1, u1 - P_u) / xp.where(is_uniform, P_u, 1.0 - P_u)
-    v = xp.stack([xp.minimum(v, below_1(v)), u2 + 0.0 * v], axis=-1)
-    clipped, _ = cltc_sample(wo, v, roughness)
-    wi = xp.where(is_uniform[..., np.newaxis], uniform_sample(v)[0], clipped)
+    length = xp.where(is_uniform, P_u, 1.0 - P_u)
+    v = xp.where(is_uniform, u1, u1 - P_u) / length
+    rest = xp.where(is_uniform, P_u - u1, 1.0 - u1) / length
+    v = xp.minimum(v, below_1(v))
+    clipped, _ = _draw(wo, v, rest, u2, roughness)
+    wi = xp.where(is_uniform[..., np.newaxis], uniform_direction(v, rest, u2), clipped)
     return wi, eon_cltc_pdf(wo, wi, roughness)
 
 
@@ -185,13 +184,45 @@ def cltc_kept_fraction(d: Array) -> Array:
     return 0.5 * (1.0 + 1.0 / root(1.0 + d * d))
 
 
+def _cut_fraction(d: Array) -> Array:
+    """1 - `cltc_kept_fraction`, which is small."""
+    length = root(1.0 + d * d)
+    return 0.5 * d * d / (length * (1.0 + length))
+
+
 def cltc_clipped(u1: Array, u2: Array, d: Array) -> Array:
     """Direction under the clamped cosine with d x + z >= 0: [Portsmouth2025], Listing 3."""
-    wh = around(root(1.0 - u1), root(u1), u2)
+    return _clipped(u1, 1.0 - u1, u2, d)
+
+
+def _draw(wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array) -> tuple[Array, Array]:
+    """`cltc_sample` of two random numbers; `rest` is 1 - u1, to all of its digits."""
+    d = ltc_d(wo[..., 2], roughness)
+    wi, pdf = ltc_transformed(wo, _clipped(u1, rest, u2, d), roughness, d)
+    # On the edge of the lune d x + z is zero up to rounding, of either sign.
+    wi = stack_xyz(wi[..., 0], wi[..., 1], at_least_0(wi[..., 2]))
+    return wi, pdf / cltc_kept_fraction(d)
+
+
+def _clipped(u1: Array, rest: Array, u2: Array, d: Array) -> Array:
+    """`cltc_clipped` where `rest` is 1 - u1.
+
+    The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x becomes c (1 - k) + k x. Then
+
+        z^2 = 1 - x'^2 - y^2 = k (c - x) (2 c (1 - k) + k (c + x)),
+
+    where of c - x and c + x the smaller one is (1 - u1) over the other: nothing cancels on the rim.
+    """
+    wh = around(root(rest), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
-    # Squeeze the disk's chord at y onto the part of it that is kept.
-    kept = cltc_kept_fraction(d)
-    x = root(1.0 - y * y) * (1.0 - kept) + x * kept
-    x = array_namespace(x, d).where(d > 0.0, x, -x)
-    # Rounding may leave x^2 + y^2 > 1 on the rim.
-    return stack_xyz(x, y, root(at_least_0(1.0 - (x * x + y * y))))
+    xp, kept, cut = array_namespace(x, d), cltc_kept_fraction(d), _cut_fraction(d)
+    # Find the ends of the disk's chord at y.
+    half = root(rest + x * x)
+    behind = x < 0.0
+    far = half + xp.where(behind, -x, x)
+    near = rest / far
+    ahead, back = xp.where(behind, far, near), xp.where(behind, near, far)
+    # Squeeze it onto the part of it that is kept.
+    z = root(kept * ahead * (2.0 * half * cut + kept * back))
+    x = half * cut + x * kept
+    return stack_xyz(xp.where(d > 0.0, x, -x), y, z)

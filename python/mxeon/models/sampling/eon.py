@@ -189,6 +189,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     ends = [end / ends[-1] for end in ends]
     starts = [0.0 * ends[0], *ends[:-1]]
     v = [_stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
+    rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
     # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, cube_root(1.0 - x))
@@ -198,7 +199,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     S = root((1.0 - mu) * (1.0 + mu))
     is_towards, is_flat = (u1 < ends[1])[..., np.newaxis], (u1 >= ends[2])[..., np.newaxis]
     wi = xp.where(is_towards, eon_towards(mu, S, u2), around(mu, S, u2))
-    return xp.where(is_flat, eon_flat_draw(v[3], u2, roughness * S_o), wi)
+    return xp.where(is_flat, eon_flat_draw(v[3], u2, roughness * S_o, rest), wi)
 
 
 def eon_integrals(
@@ -277,19 +278,23 @@ def eon_multiple_cosine(t: Array) -> Array:
     return t * (1.0 + m * (even + m * w * odd))
 
 
-def eon_flat_draw(v: Array, u2: Array, q: Array) -> Array:
-    """Direction drawn in proportion to (1 + q x) on the disk.
+def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> Array:
+    """Direction drawn in proportion to (1 + q x) on the disk; `rest` is 1 - v, where it has more digits.
 
     Along each chord of the disk, x is drawn by its inverse distribution from the uniform point
     (x, y). z is the square root of 1 - x^2 - y^2 without a cancellation.
     """
-    wh = around(root(1.0 - v), root(v), u2)
-    return stack_xyz(*eon_flat_direction(v, wh[..., 0], wh[..., 1], q))
+    rest = 1.0 - v if rest is None else rest
+    wh = around(root(rest), root(v), u2)
+    return stack_xyz(*eon_flat_direction(v, wh[..., 0], wh[..., 1], q, rest))
 
 
-def eon_flat_direction(v: Array, x: Array, y: Array, q: Array) -> tuple[Array, Array, Array]:
+def eon_flat_direction(
+    v: Array, x: Array, y: Array, q: Array, rest: Array | None = None
+) -> tuple[Array, Array, Array]:
     """Components of the direction that `eon_flat_draw` makes of a point of the disk, v = x^2 + y^2."""
+    rest = 1.0 - v if rest is None else rest
     ahead = 1.0 + q * x
-    length = root(ahead * ahead + q * q * (1.0 - v))
-    z = root(2.0 * (1.0 - v) / (ahead + length))
+    length = root(ahead * ahead + q * q * rest)
+    z = root(2.0 * rest / (ahead + length))
     return (q * (1.0 - y * y) + 2.0 * x) / (1.0 + length), y, z

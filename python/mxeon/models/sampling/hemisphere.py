@@ -47,7 +47,7 @@ def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
     (array([0.6, 0. , 0.8]), 0.159155)
     """
     u1, u2 = unpack_uniforms(u)
-    wi = around(u1, root((1.0 - u1) * (1.0 + u1)), u2)
+    wi = uniform_direction(u1, 1.0 - u1, u2)
     return wi, _uniform_density(wi)
 
 
@@ -141,6 +141,11 @@ def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
     """The two random numbers of each pair, checked, as float64 arrays of shape (...)."""
     u = _checked_pairs(u)
     return u[..., 0], u[..., 1]
+
+
+def uniform_direction(u1: Array, rest: Array, u2: Array) -> Array:
+    """Direction of `uniform_sample`; `rest` is 1 - u1."""
+    return around(u1, root(rest * (1.0 + u1)), u2)
 
 
 def around(mu: Array, S: Array, u2: Array) -> Array:
