@@ -27,9 +27,9 @@ from tests.fuzz import arguments
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption_coefficient")
 COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"} | set(TINTS)
 PAIRS = ("microfacet", "ggx_", "btdf")  # in the names of functions whose roughness is a pair
-LONG = (
-    "chiang_hair_bcsdf"  # which JAX compiles for seconds; its factors have functions of their own
-)
+COAT = "dielectric_over_eon"
+# What JAX compiles for seconds; their factors have functions of their own.
+LONG = ("chiang_hair_bcsdf", *(f"{COAT}_{each}" for each in ("brdf", "sample", "pdf")))
 ROWS = 48
 SEED = 11
 GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
@@ -117,8 +117,8 @@ def sampled(function):
     """Arguments by name, each a row of its range or an end of it, and the switches."""
     rng, arrays, switches = np.random.default_rng(SEED), {}, {}
     for name, value in arguments.base(function).items():
-        if not isinstance(value, float | tuple | np.ndarray):
-            switches[name] = value
+        if not isinstance(value, float | tuple | np.ndarray) or name not in table.arrays(function):
+            switches[name] = value  # one for all rows
         elif np.shape(value) == (3,) and name[0] in "wn":
             arrays[name] = directions(rng, value[2] < 0.0)
         else:
@@ -134,6 +134,7 @@ def sampled(function):
         switches |= switches.pop(name)  # named inputs
     value = arguments.call(function, arguments.base(function))
     channels = 0 if isinstance(value, tuple) else np.ndim(value)  # a sampler has none
+    channels = channels or COAT in function.__name__  # whose samples take a color
     for name in COLORS & set(arrays) if channels else ():
         if name.startswith(TINTS) or "conductor" in function.__name__:
             arrays[name] = arrays[name][:, np.newaxis]

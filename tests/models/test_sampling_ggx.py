@@ -5,6 +5,8 @@ The seeds are fixed. FALSE_ALARM is the probability that the chi-square tests of
 although all is right.
 """
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy import special  # scipy.stats is slow to import
@@ -19,7 +21,7 @@ from mxeon.models import (
 )
 from mxeon.sampling import ggx_pdf, ggx_sample
 from tests.support import tolerances
-from tests.support.hemispheres import binned, directions, rule, uniforms, view
+from tests.support.hemispheres import probability, uniforms, view
 
 FALSE_ALARM = 1e-4
 SCENES = [
@@ -32,32 +34,21 @@ every_scene = pytest.mark.parametrize(("mu", "alpha"), SCENES, ids=str)
 AZIMUTH = 0.4
 
 
-def probability(mu, alpha, sampled_alpha, count=12, samples=100_000):
+def chi_square(mu, alpha, sampled_alpha):
     """Probability of a chi-square as large, for samples at one roughness and the density of another."""
-    wo, u = view(mu, AZIMUTH), uniforms(samples, [SCENES.index((mu, alpha)), 7])
-    edges = np.arccos(np.sqrt(np.linspace(1.0, 0.0, 9)))
-    counts = binned(ggx_sample(wo, u, sampled_alpha)[0], edges, count)
-    theta, dtheta = rule(edges, 24)
-    phi, dphi = rule(2.0 * np.pi * np.arange(count + 1) / count, 24)
-    pdf = ggx_pdf(wo, directions(theta, phi), alpha)
-    bins = np.einsum("ikjl,ik,jl->ij", pdf, dtheta * np.sin(theta), dphi)
-    mean = samples * np.append(1.0 - bins.sum(), bins)
-    likely = mean >= 10.0
-    statistic = np.sum((counts - mean)[likely] ** 2 / mean[likely])
-    rest = mean[~likely].sum()
-    if rest >= 10.0:
-        statistic += (counts[~likely].sum() - rest) ** 2 / rest
-    return special.chdtrc(likely.sum() + (rest >= 10.0) - 1, statistic)
+    u = uniforms(100_000, [SCENES.index((mu, alpha)), 7])
+    sample = partial(ggx_sample, roughness=sampled_alpha)
+    return probability(sample, partial(ggx_pdf, roughness=alpha), view(mu, AZIMUTH), u)
 
 
 @every_scene
 def test_samples_pass_the_chi_square_test_against_their_density(mu, alpha):
-    assert probability(mu, alpha, alpha) > FALSE_ALARM / len(SCENES)
+    assert chi_square(mu, alpha, alpha) > FALSE_ALARM / len(SCENES)
 
 
 @every_scene
 def test_the_chi_square_test_notices_another_roughness(mu, alpha):
-    assert probability(mu, alpha, [1.1 * alpha[0] % 1.0, alpha[1]]) < FALSE_ALARM
+    assert chi_square(mu, alpha, [1.1 * alpha[0] % 1.0, alpha[1]]) < FALSE_ALARM
 
 
 @every_scene

@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from scipy import special  # scipy.stats is slow to import
 
 from mxeon.models.sampling import SAMPLERS
 
@@ -74,3 +75,23 @@ def expected(sampler, mu, roughness, edges, count):
     pdf = sampler.pdf(view(mu), directions(theta, phi), roughness)
     bins = np.einsum("ikjl,ik,jl->ij", pdf, dtheta * np.sin(theta), dphi)
     return np.append(max(0.0, 1.0 - bins.sum()), bins)
+
+
+def probability(sample, pdf, wo, u, count=12, nodes=24):
+    """Probability of a chi-square as large, for sample(wo, u) and pdf(wo, wi); what is below is a bin."""
+    # Count samples, and integrate the density, in bins of equal projected area.
+    edges = np.arccos(np.sqrt(np.linspace(1.0, 0.0, 9)))
+    counts = binned(sample(wo, u)[0], edges, count)
+    theta, dtheta = rule(edges, nodes)
+    phi, dphi = rule(2.0 * np.pi * np.arange(count + 1) / count, nodes)
+    bins = np.einsum(
+        "ikjl,ik,jl->ij", pdf(wo, directions(theta, phi)), dtheta * np.sin(theta), dphi
+    )
+    mean = len(u) * np.append(1.0 - bins.sum(), bins)
+    # Pool the bins in which the statistic would not be chi-square.
+    likely = mean >= 10.0
+    statistic = np.sum((counts - mean)[likely] ** 2 / mean[likely])
+    rest = mean[~likely].sum()
+    if rest >= 10.0:
+        statistic += (counts[~likely].sum() - rest) ** 2 / rest
+    return special.chdtrc(likely.sum() + (rest >= 10.0) - 1, statistic)

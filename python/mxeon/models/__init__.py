@@ -41,6 +41,10 @@ if TYPE_CHECKING:
 # Names that are loaded when they are used, by the module that defines them.
 _LATER = {
     "catalog": "model model_names",
+    "coat": (
+        "dielectric_over_eon_albedo_avg dielectric_over_eon_albedo_dir dielectric_over_eon_brdf"
+    ),
+    "coat.sampling": "dielectric_over_eon_pdf dielectric_over_eon_sample",
     "core.layering": "Bsdf add layer mix multiply throughput",
     "core.quadrature": "albedo_dir_quadrature",
     "diffuse.albedo": (

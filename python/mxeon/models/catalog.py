@@ -6,15 +6,17 @@ Inputs have MaterialX's names, order, units and defaults, whatever the functions
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias, overload
+from collections.abc import Callable
+from typing import Literal, TypeAlias, cast, overload
 
 import numpy as np
 
-from mxeon.models import sampling, table
+from mxeon.models import coat, sampling, table
+from mxeon.models.coat import sampling as coat_sampling
 from mxeon.models.core.arguments import checked_choice
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.edges import cosine
-from mxeon.models.core.namespaces import array_namespace
+from mxeon.models.core.namespaces import array_namespace, library
 from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.media_model import EmissionModel, MediumModel
 from mxeon.models.nodes import NODES
@@ -22,7 +24,7 @@ from mxeon.models.nodes.emissions import EMISSIONS, Emission
 from mxeon.models.nodes.hair import HAIR_NODE
 from mxeon.models.nodes.media import MEDIA, Medium
 from mxeon.models.nodes.node import Inputs, PbrNode
-from mxeon.models.nodes.parameters import BY_NAME, DEFAULTS, FRAME, parameter
+from mxeon.models.nodes.parameters import BY_NAME, DEFAULTS, FRAME, Parameter, parameter
 from mxeon.models.nodes.subsurface import SUBSURFACE_NODE
 from mxeon.models.nodes.thin_films import FILM_NODES
 from mxeon.models.nodes.transmissions import TRANSMISSION_NODES, TRANSMISSIONS
@@ -201,11 +203,64 @@ def _of_table(row: table.Model) -> ShadingModel:
     )
 
 
+def _of_coat() -> ShadingModel:
+    """The model of a dielectric over EON; `alpha` is the roughness of the dielectric."""
+    inputs = (
+        parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
+        parameter("oren_nayar_diffuse_bsdf", "roughness"),
+        Parameter("alpha", 0.05, "coat_alpha"),
+        Parameter("ior", 1.5, "coat_ior"),
+    )
+    return ShadingModel(
+        "dielectric_over_eon",
+        "dielectric over EON",
+        "layer_bsdf",
+        inputs,
+        lambda wo, wi, i: _per_coat(coat.dielectric_over_eon_brdf, i, wo, wi)[0],
+        lambda wo, i: _per_coat(coat.dielectric_over_eon_albedo_dir, i, cosine(wo[:, 2]))[0],
+        lambda i: _per_coat(coat.dielectric_over_eon_albedo_avg, i)[0],
+        ModelSampler(
+            lambda wo, u, i: _per_coat(coat_sampling.dielectric_over_eon_sample, i, wo, u),
+            lambda wo, wi, i: _per_coat(coat_sampling.dielectric_over_eon_pdf, i, wo, wi)[0],
+        ),
+    )
+
+
+def _per_coat(
+    function: Callable[..., Array | tuple[Array, Array]], inputs: Inputs, *vectors: Array
+) -> tuple[Array, Array]:
+    """Results of a function of one coat, for rows with a coat each: one result, or two."""
+    # Call it once where there is one coat, and where it refuses more.
+    others = [*vectors, *(inputs[name] for name in ("color", "roughness"))]
+    alpha, ior = inputs["alpha"], inputs["ior"]
+    numbers = [each[0] if len(each) == 1 else each for each in (alpha, ior)]
+    if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
+        return _pair(function(*others, *numbers))
+    # Else call it for the rows of each.
+    pairs = np.stack(np.broadcast_arrays(alpha, ior), axis=-1)
+    coats, which = np.unique(pairs, axis=0, return_inverse=True)
+    results: list[Array] = []
+    for k, pair in enumerate(coats):
+        rows = np.flatnonzero(which.reshape(-1) == k)
+        own = [each if len(each) == 1 else each[rows] for each in others]
+        for n, part in enumerate(_pair(function(*own, *pair))):
+            if n == len(results):
+                results.append(np.empty((len(pairs), *part.shape[1:])))
+            results[n][rows] = part
+    return cast(tuple[Array, Array], tuple(results))
+
+
+def _pair(result: Array | tuple[Array, Array]) -> tuple[Array, Array]:
+    """Results of a call, as a tuple."""
+    return result if isinstance(result, tuple) else cast(tuple[Array, Array], (result,))
+
+
 MODELS: dict[str, NodeModel] = {
     each.name: each
     for each in (
         *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
         *map(_of_table, table.PARAMETRIZATIONS),
+        _of_coat(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),
         *map(_of_emission, EMISSIONS),

@@ -19,7 +19,7 @@ def _each(names: str, ends: tuple[float, float, str]) -> dict[str, tuple[float, 
 
 
 # Ranges at whose ends rounding may step over them.
-CLOSED = ("[0, 1]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
+CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]", "[-pi/2, pi/2]")
 
 # Ranges of the quantities, by name.
 RANGES = {
@@ -33,6 +33,8 @@ RANGES = {
     **_each("exponent ior extinction absorption scattering absorption_coefficient", _POSITIVE),
     **_each("radiance base emission scattered behind light intensity distance", _POSITIVE),
     **_each("scale_tt scale_trt", _POSITIVE),
+    **_each("coat_alpha", (0.01, 1.0, "[0.01, 1]")),
+    **_each("coat_ior", (1.0, 4.0, "[1, 4]")),
     **_each("thinfilm_ior film_ior", (1.0, 1e50, "[1, 1e50]")),
     **_each("thinfilm_thickness thickness", (0.0, 1e9, "[0, 1e9]")),  # nm
     **_each("temperature wavelength", (1.0, 1e9, "[1, 1e9]")),

@@ -29,6 +29,8 @@ SPLIT_NODES, SPLIT_PART = 28, 32
 
 # Least cosine of wo, and largest r: beyond, less than 1e-12 of the light is left.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
+# Least scale of the nodes of all facets: what is nearer to 0 has less than 1e-7 of the light.
+LEAST_SCALE = 3e-4
 # That of facets that refract: where those at the horizon do, 1 / r of the light is left.
 FARTHEST_R = 1e12
 
@@ -112,12 +114,16 @@ def _density(r: Array) -> Array:
     return r / (np.pi * (1.0 + r * r) ** 2)
 
 
-def slope_nodes(wo: Array, roughness: Array) -> tuple[Array, Array]:
-    """Cosine wo . h and weight of every node, shape (nodes of r, nodes of phi, ...)."""
+def slope_nodes(wo: Array, roughness: Array, isotropic: bool = False) -> tuple[Array, Array]:
+    """Cosine wo . h and weight of every node, shape (nodes of r, nodes of phi, ...).
+
+    Where surfaces are known to be isotropic, half of the nodes stand for all.
+    """
     slopes = Slopes.seen(wo, roughness)
-    omega, weight_omega = _quadrants(slopes.scale, slopes.isotropic)
+    scale = array_namespace(slopes.scale).maximum(slopes.scale, LEAST_SCALE)
+    omega, weight_omega = _quadrants(scale, isotropic or slopes.isotropic)
     B, g, limit = slopes.rays(omega)
-    r, weight = _graded(slopes.scale, limit)
+    r, weight = _graded(scale, limit)
     cosine, values = slopes.facets(r, B, g)
     return cosine, weight * weight_omega * values
 

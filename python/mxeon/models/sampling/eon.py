@@ -188,7 +188,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
         ends.append(ends[-1] + part)
     ends = [end / ends[-1] for end in ends]
     starts = [0.0 * ends[0], *ends[:-1]]
-    v = [_stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
+    v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
     # Draw a cosine from each part, and keep the one chosen; the flat part has no cosine first.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
@@ -224,7 +224,7 @@ def eon_segment(mu: Array, S: Array) -> Array:
     return xp.maximum(0.5 * (xp.atan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
 
 
-def _stretched(u: Array, start: Array, end: Array) -> Array:
+def stretched(u: Array, start: Array, end: Array) -> Array:
     """`u` mapped from [start, end) to [0, 1); what lies outside goes to the nearer end.
 
     It goes there before the division, which would overflow for the shortest intervals.

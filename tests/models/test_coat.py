@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A dielectric over EON: its curves, albedos and samples.
+
+The seeds are fixed. FALSE_ALARM is the probability that the comparisons of samples in this file fail
+although all is right.
+"""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from scipy import special
+
+import mxeon
+from mxeon.albedo import eon_albedo_avg, ggx_albedo_dir
+from mxeon.models import (
+    dielectric_over_eon_albedo_avg,
+    dielectric_over_eon_albedo_dir,
+    dielectric_over_eon_brdf,
+    dielectric_over_eon_pdf,
+    dielectric_over_eon_sample,
+    fresnel_dielectric_avg,
+    unchecked,
+)
+from mxeon.models.coat.curves import constant_coat
+from mxeon.models.microfacet import slopes
+from mxeon.models.microfacet.fresnel_formulas import dielectric
+from tests.support.hemispheres import gauss_legendre, hemisphere, probability, uniforms, view
+from tests.support.tolerances import COAT, COAT_INTEGRAL
+
+FALSE_ALARM = 1e-4
+CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
+VARNISH = {"alpha": 0.3, "ior": 1.5}
+SCENES = [(1.0, 0.3, 1.5), (0.5, 0.1, 1.5), (0.1, 0.5, 2.5), (0.0, 0.3, 1.1)]
+every_scene = pytest.mark.parametrize(("mu", "alpha", "ior"), SCENES)
+COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0, 9))
+
+
+@pytest.mark.parametrize("ior", (1.0, 1.02, 1.5, 4.0))
+@pytest.mark.parametrize("alpha", (0.01, 0.05, 0.3, 1.0))
+def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
+    coat = constant_coat(alpha, ior)
+    missing, reflected = coat.at(COSINES)
+    # Integrate anew, with more nodes, that crowd at grazing without end.
+    finer = {"LEAST_SCALE": 0.0, "NODES": 40, "PANELS": 6, "QUADRANT": 120}
+    for name, value in finer.items():
+        monkeypatch.setattr(slopes, name, value)
+    c, weight = slopes.slope_nodes(view_of(COSINES), np.full((2, len(COSINES)), alpha))
+    expected = 1.0 / ggx_albedo_dir(COSINES, alpha) - 1.0
+    assert np.abs(missing - expected).max() < COAT
+    E = np.sum(dielectric(c, np.asarray(ior)) * weight, axis=(0, 1))
+    assert coat.average == fresnel_dielectric_avg(ior)
+    assert np.abs(reflected - E * (1.0 + coat.average * expected)).max() < COAT
+
+
+def view_of(mu):
+    """Directions with these cosines, components first."""
+    return np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu])
+
+
+@pytest.mark.parametrize("mu", (1.0, 0.5, 0.1))
+def test_the_directional_albedo_is_the_integral_of_the_value(mu):
+    wi, weights = hemisphere(mu)
+    value = dielectric_over_eon_brdf(view(mu), wi, **CLAY, alpha=0.5, ior=1.5)
+    integral = (weights * wi[:, 2]) @ value
+    albedo = dielectric_over_eon_albedo_dir(mu, **CLAY, alpha=0.5, ior=1.5)
+    assert np.abs(integral - albedo).max() < COAT_INTEGRAL
+
+
+@pytest.mark.parametrize("alpha", (0.02, 0.3, 1.0))
+def test_the_average_albedo_is_the_average(alpha):
+    x, weight = gauss_legendre(400)
+    mu = (0.5 + 0.5 * x) ** 2  # whose nodes crowd at grazing
+    E = dielectric_over_eon_albedo_dir(mu, **CLAY, alpha=alpha, ior=1.5)
+    average = (0.5 * weight * 4.0 * (0.5 + 0.5 * x) ** 3) @ E
+    found = dielectric_over_eon_albedo_avg(**CLAY, alpha=alpha, ior=1.5)
+    assert np.abs(found - average).max() < COAT
+
+
+def test_a_white_base_returns_all_light_and_an_index_of_1_hides_nothing():
+    albedo = dielectric_over_eon_albedo_dir(COSINES, 1.0, 0.6, **VARNISH)
+    assert np.abs(albedo - 1.0).max() < 1e-15
+    bare = CLAY | {"alpha": 0.3, "ior": 1.0}
+    off = dielectric_over_eon_albedo_avg(**bare) - eon_albedo_avg(**CLAY)
+    assert np.abs(off).max() < COAT
+
+
+def chi_square(mu, alpha, ior, sampled_alpha):
+    """Probability of a chi-square as large, for samples of one roughness and the density of another."""
+    u = uniforms(100_000, [SCENES.index((mu, alpha, ior)), 11])
+    sample = partial(dielectric_over_eon_sample, **CLAY, alpha=sampled_alpha, ior=ior)
+    pdf = partial(dielectric_over_eon_pdf, **CLAY, alpha=alpha, ior=ior)
+    return probability(sample, pdf, view(mu, 0.4), u, nodes=32)
+
+
+@every_scene
+def test_samples_pass_the_chi_square_test_against_their_density(mu, alpha, ior):
+    assert chi_square(mu, alpha, ior, alpha) > 0.5 * FALSE_ALARM / len(SCENES)
+
+
+@every_scene
+def test_the_chi_square_test_notices_another_roughness(mu, alpha, ior):
+    assert chi_square(mu, alpha, ior, 1.3 * alpha) < FALSE_ALARM
+
+
+@every_scene
+def test_the_mean_weight_is_the_albedo(mu, alpha, ior):
+    wo = view(max(mu, 0.01), 0.4)
+    inputs = CLAY | {"alpha": alpha, "ior": ior}
+    wi, pdf = dielectric_over_eon_sample(wo, uniforms(40_000, 9), **inputs)
+    above = wi[:, 2] >= 0.0
+    assert np.allclose(dielectric_over_eon_pdf(wo, wi[above], **inputs), pdf[above], 1e-9)
+    weight = np.zeros((len(wi), 3))
+    weight[above] = dielectric_over_eon_brdf(wo, wi[above], **inputs) * wi[above, 2:]
+    weight /= pdf[:, np.newaxis]
+    error = np.abs(weight.mean(axis=0) - dielectric_over_eon_albedo_dir(wo[2], **inputs))
+    deviate = -special.ndtri(0.5 * FALSE_ALARM / (6 * len(SCENES)))
+    assert (error < deviate * weight.std(axis=0) / np.sqrt(len(wi))).all()
+
+
+def test_a_black_base_and_no_interface_reflect_nothing_and_are_sampled():
+    inputs = {"rho": 0.0, "roughness": 0.5, "alpha": 0.3, "ior": 1.0}
+    wi, pdf = dielectric_over_eon_sample(view(0.5), uniforms(100, 1), **inputs)
+    assert (wi[:, 2] > 0.0).all() and (pdf > 0.0).all()
+    assert not dielectric_over_eon_brdf(view(0.5), wi, **inputs).any()
+
+
+@pytest.mark.parametrize(
+    ("other", "message"),
+    [
+        ({"alpha": 0.001}, r"^alpha must lie in \[0.01, 1\]; got 0.001"),
+        ({"ior": 5.0}, r"^ior must lie in \[1, 4\]; got 5.0"),
+        ({"alpha": [0.1, 0.2]}, r"^alpha must be one number, for all pairs; got shape \(2,\)"),
+    ],
+)
+def test_what_is_no_coat_is_refused(other, message):
+    with pytest.raises(ValueError, match=message):
+        dielectric_over_eon_albedo_dir(0.5, **CLAY, **VARNISH | other)
+
+
+def test_the_model_by_name_has_a_coat_for_each_row():
+    row = mxeon.model("dielectric_over_eon")
+    wo, alpha = np.stack([view(0.5), view(0.9), view(0.1)]), [0.1, 0.3, 0.1]
+    value = row.brdf(wo, view(0.7), **CLAY, alpha=alpha, ior=1.5)
+    wi, pdf = row.sample(wo, [0.3, 0.6], **CLAY, alpha=alpha)
+    for k in range(3):
+        own = CLAY | {"alpha": alpha[k], "ior": 1.5}
+        assert np.array_equal(value[k], dielectric_over_eon_brdf(wo[k], view(0.7), **own))
+        one, density = dielectric_over_eon_sample(wo[k], [0.3, 0.6], **own)
+        assert np.array_equal(wi[k], one) and pdf[k] == density
+
+
+def test_a_coat_each_is_refused_for_other_arrays():
+    torch = pytest.importorskip("torch")
+    row, alpha = mxeon.model("dielectric_over_eon"), torch.tensor([0.1, 0.3])
+    with pytest.raises(ValueError, match="^alpha must be one number"):
+        row.brdf(view(0.5), view(0.7), alpha=alpha)
+
+
+def test_gradients_by_the_coat_are_those_of_differences():
+    torch = pytest.importorskip("torch")
+    wo, u = view(0.6), uniforms(4, 1)
+    functions = (
+        dielectric_over_eon_albedo_avg,
+        lambda **inputs: dielectric_over_eon_sample(wo, u, **inputs)[1],
+    )
+    for function in functions:
+        given = {
+            k: torch.tensor(v, dtype=torch.float64, requires_grad=True) for k, v in VARNISH.items()
+        }
+        function(**CLAY, **given).sum().backward()
+        for name, tensor in given.items():
+            ends = [
+                function(**CLAY, **VARNISH | {name: VARNISH[name] + h}).sum() for h in (1e-4, -1e-4)
+            ]
+            assert tensor.grad.item() == pytest.approx(
+                (ends[0] - ends[1]) / 2e-4, rel=1e-5, abs=1e-6
+            )
+    with unchecked():
+        assert function(**CLAY, **given).shape == (4,)
