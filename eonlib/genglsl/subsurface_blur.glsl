@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
 
-#define SUBSURFACE_RINGS 8
+// Gauss's rule over [-1, 1]: positive nodes, and weights.
+#define SUBSURFACE_RINGS 6
+#define SUBSURFACE_GAUSS1 vec2(0.93246951, 0.17132449)
+#define SUBSURFACE_GAUSS2 vec2(0.66120939, 0.36076157)
+#define SUBSURFACE_GAUSS3 vec2(0.23861919, 0.46791393)
 
-// Mean of max(cos(theta), 0) over the circle at the end of a chord from a point whose cosine is mu.
-float subsurface_ring(float mu, float chord)
+// Means of max(cos(theta), 0) over the circles at the ends of chords from a point whose cosine is mu.
+vec3 subsurface_ring(float mu, vec3 chord)
 {
-    float squared = chord * chord;
-    float along = mu * (1.0 - 0.5 * squared);
-    float across = sqrt(max((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0));
-    if (along >= across)
-    {
-        return along;
-    }
-    if (along <= -across)
-    {
-        return 0.0;
-    }
-    float lit = acos(clamp(-along / across, -1.0, 1.0));
-    return (along * lit + sqrt(max(across * across - along * along, 0.0))) / 3.14159265358979;
+    vec3 squared = chord * chord;
+    vec3 along = mu * (1.0 - 0.5 * squared);
+    vec3 across = sqrt(max((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0));
+
+    // A circle that the terminator cuts has more than the cosine of its middle.
+    vec3 height = min(abs(along) / max(across, 1e-30), 1.0);
+    vec3 more = across * (sqrt(1.0 - height * height) - height * acos(height));
+    return max(along, 0.0) + more / 3.14159265358979;
 }
 
-// Mean over one exponential of the profile, at the middles of parts of equal light, and its share.
-vec2 subsurface_exponential(float mu, float reach)
+// The blurred cosine; `reach` is the mean free path over the radius of the sphere. The profile's light within
+// a distance r rises by (1 + t^2) dt, t = exp(-r / (3 reach)).
+vec3 subsurface_blur(float mu, vec3 reach)
 {
-    float share = 1.0 - exp(-2.0 / max(reach, 1e-6));  // the sphere ends at a distance of 2
-    float sum = 0.0;
-    for (int i = 0; i < SUBSURFACE_RINGS; i++)
-    {
-        float u = (float(i) + 0.5) / float(SUBSURFACE_RINGS);
-        sum += subsurface_ring(mu, min(-reach * log(1.0 - u * share), 2.0));
-    }
-    return vec2(sum / float(SUBSURFACE_RINGS), share);
-}
+    vec3 least = exp(-2.0 / (3.0 * max(reach, 1e-6)));  // the sphere ends at a distance of 2
+    vec3 light = vec3(0.0);
+    vec3 total = vec3(0.0);
 
-// The blurred cosine; `reach` is the mean free path over the radius of the sphere.
-float subsurface_blur(float mu, float reach)
-{
-    vec2 near = subsurface_exponential(mu, reach);
-    vec2 far = subsurface_exponential(mu, 3.0 * reach);
-    return (near.x * near.y + 3.0 * far.x * far.y) / (near.y + 3.0 * far.y);
+    // One ring serves a plane. A count that depends on an input keeps compilers from writing all rings out.
+    int rings = max(reach.x, max(reach.y, reach.z)) > 0.0 ? SUBSURFACE_RINGS : 1;
+    for (int i = 0; i < rings; i++)
+    {
+        vec2 node = i == 0 || i == 5 ? SUBSURFACE_GAUSS1
+                                     : (i == 1 || i == 4 ? SUBSURFACE_GAUSS2 : SUBSURFACE_GAUSS3);
+        vec3 t = mix(least, vec3(1.0), 0.5 + 0.5 * (i < 3 ? node.x : -node.x));
+        vec3 share = node.y * (1.0 + t * t);
+        light += share * subsurface_ring(mu, min(-3.0 * reach * log(t), 2.0));
+        total += share;
+    }
+    return light / total;
 }

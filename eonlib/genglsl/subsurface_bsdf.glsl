@@ -28,9 +28,7 @@ void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 rad
         // The profile has no anisotropy: its mean free path is that of isotropic scattering,
         // l / (1 - g).
         vec3 reach = curvature * max(radius, vec3(0.0)) / max(1.0 - anisotropy, 1e-3);
-        reach = min(reach, vec3(1e3));
-        vec3 light = vec3(subsurface_blur(mu_i, reach.x), subsurface_blur(mu_i, reach.y),
-                          subsurface_blur(mu_i, reach.z));
+        vec3 light = subsurface_blur(mu_i, min(reach, vec3(1e3)));
         bsdf.response = color * light * closureData.occlusion * weight * M_PI_INV;
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)

@@ -229,13 +229,13 @@ BESIDE = {
         "exitance",
         "right but for",
     ),
-    "far profile at nine reaches": (
+    "far profile at half of its reach": (
         "subsurface_bsdf",
         "subsurface_blur.glsl",
-        "3.0 * reach)",
-        "9.0 * reach)",
+        "(1.0 + t * t)",
+        "(2.0 * t + t * t)",
         "sphere",
-        "nearest known model: a far exponential of 9 mean free paths in place of 3",
+        "nearest known model: a far exponential of 1.5 mean free paths in place of 3",
     ),
 }
 

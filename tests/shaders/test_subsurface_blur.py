@@ -20,7 +20,7 @@ from tests.support.tolerances import SUBSURFACE_RINGS, SUBSURFACE_SPHERE, TWIN_V
 
 COSINES = np.linspace(-1.0, 1.0, 401).astype(np.float32).astype(np.float64)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(200)
-REACHES = (0.001, 0.03, 0.1, 0.2, 0.3, 1.0, 10.0, 1000.0)
+REACHES = (0.001, 0.03, 0.1, 0.153, 0.2, 0.3, 1.0, 10.0, 1000.0)
 SCENE = replace(SIDE, size=32)
 COLOR, RADIUS = (0.9, 0.6, 0.3), (0.5, 0.2, 0.05)
 
@@ -41,7 +41,7 @@ def gl():
 
 def blurred(host, mu, reach):
     source = Path(eonlib_folder(), "genglsl", "subsurface_blur.glsl").read_text()
-    return host.execute(source, "subsurface_blur", mu, np.full_like(mu, reach))[:, 0]
+    return host.execute(source, "subsurface_blur", mu, np.full((len(mu), 3), reach))[:, 0]
 
 
 def picture(host, **inputs):
