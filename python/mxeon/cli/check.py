@@ -2,6 +2,9 @@
 """`mxeon check`: run the checks on hosts, and compare pictures of documents."""
 
 import argparse
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from importlib import import_module
 from typing import Any
 
 from mxeon.cli import arguments
@@ -9,6 +12,7 @@ from mxeon.cli.output import Progress, fail
 from mxeon.cli.verdict import show_run
 from mxeon.errors import MISUSE, InputError
 from mxeon.hosts import host_names
+from mxeon.jobs.signals import block_signals
 from mxeon.jobs.timeouts import WAIT
 
 
@@ -94,10 +98,23 @@ def run(options: argparse.Namespace) -> int:
         wait=options.waitForWorkers,
         policy=arguments.policy(options),
         nodes=nodes,
-        progress=progress,
+        progress=_importing(progress) if options.report else progress,
         refuse=refuse,
     )
     return show_run(result, options, refused)
+
+
+def _importing(progress: Progress) -> Callable[[Iterable[Any], int], Iterator[Any]]:
+    """A progress that imports what makes the page of a report, while workers are at the next tasks."""
+
+    def steps(outcomes: Iterable[Any], total: int) -> Iterator[Any]:
+        for outcome in progress(outcomes, total):
+            yield outcome
+            # Making the page says what is missing. An import would swallow a signal.
+            with block_signals(), suppress(ImportError):
+                import_module("mxeon.report.page")
+
+    return steps
 
 
 def _label(outcome: Any) -> str:

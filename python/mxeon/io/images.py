@@ -25,6 +25,14 @@ Pixels = NDArray[np.float32]
 
 LARGEST = 2**28  # values of an image: 1 GiB as float32, and the four channels of 8192 x 8192
 PNG_END = b"IEND\xaeB`\x82"  # the last chunk of a PNG file
+# Run lengths: 0.6 of the time of zip, and an eighth more bytes.
+FAST_EXR: dict[str, str | int] = {"oiio:ColorSpace": "lin_rec709_scene", "compression": "rle"}
+# Without filters (libpng's 8): a tenth of the time of the default, and a quarter more bytes.
+FAST_PNG: dict[str, str | int] = {
+    "oiio:ColorSpace": "srgb_rec709_scene",
+    "png:compressionLevel": 1,
+    "png:filter": 8,
+}
 INCOMPLETE = "the file is incomplete; the disk may be full"
 
 
@@ -159,7 +167,7 @@ def words(message: Callable[[], str]) -> str:
     return " ".join(text.split())
 
 
-def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str]) -> None:
+def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str | int]) -> None:
     """Write pixels to an image file in the format that the ending of `path` names.
 
     Parameters
@@ -168,8 +176,8 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
         Replaced whole; see `mxeon.io.files.replacing`.
     pixels : ndarray of float32 or uint8, shape (height, width, channels)
         Contiguous, of a type that the format keeps as it is.
-    attributes : mapping of str to str
-        Metadata of the file, by OpenImageIO's names.
+    attributes : mapping of str to str or int
+        Metadata and options of the file, by OpenImageIO's names.
 
     Raises
     ------
@@ -189,13 +197,19 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
     except UnicodeEncodeError:
         raise OSError(errno.EILSEQ, "the name must be UTF-8", str(path)) from None
     # Attach the metadata.
-    image = oiio.ImageBuf(pixels)
+    kind = oiio.UINT8 if pixels.dtype == np.uint8 else oiio.FLOAT
+    height, width, channels = pixels.shape
+    spec = oiio.ImageSpec(width, height, channels, kind)
     for name, value in attributes.items():
-        image.specmod().attribute(name, value)
+        spec.attribute(name, value)
     # Write the file, and read it again.
     with replacing(path) as beside:
-        if not image.write(str(beside)):
-            raise OSError(errno.EIO, words(image.geterror).replace(str(beside), str(path)))
+        file = oiio.ImageOutput.create(str(beside))
+        if not (
+            file and file.open(str(beside), spec) and file.write_image(pixels) and file.close()
+        ):
+            reason = words(file.geterror if file else oiio.geterror)
+            raise OSError(errno.EIO, reason.replace(str(beside), str(path)))
         if not _holds(beside, pixels):
             raise OSError(errno.EIO, INCOMPLETE)
 
@@ -246,14 +260,14 @@ def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -
         If the file cannot be written; says why.
     """
     pixels = np.ascontiguousarray(image, dtype=np.float32)
-    write_image(path, pixels, _attributes("lin_rec709_scene", metadata))
+    write_image(path, pixels, FAST_EXR | _texts(metadata))
 
 
 def write_png(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
     """Write a linear image as an eight-bit sRGB PNG; parameters as for `write_exr`."""
-    write_image(path, srgb_encoded(image), _attributes("srgb_rec709_scene", metadata))
+    write_image(path, srgb_encoded(image), FAST_PNG | _texts(metadata))
 
 
-def _attributes(space: str, metadata: Mapping[str, object]) -> dict[str, str]:
-    values = {f"mxeon:{key}": str(value) for key, value in metadata.items()}
-    return {"oiio:ColorSpace": space, "Software": "mxeon"} | values
+def _texts(metadata: Mapping[str, object]) -> dict[str, str | int]:
+    values: dict[str, str | int] = {f"mxeon:{key}": str(value) for key, value in metadata.items()}
+    return {"Software": "mxeon"} | values

@@ -21,6 +21,7 @@ from mxeon.models.lobe_plot import CHANNEL_COLORS
 # Larger pictures are shown by every second, third, ... pixel; the files hold them all.
 SHOWN_SIZE = 256
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
+DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
 # Stands for the page's text color until the plot is part of the page.
 TEXT_COLOR = "#010203"
 # Without these, matplotlib adds a description of itself, with addresses, to each plot.
@@ -77,9 +78,10 @@ def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDAr
     ndarray of uint8, shape (size, size, 3)
     """
     finite = np.isfinite(difference_map)
-    shares = np.where(finite, difference_map, 0.0) / scale
-    colors = DIFFERENCE_COLORS(shares, bytes=True)[..., :3]
-    return np.where(finite[..., None], colors, np.array(NOT_FINITE, dtype=np.uint8))
+    steps = np.where(finite, difference_map, 0.0) * (len(DIFFERENCE_CODES) / scale)
+    colors = DIFFERENCE_CODES[np.minimum(steps, len(DIFFERENCE_CODES) - 1).astype(np.intp)]
+    colors[~finite] = NOT_FINITE
+    return colors
 
 
 def difference_gradient(stops: int = 9) -> str:

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work on many pictures by some threads: what encodes them runs without the interpreter's lock."""
 
-import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import islice
 from typing import TypeVar
 
-THREADS = min(4, os.cpu_count() or 1)  # each holds a picture or two
+THREADS = 4  # each holds a picture or two, and often waits for a disk
 
 T = TypeVar("T")
 R = TypeVar("R")

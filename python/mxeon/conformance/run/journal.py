@@ -71,6 +71,7 @@ class Journal:
         self._folder, self._plan, self._resume = Path(folder), plan, resume
         self._path = self._folder / JOURNAL
         self._exit = ExitStack()
+        self._converter = make_converter(self._path.parent)
         self.findings: dict[int, Findings] = {}
 
     def __enter__(self) -> Self:
@@ -127,7 +128,7 @@ class Journal:
         return self._write(contents.lines)
 
     def _to_json(self, record: Plan | Findings) -> dict[str, object]:
-        values: dict[str, object] = make_converter(self._path.parent).unstructure(record)
+        values: dict[str, object] = self._converter.unstructure(record)
         return values
 
     def _write(self, lines: dict[int, bytes]) -> dict[int, bytes]:
