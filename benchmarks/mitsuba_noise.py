@@ -17,7 +17,9 @@ import numpy as np
 
 from benchmarks.values import mitsuba_version
 from mxeon.io.files import write_text
-from mxeon.mitsuba import EonPlugin, RoughDiffusePlugin, _initialize, _members, register
+from mxeon.mitsuba import register
+from mxeon.mitsuba.diffuse import EonPlugin, RoughDiffusePlugin
+from mxeon.mitsuba.plugin import register_plugin
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "sampling.md"
 BLOCK = re.compile(r"(<!-- mitsuba -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -35,9 +37,7 @@ class EonByCosinePlugin(RoughDiffusePlugin):
 def register_both(mi):
     """The plugins `eon` and `eon_by_cosine`."""
     register()
-    members = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
-    kind = type(COSINE, (mi.BSDF,), members | _members(EonByCosinePlugin))
-    mi.register_bsdf(COSINE, kind)
+    register_plugin(mi, COSINE, EonByCosinePlugin)
 
 
 def eon(kind, color, roughness):

@@ -190,6 +190,7 @@ HOSTS = (
             OwnNode("diffuse", "lambert", COLOR),
             OwnNode("principled", "burley"),
             *(OwnNode(f"{each} of mxeon.mitsuba", each) for each in ("eon", "fon", "qon")),
+            OwnNode("dielectric_over_eon of mxeon.mitsuba", "eon_coated"),
         ),
     ),
     # Its manual has the roughness of both nodes for Cycles only.

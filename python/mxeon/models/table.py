@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
+from mxeon.models import coat
 from mxeon.models.core.arguments import checked, checked_choice, checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.namespaces import any_array
@@ -180,8 +182,11 @@ KNOWN_DEFECTS = (
     ),
 )
 
+# The dielectric of the coat that is judged in a renderer.
+COATED = {"alpha": 0.5, "ior": 1.5}
+
 # What renderers' own nodes have beside those: EON with the quartic also in surroundings, a defect of
-# it, and Burley's model. Shaders that are generated have none of them.
+# it, Burley's model, and EON under a coat. Shaders that are generated have none of them.
 OTHERS = (
     Model(
         "eon_fitted",
@@ -215,6 +220,14 @@ OTHERS = (
         "Burley with Schlick's weight for the cosine of retro-reflection",
         known_defects.burley_schlick_brdf,
         "roughness",
+    ),
+    Model(
+        "eon_coated",
+        "EON under a dielectric of alpha 0.5 and index 1.5",
+        partial(coat.dielectric_over_eon_brdf, **COATED),
+        "roughness",
+        partial(coat.dielectric_over_eon_albedo_dir, **COATED),
+        partial(coat.dielectric_over_eon_albedo_avg, **COATED),
     ),
     Model(
         "qon_degrees",

@@ -58,6 +58,7 @@ LOOKED_UP = (*(row.name for row in LOBE_NODES), HAIR_NODE.name, SUBSURFACE_NODE.
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
+COATED = ("eon_coated",)  # which a renderer has
 
 
 def diagnose_sphere(probe: Probe) -> Diagnosis:
@@ -101,7 +102,7 @@ CHECKS = (
     Check(
         "value",
         "The value is the model's for every pair of directions, back-lit and grazing ones included.",
-        (*ROUGH, *OTHERS),
+        (*ROUGH, *OTHERS, *COATED),
         VALUE,
         gray,
         applies=is_node,
@@ -119,7 +120,7 @@ CHECKS = (
     Check(
         "environment",
         "The environment branch gives the directional albedo.",
-        (*ROUGH, *OTHERS, *SMOOTH),
+        (*ROUGH, *OTHERS, *SMOOTH, *COATED),
         ALBEDO,
         gray,
         applies=has_environment,
@@ -136,7 +137,7 @@ CHECKS = (
     Check(
         "furnace",
         "A white surface in a white environment cannot be seen.",
-        EON,
+        (*EON, *COATED),
         measures.furnace,
         with_inputs("reflectance is 0.99", color=(0.99, 0.99, 0.99)),
         "albedo",
@@ -252,7 +253,7 @@ CHECKS = (
     Check(
         "inputs",
         "Every input of the node changes the value.",
-        (*ROUGH, *OTHERS, *SMOOTH, *COMBINATION, *EMITTER, *MEDIUM_NAMES),
+        (*ROUGH, *OTHERS, *SMOOTH, *COATED, *COMBINATION, *EMITTER, *MEDIUM_NAMES),
         measures.counted(dead_inputs),
         drop_changes,
         tolerances.count_of("inputs"),

@@ -41,6 +41,14 @@ class Host(PolyhedronHost):
             }
             for model in ("eon", "fon", "qon")
         },
+        # The dielectric of the model "eon_coated".
+        "dielectric_over_eon of mxeon.mitsuba": {
+            "type": "dielectric_over_eon",
+            "reflectance": "{color}",
+            "roughness": "{roughness}",
+            "alpha": 0.5,
+            "ior": 1.5,
+        },
     }
 
     def pairs(

@@ -66,6 +66,22 @@ def chebyshev_sum(coefficients: Array, x: Array) -> Array:
     return total
 
 
+def cell_cubics(coefficients: Array, cells: int) -> Array:
+    """Coefficients of the cubics through four points of the sum in each cell of [0, 1], shape (4, cells).
+
+    Examples
+    --------
+    >>> cell_cubics(np.array([0.5, 0.5]), 2).round(6) + 0.0
+    array([[0. , 0.5],
+           [0.5, 0.5],
+           [0. , 0. ],
+           [0. , 0. ]])
+    """
+    x = np.sort(chebyshev_nodes(4))
+    values = chebyshev_sum(coefficients, (np.arange(cells)[:, np.newaxis] + x) / cells)
+    return np.asarray(np.linalg.inv(np.vander(x, increasing=True)) @ values.T)
+
+
 def _recurrence(x: Array, count: int) -> Iterator[Array]:
     """The polynomials of `chebyshev_polynomials`, one after another."""
     y = 2.0 * x - 1.0

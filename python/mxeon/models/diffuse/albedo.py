@@ -177,7 +177,7 @@ def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array
            [0.439034, 1.      ]])
     """
     (rho,), (r, mu) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
-    return _eon_albedo(formulas.fon_loss(mu), rho, r)
+    return eon_albedo(formulas.fon_loss(mu), rho, r)
 
 
 @any_array
@@ -208,7 +208,7 @@ def eon_albedo_dir_approx(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -
            [0.439034, 1.      ]])
     """
     (rho,), (r, mu) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
-    return _eon_albedo(formulas.fon_loss_approx(mu), rho, r)
+    return eon_albedo(formulas.fon_loss_approx(mu), rho, r)
 
 
 @any_array
@@ -240,9 +240,9 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
     array([0.45439, 1.     ])
     """
     (rho,), (r,) = checked_colors({"rho": rho}, roughness=roughness)
-    return _eon_albedo(C1 - C2, rho, r)
+    return eon_albedo(C1 - C2, rho, r)
 
 
-def _eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
+def eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
     """Albedo of EON where FON loses r A loss."""
     return rho * (1.0 - (1.0 - rho) * r * loss / formulas.eon_denominator(rho, r))

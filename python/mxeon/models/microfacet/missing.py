@@ -14,6 +14,7 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.chebyshev import (
+    cell_cubics,
     chebyshev_coefficients,
     chebyshev_nodes,
     chebyshev_polynomials,
@@ -96,9 +97,7 @@ def _cubics(alpha: float) -> Array:
     """Coefficients of the cubics through four points of each cell, shape (4, CELLS + 1)."""
     powers = chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
     rows = np.einsum("ij,j->i", _table(), powers)
-    x = np.sort(chebyshev_nodes(4))
-    values = chebyshev_sum(rows, (np.arange(CELLS)[:, np.newaxis] + x) / CELLS)
-    cubics = np.linalg.inv(np.vander(x, increasing=True)) @ values.T
+    cubics = cell_cubics(rows, CELLS)
     # The end of the last cell is a cell of its own, of which only the beginning counts.
     end = [chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)

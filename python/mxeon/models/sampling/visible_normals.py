@@ -65,7 +65,7 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     view, (u1, u2), alpha = _components(vectors | {"roughness": checked_roughness(roughness)})
     wh = visible_normal(view, u1, u2, alpha)
     wi = stack_xyz(*(2.0 * array_namespace(wh).sum(view * wh, axis=0) * wh - view))
-    return wi, _density(view, wh, alpha)
+    return wi, visible_density(view, wh, alpha)
 
 
 @any_array
@@ -100,7 +100,7 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     vectors["roughness"] = checked_roughness(roughness)
     view, light, alpha = _components(vectors)
-    return _density(view, ggx.half_vector(view, light)[0], alpha)
+    return visible_density(view, ggx.half_vector(view, light)[0], alpha)
 
 
 def _components(vectors: dict[str, Numbers]) -> list[Array]:
@@ -112,7 +112,7 @@ def _components(vectors: dict[str, Numbers]) -> list[Array]:
     return [xp.permute_dims(vector, order) for vector in spread]
 
 
-def _density(wo: Array, wh: Array, roughness: Array) -> Array:
+def visible_density(wo: Array, wh: Array, roughness: Array) -> Array:
     """G1(wo) D(wh) / (4 mu_o), components first; G1 / mu_o is finite at grazing."""
     masking = 0.5 * ggx.reciprocal(wo[2] + ggx.stretched_length(wo, roughness))
     density: Array = masking * ggx.ndf(wh, roughness)

@@ -1,78 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON, FON and QON as BSDF plugins of Mitsuba 3.
+"""EON, FON and QON as BSDFs of Mitsuba.
 
-The values are those of the formulas of `mxeon.models`, which Dr.Jit evaluates and differentiates. In
-Mitsuba's words `si.wi` is the direction to the viewer and `wo` the one to the light: wo and wi here.
+In Mitsuba's words `si.wi` is the direction to the viewer and `wo` the one to the light: wo and wi here.
 """
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any, TypeAlias
-
 import numpy as np
 
-from mxeon.errors import NotRun, PackageError, install
+from mxeon.mitsuba.plugin import Mitsuba
 from mxeon.models.diffuse import formulas
 from mxeon.models.sampling import eon as sampling
-
-# Objects of Mitsuba and Dr.Jit, whose types are those of the variant.
-Mitsuba: TypeAlias = Any
-
-# LLVM 15 and older cannot compile what Dr.Jit 1.5 makes of a minimum; it ends the process.
-OLDEST_LLVM = (16, 0, 0)
-
-
-def register() -> None:
-    """Register the BSDFs `eon`, `fon` and `qon` for the variant of Mitsuba that is set.
-
-    Raises
-    ------
-    PackageError
-        If Mitsuba is missing.
-    NotRun
-        If no variant is set, or its LLVM is missing or too old for Dr.Jit.
-
-    Notes
-    -----
-    `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in
-    radian. All are in `mitsuba.traverse`, and can be differentiated. `eon` is sampled exactly for the mean
-    of its reflectance, the others by the cosine. As Mitsuba's `diffuse` they reflect on the front alone.
-    """
-    mi = _mitsuba()
-    for name, kind in {"eon": EonPlugin, "fon": FonPlugin, "qon": QonPlugin}.items():
-        members = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
-        mi.register_bsdf(name, type(name, (mi.BSDF,), members | _members(kind)))
-
-
-def _mitsuba() -> Mitsuba:
-    """Mitsuba, with a variant that can run."""
-    try:
-        mi = import_module("mitsuba")
-    except ModuleNotFoundError:
-        raise PackageError(f"mitsuba is not installed: {install('mitsuba')}") from None
-    variant = mi.variant()
-    if not variant:
-        raise NotRun("mitsuba: no variant is set; call mitsuba.set_variant('llvm_ad_rgb') first")
-    version = import_module("drjit").detail.llvm_version() if "llvm" in variant else OLDEST_LLVM
-    if version < OLDEST_LLVM:
-        raise NotRun(
-            f"mitsuba: Dr.Jit found LLVM {version[0]}, with which it ends the process; install LLVM 16 "
-            "or later (Debian: libllvm19), or name its library in DRJIT_LIBLLVM_PATH"
-        )
-    return mi
-
-
-def _members(kind: type) -> dict[str, object]:
-    """What a class and its bases define: a class of Mitsuba's must have one base alone."""
-    named = [item for each in reversed(kind.__mro__) for item in vars(each).items()]
-    return {name: member for name, member in named if not name.startswith("__")}
-
-
-def _initialize(self: Mitsuba, properties: Mitsuba) -> None:
-    """Make a BSDF of its properties."""
-    self.mi.BSDF.__init__(self, properties)
-    self.configure(properties)
 
 
 class RoughDiffusePlugin:
@@ -139,17 +77,14 @@ class RoughDiffusePlugin:
     ) -> tuple[Mitsuba, Mitsuba]:
         """Direction to the light, and `eval` over `pdf`."""
         # Draw a direction.
-        rho, amount = self._gray(si, active)
-        wo = self._draw(si.wi, sample1, sample2, self.dr.detach(rho), self.dr.detach(amount))
-        active = self._front(context, si.wi, wo, active)
-        pdf = self._density(si.wi, wo, rho, amount)
-        active = active & (pdf > 0.0)
+        wo, kind, component = self._pick(context, si, sample1, sample2, active)
+        pdf = self.pdf(context, si, wo, active)
+        active = self._front(context, si.wi, wo, active) & (pdf > 0.0)
         # Fill in the record.
         record = self.mi.BSDFSample3f(wo)
         record.pdf = self.dr.select(active, self.dr.detach(pdf), 0.0)
         record.eta = 1.0
-        record.sampled_type = self.mi.UInt32(+self.mi.BSDFFlags.DiffuseReflection)
-        record.sampled_component = 0
+        record.sampled_type, record.sampled_component = kind, component
         # Weigh it.
         value = self.eval(context, si, wo, active)
         return record, self.dr.select(active, value / self.dr.select(active, record.pdf, 1.0), 0.0)
@@ -161,6 +96,14 @@ class RoughDiffusePlugin:
     def to_string(self) -> str:
         """Name and textures."""
         return f"{self.parameter}: {self.amount}, reflectance: {self.reflectance}"
+
+    def _pick(
+        self, context: Mitsuba, si: Mitsuba, choice: Mitsuba, u: Mitsuba, active: Mitsuba
+    ) -> tuple[Mitsuba, Mitsuba, Mitsuba]:
+        """Direction to the light, type and component of its lobe."""
+        rho, amount = map(self.dr.detach, self._gray(si, active))
+        kind = self.mi.UInt32(+self.mi.BSDFFlags.DiffuseReflection)
+        return self._draw(si.wi, choice, u, rho, amount), kind, 0
 
     def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
         """Where the lobe is asked for, and both directions are in front."""

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""EON, FON, QON and a dielectric over EON as BSDF plugins of Mitsuba 3.
+
+The values are those of the formulas of `mxeon.models`, which Dr.Jit evaluates and differentiates.
+"""
+
+from __future__ import annotations
+
+from mxeon.mitsuba.coat import CoatPlugin
+from mxeon.mitsuba.diffuse import EonPlugin, FonPlugin, QonPlugin
+from mxeon.mitsuba.plugin import mitsuba, register_plugin
+
+PLUGINS = {
+    "eon": EonPlugin,
+    "fon": FonPlugin,
+    "qon": QonPlugin,
+    "dielectric_over_eon": CoatPlugin,
+}
+
+
+def register() -> None:
+    """Register the BSDFs `eon`, `fon`, `qon` and `dielectric_over_eon` for the variant of Mitsuba that is set.
+
+    Raises
+    ------
+    PackageError
+        If Mitsuba is missing.
+    NotRun
+        If no variant is set, or its LLVM is missing or too old for Dr.Jit.
+
+    Notes
+    -----
+    `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in
+    radian. `dielectric_over_eon` has those of `eon`, and the numbers `alpha` and `ior`. All are in
+    `mitsuba.traverse`, and can be differentiated. `eon` is sampled exactly for the mean of its reflectance,
+    a dielectric over it by either lobe, the others by the cosine. As Mitsuba's `diffuse` they reflect on
+    the front alone.
+    """
+    mi = mitsuba()
+    for name, kind in PLUGINS.items():
+        register_plugin(mi, name, kind)

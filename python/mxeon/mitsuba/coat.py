@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat`.
+
+What the dielectric reflects depends on the viewer's cosine alone: a cubic in each of some cells, whose
+coefficients are computed in float64 whenever `alpha` or `ior` changes, with their derivatives where these
+are asked for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mxeon.mitsuba.diffuse import EonPlugin
+from mxeon.mitsuba.plugin import Mitsuba
+from mxeon.models.coat.curves import constant_coat, place
+from mxeon.models.core.arrays import Array
+from mxeon.models.core.chebyshev import cell_cubics
+from mxeon.models.core.ranges import RANGES
+from mxeon.models.diffuse.albedo import eon_albedo
+from mxeon.models.diffuse.formulas import fon_loss
+from mxeon.models.microfacet import ggx_formulas as ggx
+from mxeon.models.microfacet.fresnel_formulas import dielectric
+from mxeon.models.sampling.visible_normals import visible_density, visible_normal
+
+CELLS = 256  # of the viewer's cosine; the cubics are within 4e-9 of the curves
+DEFAULTS = {"alpha": 0.05, "ior": 1.5}
+STEP = 1e-4  # of the differences that stand for the derivatives of the coefficients
+
+
+class CoatPlugin(EonPlugin):
+    """EON under a dielectric, sampled by their albedos.
+
+    Attributes
+    ----------
+    alpha, ior : Float
+        Roughness and index of refraction, one for the whole surface.
+    """
+
+    alpha: Mitsuba
+    ior: Mitsuba
+
+    def configure(self, properties: Mitsuba) -> None:
+        """Take the textures and numbers, and say which lobes there are."""
+        EonPlugin.configure(self, properties)
+        # Take both numbers.
+        for name, default in DEFAULTS.items():
+            value, (low, high, interval) = properties.get(name, default), RANGES[f"coat_{name}"]
+            if not isinstance(value, int | float):
+                raise ValueError(f"{name} must be one number for the surface; got {value}")
+            if not low <= value <= high:
+                raise ValueError(f"{name} must lie in {interval}; got {value:g}")
+            setattr(self, name, self.mi.Float(value))
+        # Name both lobes.
+        flags, front = self.mi.BSDFFlags, self.mi.BSDFFlags.FrontSide
+        self.m_components = [flags.GlossyReflection | front, flags.DiffuseReflection | front]
+        self.m_flags = self.m_components[0] | self.m_components[1]
+        self.tabulate()
+
+    def traverse(self, callback: Mitsuba) -> None:
+        """Show textures and numbers to `mitsuba.traverse`."""
+        EonPlugin.traverse(self, callback)
+        for name in DEFAULTS:
+            callback.put(name, getattr(self, name), self.mi.ParamFlags.Differentiable)
+
+    def parameters_changed(self, keys: list[str]) -> None:
+        """Take new numbers."""
+        self.tabulate()
+
+    def tabulate(self) -> None:
+        """Compute the coefficients: linear in numbers that have gradients, about their values."""
+        # Read the numbers.
+        numbers = [self._inside(name) for name in DEFAULTS]
+        values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
+        self.coat = constant_coat(*values)
+        if not self._compiled:
+            return
+        # Write the table, whose changes follow those of the numbers.
+        self.table = self.mi.Float(_table(*values))
+        for k, number in enumerate(numbers):
+            if self.dr.grad_enabled(number):
+                change = number - self.dr.detach(number)
+                self.table = self.table + self.mi.Float(_slopes(values, k)) * change
+        self.dr.make_opaque(self.alpha, self.ior, self.table)
+
+    def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
+        """BSDF times the cosine, 0 where a direction is not in front."""
+        active = self._front(context, si.wi, wo, active)
+        is_glossy, is_diffuse = self._enabled(context)
+        added, reflected = self._at(si.wi.z)
+        top = self._facets(si.wi, wo) * (1.0 + added) * wo.z
+        amount = self._clipped(self.amount.eval_1(si, active))
+        base = self._reflected(si.wi, wo, self.reflectance.eval(si, active), amount)
+        number = self.mi.Float
+        value = base * number(is_diffuse * (1.0 - reflected)) + number(is_glossy * top)
+        return self.dr.select(active, value, 0.0)
+
+    def pdf(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
+        """Density in solid angle of `sample`: that of both lobes."""
+        active = self._front(context, si.wi, wo, active)
+        rho, amount = self._gray(si, active)
+        share = self._share(context, si.wi.z, rho, amount)
+        view, light = self._vector(si.wi), self._vector(wo)
+        facets = visible_density(view, ggx.half_vector(view, light)[0], self._roughness())
+        both = share * facets + (1.0 - share) * self._density(si.wi, wo, rho, amount)
+        return self.dr.select(active, self.mi.Float(both), 0.0)
+
+    def _pick(
+        self, context: Mitsuba, si: Mitsuba, choice: Mitsuba, u: Mitsuba, active: Mitsuba
+    ) -> tuple[Mitsuba, Mitsuba, Mitsuba]:
+        """Direction from one of both lobes, its type and its component."""
+        # Choose a lobe, and stretch what is left of the number.
+        dr, flags = self.dr, self.mi.BSDFFlags
+        rho, amount = map(dr.detach, self._gray(si, active))
+        share = dr.detach(self._share(context, si.wi.z, rho, amount))
+        is_reflected = choice < share
+        rest = dr.maximum(choice - share, 0.0) / dr.maximum(1.0 - share, 1e-7)
+        # Draw from both, and keep the one chosen.
+        view, roughness = self._vector(si.wi), dr.detach(self._roughness())
+        wh = self.mi.Vector3f(*visible_normal(view, u.x, u.y, roughness))
+        base = self._draw(si.wi, rest, u, rho, amount)
+        wo = dr.select(is_reflected, self.mi.reflect(si.wi, wh), base)
+        kinds = [
+            self.mi.UInt32(+each) for each in (flags.GlossyReflection, flags.DiffuseReflection)
+        ]
+        return wo, dr.select(is_reflected, *kinds), dr.select(is_reflected, self.mi.UInt32(0), 1)
+
+    def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
+        """Where a lobe is asked for, and both directions are in front."""
+        wanted = any(self._enabled(context))
+        return self.mi.Bool(active) & wanted & (view.z > 0.0) & (light.z > 0.0)
+
+    def _enabled(self, context: Mitsuba) -> tuple[bool, bool]:
+        """Whether the glossy and the diffuse lobe are asked for."""
+        flags = self.mi.BSDFFlags
+        return (
+            context.is_enabled(flags.GlossyReflection, 0),
+            context.is_enabled(flags.DiffuseReflection, 1),
+        )
+
+    def _share(self, context: Mitsuba, mu: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
+        """Probability of the glossy lobe: its part of the albedo."""
+        enabled = self._enabled(context)
+        if not all(enabled):
+            return self.mi.Float(enabled[0])
+        reflected = self._at(mu)[1]
+        total = reflected + (1.0 - reflected) * eon_albedo(fon_loss(mu), rho, amount)
+        return self.mi.Float(reflected) / self.dr.maximum(self.mi.Float(total), 1e-30)
+
+    def _facets(self, view: Mitsuba, light: Mitsuba) -> Mitsuba:
+        """Value of the dielectric without its energy compensation."""
+        wh, c = ggx.half_vector(self._vector(view), self._vector(light))
+        visibility = ggx.visibility(view.z, light.z, self._inside("alpha"))
+        lobe = ggx.ndf(wh, self._roughness()) * visibility
+        return lobe * dielectric(c, self._inside("ior"))
+
+    def _at(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
+        """What the energy compensation adds to 1, and the albedo of the dielectric."""
+        # Sum the curves themselves in scalar variants.
+        if not self._compiled:
+            missing, reflected = self.coat.at(mu)
+            return self.coat.average * missing, reflected
+        # Find the cell, and evaluate both cubics.
+        x = place(mu, self._inside("alpha")) * CELLS
+        cell = self.mi.UInt32(self.dr.clip(x, 0, CELLS - 1))
+        t, values = x - cell, []
+        for row in (2 * cell, 2 * cell + 1):
+            a = self.dr.gather(self.mi.Vector4f, self.table, row)
+            values.append(self.dr.fma(self.dr.fma(self.dr.fma(a.w, t, a.z), t, a.y), t, a.x))
+        return self.dr.maximum(values[0], 0.0), self.dr.clip(values[1], 0.0, 1.0)
+
+    def _roughness(self) -> Mitsuba:
+        """alpha along tangent and bitangent."""
+        return (self._inside("alpha"),) * 2
+
+    def _inside(self, name: str) -> Mitsuba:
+        """A number within its range, which an optimizer may have left."""
+        low, high, _ = RANGES[f"coat_{name}"]
+        return self.dr.clip(getattr(self, name), low, high)
+
+    def _vector(self, w: Mitsuba) -> Mitsuba:
+        """Direction for the formulas, which in scalar variants is one of NumPy."""
+        return w if self._compiled else np.array([w.x, w.y, w.z])
+
+    @property
+    def _compiled(self) -> bool:
+        """Whether the variant compiles."""
+        return bool(self.dr.is_jit_v(self.mi.Float))
+
+
+def _table(alpha: float, ior: float) -> Array:
+    """Cubics of both curves, cell by cell: of what the energy compensation adds, and of the albedo."""
+    coat = constant_coat(alpha, ior)
+    curves = coat.average * np.asarray(coat.missing), np.asarray(coat.reflected)
+    return np.stack([cell_cubics(each, CELLS) for each in curves]).transpose(2, 0, 1).ravel()
+
+
+def _slopes(values: list[float], k: int) -> Array:
+    """Derivatives of the table by one of both numbers, by differences within its range."""
+    low, high, _ = RANGES[f"coat_{list(DEFAULTS)[k]}"]
+    ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
+    rows = [_table(*(end if n == k else v for n, v in enumerate(values))) for end in ends]
+    return (rows[0] - rows[1]) / (ends[0] - ends[1])
