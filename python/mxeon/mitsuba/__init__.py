@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON, FON, QON and a dielectric over EON as BSDF plugins of Mitsuba 3.
+"""EON, FON, QON, a dielectric over EON and OpenPBR's base as BSDF plugins of Mitsuba 3.
 
 The values are those of the formulas of `mxeon.models`, which Dr.Jit evaluates and differentiates.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from mxeon.mitsuba.coat import CoatPlugin
 from mxeon.mitsuba.diffuse import EonPlugin, FonPlugin, QonPlugin
+from mxeon.mitsuba.openpbr import OpenPbrBasePlugin
 from mxeon.mitsuba.plugin import mitsuba, register_plugin
 
 PLUGINS = {
@@ -15,11 +16,12 @@ PLUGINS = {
     "fon": FonPlugin,
     "qon": QonPlugin,
     "dielectric_over_eon": CoatPlugin,
+    "openpbr_base": OpenPbrBasePlugin,
 }
 
 
 def register() -> None:
-    """Register the BSDFs `eon`, `fon`, `qon` and `dielectric_over_eon` for the variant of Mitsuba that is set.
+    """Register the BSDFs of `PLUGINS`, such as `eon`, for the variant of Mitsuba that is set.
 
     Raises
     ------
@@ -31,10 +33,10 @@ def register() -> None:
     Notes
     -----
     `eon` and `fon` have the textures `reflectance` and `roughness`, `qon` has `reflectance` and `sigma`, in
-    radian. `dielectric_over_eon` has those of `eon`, and the numbers `alpha` and `ior`. All are in
-    `mitsuba.traverse`, and can be differentiated. `eon` is sampled exactly for the mean of its reflectance,
-    a dielectric over it by either lobe, the others by the cosine. As Mitsuba's `diffuse` they reflect on
-    the front alone.
+    radian. `dielectric_over_eon` has those of `eon`, and the numbers `alpha` and `ior`; `openpbr_base` has
+    inputs of OpenPBR's base. All are in `mitsuba.traverse`, and can be differentiated. `eon` is sampled
+    exactly for the mean of its reflectance, what lies under facets by either lobe, the others by the
+    cosine. As Mitsuba's `diffuse` they reflect on the front alone.
     """
     mi = mitsuba()
     for name, kind in PLUGINS.items():

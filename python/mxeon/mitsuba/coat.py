@@ -8,6 +8,8 @@ are asked for.
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 
 from mxeon.mitsuba.diffuse import EonPlugin
@@ -19,11 +21,11 @@ from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse.albedo import eon_albedo
 from mxeon.models.diffuse.formulas import fon_loss
 from mxeon.models.microfacet import ggx_formulas as ggx
-from mxeon.models.microfacet.fresnel_formulas import dielectric
+from mxeon.models.microfacet.fresnel_formulas import dielectric, dielectric_avg
 from mxeon.models.sampling.visible_normals import visible_density, visible_normal
 
 CELLS = 256  # of the viewer's cosine; the cubics are within 4e-9 of the curves
-DEFAULTS = {"alpha": 0.05, "ior": 1.5}
+ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
 STEP = 1e-4  # of the differences that stand for the derivatives of the coefficients
 
 
@@ -32,23 +34,25 @@ class CoatPlugin(EonPlugin):
 
     Attributes
     ----------
-    alpha, ior : Float
-        Roughness and index of refraction, one for the whole surface.
+    numbers : dict of str to tuple
+        Default and range of each number for the whole surface: `alpha` and `ior`, or what they follow from.
     """
 
-    alpha: Mitsuba
-    ior: Mitsuba
+    numbers: ClassVar[dict[str, tuple[float, ...]]] = {
+        "alpha": (0.05, *ALPHAS),
+        "ior": (1.5, *IORS),
+    }
 
     def configure(self, properties: Mitsuba) -> None:
         """Take the textures and numbers, and say which lobes there are."""
         EonPlugin.configure(self, properties)
         # Take both numbers.
-        for name, default in DEFAULTS.items():
-            value, (low, high, interval) = properties.get(name, default), RANGES[f"coat_{name}"]
+        for name, (default, low, high) in self.numbers.items():
+            value = properties.get(name, default)
             if not isinstance(value, int | float):
                 raise ValueError(f"{name} must be one number for the surface; got {value}")
             if not low <= value <= high:
-                raise ValueError(f"{name} must lie in {interval}; got {value:g}")
+                raise ValueError(f"{name} must lie in [{low:g}, {high:g}]; got {value:g}")
             setattr(self, name, self.mi.Float(value))
         # Name both lobes.
         flags, front = self.mi.BSDFFlags, self.mi.BSDFFlags.FrontSide
@@ -59,7 +63,7 @@ class CoatPlugin(EonPlugin):
     def traverse(self, callback: Mitsuba) -> None:
         """Show textures and numbers to `mitsuba.traverse`."""
         EonPlugin.traverse(self, callback)
-        for name in DEFAULTS:
+        for name in self.numbers:
             callback.put(name, getattr(self, name), self.mi.ParamFlags.Differentiable)
 
     def parameters_changed(self, keys: list[str]) -> None:
@@ -69,9 +73,9 @@ class CoatPlugin(EonPlugin):
     def tabulate(self) -> None:
         """Compute the coefficients: linear in numbers that have gradients, about their values."""
         # Read the numbers.
-        numbers = [self._inside(name) for name in DEFAULTS]
+        numbers = self._dielectric()
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
-        self.coat = constant_coat(*values)
+        self.coat, self.average = constant_coat(*values), dielectric_avg(numbers[1])
         if not self._compiled:
             return
         # Write the table, whose changes follow those of the numbers.
@@ -80,25 +84,25 @@ class CoatPlugin(EonPlugin):
             if self.dr.grad_enabled(number):
                 change = number - self.dr.detach(number)
                 self.table = self.table + self.mi.Float(_slopes(values, k)) * change
-        self.dr.make_opaque(self.alpha, self.ior, self.table)
+        self.dr.make_opaque(self.average, self.table, *(getattr(self, n) for n in self.numbers))
 
     def eval(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
         """BSDF times the cosine, 0 where a direction is not in front."""
         active = self._front(context, si.wi, wo, active)
         is_glossy, is_diffuse = self._enabled(context)
-        added, reflected = self._at(si.wi.z)
-        top = self._facets(si.wi, wo) * (1.0 + added) * wo.z
+        color, number = self.reflectance.eval(si, active), self.mi.Float
+        missing, reflected = self._at(si.wi.z)
+        facets, c = self._facets(si.wi, wo)
+        top = self._fresnel(si, color, c, missing, active) * number(is_glossy * facets * wo.z)
         amount = self._clipped(self.amount.eval_1(si, active))
-        base = self._reflected(si.wi, wo, self.reflectance.eval(si, active), amount)
-        number = self.mi.Float
-        value = base * number(is_diffuse * (1.0 - reflected)) + number(is_glossy * top)
-        return self.dr.select(active, value, 0.0)
+        base = self._reflected(si.wi, wo, color, amount) * self._dielectric_share(si, active)
+        return self.dr.select(active, top + base * number(is_diffuse * (1.0 - reflected)), 0.0)
 
     def pdf(self, context: Mitsuba, si: Mitsuba, wo: Mitsuba, active: Mitsuba = True) -> Mitsuba:
         """Density in solid angle of `sample`: that of both lobes."""
         active = self._front(context, si.wi, wo, active)
         rho, amount = self._gray(si, active)
-        share = self._share(context, si.wi.z, rho, amount)
+        share = self._share(context, si, rho, amount, active)
         view, light = self._vector(si.wi), self._vector(wo)
         facets = visible_density(view, ggx.half_vector(view, light)[0], self._roughness())
         both = share * facets + (1.0 - share) * self._density(si.wi, wo, rho, amount)
@@ -111,7 +115,7 @@ class CoatPlugin(EonPlugin):
         # Choose a lobe, and stretch what is left of the number.
         dr, flags = self.dr, self.mi.BSDFFlags
         rho, amount = map(dr.detach, self._gray(si, active))
-        share = dr.detach(self._share(context, si.wi.z, rho, amount))
+        share = dr.detach(self._share(context, si, rho, amount, active))
         is_reflected = choice < share
         rest = dr.maximum(choice - share, 0.0) / dr.maximum(1.0 - share, 1e-7)
         # Draw from both, and keep the one chosen.
@@ -137,30 +141,47 @@ class CoatPlugin(EonPlugin):
             context.is_enabled(flags.DiffuseReflection, 1),
         )
 
-    def _share(self, context: Mitsuba, mu: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
+    def _share(
+        self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba, active: Mitsuba
+    ) -> Mitsuba:
         """Probability of the glossy lobe: its part of the albedo."""
         enabled = self._enabled(context)
         if not all(enabled):
             return self.mi.Float(enabled[0])
-        reflected = self._at(mu)[1]
-        total = reflected + (1.0 - reflected) * eon_albedo(fon_loss(mu), rho, amount)
-        return self.mi.Float(reflected) / self.dr.maximum(self.mi.Float(total), 1e-30)
+        reflected = self._at(si.wi.z)[1]
+        glossy = self.mi.Float(self._glossy(si, rho, reflected, active))
+        base = (1.0 - reflected) * eon_albedo(fon_loss(si.wi.z), rho, amount)
+        total = glossy + self._dielectric_share(si, active) * self.mi.Float(base)
+        return glossy / self.dr.maximum(total, 1e-30)
 
-    def _facets(self, view: Mitsuba, light: Mitsuba) -> Mitsuba:
-        """Value of the dielectric without its energy compensation."""
+    def _glossy(self, si: Mitsuba, rho: Mitsuba, reflected: Mitsuba, active: Mitsuba) -> Mitsuba:
+        """Albedo of the glossy lobe."""
+        return reflected
+
+    def _dielectric_share(self, si: Mitsuba, active: Mitsuba) -> Mitsuba:
+        """Part of the surface that is the dielectric."""
+        return self.mi.Float(1.0)
+
+    def _fresnel(
+        self, si: Mitsuba, color: Mitsuba, c: Mitsuba, missing: Mitsuba, active: Mitsuba
+    ) -> Mitsuba:
+        """Reflectance of the facets per channel, times the energy compensation."""
+        F = dielectric(c, self._dielectric()[1]) * (1.0 + self.average * missing)
+        return type(color)(self.mi.Float(F))
+
+    def _facets(self, view: Mitsuba, light: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
+        """Value of facets that reflect everything, and their cosine with either direction."""
         wh, c = ggx.half_vector(self._vector(view), self._vector(light))
-        visibility = ggx.visibility(view.z, light.z, self._inside("alpha"))
-        lobe = ggx.ndf(wh, self._roughness()) * visibility
-        return lobe * dielectric(c, self._inside("ior"))
+        visibility = ggx.visibility(view.z, light.z, self._dielectric()[0])
+        return ggx.ndf(wh, self._roughness()) * visibility, c
 
     def _at(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """What the energy compensation adds to 1, and the albedo of the dielectric."""
+        """Light that facets miss, (1 - E_ss) / E_ss, and the albedo of the dielectric."""
         # Sum the curves themselves in scalar variants.
         if not self._compiled:
-            missing, reflected = self.coat.at(mu)
-            return self.coat.average * missing, reflected
+            return self.coat.at(mu)
         # Find the cell, and evaluate both cubics.
-        x = place(mu, self._inside("alpha")) * CELLS
+        x = place(mu, self._dielectric()[0]) * CELLS
         cell = self.mi.UInt32(self.dr.clip(x, 0, CELLS - 1))
         t, values = x - cell, []
         for row in (2 * cell, 2 * cell + 1):
@@ -170,12 +191,15 @@ class CoatPlugin(EonPlugin):
 
     def _roughness(self) -> Mitsuba:
         """alpha along tangent and bitangent."""
-        return (self._inside("alpha"),) * 2
+        return (self._dielectric()[0],) * 2
+
+    def _dielectric(self) -> tuple[Mitsuba, Mitsuba]:
+        """alpha and ior."""
+        return self._inside("alpha"), self._inside("ior")
 
     def _inside(self, name: str) -> Mitsuba:
         """A number within its range, which an optimizer may have left."""
-        low, high, _ = RANGES[f"coat_{name}"]
-        return self.dr.clip(getattr(self, name), low, high)
+        return self.dr.clip(getattr(self, name), *self.numbers[name][1:])
 
     def _vector(self, w: Mitsuba) -> Mitsuba:
         """Direction for the formulas, which in scalar variants is one of NumPy."""
@@ -188,15 +212,15 @@ class CoatPlugin(EonPlugin):
 
 
 def _table(alpha: float, ior: float) -> Array:
-    """Cubics of both curves, cell by cell: of what the energy compensation adds, and of the albedo."""
+    """Cubics of both curves, cell by cell."""
     coat = constant_coat(alpha, ior)
-    curves = coat.average * np.asarray(coat.missing), np.asarray(coat.reflected)
+    curves = np.asarray(coat.missing), np.asarray(coat.reflected)
     return np.stack([cell_cubics(each, CELLS) for each in curves]).transpose(2, 0, 1).ravel()
 
 
 def _slopes(values: list[float], k: int) -> Array:
     """Derivatives of the table by one of both numbers, by differences within its range."""
-    low, high, _ = RANGES[f"coat_{list(DEFAULTS)[k]}"]
+    low, high = (ALPHAS, IORS)[k]
     ends = [min(max(values[k] + step, low), high) for step in (STEP, -STEP)]
     rows = [_table(*(end if n == k else v for n, v in enumerate(values))) for end in ends]
     return (rows[0] - rows[1]) / (ends[0] - ends[1])
