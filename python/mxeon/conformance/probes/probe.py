@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import LobeSubject, Subject, ValuedSubject
+from mxeon.conformance.probes.memory import Remembered
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples.batch import (
     Array,
@@ -262,8 +263,12 @@ class ValueProbe(Probe):
 
     subject: ValuedSubject
 
+    @cached_property
+    def _expected(self) -> Remembered:
+        return Remembered(self.subject.expected)
+
     def expected(self, batch: Batch) -> Array:
-        return self.subject.expected(batch)
+        return self._expected(batch)
 
     @property
     def changes(self) -> Mapping[str, Changes]:
@@ -279,8 +284,12 @@ class LobeProbe(ValueProbe):
 
     subject: LobeSubject
 
+    @cached_property
+    def _albedo(self) -> Remembered:
+        return Remembered(self.subject.albedo)
+
     def expected_albedo(self, batch: Batch) -> Array:
-        return self.subject.albedo(batch)
+        return self._albedo(batch)
 
     def expected_sky(self, batch: Batch) -> Array:
         return self.subject.sky(batch)

@@ -76,20 +76,30 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
     def at(
         mu: Array, *, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array
     ) -> Array:
-        plain = bare.at(mu, **material)
-        coated = _airy(category, form, mu, thinfilm_thickness, thinfilm_ior, material)
-        return np.where(thinfilm_thickness > 0.0, coated, plain)
+        def coated() -> Array:
+            return _airy(category, form, mu, thinfilm_thickness, thinfilm_ior, material)
+
+        return _where_coated(thinfilm_thickness, coated, bare.at(mu, **material))
 
     # Average it over the cosine: the clamp has kinks, which a polynomial through the curve has not.
     def average(*, thinfilm_thickness: Array, thinfilm_ior: Array, **material: Array) -> Array:
-        free, film = without_clamp(form), (thinfilm_thickness, thinfilm_ior)
-        cosines, between, shares = _rule()
-        nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
-        curve = np.tensordot(between, np.stack(nodes), 1)
-        total = np.tensordot(shares, np.clip(curve, 0.0, 1.0) if form.clamped else curve, 1)
-        return np.where(thinfilm_thickness > 0.0, total, bare.average(**material))
+        def coated() -> Array:
+            free, film = without_clamp(form), (thinfilm_thickness, thinfilm_ior)
+            cosines, between, shares = _rule()
+            nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
+            curve = np.tensordot(between, np.stack(nodes), 1)
+            return np.tensordot(shares, np.clip(curve, 0.0, 1.0) if form.clamped else curve, 1)
+
+        return _where_coated(thinfilm_thickness, coated, bare.average(**material))
 
     return Curve(at, average)
+
+
+def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -> Array:
+    """Values of films where there is one, and plain ones; films take long, and are left out if there is none."""
+    if (thickness > 0.0).any():
+        return np.where(thickness > 0.0, coated(), plain)
+    return np.broadcast_to(plain, np.broadcast_shapes(thickness.shape, plain.shape))
 
 
 @cache

@@ -153,15 +153,19 @@ class PolynomialCurve:
 
     def __call__(self, mu: Array, **material: Array) -> Array:
         """F at cosines of shape (nodes, nodes, ...), shape (3, nodes, nodes, ...)."""
+        # Leave out the films if there are none.
+        bare = {k: v for k, v in material.items() if k not in FILM}
+        film = material["thinfilm_thickness"] > 0.0
+        if not film.any():
+            return self._bare(mu, **bare)
+        # Evaluate the polynomials through them.
         x = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
         cosines = (0.5 * (1.0 + x)).reshape(-1, 1, *(1,) * (mu.ndim - 2))
         sampled = self._curve(cosines, **material)
         series = np.tensordot(_transform(x), sampled, (1, 1))[:, :, np.newaxis]
         F = np.clip(_clenshaw(series, 2.0 * mu - 1.0), 0.0, 1.0)
-        film = material["thinfilm_thickness"] > 0.0
         if film.all():
             return F
-        bare = {k: v for k, v in material.items() if k not in FILM}
         return np.where(film, F, self._bare(mu, **bare))
 
 

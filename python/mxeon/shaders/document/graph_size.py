@@ -60,9 +60,7 @@ def check_inheritance(document: mx.Document, policy: Policy) -> None:
     policy.check_limit("depth", deepest, rule, "definitions that inherit each other")
 
 
-def check_interfaces(
-    document: mx.Document, elements: Sequence[mx.Element], policy: Policy
-) -> None:
+def check_interfaces(document: mx.Document, elements: Sequence[mx.Element], policy: Policy) -> None:
     """Raise DocumentError if an element has too many inputs, or there are too many tokens."""
     widest = max(elements, key=_inputs)
     policy.check_limit("inputs", _inputs(widest), f"{location(widest)} must have", "inputs")

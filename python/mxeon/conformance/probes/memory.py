@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Functions of batches that keep what they computed: a check, its control and other checks ask for the same."""
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from mxeon.conformance.samples.batch import FEW, Array, Batch
+
+KEPT = 32  # batches of at most FEW pairs, of half a megabyte each
+NUMBERS = 16  # of an input that is compared by its values and not as an array
+
+
+class Remembered:
+    """A function of batches whose values of a few of them are kept, and cannot be written.
+
+    Batches are the same whose arrays are: `Batch.altered` keeps those that it does not change.
+
+    Parameters
+    ----------
+    function : callable (batch) -> ndarray, shape (N, 3)
+    """
+
+    def __init__(self, function: Callable[[Batch], Array]) -> None:
+        self._function = function
+        # With the batches, whose arrays keep their identities as long as they exist.
+        self._known: OrderedDict[Hashable, tuple[Batch, Array]] = OrderedDict()
+
+    def __call__(self, batch: Batch) -> Array:
+        """Its values of a batch."""
+        if len(batch.wo) > FEW:
+            return self._function(batch)
+        # Compute what is not known.
+        key = _key(batch)
+        if key not in self._known:
+            values = self._function(batch)
+            values.setflags(write=False)
+            self._known[key] = batch, values
+        # Forget what was not asked for longest.
+        self._known.move_to_end(key)
+        if len(self._known) > KEPT:
+            self._known.popitem(last=False)
+        return self._known[key][1]
+
+
+def _key(batch: Batch) -> Hashable:
+    """What two batches have in common that are the same."""
+    inputs = tuple((name, _identity(values)) for name, values in batch.inputs.items())
+    return id(batch.wo), id(batch.wi), id(batch.frame), batch.scene, inputs
+
+
+def _identity(values: ArrayLike) -> Hashable:
+    """The numbers of a value of few, and the identity of an array of many."""
+    array = np.asarray(values)
+    return (array.shape, array.tobytes()) if array.size <= NUMBERS else id(values)

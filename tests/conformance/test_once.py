@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is done once: counts of what takes time, not times."""
+
+from types import SimpleNamespace
+
+import MaterialX as mx
+import numpy as np
+import pytest
+
+from mxeon.conformance.probes.memory import KEPT, Remembered
+from mxeon.conformance.probes.probe import LobeProbe
+from mxeon.conformance.run import journal
+from mxeon.conformance.run.plan import make_plan
+from mxeon.conformance.run.tasks import Findings
+from mxeon.conformance.samples.batch import FEW, Batch
+from mxeon.models.microfacet import conductor_brdf
+from mxeon.models.thin_film import curve
+from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
+from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.nodes import OREN_NAYAR, material_text
+
+METAL = {
+    "ior": np.array([0.2, 0.9, 1.1]),
+    "extinction": np.array([3.9, 2.5, 2.2]),
+    "roughness": [0.3, 0.3],
+}
+NO_FILM = {"thinfilm_thickness": 0.0, "thinfilm_ior": 1.4}
+PAIR = [0.6, 0.0, 0.8], [-0.28, 0.0, 0.96]
+
+
+def batch(count=8):
+    """Pairs with a roughness."""
+    up = np.tile([0.0, 0.0, 1.0], (count, 1))
+    return Batch(up, up.copy(), {"roughness": np.linspace(0.0, 1.0, max(count, 32))})
+
+
+def counted(calls):
+    """A function of batches that counts its calls."""
+
+    def values(each):
+        calls.append(each)
+        return np.zeros((len(each.wo), 3))
+
+    return values
+
+
+def test_a_document_is_walked_once_and_its_library_for_no_count(monkeypatch):
+    walked, asked = [], []
+    walk, inputs = mx.Element.traverseTree, mx.InterfaceElement.getInputs
+    monkeypatch.setattr(
+        mx.Element, "traverseTree", lambda self: (walked.append(self), walk(self))[1]
+    )
+    monkeypatch.setattr(
+        mx.InterfaceElement,
+        "getInputs",
+        lambda self: (asked.append(self.isA(mx.Document)), inputs(self))[1],
+    )
+    document = read_document(material_text(OREN_NAYAR, {"roughness": 0.5}))
+    assert walked == [document.content] and asked and not any(asked)
+
+
+def test_values_of_a_batch_are_computed_once():
+    calls, one = [], batch()
+    function = Remembered(counted(calls))
+    first = function(one)
+    assert function(one.altered()) is first and len(calls) == 1
+    assert function(one.altered(roughness=0.5)) is function(one.altered(roughness=0.5))
+    assert len(calls) == 2
+    with pytest.raises(ValueError, match="read-only"):
+        first += 1.0
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"wo": batch().wo},
+        {"wi": batch().wi},
+        {"inputs": {"roughness": np.linspace(0.0, 1.0, 32)}},
+        {"inputs": {}},
+        {"frame": np.zeros((8, 3, 3))},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_values_of_another_batch_are_computed(change):
+    calls, one = [], batch()
+    function = Remembered(counted(calls))
+    function(one)
+    function(Batch(**(vars(one) | change)))
+    assert len(calls) == 2
+
+
+def test_large_batches_and_old_ones_are_not_kept():
+    calls = []
+    function, large, small = (
+        Remembered(counted(calls)),
+        batch(FEW + 1),
+        [batch() for _ in range(KEPT + 1)],
+    )
+    for each in (large, large, *small, small[-1], small[0]):
+        function(each)
+    assert len(calls) == 2 + len(small) + 1
+
+
+def test_a_check_and_its_control_share_the_reference():
+    calls, one = [], batch()
+    values = counted(calls)
+    probe = LobeProbe(None, SimpleNamespace(expected=values, albedo=values), "eonlib")
+    for _ in range(2):
+        probe.expected(one)
+        probe.expected_albedo(one)
+    assert len(calls) == 2
+
+
+def test_a_lobe_without_a_film_computes_none(monkeypatch):
+    monkeypatch.setattr(curve, "_airy", None)
+    bare = conductor_brdf(*PAIR, METAL["roughness"], METAL["ior"], METAL["extinction"])
+    np.testing.assert_array_equal(film_brdf("conductor_bsdf", *PAIR, METAL | NO_FILM), bare)
+    assert film_albedo_dir("conductor_bsdf", PAIR[0], METAL | NO_FILM).shape == (3,)
+
+
+def test_a_journal_makes_its_converter_once(tmp_path, monkeypatch):
+    made, make = [], journal.make_converter
+    monkeypatch.setattr(
+        journal, "make_converter", lambda *folder: (made.append(folder), make(*folder))[1]
+    )
+    plan = make_plan((), ("gl",), ("eonlib",), nodes=("sheen_bsdf",), resumable=True)
+    with journal.Journal(tmp_path, plan) as kept:
+        for number in range(3):
+            kept.add(number, Findings(errors=("none",)))
+    assert len(made) == 1
