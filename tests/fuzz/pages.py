@@ -102,7 +102,7 @@ def _tried(address, fragment):
         page.goto(address)
     faults = []
     for _ in range(200):
-        if page.evaluate("globalThis.mxeon !== undefined"):
+        if said or page.evaluate("globalThis.mxeon !== undefined"):
             break
         page.wait_for_timeout(25)
     else:
