@@ -29,7 +29,10 @@ COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinc
 PAIRS = ("microfacet", "ggx_", "btdf")  # in the names of functions whose roughness is a pair
 COAT = "dielectric_over_eon"
 # What JAX compiles for seconds; their factors have functions of their own.
-LONG = ("chiang_hair_bcsdf", *(f"{COAT}_{each}" for each in ("brdf", "sample", "pdf")))
+LONG = (
+    "chiang_hair_bcsdf",
+    *(f"{COAT}_{each}" for each in ("brdf", "albedo_dir", "sample", "pdf")),
+)
 ROWS = 48
 SEED = 11
 GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
