@@ -14,7 +14,7 @@ from typing import ParamSpec, TypeVar, cast
 
 import numpy as np
 
-from mxeon.models.core.arguments import checked
+from mxeon.models.core.arguments import checked, checked_directions
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.edges import at_least_0, at_most, cosine, cube_root, root
@@ -130,10 +130,10 @@ def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
     return wrapper
 
 
-def unpack_cosine(w: ArrayLike) -> Array:
-    """Cosine of directions that the lobes check."""
-    vectors = cast(Array, w) if library(w) else np.asarray(w, np.float64)
-    return clipped(vectors[..., 2])
+@any_array
+def unpack_cosine(wo: ArrayLike) -> Array:
+    """Cosine of directions to the viewer, checked."""
+    return clipped(checked_directions("wo", wo)[..., 2])
 
 
 def clipped(z: Array) -> Array:

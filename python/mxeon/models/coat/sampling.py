@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 import numpy as np
 
 from mxeon.models.coat.curves import Coat, coat_of, of_one_coat, unpack_cosine
+from mxeon.models.core.arguments import checked, checked_color, checked_directions
 from mxeon.models.core.arrays import Array, ArrayLike
-from mxeon.models.core.namespaces import any_array, array_namespace, library
+from mxeon.models.core.namespaces import any_array, array_namespace
+from mxeon.models.core.shapes import lead_shape
 from mxeon.models.diffuse.albedo import eon_albedo_dir
 from mxeon.models.sampling.eon import eon_pdf, eon_sample, stretched
 from mxeon.models.sampling.hemisphere import unpack_uniforms
@@ -61,6 +61,7 @@ def dielectric_over_eon_sample(
     (array([0.08667, 0.64394, 0.76015]), 0.23917)
     """
     # Choose a lobe by u1, and stretch what is left of u1 over [0, 1).
+    _check(wo, rho, roughness, u=u)
     share = _share(wo, rho, roughness, coat_of(alpha, ior))
     xp = array_namespace(share)
     u1, first, second = _split(u, share)
@@ -106,6 +107,7 @@ def dielectric_over_eon_pdf(
     >>> round(float(dielectric_over_eon_pdf(wo, wi, 0.7, 0.5, 0.3, 1.5)), 5)
     0.26516
     """
+    _check(wo, rho, roughness, wi=wi)
     share = _share(wo, rho, roughness, coat_of(alpha, ior))
     return _mixed(wo, wi, rho, roughness, alpha, share)
 
@@ -143,7 +145,29 @@ def _split(u: ArrayLike, share: Array) -> tuple[Array, Array, Array]:
     return u1, pairs[0], pairs[1]
 
 
+@any_array
+def _check(
+    wo: ArrayLike,
+    rho: ArrayLike,
+    roughness: ArrayLike,
+    u: ArrayLike | None = None,
+    wi: ArrayLike | None = None,
+) -> None:
+    """Raise ValueError unless the arguments broadcast."""
+    vectors = {"wo": checked_directions("wo", wo)}
+    if wi is not None:
+        vectors["wi"] = checked_directions("wi", wi)
+    if u is not None:
+        u1, u2 = unpack_uniforms(u)
+        vectors["u"] = array_namespace(u1).stack([u1, u2], axis=-1)
+    lead_shape(
+        vectors | {"rho": checked_color("rho", rho)}, {"roughness": checked("roughness", roughness)}
+    )
+
+
+@any_array
 def _mean(rho: ArrayLike) -> Array:
-    """Mean of the channels."""
-    color = cast(Array, rho) if library(rho) else np.asarray(rho, np.float64)
-    return array_namespace(color).sum(color, axis=-1) / color.shape[-1] if color.ndim else color
+    """Mean of the channels, checked."""
+    color = checked_color("rho", rho)
+    mean: Array = array_namespace(color).sum(color, axis=-1) / color.shape[-1]
+    return mean
