@@ -14,6 +14,7 @@ from mxeon.io.files import write_text
 FOLDER = Path(__file__).resolve().parent
 PAGE = FOLDER / "arrays.md"
 BLOCK = re.compile(r"(<!-- functions -->\n).*?(<!-- end -->)", re.DOTALL)
+ARRAYS = "ArrayLike", "Mapping[str, ArrayLike]"
 PUBLIC = re.compile(r"^::: (mxeon\.(?:models|albedo|inversion|sampling)\.[\w.]*[a-z]\w*)$", re.M)
 
 
@@ -30,7 +31,7 @@ def public():
 def arrays(function):
     """Names of the arguments that are arrays: by these it has gradients."""
     parameters = inspect.signature(function).parameters.values()
-    return [each.name for each in parameters if each.annotation == "ArrayLike"]
+    return [each.name for each in parameters if each.annotation in ARRAYS]
 
 
 def takes_any(function):

@@ -15,6 +15,7 @@ import numpy as np
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.namespaces import (
     accept,
+    array_namespace,
     checking,
     host_values,
     library,
@@ -113,7 +114,7 @@ def checked_rgb(name: str, value: ArrayLike) -> Numbers:
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
         raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")
-    return np.broadcast_to(color, (*color.shape[:-1], 3))
+    return array_namespace(color).broadcast_to(color, (*color.shape[:-1], 3))
 
 
 def checked_colors(

@@ -61,6 +61,18 @@ def at_least_0(x: Array) -> Array:
     return xp.maximum(x, 0.0) if xp is NUMPY else xp.where(x < 0.0, 0.0, x)
 
 
+def magnitude(x: Array) -> Array:
+    """|x|; where x is 0 the derivative is that of x."""
+    xp = array_namespace(x)
+    return xp.abs(x) if xp is NUMPY else xp.where(x < 0.0, -x, x)
+
+
+def within(x: Array, low: float = 0.0, high: float = 1.0) -> Array:
+    """x kept between two numbers; at either the derivative is that of x."""
+    xp = array_namespace(x)
+    return np.clip(x, low, high) if xp is NUMPY else xp.where(x < low, low, at_most(x, high))
+
+
 def root(x: Array) -> Array:
     """Square root; where x is 0 its derivative counts as 0."""
     xp = array_namespace(x)
@@ -87,6 +99,14 @@ def arcsine(x: Array) -> Array:
     inside = xp.abs(x) < 1.0
     end = xp.where(x < 0.0, -0.5 * np.pi, 0.5 * np.pi)
     return xp.where(inside, xp.asin(xp.where(inside, x, 0.0)), end)
+
+
+def arccosine(x: Array) -> Array:
+    """Arc cosine of x kept in [-1, 1]; where x is at an end or beyond its derivative counts as 0."""
+    xp = array_namespace(x)
+    if xp is NUMPY:
+        return xp.acos(xp.minimum(xp.maximum(x, -1.0), 1.0))
+    return 0.5 * np.pi - arcsine(x)
 
 
 def angle(y: Array, x: Array) -> Array:

@@ -32,6 +32,7 @@ class Namespace(Protocol):
     """Functions of the array API standard of which formulas are made."""
 
     abs: Callable[..., Array]
+    acos: Callable[..., Array]
     asarray: Callable[..., Array]
     asin: Callable[..., Array]
     asinh: Callable[..., Array]
@@ -48,12 +49,14 @@ class Namespace(Protocol):
     log: Callable[..., Array]
     log1p: Callable[..., Array]
     maximum: Callable[..., Array]
+    mean: Callable[..., Array]
     minimum: Callable[..., Array]
     permute_dims: Callable[..., Array]
     remainder: Callable[..., Array]
     reshape: Callable[..., Array]
     sin: Callable[..., Array]
     sinh: Callable[..., Array]
+    sort: Callable[..., Array]
     sqrt: Callable[..., Array]
     square: Callable[..., Array]
     stack: Callable[..., Array]
@@ -67,6 +70,7 @@ class Namespace(Protocol):
 
 # NumPy below 2 has other names for some functions.
 _NAMES = {
+    "acos": np.arccos,
     "asin": np.arcsin,
     "asinh": np.arcsinh,
     "concat": np.concatenate,

@@ -7,12 +7,15 @@ scattered, so that light that goes straight on has wi = -wo.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mxeon.models.core.arguments import checked_numbers, checked_pairs, checked_sphere
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_least_0, root
 from mxeon.models.core.namespaces import any_array, array_namespace
-from mxeon.models.core.shapes import lead_shape
+from mxeon.models.core.shapes import broadcastable, lead_shape
 
 
 @any_array
@@ -147,6 +150,7 @@ def hg_phase(cos_theta: ArrayLike, g: ArrayLike) -> Array:
     return _phase(1.0 - xp.where(mean < 0.0, -cosine, cosine), mean)[()]
 
 
+@any_array
 def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled by the phase function of Henyey and Greenstein, and its density.
 
@@ -187,18 +191,21 @@ def hg_sample(wo: ArrayLike, u: ArrayLike, g: ArrayLike) -> tuple[Array, Array]:
     # Check the arguments.
     views, pairs, (mean,) = checked_sphere("wo", wo), checked_pairs("u", u), checked_numbers(g=g)
     shape = lead_shape({"wo": views, "u": pairs}, {"g": mean})
+    views, pairs, mean = broadcastable({"wo": views, "u": pairs}, {"g": mean})
+    xp = array_namespace(views, pairs, mean)
     x, azimuth = 2.0 * pairs[..., 0] - 1.0, 2.0 * np.pi * pairs[..., 1]
     # Invert the distribution, as 1 - cos and 1 + cos, which do not cancel.
     square = 2.0 * (1.0 + mean * x) ** 2
     less = (1.0 - mean) ** 2 * (1.0 - x) * (2.0 + mean * (1.0 + x)) / square  # 1 - cos
     more = (1.0 + mean) ** 2 * (1.0 + x) * (2.0 - mean * (1.0 - x)) / square  # 1 + cos
     # Turn the deflection about the direction of the light.
-    sine = np.sqrt(np.maximum(less * more, 0.0))
-    local = np.stack([sine * np.cos(azimuth), sine * np.sin(azimuth), 0.5 * (more - less)], axis=-1)
-    wi = _around(-np.asarray(views, np.float64), np.broadcast_to(local, (*shape, 3)))
+    sine = root(at_least_0(less * more))
+    local = sine * xp.cos(azimuth), sine * xp.sin(azimuth), 0.5 * (more - less)
+    parts = _around([-views[..., k] for k in range(3)], local)
+    wi = xp.stack([xp.broadcast_to(each, shape) for each in parts], axis=-1)
     # Evaluate its density.
-    density = _phase(np.where(mean < 0.0, more, less), mean)
-    return wi, np.array(np.broadcast_to(density, shape))[()]
+    density = _phase(xp.where(mean < 0.0, more, less), mean)
+    return wi, (0.0 * wi[..., 0] + density)[()]
 
 
 @any_array
@@ -240,14 +247,24 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
 
 
-def _around(axis: Array, local: Array) -> Array:
-    """Directions, of a frame with the normal +z, in one with the normal `axis`."""
-    helper = np.where(np.abs(axis[..., :1]) < 0.5, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
-    tangent = np.cross(helper, axis)
-    tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
-    x, y, z = (local[..., [index]] for index in range(3))
-    wi = x * tangent + y * np.cross(axis, tangent) + z * axis
-    return np.asarray(wi / np.linalg.norm(wi, axis=-1, keepdims=True))
+def _around(axis: Sequence[Array], local: Sequence[Array]) -> list[Array]:
+    """Components of directions, of a frame with the normal +z, in one with the normal `axis`."""
+    where, aside = array_namespace(*axis).where, abs(axis[0]) < 0.5
+    tangent = _unit(_cross((where(aside, 1.0, 0.0), where(aside, 0.0, 1.0), 0.0 * axis[2]), axis))
+    frame = tangent, _cross(axis, tangent), axis
+    x, y, z = local
+    return _unit([x * t + y * b + z * n for t, b, n in zip(*frame, strict=True)])
+
+
+def _cross(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
+    """Cross product of components."""
+    return [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)]
+
+
+def _unit(w: Sequence[Array]) -> list[Array]:
+    """Components of a vector over its length."""
+    length = root(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    return [each / length for each in w]
 
 
 def _phase(less: Array, g: Array) -> Array:

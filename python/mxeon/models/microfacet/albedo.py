@@ -15,9 +15,12 @@ from mxeon.models.core.arguments import (
     checked_directions,
     checked_roughness,
     checked_switch,
+    checked_vector,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.edges import at_least_0
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array, array_namespace, library, like
 from mxeon.models.core.shapes import channel_count, lead_shape
 from mxeon.models.microfacet.ggx_albedo import albedo
 from mxeon.models.microfacet.ggx_formulas import mean_alpha
@@ -27,6 +30,7 @@ from mxeon.models.microfacet.slopes import slope_nodes, transmitting_nodes
 BLOCK = 2**3  # elements at once
 
 
+@any_array
 def dielectric_albedo_dir(
     wo: ArrayLike, tint: ArrayLike, roughness: ArrayLike, ior: ArrayLike, compensate: bool = True
 ) -> Array:
@@ -62,12 +66,13 @@ def dielectric_albedo_dir(
     >>> dielectric_albedo_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
     array([0.040169])
     """
-    vectors = {"tint": np.atleast_1d(checked("tint", tint))}
+    vectors = {"tint": checked_vector("tint", tint)}
 
     numbers = {"ior": checked("ior", ior)}
     return lobe_albedo(DIELECTRIC, wo, roughness, vectors, numbers, compensate)
 
 
+@any_array
 def conductor_albedo_dir(
     wo: ArrayLike,
     roughness: ArrayLike,
@@ -99,12 +104,13 @@ def conductor_albedo_dir(
     array([0.935317, 0.347053])
     """
     vectors = {
-        "ior": np.atleast_1d(checked("ior", ior)),
-        "extinction": np.atleast_1d(checked("extinction", extinction)),
+        "ior": checked_vector("ior", ior),
+        "extinction": checked_vector("extinction", extinction),
     }
     return lobe_albedo(CONDUCTOR, wo, roughness, vectors, {}, compensate)
 
 
+@any_array
 def generalized_schlick_albedo_dir(
     wo: ArrayLike,
     color0: ArrayLike,
@@ -138,11 +144,12 @@ def generalized_schlick_albedo_dir(
     array([1.      , 0.179402])
     """
     colors = {"color0": color0, "color82": color82, "color90": color90}
-    vectors = {name: np.atleast_1d(checked(name, value)) for name, value in colors.items()}
+    vectors = {name: checked_vector(name, value) for name, value in colors.items()}
     numbers = {"exponent": checked("exponent", exponent)}
     return lobe_albedo(SCHLICK, wo, roughness, vectors, numbers, compensate)
 
 
+@any_array
 def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """Directional albedo of anisotropic GGX at unit Fresnel reflectance, by quadrature.
 
@@ -180,7 +187,7 @@ def ggx_albedo_dir_anisotropic(wo: ArrayLike, roughness: ArrayLike) -> Array:
     """
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     lead_shape({"wo": wo, "roughness": roughness}, {})
-    return lobe_albedo(WHITE, wo, roughness, {"tint": np.ones(1)}, {}, False)[..., 0][()]
+    return lobe_albedo(WHITE, wo, roughness, {"tint": like(np.ones(1), wo)}, {}, False)[..., 0][()]
 
 
 def lobe_albedo(
@@ -203,19 +210,22 @@ def lobe_albedo(
         spread = {
             k: v[:, np.newaxis, np.newaxis] if k in vectors else v for k, v in material.items()
         }
-        E: Array = np.sum(curve.at(c, **spread) * weight, axis=(1, 2))
+        xp = array_namespace(c)
+        E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         # Split the integral at a critical angle.
         squared = curve.critical(**material)
-        if np.any(squared > 0.0):  # all light, but what passes above the critical angle
-            isotropic = roughness[0] == roughness[1]
-            lossless = np.where(isotropic, albedo(wo[2], roughness[0]), weight.sum(axis=(0, 1)))
-            c, weight = transmitting_nodes(wo, roughness, np.maximum(squared, 0.0))
-            lost = np.sum((1.0 - curve.at(c, **spread)) * weight, axis=(1, 2))
-            E = np.where(squared > 0.0, lossless - lost, E)
+        if library(squared) or np.any(squared > 0.0):
+            # All light, but what passes above the critical angle.
+            alpha, isotropic = 0.5 * (roughness[0] + roughness[1]), roughness[0] == roughness[1]
+            lossless = xp.where(isotropic, albedo(wo[2], alpha), xp.sum(weight, axis=(0, 1)))
+            c, weight = transmitting_nodes(wo, roughness, at_least_0(squared))
+            lost = xp.sum((1.0 - curve.at(c, **spread)) * weight, axis=(1, 2))
+            E = xp.where(squared > 0.0, lossless - lost, E)
         # Add what more scattering returns, and tint.
         if compensate:
             E = E * (1.0 + average * unseen)
-        return E * material["tint"] if "tint" in material else E
+        total: Array = E * material["tint"] if "tint" in material else E
+        return total
 
     arguments = {"wo": wo, "roughness": roughness, **vectors}
     lead_shape(arguments, numbers)  # refuses what does not broadcast, by the names of the arguments

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked_numbers
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_least_0, root
+from mxeon.models.core.namespaces import any_array, array_namespace
 
 
+@any_array
 def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array, Array]:
     """Complex index of refraction n + i k with a reflectance at normal incidence.
 
@@ -53,9 +54,10 @@ def artistic_ior(reflectivity: ArrayLike, edge_color: ArrayLike) -> tuple[Array,
     n_min, n_max = _extremes(r)
     ior = g * n_min + (1.0 - g) * n_max
     square = g * (n_max - n_min) * ((ior - n_min) + (n_min - 1.0 / n_max))
-    return ior, np.sqrt(np.maximum(square, 0.0))
+    return ior, root(at_least_0(square))
 
 
+@any_array
 def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, Array]:
     """Reflectivity and edge color of a complex index of refraction.
 
@@ -91,11 +93,11 @@ def artistic_parameters(ior: ArrayLike, extinction: ArrayLike) -> tuple[Array, A
     n, k = checked_numbers(ior=ior, extinction=extinction)
     r = normal_reflectance(n, k)
     # With 1 - r = 4 n / S, S = (n + 1)^2 + k^2, both extremes times n have no pole at r = 1.
-    S = np.square(n + 1.0) + np.square(k)
-    largest = np.square(1.0 + np.sqrt(r)) * S / 4.0
-    width = largest - 4.0 * np.square(n) / (S * (1.0 + r))
-    edge = (largest - np.square(n)) / np.where(width > 0.0, width, 1.0)
-    return r, np.where(width > 0.0, edge, 0.0)
+    xp, S = array_namespace(n, k), (n + 1.0) ** 2 + k**2
+    largest = (1.0 + root(r)) ** 2 * S / 4.0
+    width = largest - 4.0 * n**2 / (S * (1.0 + r))
+    edge = (largest - n**2) / xp.where(width > 0.0, width, 1.0)
+    return r, xp.where(width > 0.0, edge, 0.0)
 
 
 def normal_reflectance(ior: Array, extinction: Array) -> Array:
@@ -114,11 +116,10 @@ def normal_reflectance(ior: Array, extinction: Array) -> Array:
     >>> float(normal_reflectance(np.array(1.5), np.array(0.0)))
     0.04
     """
-    square = np.square(extinction)
-    return np.asarray((np.square(ior - 1.0) + square) / (np.square(ior + 1.0) + square))
+    square = extinction**2
+    return ((ior - 1.0) ** 2 + square) / ((ior + 1.0) ** 2 + square)
 
 
 def _extremes(r: Array) -> tuple[Array, Array]:
     """The least and the largest n of a reflectance; 1 - sqrt(r) is (1 - r) / (1 + sqrt(r))."""
-    n_max = np.square(1.0 + np.sqrt(r)) / (1.0 - r)
-    return np.asarray((1.0 - r) / (1.0 + r)), np.asarray(n_max)
+    return (1.0 - r) / (1.0 + r), (1.0 + root(r)) ** 2 / (1.0 - r)

@@ -12,7 +12,7 @@ import numpy as np
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.drjit_arrays import is_drjit
-from mxeon.models.core.edges import at_most, hypot, power, root, trimmed
+from mxeon.models.core.edges import at_most, hypot, magnitude, power, root, trimmed
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 
 # Hoffman's correction is largest here: [MaterialX2026], Generalized Schlick Equations.
@@ -85,7 +85,7 @@ def _polarized(mu: Array, ior: Array, extinction: Array, gap: Array) -> tuple[Ar
     real = (ior - 1.0) * (ior + 1.0) + mu * mu - extinction * extinction
     size = modulus(real, 2.0 * ior * extinction)
     # The larger part of the root by a sum, the smaller one from their product.
-    larger = root(0.5 * (size + xp.abs(real)))
+    larger = root(0.5 * (size + magnitude(real)))
     smaller = ior * extinction / xp.where(larger > 0.0, larger, 1.0)
     a, b = xp.where(real >= 0.0, larger, smaller), xp.where(real >= 0.0, smaller, larger)
     # Compose the amplitudes of both polarizations.

@@ -7,7 +7,9 @@ import numpy as np
 
 from mxeon.models.core.arguments import checked
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import arcsine, trimmed
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace, like
 from mxeon.models.microfacet.ggx_formulas import smith_lambda
 
 # Gauss-Legendre nodes per panel, panels between wo and the normal, and elements per block.
@@ -16,13 +18,18 @@ RULE = np.polynomial.legendre.leggauss(NODES)
 
 # Least scale of the nodes and least elevation of wo, in radian: nothing changes by more than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
+LEAST_SQUARED = 1e-15  # of arrays whose derivatives square it, which float32 holds
 
 ALIKE = 2.0**44  # by this part of themselves, cosines that count as one may differ
+
+# Cosines nearer to 1 take the line through two others; its error is below the square of this.
+ALONG = 1e-8
 
 # Below this alpha, E_ss(mu, alpha) counts as E_ss(mu LEAST_ALPHA / alpha, LEAST_ALPHA).
 LEAST_ALPHA = 1e-9
 
 
+@any_array
 def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
     """Directional albedo E_ss of isotropic GGX at unit Fresnel reflectance, by quadrature.
 
@@ -72,7 +79,7 @@ def albedo(mu: Array, alpha: Array) -> Array:
 
     Those of a picture's symmetric points differ in their last bits, which E_ss changes by as little.
     """
-    if alpha.size == 1 < mu.size:
+    if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 < mu.size:
         mantissa, exponent = np.frexp(mu)
         alike = np.ldexp(np.round(mantissa * ALIKE), exponent) / ALIKE
         each, indices = np.unique(alike, return_inverse=True)
@@ -84,37 +91,53 @@ def albedo(mu: Array, alpha: Array) -> Array:
 def _in_blocks(mu: Array, alpha: Array) -> Array:
     """E_ss on valid float64 arrays, block by block."""
     numbers = {"mu": mu, "alpha": alpha}
+    formula = quadrature if array_namespace(mu, alpha) is NUMPY else _extrapolated
     return evaluate_material(
-        lambda mu, alpha: quadrature(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
+        lambda mu, alpha: formula(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
     )[..., 0]
+
+
+def _extrapolated(mu: Array, alpha: Array) -> Array:
+    """`quadrature`, along the normal by a line through two cosines, for derivatives.
+
+    It is smooth in the cosine, but made of elevations, which have no derivative there.
+    """
+    xp = array_namespace(mu, alpha)
+    step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
+    near, far = quadrature(xp.stack([mu - step, mu - 2.0 * step]), alpha)
+    total: Array = 2.0 * near - far
+    return total
 
 
 def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
     """E_ss by quadrature, with so many panels for each one."""
     # Choose the scale on which the integrand changes.
-    rough = np.maximum(alpha, LEAST_ALPHA)
-    scaled = np.minimum(mu * (rough / np.maximum(alpha, 1e-300)), 1.0)
-    elevation = np.maximum(np.arcsin(scaled), LEAST_ELEVATION)
-    graded = 2.0 * np.minimum(rough, np.maximum(elevation, LEAST_SCALE))
+    xp = array_namespace(mu, alpha)
+    rough = xp.maximum(alpha, LEAST_ALPHA)
+    least, lowest = (1e-300, LEAST_ELEVATION) if xp is NUMPY else (LEAST_SQUARED, LEAST_SQUARED)
+    scaled = xp.minimum(mu * (rough / xp.maximum(alpha, least)), 1.0)
+    elevation = xp.maximum(arcsine(scaled), lowest)
+    graded = 2.0 * xp.minimum(rough, xp.maximum(elevation, LEAST_SCALE))
     # Integrate the three parts.
-    total = np.zeros(np.broadcast_shapes(mu.shape, rough.shape))
+    total = like(np.zeros(np.broadcast_shapes(tuple(mu.shape), tuple(rough.shape))), rough)
     # From wo to the normal, from wo to half its elevation, and from there to the horizon.
     for d, weight in _graded(graded, 0.5 * np.pi - elevation, refined * PANELS):
-        total += np.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
+        total = total + xp.sum(weight * _density(elevation, elevation + d, -d, rough), axis=0)
     for d, weight in _graded(2.0 * rough, 0.5 * elevation, refined):
-        total += np.sum(weight * _density(elevation, elevation - d, d, rough), axis=0)
+        total = total + xp.sum(weight * _density(elevation, elevation - d, d, rough), axis=0)
     for e, weight in _graded(rough, 0.5 * elevation, refined):
-        total += np.sum(weight * _density(elevation, e, elevation - e, rough), axis=0)
-    return np.where(alpha > 0.0, np.minimum(total, 1.0), 1.0)
+        total = total + xp.sum(weight * _density(elevation, e, elevation - e, rough), axis=0)
+    return xp.where(alpha > 0.0, trimmed(total, 1.0), 1.0)
 
 
 def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
     """Nodes and weights on [0, length], denser towards 0 from `scale` on, axis of nodes first."""
-    x, weight = (v.reshape(-1, *(1,) * np.ndim(length * scale)) for v in RULE)
-    extent = np.arcsinh(length / scale)
+    xp, ratio = array_namespace(scale, length), length / scale
+    x, weight = (like(v.reshape(-1, *(1,) * ratio.ndim), ratio) for v in RULE)
+    extent = xp.asinh(ratio)
     step = extent / panels
     y = [step * (k + 0.5 + 0.5 * x) for k in range(panels)]
-    return [(scale * np.sinh(v), 0.5 * weight * step * scale * np.cosh(v)) for v in y]
+    return [(scale * xp.sinh(v), 0.5 * weight * step * scale * xp.cosh(v)) for v in y]
 
 
 def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
@@ -126,18 +149,18 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
     the difference and half the sum of the polar angles;  p = a - k,  q^2 = p^2 - b^2
     """
     # Find sines and cosines of half of the difference and half of the sum.
-    alpha2 = alpha * alpha
-    sin_d, cos_d = np.sin(0.5 * d), np.cos(0.5 * d)
+    xp, alpha2 = array_namespace(e_o, alpha), alpha * alpha
+    sin_d, cos_d = xp.sin(0.5 * d), xp.cos(0.5 * d)
     half = 0.5 * (e_o + e_i)
-    sin_s, cos_s = np.cos(half), np.sin(half)
+    sin_s, cos_s = xp.cos(half), xp.sin(half)
     # Integrate the distribution over the azimuth in closed form.
-    X = np.sqrt(sin_d * sin_d + alpha2 * cos_d * cos_d)
-    Y = np.sqrt(sin_s * sin_s + alpha2 * cos_s * cos_s)
+    X = xp.sqrt(sin_d * sin_d + alpha2 * cos_d * cos_d)
+    Y = xp.sqrt(sin_s * sin_s + alpha2 * cos_s * cos_s)
     kq = (1.0 - alpha) * (1.0 + alpha) * cos_s * cos_d / (X * Y)
     r = cos_s * X / (cos_d * Y)
     azimuth = 1.0 + kq * (2.0 + 0.5 * kq * (r + 1.0 / r))
     # Mask it.
-    mu_o, mu_i = np.sin(e_o), np.sin(e_i)
+    mu_o, mu_i = xp.sin(e_o), xp.sin(e_i)
     smith = smith_lambda(mu_o, alpha) * mu_i + smith_lambda(mu_i, alpha) * mu_o
-    density: Array = alpha2 * mu_i * np.cos(e_i) * azimuth / smith
+    density: Array = alpha2 * mu_i * xp.cos(e_i) * azimuth / smith
     return density

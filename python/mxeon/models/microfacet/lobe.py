@@ -47,11 +47,11 @@ def _one_channel(value: Array) -> Array:
 DIELECTRIC = Curve(
     lambda c, ior, tint: _one_channel(fresnel.dielectric(c, ior)),
     lambda ior, tint: _one_channel(fresnel.dielectric_avg(ior)),
-    lambda ior, tint: np.asarray((1.0 - ior) * (1.0 + ior)),
+    lambda ior, tint: (1.0 - ior) * (1.0 + ior),
 )
 CONDUCTOR = Curve(fresnel.conductor, fresnel.conductor_avg)
 SCHLICK = Curve(fresnel.schlick, fresnel.schlick_avg)
-WHITE = Curve(lambda c, tint: np.ones((1, *c.shape)), lambda tint: np.ones(1))
+WHITE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.ones(1))
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from mxeon.models.core.arguments import checked_numbers, checked_pairs
 from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.edges import at_most
+from mxeon.models.core.namespaces import any_array, array_namespace
+from mxeon.models.core.shapes import broadcastable
 
 LARGEST_ANISOTROPY = 0.98  # beyond it alpha along the tangent would soon divide by 0
 
 
+@any_array
 def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
     """Pair of alphas of a roughness that is stretched along the tangent.
 
@@ -52,11 +54,12 @@ def roughness_anisotropy(roughness: ArrayLike, anisotropy: ArrayLike) -> Array:
 
 def _stretched(r: Array, a: Array) -> Array:
     """`roughness_anisotropy` on valid arrays."""
-    r, a = np.broadcast_arrays(r, a)
-    aspect = np.sqrt(1.0 - np.minimum(a, LARGEST_ANISOTROPY))
-    return np.stack([np.minimum(r * r / aspect, 1.0), r * r * aspect], axis=-1)
+    xp = array_namespace(r, a)
+    aspect = xp.sqrt(1.0 - at_most(a, LARGEST_ANISOTROPY))
+    return xp.stack([at_most(r * r / aspect, 1.0), r * r * aspect], axis=-1)
 
 
+@any_array
 def roughness_dual(roughness: ArrayLike) -> Array:
     """Pair of alphas of two roughnesses, their squares.
 
@@ -84,9 +87,11 @@ def roughness_dual(roughness: ArrayLike) -> Array:
     >>> roughness_dual([0.5, 1.0])
     array([0.25, 1.  ])
     """
-    return np.square(checked_pairs("roughness", roughness), dtype=np.float64)
+    (pairs,) = broadcastable({"roughness": checked_pairs("roughness", roughness)}, {})
+    return pairs * pairs
 
 
+@any_array
 def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array:
     """Pair of alphas of the roughness 1 - glossiness; see `roughness_anisotropy`.
 

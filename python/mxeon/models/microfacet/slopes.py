@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.edges import hypot
+from mxeon.models.core.edges import angle, arccosine, at_least_0, at_most, hypot, root
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx_formulas import mean_alpha, smith_lambda
@@ -66,7 +66,7 @@ class Slopes:
             xp.where(tilted, x * alpha_x, 1.0) / length,
             xp.where(tilted, y * alpha_y, 0.0) / length,
         )
-        mu_o = xp.minimum(xp.maximum(wo[2], LEAST_MU), 1.0)
+        mu_o = at_most(xp.maximum(wo[2], LEAST_MU), 1.0)
         return cls(mu_o, mean_alpha(roughness), A, axis, roughness)
 
     @property
@@ -92,7 +92,7 @@ class Slopes:
         g = (alpha_x * (cos_0 * cosine - sin_0 * sine)) ** 2
         g = g + (alpha_y * (sin_0 * cosine + cos_0 * sine)) ** 2
         B = self.steepness * cosine
-        ahead = xp.abs(B) + xp.sqrt(B * B + self.mu_o * self.mu_o * g)
+        ahead = xp.abs(B) + root(B * B + self.mu_o * self.mu_o * g)
         ahead = xp.maximum(ahead, self.mu_o / LARGEST_R)
         beyond = ahead / xp.maximum(self.mu_o * g, ahead / LARGEST_R)
         return B, g, xp.where(B < 0.0, self.mu_o / ahead, beyond)
@@ -100,12 +100,12 @@ class Slopes:
     def facets(self, r: Array, B: Array, g: Array) -> tuple[Array, Array]:
         """Cosine wo . h, and the integrand without F."""
         xp = array_namespace(r, B, g)
-        lean = xp.maximum(B * r + self.mu_o, 0.0)
+        lean = at_least_0(B * r + self.mu_o)
         stretch = 1.0 + g * r * r
-        mu_i = xp.minimum(xp.maximum(2.0 * lean / stretch - self.mu_o, 0.0), 1.0)
+        mu_i = at_most(at_least_0(2.0 * lean / stretch - self.mu_o), 1.0)
         smith = smith_lambda(self.mu_o, self.alpha) * mu_i
         smith = smith + smith_lambda(mu_i, self.alpha) * self.mu_o
-        cosine = xp.minimum(lean / xp.sqrt(stretch), 1.0)
+        cosine = at_most(lean / xp.sqrt(stretch), 1.0)
         return cosine, _density(r) * 2.0 * mu_i * lean / smith
 
 
@@ -144,8 +144,9 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
     omega, weight_omega = _split_azimuths(slopes, wo, squared, meeting)
     B, g, limit = slopes.rays(omega)
     low, high = _transmitting(slopes.mu_o, B, g, squared)
-    high = np.minimum(high, limit)
-    r, weight = _between(slopes.scale, np.minimum(low, high), high)
+    minimum = array_namespace(low, limit).minimum
+    high = minimum(high, limit)
+    r, weight = _between(slopes.scale, minimum(low, high), high)
     cosine, values = slopes.facets(r, B, g)
     return cosine, weight * weight_omega * values
 
@@ -181,14 +182,14 @@ def refracting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Array
 def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:
     """Ends of r between which (mu_o + B r)^2 > squared (1 + g r^2); none where they are the same."""
     a, b, d = B * B - squared * g, mu_o * B, mu_o * mu_o - squared
-    root = np.sqrt(np.maximum(b * b - a * d, 0.0))
+    xp, size = array_namespace(a, b, d), root(at_least_0(b * b - a * d))
     ahead, inside = b > 0.0, d > 0.0
     none = ~inside & (~ahead | (b * b < a * d))
-    low = np.where(inside, 0.0, -d / np.where(ahead, b + root, 1.0))
-    falling = np.where(a < 0.0, (b + root) / np.where(a < 0.0, -a, 1.0), np.inf)
-    behind = np.where(root > b, d / np.where(root > b, root - b, 1.0), np.inf)  # at alpha 0
-    high = np.where(ahead, falling, behind)
-    return np.where(none, 0.0, low), np.where(none, 0.0, high)
+    low = xp.where(inside, 0.0, -d / xp.where(ahead, b + size, 1.0))
+    falling = xp.where(a < 0.0, (b + size) / xp.where(a < 0.0, -a, 1.0), np.inf)
+    behind = xp.where(size > b, d / xp.where(size > b, size - b, 1.0), np.inf)  # at alpha 0
+    high = xp.where(ahead, falling, behind)
+    return xp.where(none, 0.0, low), xp.where(none, 0.0, high)
 
 
 def _split_azimuths(
@@ -196,82 +197,87 @@ def _split_azimuths(
 ) -> tuple[Array, Array]:
     """Nodes and weights of omega, split at an azimuth from that of wo, and where the critical cone ends."""
     # Find where the critical cone ends.
+    xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
     for center in (0.0, np.pi):  # in front of the view, where lean grows with r, and behind
         low, high = (
-            np.where(
-                inside, sign * right, _omega(slopes, wo, sign * last) if center == 0.0 else 0.0
+            xp.where(
+                inside,
+                sign * right,
+                _omega(slopes, wo, sign * last) if center == 0.0 else 0.0 * last,
             )
             for sign in (-1.0, 1.0)
         )
         # Split the azimuths there.
         splits = [_omega(slopes, wo, sign * meeting) - sign * center for sign in (-1.0, 1.0)]
-        points = np.stack(np.broadcast_arrays(low, *splits, 0.0, high))
-        points = np.sort(np.clip(points, np.maximum(low, -right), np.minimum(high, right)), axis=0)
+        shape = np.broadcast_shapes(*(tuple(each.shape) for each in (low, *splits, high)))
+        ends = low, *splits, 0.0 * low, high
+        points = xp.stack([xp.broadcast_to(each, shape) for each in ends])
+        points = xp.maximum(points, xp.maximum(low, -right + 0.0 * low))
+        points = xp.sort(xp.minimum(points, xp.minimum(high, right + 0.0 * high)), axis=0)
         # Place the nodes of each piece.
         half = points[2:] if slopes.isotropic else points
         for first, end in pairwise(half):
             omega, weight = _piece(slopes.scale, first, end)
             nodes.append((center + omega, weight * (2.0 if slopes.isotropic else 1.0)))
-    omega, weight = (np.concatenate(each) for each in zip(*nodes, strict=True))
+    omega, weight = (xp.concat(each) for each in zip(*nodes, strict=True))
     return omega[np.newaxis], weight[np.newaxis]
 
 
 def _horizon_azimuth(mu_o: Array, squared: Array) -> Array:
     """Azimuth from wo of h on the critical cone around wo whose wi, reflected, is at the horizon."""
-    sine = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
-    slope = np.sqrt(np.maximum(4.0 * squared / mu_o**2 - 1.0, 0.0))
-    length = np.where(sine * slope > 0.0, sine * slope, 1.0)
-    meeting = np.where(sine * slope > 0.0, (2.0 * squared / mu_o - mu_o) / length, 0.0)
-    return np.asarray(np.arccos(np.clip(meeting, -1.0, 1.0)))
+    xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
+    slope = root(at_least_0(4.0 * squared / mu_o**2 - 1.0))
+    length = xp.where(sine * slope > 0.0, sine * slope, 1.0)
+    return arccosine(xp.where(sine * slope > 0.0, (2.0 * squared / mu_o - mu_o) / length, 0.0))
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
     """Azimuth from wo whose cosine is the root of `squared` over the sine of wo."""
-    sine = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))
-    cosine = np.sqrt(np.maximum(squared, 0.0)) / np.where(sine > 0.0, sine, 1.0)
-    return np.arccos(np.minimum(cosine, 1.0))
+    xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
+    return arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
     """omega of slopes at an azimuth from that of wo, both in [-pi, pi]."""
-    upright = np.hypot(*wo[:2]) == 0.0
-    x, y = np.where(upright, 1.0, wo[0]), wo[1]
-    cosine, sine = np.cos(azimuth), np.sin(azimuth)
+    xp, upright = array_namespace(wo, azimuth), hypot(wo[0], wo[1]) == 0.0
+    x, y = xp.where(upright, 1.0, wo[0]), wo[1]
+    cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
     across = (x * cosine - y * sine) * slopes.roughness[1]
     along = (y * cosine + x * sine) * slopes.roughness[0]
     cos_0, sin_0 = slopes.axis
-    omega = np.arctan2(cos_0 * along - sin_0 * across, cos_0 * across + sin_0 * along)
-    return np.where(np.hypot(across, along) > 0.0, omega, azimuth)
+    omega = angle(cos_0 * along - sin_0 * across, cos_0 * across + sin_0 * along)
+    return xp.where(hypot(across, along) > 0.0, omega, azimuth)
 
 
 def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Nodes and weights of [low, high], on one side of 0, denser towards its ends and right angles."""
-    t, weight = _crowded(1, SPLIT_PART, np.ndim(low))
-    side = np.where(low + high < 0.0, -1.0, 1.0)
-    near, far = np.minimum(side * low, side * high), np.maximum(side * low, side * high)
-    first, last = (np.arcsinh((0.5 * np.pi - each) / scale) for each in (far, near))
+    xp, (t, weight) = array_namespace(scale, low, high), _crowded(1, SPLIT_PART, low)
+    side = xp.where(low + high < 0.0, -1.0, 1.0)
+    near, far = xp.minimum(side * low, side * high), xp.maximum(side * low, side * high)
+    first, last = (xp.asinh((0.5 * np.pi - each) / scale) for each in (far, near))
     x = first + (last - first) * t
-    return side * (0.5 * np.pi - scale * np.sinh(x)), weight * (last - first) * scale * np.cosh(x)
+    return side * (0.5 * np.pi - scale * xp.sinh(x)), weight * (last - first) * scale * xp.cosh(x)
 
 
 def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Nodes and weights of r in [low, high], denser towards 0 from `scale` on, and at the ends."""
-    t, weight = _crowded(PANELS, SPLIT_NODES, np.ndim(low) - 1)
-    first, last = np.arcsinh(low / scale), np.arcsinh(high / scale)
+    xp, (t, weight) = array_namespace(scale, low, high), _crowded(PANELS, SPLIT_NODES, low[0])
+    first, last = xp.asinh(low / scale), xp.asinh(high / scale)
     x = first + (last - first) * t
-    return scale * np.sinh(x), weight * (last - first) * scale * np.cosh(x)
+    return scale * xp.sinh(x), weight * (last - first) * scale * xp.cosh(x)
 
 
-def _crowded(panels: int, nodes: int, axes: int) -> tuple[Array, Array]:
-    """Nodes and weights of [0, 1] along a first axis, as dense at its ends as squares."""
+def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
+    """Nodes and weights of [0, 1] along an axis before those of an array, as dense at its ends as squares."""
     u, weight = unit_rule(nodes)
     u = np.concatenate([k + u for k in range(panels)]) / panels
     weight = np.tile(weight, panels) / panels
-    shape = (-1, *(1,) * axes)
-    return (u * u * (3.0 - 2.0 * u)).reshape(shape), (6.0 * u * (1.0 - u) * weight).reshape(shape)
+    shape = (-1, *(1,) * array.ndim)
+    both = (u * u * (3.0 - 2.0 * u)).reshape(shape), (6.0 * u * (1.0 - u) * weight).reshape(shape)
+    return like(both[0], array), like(both[1], array)
 
 
 def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:

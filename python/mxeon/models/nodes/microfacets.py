@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.namespaces import library
 from mxeon.models.microfacet import conductor_brdf, dielectric_brdf, generalized_schlick_brdf
 from mxeon.models.microfacet.albedo import (
     conductor_albedo_dir,
@@ -109,7 +110,8 @@ def _schlick(inputs: Inputs) -> tuple[Array, Array, Array]:
 
 
 def _has_film(inputs: Inputs) -> bool:
-    return bool(np.any(inputs.get("thinfilm_thickness", np.zeros(1))))
+    thickness = inputs.get("thinfilm_thickness", np.zeros(1))
+    return bool(library(thickness) or np.any(thickness))
 
 
 def _filmed_value(

@@ -133,6 +133,7 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     (array([0., 0., 1.]), 0.31831)
     """
     wo, u, roughness = checked_draw(wo, u, roughness=roughness)
+    # Choose a lobe.
     u1, u2 = unpack_uniforms(u)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
@@ -142,6 +143,7 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     v = xp.where(is_uniform, u1, u1 - P_u) / length
     rest = xp.where(is_uniform, P_u - u1, 1.0 - u1) / length
     v = xp.minimum(v, below_1(v))
+    # Draw from both.
     clipped, _ = _draw(wo, v, rest, u2, roughness)
     wi = xp.where(is_uniform[..., np.newaxis], uniform_direction(v, rest, u2), clipped)
     return wi, eon_cltc_pdf(wo, wi, roughness)

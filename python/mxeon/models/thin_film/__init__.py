@@ -11,6 +11,7 @@ import numpy as np
 from mxeon.models.core.arguments import checked, checked_rgb
 from mxeon.models.core.arrays import Array, ArrayLike
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.namespaces import any_array, like
 from mxeon.models.core.shapes import lead_shape
 from mxeon.models.thin_film.curve import CIE_RGB, MATERIALX, PRINTED, TEXT, Form, film_curve
 
@@ -28,6 +29,7 @@ __all__ = [
 PORTS = {"thickness": "thinfilm_thickness", "film_ior": "thinfilm_ior"}  # of the nodes
 
 
+@any_array
 def film_dielectric(
     mu: ArrayLike,
     thickness: ArrayLike,
@@ -83,6 +85,7 @@ def film_dielectric(
     )
 
 
+@any_array
 def film_conductor(
     mu: ArrayLike,
     thickness: ArrayLike,
@@ -122,6 +125,7 @@ def film_conductor(
     return _reflectance("conductor_bsdf", form, colors, numbers)
 
 
+@any_array
 def film_schlick(
     mu: ArrayLike,
     thickness: ArrayLike,
@@ -181,7 +185,7 @@ def _reflectance(
 
     def at(mu: Array, **material: Array) -> Array:
         if category == "dielectric_bsdf":
-            material["tint"] = np.ones(1)  # which the curve leaves alone
+            material["tint"] = like(np.ones(1), mu)  # which the curve leaves alone
         return curve.at(mu, **material)
 
     # Check the arguments and evaluate.

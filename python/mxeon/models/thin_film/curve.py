@@ -11,18 +11,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from mxeon.models.core.arrays import Array
 from mxeon.models.core.colorimetry import XYZ_TO_REC709, XYZ_TO_REC709_E
+from mxeon.models.core.edges import within
+from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.microfacet.lobe import CONDUCTOR, DIELECTRIC, SCHLICK, Curve
+from mxeon.models.thin_film import amplitudes
 from mxeon.models.thin_film import formulas as film
 
 # Gauss-Legendre in the cosine: nodes of the curve, and of the polynomial through it, which is clamped.
 NODES, FINE = 14, 200
+
+Polarizations: TypeAlias = (
+    tuple[film.Interface, film.Interface] | tuple[amplitudes.Amplitudes, amplitudes.Amplitudes]
+)
 
 
 @dataclass(frozen=True)
@@ -86,9 +94,14 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
         def coated() -> Array:
             free, film = without_clamp(form), (thinfilm_thickness, thinfilm_ior)
             cosines, between, shares = _rule()
-            nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
-            curve = np.tensordot(between, np.stack(nodes), 1)
-            return np.tensordot(shares, np.clip(curve, 0.0, 1.0) if form.clamped else curve, 1)
+            xp = array_namespace(*film, *material.values())
+            if xp is NUMPY:
+                nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
+                curve = np.tensordot(between, np.stack(nodes), 1)
+            else:
+                curve = _fine(category, free, like(cosines, film[1]), film, material)
+            kept = within(curve) if form.clamped else curve
+            return xp.tensordot(like(shares, curve), kept, axes=1)
 
         return _where_coated(thinfilm_thickness, coated, bare.average(**material))
 
@@ -97,9 +110,23 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
 
 def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -> Array:
     """Values of films where there is one, and plain ones; films take long, and are left out if there is none."""
-    if (thickness > 0.0).any():
-        return np.where(thickness > 0.0, coated(), plain)
+    xp = array_namespace(thickness, plain)
+    if xp is not NUMPY or (thickness > 0.0).any():
+        return xp.where(thickness > 0.0, coated(), plain)
     return np.broadcast_to(plain, np.broadcast_shapes(thickness.shape, plain.shape))
+
+
+def _fine(
+    category: str, form: Form, mu: Array, film: tuple[Array, Array], material: dict[str, Array]
+) -> Array:
+    """The curve at the cosines of a fine rule from those of nodes, shape (FINE, 3, ...), all at once."""
+    # Place the nodes between the channels and the other axes.
+    channels = {k for k, v in material.items() if k in COLORS[category]}
+    axes = max((v.ndim - 1 for k, v in material.items() if k in channels), default=film[0].ndim)
+    spread = {k: v[:, np.newaxis] if k in channels else v for k, v in material.items()}
+    nodes = array_namespace(mu).reshape(mu, (-1, *(1,) * max(axes, film[0].ndim, film[1].ndim)))
+    curve = _airy(category, form, nodes, *film, spread)
+    return array_namespace(curve).tensordot(like(_rule()[1], curve), curve, axes=((1,), (1,)))
 
 
 @cache
@@ -127,21 +154,28 @@ def _airy(
     material: dict[str, Array],
 ) -> Array:
     """F_airy in linear RGB, shape (3, ...)."""
-    mu, thickness, film_ior = np.broadcast_arrays(mu, thickness, film_ior)
     inputs = {k: v for k, v in material.items() if k != "tint"}
+    if array_namespace(mu, thickness, film_ior, *inputs.values()) is NUMPY:
+        mu, thickness, film_ior = np.broadcast_arrays(mu, thickness, film_ior)
     opd = film.path_difference(mu, thickness, film_ior)
-    xyz = sum(
-        film.tristimulus(film.Interface(*interface), opd, form.orders)
-        for interface in SUBSTRATES[category](mu, film_ior, form, **inputs)
-    )
-    rgb = _to_rgb(0.5 * np.asarray(xyz), form)
-    return np.clip(rgb, 0.0, 1.0) if form.clamped else rgb
+    p, s = SUBSTRATES[category](mu, film_ior, form, **inputs)
+    xyz = p.tristimulus(opd, form.orders) + s.tristimulus(opd, form.orders)
+    rgb = _to_rgb(0.5 * xyz, form)
+    return within(rgb) if form.clamped else rgb
 
 
 def _to_rgb(xyz: Array, form: Form) -> Array:
     """RGB, shape (3, ...), of XYZ of the substrate of each channel, shape (3, channels, ...)."""
-    xyz = np.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
-    matrix = np.array(form.matrix)
+    xp, matrix = array_namespace(xyz), np.array(form.matrix)
+    xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
+    # Take sums that every library has.
+    if xp is not NUMPY:
+        if form.mixed:
+            diagonal = xp.stack([xyz[k, k, ...] for k in range(3)])
+            return xp.tensordot(like(matrix, xyz), diagonal, axes=1)
+        weights = like(matrix.T.reshape(3, 3, *(1,) * (xyz.ndim - 2)), xyz)
+        return xp.sum(weights * xyz, axis=0)
+    # Take NumPy's.
     if form.mixed:
         mixed: Array = np.einsum("jk,k...->j...", matrix, np.einsum("kk...->k...", xyz))
         return mixed
@@ -149,14 +183,22 @@ def _to_rgb(xyz: Array, form: Form) -> Array:
     return rgb
 
 
-def _dielectric(mu: Array, film_ior: Array, _: Form, ior: Array) -> tuple[film.Interface, ...]:
-    return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], np.zeros(1))
+def _dielectric(mu: Array, film_ior: Array, _: Form, ior: Array) -> Polarizations:
+    return _over_index(
+        mu[np.newaxis], film_ior[np.newaxis], ior[np.newaxis], like(np.zeros(1), ior)
+    )
 
 
-def _conductor(
-    mu: Array, film_ior: Array, _: Form, ior: Array, extinction: Array
-) -> tuple[film.Interface, ...]:
-    return film.over_index(mu[np.newaxis], film_ior[np.newaxis], ior, extinction)
+def _conductor(mu: Array, film_ior: Array, _: Form, ior: Array, extinction: Array) -> Polarizations:
+    return _over_index(mu[np.newaxis], film_ior[np.newaxis], ior, extinction)
+
+
+def _over_index(mu: Array, film_ior: Array, ior: Array, extinction: Array) -> Polarizations:
+    """Film over a dielectric or a conductor, by amplitudes for arrays of other libraries than NumPy."""
+    values = mu, film_ior, ior, extinction
+    if array_namespace(*values) is NUMPY:
+        return film.over_index(*values)
+    return amplitudes.over_index(*values)
 
 
 def _schlick(
@@ -167,12 +209,14 @@ def _schlick(
     color82: Array,
     color90: Array,
     exponent: Array,
-) -> tuple[film.Interface, ...]:
+) -> Polarizations:
     mu_t = film.refracted(mu, film_ior)
     F = form.share * fresnel.schlick(mu_t, color0, color82, color90, exponent)
-    return film.over_schlick(
-        mu[np.newaxis], film_ior[np.newaxis], F, np.maximum(color0, form.least)
-    )
+    mu, film_ior, xp = mu[np.newaxis], film_ior[np.newaxis], array_namespace(mu, film_ior, F)
+    base = xp.maximum(color0, form.least)
+    if xp is NUMPY:
+        return film.over_schlick(mu, film_ior, F, base)
+    return amplitudes.over_schlick(mu, film_ior, F, base)
 
 
 CURVES = {
@@ -180,7 +224,13 @@ CURVES = {
     "conductor_bsdf": CONDUCTOR,
     "generalized_schlick_bsdf": SCHLICK,
 }
-SUBSTRATES: dict[str, Callable[..., tuple[film.Interface, ...]]] = {
+# Inputs of each curve that have channels.
+COLORS = {
+    "dielectric_bsdf": ("tint",),
+    "conductor_bsdf": ("ior", "extinction"),
+    "generalized_schlick_bsdf": ("color0", "color82", "color90"),
+}
+SUBSTRATES: dict[str, Callable[..., Polarizations]] = {
     "dielectric_bsdf": _dielectric,
     "conductor_bsdf": _conductor,
     "generalized_schlick_bsdf": _schlick,

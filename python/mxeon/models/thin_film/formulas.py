@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mxeon.models.core.arrays import Array
+from mxeon.models.core.edges import root
+from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 
 # Gaussians of the sensitivities: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2.
@@ -43,10 +45,17 @@ class Interface(NamedTuple):
     second: Array
     phase: Array
 
+    def tristimulus(self, opd: Array, orders: int | None = None) -> Array:
+        """Reflected intensity in CIE XYZ, shape (3, ...): `tristimulus`."""
+        return tristimulus(self, opd, orders)
+
 
 def refracted(mu: Array, film_ior: Array) -> Array:
     """cos theta_t: Three-Layer Geometry."""
-    return np.sqrt(np.maximum(1.0 - (1.0 - mu) * (1.0 + mu) / film_ior**2, 0.0))
+    xp = array_namespace(mu, film_ior)
+    squared = xp.maximum(1.0 - (1.0 - mu) * (1.0 + mu) / film_ior**2, 0.0)
+    # Through a film of index 1 it is mu, which has a derivative at grazing.
+    return xp.sqrt(squared) if xp is NUMPY else xp.where(squared > 0.0, root(squared), mu)
 
 
 def path_difference(mu: Array, thickness: Array, film_ior: Array) -> Array:
@@ -93,8 +102,9 @@ def over_schlick(
 
 def index_of(color0: Array) -> Array:
     """Index of refraction whose reflectance along the normal is color0; unbounded at 1."""
-    root = np.sqrt(color0)
-    return (1.0 + root) / np.maximum(1.0 - root, fresnel.LEAST)
+    amplitude = root(color0)
+    least = array_namespace(color0).maximum(1.0 - amplitude, fresnel.LEAST)
+    return (1.0 + amplitude) / least
 
 
 def first_phases(mu: Array, film_ior: Array) -> tuple[Array, Array]:

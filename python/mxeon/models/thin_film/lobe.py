@@ -10,6 +10,8 @@ from numpy.polynomial import chebyshev
 
 from mxeon.models.core.arguments import checked, checked_choice, checked_directions, checked_rgb
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.edges import within
+from mxeon.models.core.namespaces import NUMPY, any_array, array_namespace, like
 from mxeon.models.microfacet.albedo import lobe_albedo
 from mxeon.models.microfacet.lobe import Curve, Lobe, evaluate_lobe
 from mxeon.models.thin_film.curve import CURVES, TEXT, Form, film_curve, without_clamp
@@ -24,6 +26,7 @@ INPUTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 DEGREE = 48  # of a film's curve in the cosine where an albedo is integrated
 
 
+@any_array
 def film_brdf(
     category: str,
     wo: ArrayLike,
@@ -75,6 +78,7 @@ def film_brdf(
     return evaluate_lobe(lobe or Lobe(), curve, wo, wi, inputs["roughness"], vectors, numbers)
 
 
+@any_array
 def film_albedo_dir(
     category: str,
     wo: ArrayLike,
@@ -140,6 +144,8 @@ def _short(values: Numbers, channels: int, wo: ArrayLike) -> Numbers:
 
     F_ss of a film is an integral, which would be taken for each point of a picture.
     """
+    if array_namespace(values) is not NUMPY:
+        return values
     many = np.ndim(wo) == 2 and values.ndim == channels + 1 and len(values) == len(np.asarray(wo))
     return values[:1] if many and bool((values == values[:1]).all()) else values
 
@@ -155,18 +161,18 @@ class PolynomialCurve:
         """F at cosines of shape (nodes, nodes, ...), shape (3, nodes, nodes, ...)."""
         # Leave out the films if there are none.
         bare = {k: v for k, v in material.items() if k not in FILM}
-        film = material["thinfilm_thickness"] > 0.0
-        if not film.any():
+        film, xp = material["thinfilm_thickness"] > 0.0, array_namespace(mu)
+        if xp is NUMPY and not film.any():
             return self._bare(mu, **bare)
         # Evaluate the polynomials through them.
         x = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
         cosines = (0.5 * (1.0 + x)).reshape(-1, 1, *(1,) * (mu.ndim - 2))
-        sampled = self._curve(cosines, **material)
-        series = np.tensordot(_transform(x), sampled, (1, 1))[:, :, np.newaxis]
-        F = np.clip(_clenshaw(series, 2.0 * mu - 1.0), 0.0, 1.0)
-        if film.all():
+        sampled = self._curve(like(cosines, mu), **material)
+        series = xp.tensordot(like(_transform(x), mu), sampled, axes=((1,), (1,)))
+        F = within(_clenshaw(series[:, :, np.newaxis, ...], 2.0 * mu - 1.0))
+        if xp is NUMPY and film.all():
             return F
-        return np.where(film, F, self._bare(mu, **bare))
+        return xp.where(film, F, self._bare(mu, **bare))
 
 
 def _transform(x: Array) -> Array:
@@ -178,7 +184,8 @@ def _transform(x: Array) -> Array:
 
 def _clenshaw(series: Array, x: Array) -> Array:
     """Chebyshev series, coefficients along the first axis."""
-    last = before = np.zeros(1)
-    for coefficient in series[:0:-1]:
-        last, before = coefficient + 2.0 * x * last - before, last
-    return np.asarray(series[0] + x * last - before)
+    last = before = like(np.zeros(1), x)
+    for k in range(len(series) - 1, 0, -1):
+        last, before = series[k] + 2.0 * x * last - before, last
+    total: Array = series[0] + x * last - before
+    return total

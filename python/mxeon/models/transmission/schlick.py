@@ -22,6 +22,8 @@ from mxeon.models.core.arguments import (
     checked_transmitted,
 )
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
+from mxeon.models.core.edges import at_least_0, root, within
+from mxeon.models.core.namespaces import any_array, array_namespace
 from mxeon.models.core.shapes import channel_count, lead_shape
 from mxeon.models.microfacet import fresnel_formulas as fresnel
 from mxeon.models.transmission.btdf import evaluate_btdf
@@ -52,30 +54,31 @@ class Reading:
 
     def at(self, cosine: Array, ior: Array, **inputs: Array) -> Array:
         """F for light at this cosine, from inside if the index is below 1: 1 at total reflection."""
-        squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / np.maximum(ior, 1e-50) ** 2
+        xp = array_namespace(cosine, ior)
+        squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / xp.maximum(ior, 1e-50) ** 2
         inside = ior < 1.0
-        F = self.curve(np.where(inside, np.sqrt(np.maximum(squared, 0.0)), cosine), **inputs)
-        return np.where(inside & (squared <= 0.0), 1.0, F)
+        F = self.curve(xp.where(inside, root(at_least_0(squared)), cosine), **inputs)
+        return xp.where(inside & (squared <= 0.0), 1.0, F)
 
 
 def _whole(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
     """F of the node, kept in [0, 1]."""
-    return np.clip(fresnel.schlick(cosine, color0, color82, color90, exponent), 0.0, 1.0)
+    return within(fresnel.schlick(cosine, color0, color82, color90, exponent))
 
 
 def _no_dip(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
     """F without the dip at 82 degrees."""
-    return _whole(cosine, color0, np.ones_like(color82), color90, exponent)
+    return _whole(cosine, color0, 0.0 * color82 + 1.0, color90, exponent)
 
 
 def _darker(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
     """F with color82 as a factor of color90."""
-    return _whole(cosine, color0, np.ones_like(color82), color82 * color90, exponent)
+    return _whole(cosine, color0, 0.0 * color82 + 1.0, color82 * color90, exponent)
 
 
 def _of_index(cosine: Array, color0: Array, **others: Array) -> Array:
     """F of a dielectric of the index, which no input but color0 enters."""
-    return fresnel.dielectric(cosine, index_of(np.mean(color0, axis=0, keepdims=True), LEAST))
+    return fresnel.dielectric(cosine, index_of(_mean(color0, 0), LEAST))
 
 
 READINGS = {
@@ -88,6 +91,7 @@ READINGS = {
 }
 
 
+@any_array
 def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
     """Index of refraction of a reflectance along the normal.
 
@@ -126,15 +130,22 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
     """
     how = _reading(reading)
     r = checked_color("color0", color0)
-    return index_of(np.mean(r, axis=-1, keepdims=True) if how.index == "average" else r, how.least)
+    return index_of(_mean(r, -1) if how.index == "average" else r, how.least)
 
 
 def index_of(reflectance: Array, least: float) -> Array:
     """Index of a reflectance along the normal, kept in [least, 0.99]."""
-    root: Array = np.sqrt(np.clip(reflectance, least, MOST))
-    return (1.0 + root) / (1.0 - root)
+    amplitude = root(within(reflectance, least, MOST))
+    return (1.0 + amplitude) / (1.0 - amplitude)
 
 
+def _mean(color: Array, axis: int) -> Array:
+    """Mean over the channels, which are one then."""
+    mean: Array = array_namespace(color).mean(color, axis=axis, keepdims=True)
+    return mean
+
+
+@any_array
 def generalized_schlick_btdf(
     wo: ArrayLike,
     wi: ArrayLike,
@@ -207,7 +218,7 @@ def generalized_schlick_btdf(
         )
         for index, colors in parts
     ]
-    return np.concatenate(np.broadcast_arrays(*channels), axis=-1)
+    return array_namespace(*channels).concat(channels, axis=-1)
 
 
 def generalized_schlick_transmittance_dir(
@@ -280,9 +291,10 @@ def _parts(
     colors = {name: checked_color(name, value) for name, value in given.items()}
     count = channel_count(colors)
     if how.index == "average":
-        return [(index_of(np.mean(colors["color0"], axis=-1), how.least), colors)]
+        return [(index_of(_mean(colors["color0"], -1)[..., 0], how.least), colors)]
+    xp = array_namespace(*colors.values())
     spread = {
-        name: np.broadcast_to(value, (*value.shape[:-1], count)) for name, value in colors.items()
+        name: xp.broadcast_to(value, (*value.shape[:-1], count)) for name, value in colors.items()
     }
     return [
         (
