@@ -15,7 +15,7 @@ NODES = ("dielectric_bsdf", "conductor_bsdf", "generalized_schlick_bsdf")
 PARTS = {
     "nothing": (("", ""),),
     "the film": (("if (fd.airy)\n    {\n        // Look up", "if (false)\n    {\n        // Look up"),),
-    "orders of the film from the second": (("} while (i < count);", "} while (false);"),),
+    "orders of the film from the second": (("} while (order2 > limit);", "} while (false);"),),
     "width of the film's cosines": (
         ("- 0.25 * spread2 * spread2", ""),
     ),
@@ -23,7 +23,7 @@ PARTS = {
         ("microfacet_facets(lobe.mu_o, lobe.alpha)", "vec3(lobe.mu_o, 0.0, 0.0)"),
     ),
     "the film's averages for later lights": (
-        ("bool is_known = is_last || (key.x == microfacet_key2.x && key.y == microfacet_key2.y);", "bool is_known = false;"),
+        ("bool is_known = is_last || dot(abs(key - microfacet_key2), vec4(1.0)) == 0.0;", "bool is_known = false;"),
         ("microfacet_key1 = key;", ""),
     ),
     "E_ss within 5e-4": (("= ggx_albedo_dir(lobe.mu_o, lobe.alpha);", "= 1.0 - 0.5 * lobe.alpha;"),),

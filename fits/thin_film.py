@@ -12,6 +12,7 @@ import numpy as np
 
 from mxeon.conformance.probes.thin_films import LEAST_OIL, SHARP
 from mxeon.models.microfacet.ggx_albedo import ggx_albedo_dir
+from mxeon.models.thin_film import curve
 from mxeon.models.thin_film import formulas as film
 from mxeon.models.thin_film.curve import SUBSTRATES, TEXT, film_curve
 from mxeon.models.thin_film.lobe import film_albedo_dir
@@ -43,11 +44,12 @@ FACETS = (
 SHARE = 1.1
 ALIKE = 0.09  # reach below which two nodes serve
 WHITE = {"color82": 1.0, "color90": 1.0}
-# Orders are summed while they exceed 2^-x, and so many at most: of a value, and of a node of a rule.
-VALUE_ORDERS, MEAN_ORDERS = (17.0, 64.0), (10.0, 24.0)
-# Amplitudes whose orders are counted: a sum of none needs no logarithm of 0, and the largest count holds long before 0.999.
-LEAST_AMPLITUDE, MOST_AMPLITUDE = 1e-6, np.sqrt(0.999)
-DECAY = min(var for *_, var in film.GAUSSIANS) * (2.0 * np.pi) ** 2 / np.log(2.0)
+# Orders are summed while the square of one exceeds a limit, of a value this times the square of both
+# polarizations' mean reflectances in all channels, of a node of a rule this; each counts as smaller than the
+# one before it by a factor at least.
+VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 6e-8, 0.6
+NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
+LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
 
 
 def substrates(unit):
@@ -94,49 +96,67 @@ def largest(errors, ranges, category, numbers=NUMBERS):
     return float(found.max())
 
 
-def counted_orders(spread, limit):
-    """The shader's sum of orders, in the place of `formulas._all_orders`.
-
-    `spread` is the standard deviation of the path differences in m, whose fringes damp each other. Each
-    polarization has as many orders as it needs, in the shader as many as the one that needs more.
-    """
-
-    def series(r, phase, opd, _):
-        total = np.zeros((3, *np.broadcast_shapes(r.shape, phase.shape, opd.shape)))
-        count = order_count(np.broadcast_to(r, total.shape[1:]), opd, limit)
-        for k, v, mu, var in film.GAUSSIANS:
-            weight = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
-            z = r * np.exp(1j * (2.0 * np.pi * mu * opd + phase))
-            decay = var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
-            total[k] += weight * sum(
-                np.where(m <= count, (z**m).real * np.exp(-decay * m * m), 0.0)
-                for m in range(1, int(count.max()) + 1)
-            )
-        return total
-
-    return series
-
-
-def order_count(r, opd, limit):
-    """Orders that the shader sums: r^m k^(m^2) exceeds 2^-bits, and `most` at most."""
-    bits, most = limit
-    largest = r.max(axis=0) if r.ndim > 1 else r
-    a = -np.log2(np.clip(largest, LEAST_AMPLITUDE, MOST_AMPLITUDE))
-    b = DECAY * opd * opd
-    return np.floor(np.minimum(1.0 + 2.0 * bits / (a + np.sqrt(a * a + 4.0 * bits * b)), most))
-
-
 def shader_curve(category, material, mu, width=0.0):
     """`thin_film_fresnel`: the mean of a film's curve over cosines of a standard deviation around mu."""
-    n, thickness = material["thinfilm_ior"], material["thinfilm_thickness"]
-    mu_t = np.maximum(film.refracted(mu, n), 1e-12)
-    all_orders = film._all_orders
-    spread = 2.0e-9 * thickness * np.asarray(width) * mu / (n * mu_t)
-    film._all_orders = counted_orders(spread, MEAN_ORDERS if np.any(spread) else VALUE_ORDERS)
-    try:
-        return film_curve(category).at(mu, **material)
-    finally:
-        film._all_orders = all_orders
+    # Both interfaces at each cosine.
+    films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
+    mu, thickness, n = np.broadcast_arrays(mu, *films)
+    opd = film.path_difference(mu, thickness, n)
+    spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
+    interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
+    # Their mean over all phases, and the weight of orders and the amplitude of the first.
+    pairs = [np.broadcast_arrays(first, second) for first, second, _ in interfaces]
+    lost = [np.maximum(1.0 - first * second, LEAST_LOST) for first, second in pairs]
+    means = [R + (1.0 - R) ** 2 * S / each for (R, S), each in zip(pairs, lost, strict=True)]
+    weights = [(1.0 - R) * (1.0 - S) / each for (R, S), each in zip(pairs, lost, strict=True)]
+    sizes = [np.sqrt(R * S) for R, S in pairs]
+    # As many orders as count of both polarizations and all channels.
+    bright = 3.0 * (sum(means) ** 2).mean(axis=0)
+    least = np.where(spread > 0.0, MEAN_ORDER, VALUE_ORDER * bright)
+    count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
+    xyz = sum(
+        mean - 2.0 * weight * counted_orders(r * np.exp(1j * each.phase), opd, spread, count)
+        for mean, weight, r, each in zip(means, weights, sizes, interfaces, strict=True)
+    )
+    return np.clip(curve._to_rgb(0.5 * xyz, TEXT), 0.0, 1.0)
+
+
+def substrate(material):
+    """Inputs of a curve without its film."""
+    return {k: v for k, v in material.items() if k != "tint" and not k.startswith("thinfilm")}
+
+
+def counted_orders(z, opd, spread, count):
+    """Sum of so many orders, shape (3, ...), in each tristimulus.
+
+    `spread` is the standard deviation of the path differences in m, whose fringes damp each other.
+    """
+    total = np.zeros((3, *np.broadcast_shapes(z.shape, opd.shape)))
+    for k, v, mu, var in film.GAUSSIANS:
+        height = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
+        wave, damping = z * np.exp(2j * np.pi * mu * opd), decay(mu, var, opd, spread)
+        total[k] += height * sum(
+            np.where(m <= count, (wave**m).real * np.exp(-damping * m * m), 0.0)
+            for m in range(1, int(count.max()) + 1)
+        )
+    return total
+
+
+def decay(mu, var, opd, spread):
+    """Exponent by which a sensitivity damps the first order."""
+    return var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
+
+
+def order_count(weights, sizes, opd, spread, least):
+    """Orders that the shader sums, at least one, of weights and amplitudes of polarizations and channels."""
+    k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
+    largest, first = ((each**2).max(axis=(0, 1)) for each in (sizes, weights * sizes))
+    ratio, order = np.minimum(largest * k2**3, ORDER_RATIO), first * k2
+    count = np.ones_like(order)
+    while np.any(order * ratio > least):
+        order, ratio = order * ratio, ratio * k2 * k2
+        count += order > least
+    return count
 
 
 def orders_errors(category, material, _, mu):
@@ -166,9 +186,8 @@ def wave_slopes(category, material, _, mu):
     """Slopes of a curve in the waves of each Gaussian, whose errors may have any sign."""
     thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     opd = film.path_difference(mu, thickness, index)
-    substrate = {k: v for k, v in material.items() if k != "tint" and not k.startswith("thinfilm")}
     slopes = 0.0
-    for interface in SUBSTRATES[category](mu, index, TEXT, **substrate):
+    for interface in SUBSTRATES[category](mu, index, TEXT, **substrate(material)):
         first, second, phase = interface
         passed = 1.0 - first
         amplitude = passed**2 * second / np.maximum(1.0 - first * second, LEAST) - passed
@@ -181,6 +200,12 @@ def wave_slopes(category, material, _, mu):
             orders = sum(m * wave**m * np.exp(-decay * m * m) for m in range(1, 30))
             slopes = slopes + height[:, np.newaxis] * np.abs(amplitude * orders)
     return slopes.max(axis=0)
+
+
+def kept(category, material, _, mu):
+    """F (1 - F_ss), by which an error of E_ss enters a smooth lobe's F (E_ss + F_ss (1 - E_ss))."""
+    airy = film_curve(category)
+    return (airy.at(mu, **material) * (1.0 - airy.average(**material))).max(axis=0)
 
 
 def average_errors(category, material, *_, rule=None):
@@ -286,10 +311,11 @@ def monomials(mu, alpha):
 
 # What is measured, by name: errors, and the ranges of films.
 MEASURED = {
-    "orders": (orders_errors, FILMS),
-    "orders of curves": (curve_errors, CLEAR),
+    "orders": (orders_errors, FILMS, COLORED),
+    "orders of curves": (curve_errors, CLEAR, COLORED),
     "slope of curves": (slopes, CLEAR),
     "waves of curves": (wave_slopes, CLEAR),
+    "E_ss in curves": (kept, CLEAR, COLORED),
     "F_ss": (average_errors, FILMS, COLORED),
     "F_ss in two cosines": (pair_errors, FILMS),
     "visible facets": (visible_errors, FILMS),

@@ -208,12 +208,9 @@ def test_the_shader_has_the_nodes_of_a_film():
     assert macros("PAIR_WIDTH") == [width]
     assert macros("WIDTH") == [thin_film.WIDTH] and macros("ALIKE") == [thin_film.ALIKE]
     assert macros("SHARE") == [thin_film.SHARE]
-    assert macros("ORDERS_VALUE") + macros("ORDERS_MEAN") == [
-        *thin_film.VALUE_ORDERS,
-        *thin_film.MEAN_ORDERS,
-    ]
-    (decay,) = re.findall(r"define THIN_FILM_DECAY (\S+)", text)
-    assert float(decay) == pytest.approx(thin_film.DECAY, rel=1e-4)
+    limits = re.findall(r"define THIN_FILM_ORDER_\w+ (\S+)", text)
+    orders = [thin_film.VALUE_ORDER, thin_film.MEAN_ORDER, thin_film.ORDER_RATIO]
+    assert list(map(float, limits)) == orders
     columns = np.transpose(thin_film.FACETS).ravel()
     assert macros(r"FACETS_\d\d") == list(columns)
     np.testing.assert_allclose(

@@ -11,11 +11,11 @@
 // float32 adds nothing to 1. With ior 0 the curve of eonlib reflects everything.
 #define MICROFACET_LEAST_IOR 1e-3
 
-// Gauss's rules of two and of four nodes for a semicircle over [-1, 1]: positive nodes, and weights that
-// add up to 1.
-#define MICROFACET_HALF vec2(0.5, 0.5)
-#define MICROFACET_INNER vec2(0.30901699, 0.36180340)
-#define MICROFACET_OUTER vec2(0.80901699, 0.13819660)
+// Positive nodes of Gauss's rules of two and of four for a semicircle over [-1, 1]. Of n nodes, x has the
+// weight 2 (1 - x^2) / (n + 1).
+#define MICROFACET_HALF 0.5
+#define MICROFACET_INNER 0.30901699
+#define MICROFACET_OUTER 0.80901699
 
 // Mean, reach and bend of four nodes for visible facets, fitted to the averages of random films. Source:
 // fits/thin_film_nodes.py. Domain: mu and alpha in [0, 1]. Largest error of a reflectance: 3.1e-2.
@@ -37,10 +37,13 @@
 // Compensation below which two cosines serve for F_ss.
 #define MICROFACET_LITTLE 0.01
 
-// Weights whose sums tell lobes under films apart, in one pixel: of mu_o, alpha, thickness and index of the
-// film, and of the curve's average without it and its kind.
+// Weights whose sums tell lobes under films apart, in one pixel: two of mu_o, alpha, thickness and index of
+// the film, two of the curve's average without it and its kind. Lobes that differ have all four in common
+// where two roundings coincide at least.
 #define MICROFACET_LOBE_KEY vec4(1.0, 0.7320508, 0.0041421356, 0.236068)
+#define MICROFACET_FILM_KEY vec4(-0.3166248, 0.6055513, 0.0078256676, -1.1231056)
 #define MICROFACET_CURVE_KEY vec4(0.4142136, 0.6457513, 0.1622777, 1.0)
+#define MICROFACET_COLOR_KEY vec4(-0.8708287, 0.3851648, 0.5677644, 1.0)
 
 // Index of a mirror by MaterialX's curves of dielectrics and conductors.
 #define MICROFACET_MIRROR_IOR 1e8
@@ -54,8 +57,8 @@
 
 // The last two lobes under films, and their averages: every closure and every light of a pixel asks for the
 // same ones, and materials have a metal and a dielectric under one film.
-MICROFACET_STATIC vec2 microfacet_key1 = vec2(0.0);
-MICROFACET_STATIC vec2 microfacet_key2 = vec2(0.0);
+MICROFACET_STATIC vec4 microfacet_key1 = vec4(0.0);
+MICROFACET_STATIC vec4 microfacet_key2 = vec4(0.0);
 MICROFACET_STATIC vec3 microfacet_average1 = vec3(0.0);
 MICROFACET_STATIC vec3 microfacet_average2 = vec3(0.0);
 MICROFACET_STATIC vec3 microfacet_visible1 = vec3(0.0);
@@ -129,11 +132,13 @@ vec3 microfacet_facets(float mu, float alpha)
 // x + bend (4 x^2 - 1), which has the same mean.
 vec3 microfacet_visible(int i, int count, vec3 facets)
 {
-    vec2 node = i == 0 || i == 3 ? MICROFACET_OUTER : MICROFACET_INNER;
+    float node = i == 0 || i == 3 ? MICROFACET_OUTER : MICROFACET_INNER;
     node = count == 2 ? MICROFACET_HALF : node;
-    float x = 2 * i < count ? -node.x : node.x;
+    float x = 2 * i < count ? -node : node;
     float mu = facets.x + facets.y * (x + facets.z * (4.0 * x * x - 1.0));
-    return vec3(clamp(mu, 0.0, 1.0), node.y, MICROFACET_SHARE / float(count) * facets.y);
+    float scale = count == 2 ? 2.0 / 3.0 : 0.4;
+    float width = count == 2 ? 0.5 * MICROFACET_SHARE : 0.25 * MICROFACET_SHARE;
+    return vec3(clamp(mu, 0.0, 1.0), scale - scale * x * x, width * facets.y);
 }
 
 // Put a film's reflectances in the place of those without one, in one loop: of the visible facets and of the
@@ -143,15 +148,17 @@ void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFr
     if (fd.airy)
     {
         // Look up the averages.
-        vec4 film = vec4(lobe.mu_o, lobe.alpha, fd.tf_thickness, fd.tf_ior);
-        vec2 key = vec2(dot(MICROFACET_LOBE_KEY, film),
-                        dot(MICROFACET_CURVE_KEY, vec4(F.average, float(fd.model))));
-        bool is_last = key.x == microfacet_key1.x && key.y == microfacet_key1.y;
-        bool is_known = is_last || (key.x == microfacet_key2.x && key.y == microfacet_key2.y);
+        vec4 inputs = vec4(lobe.mu_o, lobe.alpha, fd.tf_thickness, fd.tf_ior);
+        vec4 curve = vec4(F.average, float(fd.model));
+        vec4 key = vec4(dot(MICROFACET_LOBE_KEY, inputs), dot(MICROFACET_FILM_KEY, inputs),
+                        dot(MICROFACET_CURVE_KEY, curve), dot(MICROFACET_COLOR_KEY, curve));
+        bool is_last = dot(abs(key - microfacet_key1), vec4(1.0)) == 0.0;
+        bool is_known = is_last || dot(abs(key - microfacet_key2), vec4(1.0)) == 0.0;
         F.average = is_last ? microfacet_average1 : microfacet_average2;
         F.visible = is_last ? microfacet_visible1 : microfacet_visible2;
 
         // Count the nodes.
+        ThinFilm film = thin_film(fd);
         vec3 reached = microfacet_facets(lobe.mu_o, lobe.alpha);
         int facets = reached.y < MICROFACET_ALIKE ? 2 : 4;
         int cosines = 1.0 - lobe.albedo < MICROFACET_LITTLE * lobe.albedo ? 2 : 5;
@@ -169,10 +176,10 @@ void microfacet_add_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFr
                 node = i < facets ? microfacet_visible(i, facets, reached) : node;
 
                 // Add its share.
-                vec3 curve = node.y * thin_film_fresnel(node.x, node.z, fd);
-                F.visible += i < facets ? curve : vec3(0.0);
-                F.average += i < facets || i == last ? vec3(0.0) : curve;
-                F.value = curve;
+                vec3 share = node.y * thin_film_fresnel(node.x, node.z, film, fd);
+                F.visible += i < facets ? share : vec3(0.0);
+                F.average += i < facets || i == last ? vec3(0.0) : share;
+                F.value = share;
                 i++;
             } while (i < end);
         }

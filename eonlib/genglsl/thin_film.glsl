@@ -32,10 +32,32 @@
 // Two quotients of 0 by 0 are kept finite: of a vanishing root, and of full reflection at grazing.
 #define THIN_FILM_LEAST 1e-12
 
-// Orders are summed while they exceed 2^-x, and y at most: of a value, and of a node of a rule.
-#define THIN_FILM_ORDERS_VALUE vec2(17.0, 64.0)
-#define THIN_FILM_ORDERS_MEAN vec2(10.0, 24.0)
-#define THIN_FILM_DECAY 2.465e11  // (2 pi sigma)^2 / log(2) of the least sigma
+// Orders are summed while the square of one exceeds a limit, of a value this times the square of both mean
+// reflectances, of a node of a rule this; each counts as smaller than the one before it by a factor at least.
+#define THIN_FILM_ORDER_VALUE 2e-14
+#define THIN_FILM_ORDER_MEAN 6e-8
+#define THIN_FILM_ORDER_RATIO 0.6
+
+// What all cosines share: the film's index, at least that of vacuum, the inverse of its square, twice the
+// thickness in m, and the sign of the amplitude that a Schlick substrate reflects.
+struct ThinFilm
+{
+    float n;
+    float inverse;
+    float twice;
+    vec3 sign;
+};
+
+// Below a denser film the amplitude of a Schlick substrate changes its sign.
+ThinFilm thin_film(FresnelData fd)
+{
+    ThinFilm film;
+    film.n = max(fd.tf_ior, 1.0);
+    film.inverse = 1.0 / (film.n * film.n);
+    film.twice = 2.0e-9 * fd.tf_thickness;
+    film.sign = 2.0 * step(vec3((film.n - 1.0) / (film.n + 1.0)), sqrt(fd.F0)) - 1.0;
+    return film;
+}
 
 // Red, green and blue of what X, X, Y and Z respond with.
 vec3 thin_film_color(vec4 response)
@@ -52,21 +74,11 @@ void thin_film_multiply(inout vec3 re, inout vec3 im, vec3 x, vec3 y)
     re = product;
 }
 
-// Orders m of an amplitude r of square R up to which r^m k^(m^2) exceeds a limit. With a = -log2 r and
-// b = -log2 k, the k of the narrowest sensitivity: m a + m^2 b = limit. A node of a rule has a width.
-int thin_film_count(float R, float opd, float width)
-{
-    vec2 limit = width > 0.0 ? THIN_FILM_ORDERS_MEAN : THIN_FILM_ORDERS_VALUE;
-    float a = -0.5 * log2(clamp(R, THIN_FILM_LEAST, 0.999));
-    float b = THIN_FILM_DECAY * opd * opd;
-    return int(min(1.0 + 2.0 * limit.x / (a + sqrt(a * a + 4.0 * limit.x * b)), limit.y));
-}
-
-// Sums over orders m of the colors of Re z^m S_m, z of each polarization and channel, S_m = k^(m^2)
-// exp(2 pi i mu m opd) of each sensitivity, k = exp(-(2 pi sigma opd)^2). A color of S_m serves all z.
-// `imaginary` is 0 where all z are real, which spares compilers half of a step.
-void thin_film_orders(vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, float opd, float width, int count,
-                      float imaginary, out vec3 orders_s, out vec3 orders_p)
+// Sum over orders m of the colors of Re A z^m S_m, z of each polarization and channel, A its weight, S_m =
+// k^(m^2) exp(2 pi i mu m opd) of each sensitivity, k = exp(-(2 pi sigma opd)^2). A color of S_m serves all
+// z. Where all z are real, compilers drop half of a step.
+vec3 thin_film_orders(vec3 A_s, vec3 A_p, vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, float opd,
+                      float width, float limit, bool is_real)
 {
     // The first order, and its ratio to the second. Wide fringes are seen by the nodes of a rule,
     // narrow ones vanish from its mean: exp(-(2 pi mu width)^4 / 4).
@@ -80,39 +92,55 @@ void thin_film_orders(vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, float opd, flo
     vec4 ratio_re = k2 * wave_re;
     vec4 ratio_im = k2 * wave_im;
 
+    // Squares of the largest first order, and of its ratio to the second. The first sensitivity is narrowest.
+    vec3 R_s = re_s * re_s + im_s * im_s;
+    vec3 R_p = re_p * re_p + im_p * im_p;
+    vec3 largest = max(R_s, R_p);
+    vec3 first = max(A_s * A_s * R_s, A_p * A_p * R_p);
+    float narrow2 = k2.x * k2.x;
+    float ratio2 = max(largest.x, max(largest.y, largest.z)) * narrow2 * k2.x;
+    float order2 = max(first.x, max(first.y, first.z)) * k2.x;
+    ratio2 = min(ratio2, THIN_FILM_ORDER_RATIO);
+
     // Add order by order.
-    orders_s = vec3(0.0);
-    orders_p = vec3(0.0);
-    vec3 power_re_s = re_s;
-    vec3 power_im_s = im_s;
-    vec3 power_re_p = re_p;
-    vec3 power_im_p = im_p;
-    int i = 0;
+    vec3 orders = vec3(0.0);
+    vec3 power_re_s = A_s * re_s;
+    vec3 power_im_s = A_s * im_s;
+    vec3 power_re_p = A_p * re_p;
+    vec3 power_im_p = A_p * im_p;
     do  // a loop that asks first takes one step more on llvmpipe
     {
-        vec3 color_re = thin_film_color(wave_re);
-        vec3 color_im = thin_film_color(wave_im);
-        orders_s += power_re_s * color_re - power_im_s * color_im;
-        orders_p += power_re_p * color_re - power_im_p * color_im;
-        thin_film_multiply(power_re_s, power_im_s, re_s, im_s);
-        thin_film_multiply(power_re_p, power_im_p, re_p, im_p);
-        power_im_s *= imaginary;
-        power_im_p *= imaginary;
+        orders += (power_re_s + power_re_p) * thin_film_color(wave_re);
+        if (is_real)
+        {
+            power_re_s *= re_s;
+            power_re_p *= re_p;
+        }
+        else
+        {
+            orders -= (power_im_s + power_im_p) * thin_film_color(wave_im);
+            thin_film_multiply(power_re_s, power_im_s, re_s, im_s);
+            thin_film_multiply(power_re_p, power_im_p, re_p, im_p);
+        }
         vec4 next_re = wave_re * ratio_re - wave_im * ratio_im;
         wave_im = wave_re * ratio_im + wave_im * ratio_re;
         wave_re = next_re;
         ratio_re *= k2;
         ratio_im *= k2;
-        i++;
-    } while (i < count);
+        order2 *= ratio2;
+        ratio2 *= narrow2;
+    } while (order2 > limit);
+    return orders;
 }
 
-// Reflectance of one polarization from the sum of its orders and the reflectances of both interfaces.
-vec3 thin_film_polarized(float R12, vec3 R23, vec3 orders)
+// Mean reflectance of one polarization over all phases, and the weight of its orders, from the reflectances
+// of both interfaces.
+vec3 thin_film_polarized(float R12, vec3 R23, out vec3 weight)
 {
     float T12 = 1.0 - R12;
-    vec3 trapped = max(1.0 - R12 * R23, THIN_FILM_LEAST);
-    return R12 + T12 * (T12 * R23 - 2.0 * (1.0 - R23) * orders) / trapped;
+    vec3 passed = T12 / max(1.0 - R12 * R23, THIN_FILM_LEAST);
+    weight = passed * (1.0 - R23);
+    return R12 + T12 * passed * R23;
 }
 
 // Root of (ior + i extinction)^2 - sin^2, of which the smaller part does not cancel.
@@ -130,27 +158,26 @@ void thin_film_root(float sin2, vec3 ior, vec3 extinction, out vec3 re, out vec3
 // (a - b) / (a + b) of complex numbers, a in x + i y, b in u + i v.
 void thin_film_amplitude(vec3 x, vec3 y, vec3 u, vec3 v, out vec3 re, out vec3 im)
 {
-    vec3 divisor = max((x + u) * (x + u) + (y + v) * (y + v), THIN_FILM_LEAST);
-    re = (x * x + y * y - u * u - v * v) / divisor;
-    im = 2.0 * (y * u - x * v) / divisor;
+    vec3 inverse = 1.0 / max((x + u) * (x + u) + (y + v) * (y + v), THIN_FILM_LEAST);
+    re = (x * x + y * y - u * u - v * v) * inverse;
+    im = 2.0 * (y * u - x * v) * inverse;
 }
 
-// Amplitudes of the lower interface under a film of index n, at cosines mu_t in the film and a sine
-// above it whose square is sin2, for both polarizations.
-void thin_film_lower(float mu_t, float n, float sin2, FresnelData fd, out vec3 re_s, out vec3 im_s,
-                     out vec3 re_p, out vec3 im_p)
+// Amplitudes of the lower interface under a film, at cosines mu_t in the film and a sine above it whose square is sin2, for both polarizations.
+void thin_film_lower(float mu_t, ThinFilm film, float sin2, FresnelData fd, out vec3 re_s,
+                     out vec3 im_s, out vec3 re_p, out vec3 im_p)
 {
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
-        // A negative curve has no amplitude; below a denser film it changes its sign.
-        vec3 denser = step(vec3((n - 1.0) / (n + 1.0)), sqrt(fd.F0));
-        re_p = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0)) * (2.0 * denser - 1.0);
+        // A negative curve has no amplitude.
+        re_p = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0)) * film.sign;
         re_s = -re_p;
         im_p = vec3(0.0);
         im_s = vec3(0.0);
     }
     else
     {
+        float n = film.n;
         vec3 U, V;
         thin_film_root(sin2, fd.ior, fd.extinction, U, V);
         thin_film_amplitude(vec3(n * mu_t), vec3(0.0), U, V, re_s, im_s);
@@ -161,42 +188,36 @@ void thin_film_lower(float mu_t, float n, float sin2, FresnelData fd, out vec3 r
 }
 
 // F_airy, its mean over a width of cosines around mu. A film thinner than vacuum counts as vacuum.
-vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
+vec3 thin_film_fresnel(float mu, float width, ThinFilm film, FresnelData fd)
 {
     // Refract into the film.
-    float n = max(fd.tf_ior, 1.0);
+    float n = film.n;
     float sin2 = (1.0 - mu) * (1.0 + mu);
-    float mu_t = sqrt(max(1.0 - sin2 / (n * n), 0.0));
+    float sin2_t = sin2 * film.inverse;
+    float mu_t = sqrt(max(1.0 - sin2_t, 0.0));
+    float nu = n * mu_t;
 
     // Reflect at the upper interface, whose gap is 0 without a film, at grazing too.
     float gap = (n - 1.0) * (n + 1.0);
-    float sum_s = mu + n * mu_t;
+    float sum_s = mu + nu;
     float sum_p = n * mu + mu_t;
     float r_s = -gap / max(sum_s * sum_s, THIN_FILM_LEAST);
-    float r_p = gap * (mu * mu - sin2 / (n * n)) / max(sum_p * sum_p, THIN_FILM_LEAST);
+    float r_p = gap * (mu * mu - sin2_t) / max(sum_p * sum_p, THIN_FILM_LEAST);
 
     // Reflect at the lower interface.
     vec3 re_s, im_s, re_p, im_p;
-    thin_film_lower(mu_t, n, sin2, fd, re_s, im_s, re_p, im_p);
-
-    float R12_s = r_s * r_s;
-    float R12_p = r_p * r_p;
-    vec3 R23_s = re_s * re_s + im_s * im_s;
-    vec3 R23_p = re_p * re_p + im_p * im_p;
+    thin_film_lower(mu_t, film, sin2, fd, re_s, im_s, re_p, im_p);
 
     // Sum the orders between both. The slope of 2 n mu_t d is 2 d mu / (n mu_t).
-    float twice = 2.0e-9 * fd.tf_thickness;
-    float nu = n * mu_t;
-    vec3 R = max(R12_s * R23_s, R12_p * R23_p);
-    int count = thin_film_count(max(R.x, max(R.y, R.z)), twice * nu, width);
-    float imaginary = fd.model == FRESNEL_MODEL_SCHLICK ? 0.0 : 1.0;
-    vec3 orders_s, orders_p;
-    thin_film_orders(-r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p, twice * nu,
-                     twice * width * mu / max(nu, THIN_FILM_LEAST), count, imaginary, orders_s,
-                     orders_p);
-    vec3 F_s = thin_film_polarized(R12_s, R23_s, orders_s);
-    vec3 F_p = thin_film_polarized(R12_p, R23_p, orders_p);
-    return clamp(0.5 * (F_s + F_p), 0.0, 1.0);
+    vec3 A_s, A_p;
+    vec3 mean = thin_film_polarized(r_s * r_s, re_s * re_s + im_s * im_s, A_s)
+                + thin_film_polarized(r_p * r_p, re_p * re_p + im_p * im_p, A_p);
+    float limit = width > 0.0 ? THIN_FILM_ORDER_MEAN : THIN_FILM_ORDER_VALUE * dot(mean, mean);
+    vec3 orders = thin_film_orders(A_s, A_p, -r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p,
+                                   film.twice * nu,
+                                   film.twice * width * mu / max(nu, THIN_FILM_LEAST), limit,
+                                   fd.model == FRESNEL_MODEL_SCHLICK);
+    return clamp(0.5 * mean - orders, 0.0, 1.0);
 }
 
 // Node i of 2 or 5 for F_ss: cosine, weight and width.

@@ -76,6 +76,7 @@ STATED = {
     "orders of curves": tolerances.FILM_SHARP_ORDERS,
     "slope of curves": tolerances.FILM_SLOPE,
     "waves of curves": tolerances.FILM_WAVES,
+    "E_ss in curves": tolerances.FILM_KEPT,
     "F_ss": tolerances.FILM_AVERAGE,
     "visible facets": tolerances.FILM_VISIBLE,
     "albedo": tolerances.FILM_SEEN,
@@ -92,24 +93,24 @@ FILMS_IN = ("eonlib/genglsl/thin_film.glsl", "eonlib/genglsl/microfacet_lobe.gls
 # By name: node, text of the film, the text in its place, key of the check.
 WRONG = {
     "phase": ("conductor_bsdf", "-r_s * im_s,", "r_s * im_s,", "film"),
-    "one order": ("conductor_bsdf", "} while (i < count);", "} while (i < 1);", "film"),
-    "too few orders": ("conductor_bsdf", "-0.5 * log2(", "-log2(", "film_curve"),
+    "one order": ("conductor_bsdf", "} while (order2 > limit);", "} while (false);", "film"),
+    "too few orders": ("conductor_bsdf", "order2 *= ratio2;", "order2 *= ratio2 * ratio2;", "film_curve"),
     "one digit of a variance": (
         "conductor_bsdf", "4.3278e9, 4.5282e9", "4.3728e9, 4.5282e9", "film_curve",
     ),
     "six orders at most": (
-        "conductor_bsdf", "vec2(17.0, 64.0)", "vec2(17.0, 6.0)", "film_orders",
+        "conductor_bsdf", "THIN_FILM_ORDER_RATIO 0.6", "THIN_FILM_ORDER_RATIO 0.006", "film_orders",
     ),
-    "no limit": ("dielectric_bsdf", "orders_s = vec3(0.0)", "orders_s = vec3(0.01)", "film_limit"),
+    "no limit": ("dielectric_bsdf", "orders = vec3(0.0)", "orders = vec3(0.01)", "film_limit"),
     "too much light": (
-        "conductor_bsdf", "clamp(0.5 * (F_s + F_p), 0.0, 1.0)", "1.1 + 0.0 * F_s", "film_energy",
+        "conductor_bsdf", "clamp(0.5 * mean - orders, 0.0, 1.0)", "1.1 + 0.0 * mean", "film_energy",
     ),
     "one facet": (
         "conductor_bsdf", "int i = is_known ? last : 0;", "facets = 1; int i = 0;", "film_environment",
     ),
     "one cosine for the average": (
-        "conductor_bsdf", "F.average += i < facets || i == last ? vec3(0.0) : curve;",
-        "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, fd);", "film_average",
+        "conductor_bsdf", "F.average += i < facets || i == last ? vec3(0.0) : share;",
+        "F.average = thin_film_fresnel(2.0 / 3.0, 0.0, film, fd);", "film_average",
     ),
     "weights of two cosines": (
         "conductor_bsdf", "vec2(0.785, 0.725)", "vec2(0.785, 0.625)", "film_smooth",
@@ -118,18 +119,18 @@ WRONG = {
         "conductor_bsdf", "mu + s * s * C.x", "mu", "film_visible",
     ),
     "two facets in one place": (
-        "conductor_bsdf", "MICROFACET_HALF vec2(0.5, 0.5)", "MICROFACET_HALF vec2(0.0, 0.5)", "film_glossy",
+        "conductor_bsdf", "MICROFACET_HALF 0.5", "MICROFACET_HALF 0.01", "film_glossy",
     ),
     "half of the film": (
-        "generalized_schlick_bsdf", "F.visible += i < facets ? curve",
-        "F.visible += i < facets ? 0.5 * curve", "film_throughput",
+        "generalized_schlick_bsdf", "F.visible += i < facets ? share",
+        "F.visible += i < facets ? 0.5 * share", "film_throughput",
     ),
     "one average for all curves": (
-        "conductor_bsdf", "dot(MICROFACET_CURVE_KEY, vec4(F.average, float(fd.model)))", "1.0",
+        "conductor_bsdf", "vec4 curve = vec4(F.average, float(fd.model));", "vec4 curve = vec4(1.0);",
         "film_sum",
     ),
     "not a number": (
-        "dielectric_bsdf", "clamp(0.5 * (F_s + F_p), 0.0, 1.0)", "F_s / step(1.0, fd.tf_ior)", "film_finite",
+        "dielectric_bsdf", "clamp(0.5 * mean - orders, 0.0, 1.0)", "mean / step(1.0, fd.tf_ior)", "film_finite",
     ),
 }  # fmt: skip
 
@@ -164,7 +165,7 @@ def test_every_lobe_of_a_pixel_has_its_own_film(gl, tmp_path):
         for name, text, other in (
             ("whole", "is_known", "is_known"),
             ("forgetful", "int i = is_known ? last : 0;", "is_known = false; int i = 0;"),
-            ("mixed", "dot(MICROFACET_CURVE_KEY, vec4(F.average, float(fd.model)))", "1.0"),
+            ("mixed", "vec4 curve = vec4(F.average, float(fd.model));", "vec4 curve = vec4(1.0);"),
         )
     )
     np.testing.assert_allclose(whole, forgetful, atol=1e-5)
@@ -218,7 +219,7 @@ def test_five_cosines_average_a_curve_without_a_film_as_exactly_as_its_tolerance
 @pytest.mark.parametrize("name", SETS)
 def test_sets_of_films_are_as_near_as_its_tolerances_say(name):
     found = max(sets.largest(*sets.MEASURED[name], sets=2).values())
-    assert 0.5 * SETS[name] < found <= SETS[name]
+    assert 0.3 * SETS[name] < found <= SETS[name]
 
 
 def judged(host, node, library):
