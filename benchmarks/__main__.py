@@ -21,13 +21,14 @@ from benchmarks.check import CACHE
 from mxeon.errors import NotRun
 
 GROUPS = (
-    "shaders", "noise", "materials", "instructions", "registers", "shares", "cycles", "models", "values", "tool",
-    "check", "parts",
+    "shaders", "noise", "materials", "texts", "instructions", "registers", "shares", "cycles", "models", "values",
+    "tool", "check", "parts",
 )  # fmt: skip
 QUICK = {
     "shaders": {"rounds": 5},
     "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
     "materials": {"rounds": 3, "size": 256},
+    "texts": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "shares": {"nodes": ("dielectric_bsdf",)},

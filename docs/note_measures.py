@@ -166,7 +166,7 @@ def fresnel_errors(mu, alpha):
     curves = cosine_fit.DIELECTRIC
     shape = np.sqrt((GLASS - 1.0) / (GLASS + 1.0))
     E, (mean,) = cosine_fit.averages(mu, alpha, [lambda c: curves.reflectance(c, GLASS)])
-    c = cosine_fit.cosine(curves, mu, alpha, shape, shipped("ggx_cosine", curves.prefix))
+    c = cosine_fit.cosine(curves, mu, alpha, shape, shipped("fresnel_dielectric", curves.prefix))
     F0 = ((GLASS - 1.0) / (GLASS + 1.0)) ** 2
     exact = E * mean
     return {

@@ -36,11 +36,11 @@ def shipped(stem, prefix, kinds="ND"):
 
 
 GGX = shipped("ggx_albedo", "GGX_ALBEDO")
-DIELECTRIC = shipped("ggx_cosine", "GGX_DIELECTRIC")
-SCHLICK = shipped("ggx_cosine", "GGX_SCHLICK")
+DIELECTRIC = shipped("fresnel_dielectric", "GGX_DIELECTRIC")
+SCHLICK = shipped("fresnel_schlick", "GGX_SCHLICK")
 SHEEN = shipped("conty_kulla_albedo", "CONTY_KULLA_ALBEDO")
-AVERAGE = shipped("fresnel_average", "FRESNEL_AVG")
-COSINES, WEIGHTS = (shipped("fresnel_average", "FRESNEL_AVG", kind) for kind in "CW")
+AVERAGE = shipped("fresnel_dielectric", "FRESNEL_AVG")
+COSINES, WEIGHTS = (shipped("fresnel_conductor", "FRESNEL_AVG", kind) for kind in "CW")
 
 
 def albedo(mu, alpha):

@@ -64,6 +64,7 @@ SMALLEST = {
         "rounds": 1, "invocations": 256, "calls": 4, "size": 16, "pictures": 2, "spokes": 2,
     },
     "materials": {"rounds": 1, "size": 32, "nodes": ("oren_nayar", "dielectric_bsdf")},
+    "texts": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar",)},
     "registers": {"nodes": ("oren_nayar",)},
     "shares": {"nodes": ("conductor_bsdf",), "parts": ("nothing", "the film")},

@@ -2,6 +2,7 @@
 // Entry point of the node conductor_bsdf, which lets nothing through.
 
 #include "microfacet_lobe.glsl"
+#include "fresnel_conductor.glsl"
 
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
                     vec2 roughness, bool retroreflective, float thinfilm_thickness,

@@ -2,7 +2,7 @@
 // Entry point of the node dielectric_bsdf. With ior 0 it reflects everything.
 
 #include "microfacet_lobe.glsl"
-#include "ggx_cosine.glsl"
+#include "fresnel_dielectric.glsl"
 
 void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
                      bool retroreflective, float thinfilm_thickness, float thinfilm_ior, vec3 N,

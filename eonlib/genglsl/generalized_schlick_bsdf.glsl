@@ -2,7 +2,7 @@
 // Entry point of the node generalized_schlick_bsdf.
 
 #include "microfacet_lobe.glsl"
-#include "ggx_cosine.glsl"
+#include "fresnel_schlick.glsl"
 
 // Average of the Fresnel curve over the visible facets; a color82 of 1 has no dip.
 vec3 generalized_schlick_visible(MicrofacetLobe lobe, FresnelData fd, vec3 dip)

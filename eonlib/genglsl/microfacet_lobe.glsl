@@ -3,7 +3,6 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
-#include "fresnel_average.glsl"
 #include "ggx_albedo.glsl"
 #include "thin_film.glsl"
 
@@ -289,7 +288,7 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     }
     else if (lobe.closure == CLOSURE_TYPE_INDIRECT)
     {
-        vec3 outside = fd.airy ? F.visible : vec3(1.0);
+        vec3 outside = fd.airy ? microfacet_visible1 : vec3(1.0);  // F.visible, needless without a film
         bsdf.response = microfacet_environment(lobe, distribution, fd) * outside * scale;
     }
 }

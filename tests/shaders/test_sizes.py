@@ -10,11 +10,11 @@ from tests.support.availability import available
 # less, after which they are to be counted anew.
 SIZES = {
     "oren_nayar": (0.95, 1.07),
-    "dielectric_bsdf": (1.96, 1.68),
-    "conductor_bsdf": (1.80, 1.74),
-    "generalized_schlick_bsdf": (1.95, 1.70),
+    "dielectric_bsdf": (1.79, 1.68),
+    "conductor_bsdf": (1.75, 1.73),
+    "generalized_schlick_bsdf": (1.81, 1.69),
     "open_pbr_surface": (1.44, 1.26),
-    "standard_surface": (1.54, 1.28),
+    "standard_surface": (1.49, 1.28),
     "gltf_pbr": (1.44, 1.33),
     "UsdPreviewSurface": (1.44, 1.36),
     "chiang_hair_bsdf": (1.17, 0.49),

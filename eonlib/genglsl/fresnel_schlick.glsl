@@ -1,43 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages of Fresnel curves over the visible facets of GGX, by the cosine at which each curve has
-// its average. mu is the cosine of wo with the normal, alpha the roughness.
-//
-//   c = mu + alpha^2 / (mu + alpha) N / D,  x = mu / (mu + alpha)
+// Averages of Hoffman's generalization of Schlick's curve: F_ss, weighted by the cosine over the hemisphere, and
+// over the visible facets of GGX, by the cosine at which the curve has it. mu is the cosine of wo with the normal.
 
-// Source: fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], index of refraction in [1.03, 3].
-// Largest absolute error of the albedo: 0.003, in [1.05, 2.5] 0.0017.
-#define GGX_DIELECTRIC_N000 121.31539
-#define GGX_DIELECTRIC_N001 695.29722
-#define GGX_DIELECTRIC_N002 -852.70243
-#define GGX_DIELECTRIC_N003 0.95958787
-#define GGX_DIELECTRIC_N010 -79.111812
-#define GGX_DIELECTRIC_N011 -404.20459
-#define GGX_DIELECTRIC_N012 719.38075
-#define GGX_DIELECTRIC_N020 -87.272915
-#define GGX_DIELECTRIC_N021 -153.03073
-#define GGX_DIELECTRIC_N030 79.441552
-#define GGX_DIELECTRIC_N100 -107.09138
-#define GGX_DIELECTRIC_N101 -328.78907
-#define GGX_DIELECTRIC_N102 356.88066
-#define GGX_DIELECTRIC_N110 -2.5500696
-#define GGX_DIELECTRIC_N111 -40.596539
-#define GGX_DIELECTRIC_N120 68.03638
-#define GGX_DIELECTRIC_N200 10.033399
-#define GGX_DIELECTRIC_N201 16.886608
-#define GGX_DIELECTRIC_N210 -50.014696
-#define GGX_DIELECTRIC_N300 -7.2080572
-#define GGX_DIELECTRIC_D001 57.90553
-#define GGX_DIELECTRIC_D002 -67.41115
-#define GGX_DIELECTRIC_D010 181.8611
-#define GGX_DIELECTRIC_D011 -7.478896
-#define GGX_DIELECTRIC_D020 -50.38694
-#define GGX_DIELECTRIC_D100 3.325208
-#define GGX_DIELECTRIC_D101 0.0942464
-#define GGX_DIELECTRIC_D110 -261.2011
-#define GGX_DIELECTRIC_D200 -4.144666
-#define GGX_DIELECTRIC_D120 -6.590822
-#define GGX_DIELECTRIC_D210 107.1744
-
+// That cosine is mu + alpha^2 / (mu + alpha) N / D, x = mu / (mu + alpha).
 // Source: fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], exponent 1 to 10. Largest absolute
 // error of the albedo: 0.0032, at exponent 5 0.0019.
 #define GGX_SCHLICK_N000 5.211763
@@ -99,30 +64,19 @@
 #define GGX_DIP_D21 -565.9562
 #define GGX_DIP_D30 358.4267
 
-// Cosine for a dielectric. Indices beyond the domain have that of its end, and indices below 1 that
-// of the other side of the interface.
-float ggx_cosine_dielectric(float mu, float alpha, float ior)
+// F_ss of Hoffman's generalization of Schlick's curve, in closed form: the mean of (1 - c)^q is
+// 2 / ((q + 1) (q + 2)), that of c (1 - c)^6 is 1 / 126.
+vec3 fresnel_schlick_avg(vec3 color0, vec3 color90, float exponent, vec3 dip)
 {
-    float n = clamp(max(ior, 1.0 / max(ior, 0.1)), 1.03, 3.0);
-    float x = mu / (mu + alpha);
-    float y = sqrt(sqrt(alpha));
-    float s = sqrt((n - 1.0) / (n + 1.0));
-    float N0 = GGX_DIELECTRIC_N000
-               + s * (GGX_DIELECTRIC_N001 + s * (GGX_DIELECTRIC_N002 + s * GGX_DIELECTRIC_N003))
-               + y * (GGX_DIELECTRIC_N010 + s * (GGX_DIELECTRIC_N011 + s * GGX_DIELECTRIC_N012)
-                      + y * (GGX_DIELECTRIC_N020 + s * GGX_DIELECTRIC_N021
-                             + y * GGX_DIELECTRIC_N030));
-    float N1 = GGX_DIELECTRIC_N100 + s * (GGX_DIELECTRIC_N101 + s * GGX_DIELECTRIC_N102)
-               + y * (GGX_DIELECTRIC_N110 + s * GGX_DIELECTRIC_N111 + y * GGX_DIELECTRIC_N120);
-    float N2 = GGX_DIELECTRIC_N200 + s * GGX_DIELECTRIC_N201 + y * GGX_DIELECTRIC_N210;
-    float N = N0 + x * (N1 + x * (N2 + x * GGX_DIELECTRIC_N300));
-    float D0 = 1.0 + s * (GGX_DIELECTRIC_D001 + s * GGX_DIELECTRIC_D002)
-               + y * (GGX_DIELECTRIC_D010 + s * GGX_DIELECTRIC_D011 + y * GGX_DIELECTRIC_D020);
-    float D1 = GGX_DIELECTRIC_D100 + s * GGX_DIELECTRIC_D101
-               + y * (GGX_DIELECTRIC_D110 + y * GGX_DIELECTRIC_D120);
-    float D2 = GGX_DIELECTRIC_D200 + y * GGX_DIELECTRIC_D210;
-    float D = D0 + x * (D1 + x * D2);
-    return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
+    return mix(color0, color90, 2.0 / ((exponent + 1.0) * (exponent + 2.0))) - dip / 126.0;
+}
+
+// Factor a of c (1 - c)^6 in Hoffman's curve: [MaterialX2026], Generalized Schlick Equations.
+vec3 fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float exponent)
+{
+    float m = 6.0 / 7.0;
+    float m2 = m * m;
+    return mix(color0, color90, pow(m, exponent)) * (1.0 - color82) * (7.0 / (m2 * m2 * m2));
 }
 
 // Cosine for (1 - c)^exponent. Exponents beyond the domain have that of its end.
