@@ -11,6 +11,7 @@ from coverage import Coverage
 from mxeon.conformance import reference as reference_host
 from mxeon.conformance.run import check
 from mxeon.hosts import open_engine
+from mxeon.hosts.process import Worker
 from mxeon.jobs.signals import ENDING
 from mxeon.shaders.library import examples_folder
 from tests.support.availability import available, required
@@ -60,6 +61,22 @@ def one_worker():
     """Commands in this process start one worker: other tests run on the other processors."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("os.cpu_count", lambda: 1)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def optimized_pictures():
+    """A process of Storm draws far longer than its driver compiles: there the driver optimizes."""
+    start = Worker.start
+
+    def optimized(worker):
+        with pytest.MonkeyPatch.context() as patch:
+            if "storm" in worker.log.parent.name:
+                patch.delenv("GALLIVM_PERF", raising=False)
+            start(worker)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Worker, "start", optimized)
         yield
 
 
