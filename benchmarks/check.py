@@ -17,14 +17,24 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from subprocess import Popen
+from threading import Timer
 
 import numpy as np
 
 from benchmarks.rounds import Check, Group, figure, ratio
-from mxeon.shaders.library import eonlib_folder
+from mxeon.conformance.nodes.diffuse import SUBJECTS, SURFACES
+from mxeon.hosts import HOSTS
+from mxeon.shaders.library import eonlib_folder, examples_folder
 
 BOTH = ("--library", "eonlib", "--library", "stock")
-FIELD = ("--host", "all", *BOTH)
+# The field as docs/field.py asks it: the diffuse nodes on hosts, and all common ones of renderers' own.
+EXAMPLE = str(examples_folder() / "clay.mtlx")
+DIFFUSE = tuple(dict.fromkeys(row.node for row in (*SUBJECTS, *SURFACES)))
+FIELD = {
+    "hosts": ([row.name for row in HOSTS if row.module and not row.nodes], DIFFUSE),
+    "renderers": ([row.name for row in HOSTS if row.module and row.nodes], ("common",)),
+}
+LONGEST = 240.0  # seconds of each half of the field, which is stopped then
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
 NONE, TWO = "gl, no workers", "gl, 2 workers"
 MEMORY = 600.0  # MiB
@@ -34,27 +44,37 @@ RIGHT, WRONG = "#define EON_Q0 0.527481849\n", "#define EON_Q0 0.52\n"
 
 @dataclass(frozen=True)
 class Job:
-    """One run: seconds, the MiB of its largest process, and what did not pass."""
+    """One run: seconds, the MiB of its largest process, what did not pass, and whether it was stopped."""
 
     seconds: float
     memory: float
     wrong: float
+    stopped: bool = False
 
 
-def job(*options, cache=None):
-    """The command with options, in a process of its own; the driver's cache is a folder."""
+def job(*options, cache=None, longest=None):
+    """The command with options, in a process of its own; the driver's cache is a folder.
+
+    A run that takes longer than so many seconds is stopped.
+    """
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     environment |= {} if cache is None else {FOLDER: str(cache)}
     arguments = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
     with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         start = time.perf_counter()
         process = Popen(arguments, stdout=output, stderr=errors, env=environment)
+        stop = Timer(longest or 0.0, process.terminate)
+        if longest:
+            stop.start()
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - start
+        stop.cancel()
         process.returncode = os.waitstatus_to_exitcode(status)
         output.seek(0)
         errors.seek(0)
         text = output.read()
+        if longest and seconds >= longest:
+            return Job(seconds, usage.ru_maxrss / 1024.0, np.inf, True)
         if not text:
             raise RuntimeError(f"{' '.join(arguments)}: {errors.read().decode().strip()}")
         counts = json.loads(text)["counts"]
@@ -145,12 +165,23 @@ def all_nodes(files):
 
 def field(cache):
     """Figures of all hosts that run here with both libraries, of which stock MaterialX fails."""
-    found = job(*FIELD, cache=cache)
-    name = "all hosts, eonlib and stock"
-    return [
-        figure(f"{name}, 2 workers", "s", [found.seconds], goal=90.0),
-        memory(name, [found]),
-    ], []
+    found = {
+        name: job(
+            *(word for host in hosts for word in ("--host", host)),
+            *(word for node in nodes for word in ("--node", node)),
+            *(*BOTH, "--workers", "2", EXAMPLE),
+            cache=cache,
+            longest=LONGEST,
+        )
+        for name, (hosts, nodes) in FIELD.items()
+    }
+    figures = [
+        figure(f"field, {name}{', stopped' if each.stopped else ''}", "s", [each.seconds])
+        for name, each in found.items()
+    ]
+    seconds = sum(each.seconds for each in found.values())
+    figures.append(figure("field, eonlib and stock, 2 workers", "s", [seconds], goal=90.0))
+    return [*figures, memory("field", list(found.values()))], []
 
 
 def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None = None):

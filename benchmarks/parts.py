@@ -91,7 +91,7 @@ def parts():
     return clock.seconds
 
 
-def measure(rounds=3):
+def measure(rounds=1):
     """The `Group` of the parts, each of them the median over rounds."""
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     command = [sys.executable, "-m", "benchmarks.parts"]

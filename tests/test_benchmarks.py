@@ -142,9 +142,10 @@ def test_a_square_root_more_is_seen_in_the_machine_code(gl):
 def test_the_rows_of_check_have_their_goals_and_a_cache_of_their_own(monkeypatch):
     asked = []
 
-    def job(*options, cache=None):
+    def job(*options, cache=None, longest=None):
         asked.append((cache, options))
-        return check.Job(3.0, 100.0, float(any("eonlib" in each for each in options)))
+        wrong = float(any("eonlib" in each for each in options))
+        return check.Job(3.0, 100.0, wrong, stopped=bool(longest) and "gl" in options)
 
     monkeypatch.setattr(check, "job", job)
     kept = []
@@ -153,11 +154,18 @@ def test_the_rows_of_check_have_their_goals_and_a_cache_of_their_own(monkeypatch
     goals = {each.name: (each.median, each.goal) for each in group.figures if each.goal}
     assert goals["gl, two libraries / one"] == (1.0, 1.6)
     assert goals["gl, beyond that with --report"] == (0.0, 2.0)
+    assert {"field, hosts, stopped", "field, renderers"} < {each.name for each in group.figures}
+    assert goals["field, eonlib and stock, 2 workers"] == (6.0, 90.0)
     assert len(goals) == 15 and all(np.isfinite([each for each, _ in goals.values()]))
     assert [each.name for each in group.checks if not each.passed] == []
     assert all(cache and not os.path.exists(cache) for cache, _ in asked)
     cold = [asked[0], next(each for each in asked if "all" in each[1])]
     assert cold[0][0] != cold[1][0]  # both with an empty cache
+
+
+def test_a_run_that_takes_too_long_is_stopped():
+    found = check.job("--workers", "0", longest=0.1)
+    assert found.stopped and found.seconds >= 0.1
 
 
 def test_compiled_values_and_errors_are_those_of_the_models():
