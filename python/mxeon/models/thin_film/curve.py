@@ -94,12 +94,14 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
         def coated() -> Array:
             free, film = without_clamp(form), (thinfilm_thickness, thinfilm_ior)
             cosines, between, shares = _rule()
+            # Find the curve at many cosines from those of few nodes.
             xp = array_namespace(*film, *material.values())
             if xp is NUMPY:
                 nodes = [_airy(category, free, np.asarray(mu), *film, material) for mu in cosines]
                 curve = np.tensordot(between, np.stack(nodes), 1)
             else:
                 curve = _fine(category, free, like(cosines, film[1]), film, material)
+            # Clamp it there, and sum.
             kept = within(curve) if form.clamped else curve
             return xp.tensordot(like(shares, curve), kept, axes=1)
 
