@@ -7,12 +7,12 @@ import MaterialX as mx
 import numpy as np
 import pytest
 
-from mxeon.conformance.probes.memory import KEPT, Remembered
+from mxeon.conformance.probes.memory import KEPT, LARGEST, Remembered
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.run import journal
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.tasks import Findings
-from mxeon.conformance.samples.batch import FEW, Batch
+from mxeon.conformance.samples.batch import Batch
 from mxeon.models.microfacet import conductor_brdf
 from mxeon.models.thin_film import curve
 from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
@@ -93,7 +93,7 @@ def test_large_batches_and_old_ones_are_not_kept():
     calls = []
     function, large, small = (
         Remembered(counted(calls)),
-        batch(FEW + 1),
+        batch(LARGEST + 1),
         [batch() for _ in range(KEPT + 1)],
     )
     for each in (large, large, *small, small[-1], small[0]):

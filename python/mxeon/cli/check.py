@@ -5,7 +5,7 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from importlib import import_module
-from typing import Any
+from typing import Any, TypeVar
 
 from mxeon.cli import arguments
 from mxeon.cli.output import Progress, fail
@@ -14,6 +14,8 @@ from mxeon.errors import MISUSE, InputError
 from mxeon.hosts import host_names
 from mxeon.jobs.signals import block_signals
 from mxeon.jobs.timeouts import WAIT
+
+T = TypeVar("T")
 
 
 def add_parser(commands: arguments.Commands) -> None:
@@ -104,10 +106,10 @@ def run(options: argparse.Namespace) -> int:
     return show_run(result, options, refused)
 
 
-def _importing(progress: Progress) -> Callable[[Iterable[Any], int], Iterator[Any]]:
+def _importing(progress: Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
     """A progress that imports what makes the page of a report, while workers are at the next tasks."""
 
-    def steps(outcomes: Iterable[Any], total: int) -> Iterator[Any]:
+    def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):
             yield outcome
             # Making the page says what is missing. An import would swallow a signal.

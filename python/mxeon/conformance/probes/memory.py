@@ -7,9 +7,10 @@ from collections.abc import Callable, Hashable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples.batch import FEW, Array, Batch
+from mxeon.conformance.samples.batch import Array, Batch
 
-KEPT = 32  # batches of at most FEW pairs, of half a megabyte each
+LARGEST = 1 << 14  # pairs of a batch that is kept
+KEPT = 32  # batches, of half a megabyte each
 NUMBERS = 16  # of an input that is compared by its values and not as an array
 
 
@@ -30,7 +31,7 @@ class Remembered:
 
     def __call__(self, batch: Batch) -> Array:
         """Its values of a batch."""
-        if len(batch.wo) > FEW:
+        if len(batch.wo) > LARGEST:
             return self._function(batch)
         # Compute what is not known.
         key = _key(batch)
