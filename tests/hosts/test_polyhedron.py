@@ -183,4 +183,4 @@ def test_checks_of_a_missing_renderer_are_not_run(monkeypatch):
 def test_the_models_that_are_claimed_are_known():
     subjects = renderer_nodes("mitsuba") + renderer_nodes("luxcore")
     claims = {table.model(each.model).name for each in subjects}
-    assert claims == {"lambert", "qon", "burley", "eon", "fon"}
+    assert claims == {"lambert", "qon", "burley", "eon", "eon_coated", "fon"}

@@ -113,7 +113,7 @@ def normal_reflectance(ior: Array, extinction: Array) -> Array:
 
     Examples
     --------
-    >>> float(normal_reflectance(np.array(1.5), np.array(0.0)))
+    >>> float(normal_reflectance(1.5, 0.0))
     0.04
     """
     square = extinction**2
