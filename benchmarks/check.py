@@ -9,7 +9,6 @@ import os
 import shutil
 import statistics
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from contextlib import contextmanager
@@ -17,6 +16,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from subprocess import Popen
+from tempfile import NamedTemporaryFile, TemporaryDirectory, TemporaryFile
 from threading import Timer
 
 import numpy as np
@@ -38,6 +38,17 @@ LONGEST = 240.0  # seconds of each half of the field, which is stopped then
 CACHE, FOLDER = "MESA_SHADER_CACHE_DISABLE", "MESA_SHADER_CACHE_DIR"
 NONE, TWO = "gl, no workers", "gl, 2 workers"
 MEMORY = 600.0  # MiB
+# What starts the command, and writes the KiB of its largest process to a file: Linux counts what the process
+# that starts a program had in memory as the program's, and this one is small.
+LAUNCHER = """
+import os, resource, signal, sys
+child = os.spawnv(os.P_NOWAIT, sys.argv[2], sys.argv[2:])
+signal.signal(signal.SIGTERM, lambda *_: os.kill(child, signal.SIGTERM))
+_, status = os.waitpid(child, 0)
+with open(sys.argv[1], "w") as file:
+    file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
+sys.exit(os.waitstatus_to_exitcode(status))
+"""
 # A coefficient of EON's albedo, and a wrong one, of which the first digits are right.
 RIGHT, WRONG = "#define EON_Q0 0.527481849\n", "#define EON_Q0 0.52\n"
 
@@ -59,27 +70,27 @@ def job(*options, cache=None, longest=None):
     """
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     environment |= {} if cache is None else {FOLDER: str(cache)}
-    arguments = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
-    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+    command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", *options]
+    with TemporaryFile() as output, TemporaryFile() as errors, NamedTemporaryFile() as size:
         start = time.perf_counter()
-        process = Popen(arguments, stdout=output, stderr=errors, env=environment)
+        launch = [sys.executable, "-ISc", LAUNCHER, size.name, *command]
+        process = Popen(launch, stdout=output, stderr=errors, env=environment)
         stop = Timer(longest or 0.0, process.terminate)
         if longest:
             stop.start()
-        _, status, usage = os.wait4(process.pid, 0)
+        process.wait()
         seconds = time.perf_counter() - start
         stop.cancel()
-        process.returncode = os.waitstatus_to_exitcode(status)
         output.seek(0)
         errors.seek(0)
-        text = output.read()
+        text, memory = output.read(), float(size.read() or 0.0) / 1024.0
         if longest and seconds >= longest:
-            return Job(seconds, usage.ru_maxrss / 1024.0, np.inf, True)
+            return Job(seconds, memory, np.inf, True)
         if not text:
-            raise RuntimeError(f"{' '.join(arguments)}: {errors.read().decode().strip()}")
+            raise RuntimeError(f"{' '.join(command)}: {errors.read().decode().strip()}")
         counts = json.loads(text)["counts"]
     wrong = np.inf if not counts["passed"] else float(counts["failed"])
-    return Job(seconds, usage.ru_maxrss / 1024.0, wrong)
+    return Job(seconds, memory, wrong)
 
 
 def memory(name, jobs, goal=None):
@@ -110,7 +121,7 @@ def main_job(rounds, files, cache):
 @contextmanager
 def wrong_library():
     """A copy of eonlib with one wrong coefficient."""
-    with tempfile.TemporaryDirectory() as folder:
+    with TemporaryDirectory() as folder:
         library = shutil.copytree(eonlib_folder(), Path(folder, "eonlib"))
         path = library / "genglsl" / "eon.glsl"
         text = path.read_text(encoding="utf-8")
@@ -121,7 +132,7 @@ def wrong_library():
 
 def reporting(files, cache, usual):
     """Figures of a report, and of the same run again, which finds it finished."""
-    with tempfile.TemporaryDirectory() as folder:
+    with TemporaryDirectory() as folder:
         options = (*files, "--workers", "2", "--report", folder)
         first, again = (job(*options, *more, cache=cache) for more in ((), ("--resume",)))
     figures = [
@@ -153,7 +164,7 @@ def libraries(files, cache, usual):
 
 def all_nodes(files):
     """Figures and checks of all nodes, with an empty cache and again."""
-    with tempfile.TemporaryDirectory() as cache:
+    with TemporaryDirectory() as cache:
         runs = [job(*files, "--workers", "2", "--node", "all", cache=cache) for _ in range(2)]
     figures = [
         figure("gl, --node all, the driver's cache empty", "s", [runs[0].seconds], goal=40.0),
@@ -186,7 +197,7 @@ def field(cache):
 
 def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None = None):
     """The `Group` of all that, or of the main job alone; `keep` is handed it after each part."""
-    with tempfile.TemporaryDirectory() as cache:
+    with TemporaryDirectory() as cache:
         figures, checks, usual = main_job(rounds, files, cache)
         parts = (
             partial(reporting, files, cache, usual),
