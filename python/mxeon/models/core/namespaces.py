@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import wraps
+from functools import cache, wraps
 from importlib import import_module
 from inspect import signature
 from types import SimpleNamespace
@@ -184,8 +184,6 @@ def any_array_or_drjit(function: Callable[P, R]) -> Callable[P, R]:
 
 def _portable(function: Callable[P, R], drjit: bool) -> Callable[P, R]:
     """Function that brings its arguments to the library of any of them."""
-    parameters = signature(function).parameters
-    defaults = {n: each.default for n, each in parameters.items() if type(each.default) is float}
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -196,8 +194,8 @@ def _portable(function: Callable[P, R], drjit: bool) -> Callable[P, R]:
         # Bring all arguments to that library, and numbers that are defaults.
         convert = _converter(others, drjit)
         values = (convert(each) for each in args)
-        left = {n: each for n, each in defaults.items() if n not in [*parameters][: len(args)]}
-        named = {name: convert(each) for name, each in (left | kwargs).items()}
+        left = _numbers(function, len(args)) | kwargs
+        named = {name: convert(each) for name, each in left.items()}
         token = _any_array.set(True)
         try:
             return cast(Callable[..., R], function)(*values, **named)
@@ -206,6 +204,13 @@ def _portable(function: Callable[P, R], drjit: bool) -> Callable[P, R]:
 
     vars(wrapper)["takes_drjit"] = drjit
     return wrapper
+
+
+@cache
+def _numbers(function: Callable[..., object], given: int) -> dict[str, object]:
+    """Numbers that are defaults of a function's parameters, but of the first ones, which are given."""
+    left = list(signature(function).parameters.values())[given:]
+    return {each.name: each.default for each in left if type(each.default) is float}
 
 
 def _values(arguments: Iterable[object]) -> Iterator[object]:
