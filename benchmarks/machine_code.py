@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
+from mmap import PAGESIZE
 from unittest.mock import patch
 
 from benchmarks.check import CACHE
@@ -32,24 +33,28 @@ ROOT = "vsqrtps"  # which the loop around a form has for its directions, and no 
 
 
 def executable():
-    """Ranges of this process's memory that hold code of no file."""
+    """Pages of this process's memory that hold code of no file: contents by address."""
     with open("/proc/self/maps", encoding="ascii") as file:
         rows = [line.split() for line in file]
     found = (row[0].split("-") for row in rows if "x" in row[1] and len(row) < 6)
-    return {(int(start, 16), int(end, 16)) for start, end in found}
+    pages = {}
+    with open("/proc/self/mem", "rb") as memory:
+        for start, end in found:
+            memory.seek(int(start, 16))
+            for address in range(int(start, 16), int(end, 16), PAGESIZE):
+                pages[address] = memory.read(PAGESIZE)
+    return pages
 
 
 def machine_code(device, statement):
-    """The code that the driver makes for a loop around a statement."""
+    """The code that the driver makes for a loop around a statement.
+
+    By pages: the kernel joins a range of addresses with one beside it, and the driver may use one again.
+    """
     before = executable()
     device.run(device.kernel(statement), calls=1)
-    with open("/proc/self/mem", "rb") as memory:
-        return b"".join(_read(memory, *each) for each in sorted(executable() - before))
-
-
-def _read(memory, start, end):
-    memory.seek(start)
-    return memory.read(end - start)
+    pages = sorted(executable().items())
+    return b"".join(content for address, content in pages if before.get(address) != content)
 
 
 def loop(code):
