@@ -2,7 +2,6 @@
 """Failures of the command that have no words of their own."""
 
 import os
-import resource
 import subprocess
 import sys
 
@@ -60,8 +59,7 @@ def test_a_deleted_working_folder_is_one_line(tmp_path, monkeypatch, capsys):
 def test_too_few_open_files_are_one_line(tmp_path, count):
     command = [sys.executable, "-m", "mxeon", "generate", CLAY, "--target", "osl"]
     ended = subprocess.run(
-        [*command, "--outputPath", str(tmp_path), "--workers", "1"],
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (count, count)),
+        ["prlimit", f"--nofile={count}", *command, "--outputPath", tmp_path, "--workers", "1"],
         env=os.environ | {"TMPDIR": str(tmp_path)},  # a folder cannot be removed without a file
         capture_output=True,
         text=True,

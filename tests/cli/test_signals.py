@@ -35,7 +35,6 @@ def start(folder, *arguments, code="from mxeon.__main__ import main; sys.exit(ma
         stderr=subprocess.PIPE,
         text=True,
         process_group=0,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
 
 

@@ -2,7 +2,6 @@
 """Files that appear whole or not at all, on disks that are full: no file may exceed some bytes."""
 
 import os
-import resource
 import stat
 import subprocess
 import sys
@@ -29,8 +28,7 @@ with_room = pytest.mark.parametrize("room", ROOM.values(), ids=ROOM)
 def run(room, *arguments):
     """The command, its output read to the end, where no file may exceed `room` bytes."""
     return subprocess.run(
-        [sys.executable, "-m", "mxeon", *map(str, arguments)],
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)),
+        ["prlimit", f"--fsize={room}", sys.executable, "-m", "mxeon", *map(str, arguments)],
         # Python would leave the compiled modules that find no room behind, cut short.
         env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
