@@ -61,6 +61,22 @@ def table(group):
     return "\n".join(lines) + "\n"
 
 
+def goals(groups):
+    """How many goals each group reaches, and those that it misses, in Markdown."""
+    lines = ["## Goals", "", "| group | reached | missed |", "|---|---|---|"]
+    for group in groups:
+        aims = [each for each in group.figures if each.goal is not None]
+        missed = [
+            f"{each.name} ({each.median:.3g} {each.unit}, goal {each.goal:g})"
+            for each in aims
+            if not each.reached
+        ]
+        if aims:
+            count = f"{len(aims) - len(missed)} of {len(aims)}"
+            lines.append(f"| {group.title} | {count} | {'; '.join(missed)} |")
+    return "\n".join(lines) + "\n"
+
+
 def plot(group, folder):
     """Plots of a group's series, one for each unit; the files."""
     import matplotlib
@@ -89,9 +105,10 @@ LABELS = {"models": "pairs", "tool": "documents"}
 
 def write(folder, file):
     """The page and its plots beside the JSON `file`; the groups."""
-    parts, groups = [HEAD], []
-    for group, machine in record.read(file):
-        groups.append(group)
+    measured = record.read(file)
+    groups = [group for group, _ in measured]
+    parts = [HEAD, goals(groups)]
+    for group, machine in measured:
         parts += [table(group), *([table_1(group)] if group.name == "shaders" else [])]
         parts.append("Measured on: " + ", ".join(f"{k} {v}" for k, v in machine.items()) + ".\n")
         plotted = group.series and "kind" not in machine  # another kind has the same curves

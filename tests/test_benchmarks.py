@@ -198,6 +198,7 @@ def test_page_shows_a_missed_goal_and_a_wrong_value():
     text = page.table(group)
     assert "**missed**" in text
     assert "0 of 1 within tolerance" in text
+    assert "| T | 0 of 1 | f (2 x, goal 1) |" in page.goals([group])
 
 
 def test_command_fails_where_a_value_is_wrong(tmp_path):
@@ -211,7 +212,7 @@ def test_committed_page_is_made_from_the_committed_json():
     text = (command.DOCS / "performance.md").read_text(encoding="utf-8")
     groups = [group for group, _ in record.read(command.DOCS / "performance.json")]
     assert {group.name for group in groups} == set(command.GROUPS)
-    assert all(page.table(group) in text for group in groups)
+    assert page.goals(groups) in text and all(page.table(group) in text for group in groups)
 
 
 def test_table_1_has_the_paper_beside_what_was_measured():
