@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 WHEELS = ("1.38.10", "1.39.0", "1.39.1", "1.39.2", "1.39.3", "1.39.4", "1.39.5")
 HOSTS = ("gl", "webgl", "vulkan", "slang")
+DOWNLOAD = 300.0  # seconds, of 25 MB
 NODE = "libraries/pbrlib/genglsl/mx_oren_nayar_diffuse_bsdf.glsl"
 
 
@@ -40,7 +41,8 @@ def measure(progress=iter):
 def install(version, folder):
     """Install a version of MaterialX, and nothing else, into a new folder."""
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder]
-    subprocess.run([*command, f"materialx=={version}"], check=True, capture_output=True)
+    command += ["--timeout", "30", f"materialx=={version}"]
+    subprocess.run(command, check=True, capture_output=True, timeout=DOWNLOAD)
 
 
 def run(folder, *arguments, module="mxeon"):

@@ -39,7 +39,7 @@ def wheel(version):
         try:
             _main(Path(beside)) if version == "main" else install(version, beside)
             os.replace(beside, folder)
-        except (subprocess.CalledProcessError, OSError) as error:
+        except (subprocess.SubprocessError, OSError) as error:
             if version == "main" and not folder.is_dir():  # which needs nothing from elsewhere
                 raise
             if not folder.is_dir() and not required():  # another worker may have been faster
