@@ -12,9 +12,10 @@ from mxeon.albedo import fon_albedo_dir
 from mxeon.models import eon_brdf, unchecked
 from mxeon.models.core import drjit_arrays
 from mxeon.models.diffuse import formulas
+from mxeon.models.microfacet.missing import missing_light
 from tests.fuzz import arguments
 from tests.support.availability import available
-from tests.support.tolerances import DRJIT_VALUE
+from tests.support.tolerances import DRJIT_MISSING, DRJIT_SLOPE, DRJIT_VALUE
 
 SEED, PAIRS = 3, 500
 COLOR = (0.25, 0.5, 1.0)  # exact in float32
@@ -59,6 +60,40 @@ def test_values_are_those_of_numpy(llvm, name):
         value = np.array(function(*(llvm.Array3f(w.T.copy()) for w in (wo, wi)), **row)).T
     error = np.abs(value - expected) / np.maximum(1.0, expected)  # one value may stand for all
     assert error.shape == expected.shape and error.max() <= DRJIT_VALUE
+
+
+@pytest.mark.parametrize("exponent", (0.5, 4.5))
+def test_a_broken_exponent_gives_the_values_of_numpy(llvm, exponent):
+    rng, row = np.random.default_rng(SEED), (COLOR, 0.9, 1.0, 0.5, exponent)
+    wo, wi = directions(rng), directions(rng)
+    expected = models.generalized_schlick_brdf(wo, wi, *row)
+    with unchecked():
+        views = (llvm.Array3f(w.T.copy()) for w in (wo, wi))
+        value = np.array(models.generalized_schlick_brdf(*views, *row)).T
+    assert (np.abs(value - expected) / np.maximum(1.0, expected)).max() <= DRJIT_VALUE
+
+
+@pytest.mark.parametrize("kind", ("Float", "Float64"))
+@pytest.mark.parametrize("alpha", (0.0, 2.0**-60, 0.0078125, 0.5, 1.0))
+def test_the_light_that_facets_miss_is_that_of_numpy(llvm, kind, alpha):
+    import drjit as dr
+
+    # Compare it at all scales of the cosine.
+    number = getattr(llvm, kind)
+    mu = np.concatenate([[0.0, 1.0], np.geomspace(1e-37, 1.0, 5000), np.linspace(0.0, 1.0, 5000)])
+    mu = mu.astype(np.float32)
+    expected = missing_light(mu.astype(np.float64), np.array(alpha))
+    cosine = number(mu)
+    dr.enable_grad(cosine)
+    found = missing_light(cosine, number(alpha))
+    assert np.abs(np.array(found) - expected).max() <= DRJIT_MISSING
+    # Compare the slopes over the logarithm, where no end is near.
+    dr.backward(dr.sum(found), dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)  # a mirror has none
+    inside = (mu > 1e-3) & (mu < 0.998)
+    exact = mu[inside].astype(np.float64)
+    ends = [missing_light(exact * (1.0 + h), np.array(alpha)) for h in (1e-4, -1e-4)]
+    slope = np.broadcast_to(dr.grad(cosine), mu.shape)[inside] * exact
+    assert np.abs(slope - (ends[0] - ends[1]) / 2e-4).max() <= DRJIT_SLOPE
 
 
 def test_gradients_by_the_parameters_are_those_of_differences(llvm):

@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mxeon.models.core.arrays import Array, Numbers
+from mxeon.models.core.drjit_arrays import constant
 from mxeon.models.core.namespaces import NUMPY, array_namespace, library
 
 INSIDE = 0.5  # an argument at which every formula of a cosine is smooth
@@ -132,6 +133,10 @@ def power(base: Array, exponent: Array) -> Array:
     xp = array_namespace(base, exponent)
     if xp is NUMPY:
         return base**exponent
+    if library(base) == "drjit":
+        number = constant(exponent)
+        if number and number > 0.0 and number.is_integer():
+            return base ** int(number)  # by products, not by a logarithm
     steep = (base == 0.0) & (exponent < 1.0)
     flat = xp.where(exponent == 0.0, 1.0, 0.0)
     return xp.where(steep, flat, xp.where(steep, 1.0, base) ** exponent)

@@ -20,8 +20,17 @@ from mxeon.models.core.chebyshev import (
     chebyshev_polynomials,
     chebyshev_sum,
 )
-from mxeon.models.core.drjit_arrays import is_drjit
-from mxeon.models.core.edges import at_most, cube_root, root
+from mxeon.models.core.drjit_arrays import (
+    MIDDLE,
+    OCTAVES,
+    PARTS,
+    Number,
+    constant,
+    gather_cubic,
+    is_drjit,
+    octave_cells,
+)
+from mxeon.models.core.edges import at_least_0, at_most, cube_root, root
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
 from mxeon.models.microfacet.ggx_albedo import quadrature
@@ -45,12 +54,14 @@ def missing_light(mu: Array, alpha: Array) -> Array:
     -----
     Accuracy: absolute error below 1e-10 for every mu and alpha in [0, 1], against the quadrature of
     `mxeon.albedo.ggx_albedo_dir` with twice its panels. One alpha for all cosines costs the least: many
-    of them share cubics in its place.
+    of them share cubics in its place. Numbers of Dr.Jit have an error below 3e-7 where alpha is a plain number,
+    and below 2e-6 elsewhere: the roundings of float32, and 2e-8.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _of_one_alpha(mu, float(alpha.item()))
     if is_drjit(mu):
-        return _interpolated(mu, alpha)
+        number = constant(alpha)
+        return _interpolated(mu, alpha) if number is None else _of_one_number(mu, number)
     numbers = {"mu": mu, "alpha": alpha}
     return evaluate_material(
         lambda mu, alpha: _interpolated(mu, alpha)[np.newaxis], {}, numbers, 1, BLOCK
@@ -90,6 +101,24 @@ def _of_one_alpha(mu: Array, alpha: float) -> Array:
         value *= place
         value += coefficients.take(cell, mode="clip")
     return np.maximum(value, 0.0, out=value)
+
+
+def _of_one_number(mu: Number, alpha: float) -> Number:
+    """`missing_light` of numbers of Dr.Jit at one alpha, by a cubic in each part of an octave."""
+    if alpha <= 0.0:
+        return 0.0 * mu  # a mirror misses nothing
+    value = gather_cubic(_octave_cubics(alpha), *octave_cells(mu))
+    return at_least_0(value)
+
+
+@lru_cache(maxsize=KEPT)
+def _octave_cubics(alpha: float) -> Array:
+    """Coefficients of the cubics through four points of each cell of a cosine's octaves, shape (cells, 4)."""
+    places = 1.0 + (np.arange(PARTS)[:, np.newaxis] + np.sort(chebyshev_nodes(4))) / PARTS
+    octaves = 2.0 ** np.arange(-OCTAVES, 0)[:, np.newaxis, np.newaxis]
+    values = _interpolated(octaves * places, np.asarray(alpha))
+    powers = np.linalg.inv(np.vander((places - MIDDLE).ravel(), 4, True).reshape(-1, 4, 4))
+    return np.asarray(np.einsum("pij,opj->opi", powers, values).reshape(-1, 4))
 
 
 @lru_cache(maxsize=KEPT)
