@@ -30,7 +30,12 @@ PAIRS = ("microfacet", "ggx_", "btdf")  # in the names of functions whose roughn
 COAT = "dielectric_over_eon"
 # What JAX compiles for seconds; their factors have functions of their own.
 COATS = ("brdf", "albedo_dir", "sample", "pdf")
-LONG = ("chiang_hair_bcsdf", *(f"{COAT}_{each}" for each in COATS))
+LONG = (
+    "chiang_hair_bcsdf",
+    "openpbr_base_brdf",
+    "openpbr_base_albedo_dir",
+    *(f"{COAT}_{each}" for each in COATS),
+)
 LONG += ("film_albedo_dir", "dielectric_albedo_dir")
 ROWS, FEW = 48, 8
 # Thousands of nodes a row.

@@ -27,6 +27,7 @@ MODES = {"mode", "scatter_mode", "distribution", "energy_compensation"}
 FRAME = {"weight", "normal", "tangent", "curve_direction", "retroreflective"}
 TURN = np.array([[0.0, 0.6, 0.8], [0.8, -0.48, 0.36], [0.6, 0.64, -0.48]])  # rows are its axes
 LIGHT = {"front": WI, "back": WI * [1.0, 1.0, -1.0], "all sides": WI}
+SURFACE = "open_pbr_surface"
 every_model = pytest.mark.parametrize("name", MODELS)
 SCATTERING = [name for name, each in MODELS.items() if isinstance(each, ShadingModel)]
 every_scattering = pytest.mark.parametrize("name", SCATTERING)
@@ -45,10 +46,26 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
     assert mx.getVersionString() == "1.39.5"
 
 
+def surfaces():
+    """Definitions of OpenPBR's surface."""
+    return load_library("stock").getMatchingNodeDefs(SURFACE)
+
+
+def test_openpbrs_base_has_the_order_and_defaults_of_its_definition():
+    [definition] = surfaces()
+    ports = {port.getName(): port.getValueString() for port in definition.getActiveInputs()}
+    row = MODELS["openpbr_base"]
+    names = [each.name for each in row.parameters]
+    assert names == [name for name in ports if name in names]
+    for each in row.parameters:
+        assert np.ravel(each.default).tolist() == [float(n) for n in ports[each.name].split(",")]
+
+
 @every_scattering
 def test_inputs_that_go_by_name_are_those_of_the_node(name):
-    row = MODELS[name]
-    ports = load_library("stock").getNodeDef(f"ND_{row.node}").getActiveInputs()
+    row, library = MODELS[name], load_library("stock")
+    [definition] = [library.getNodeDef(f"ND_{row.node}")] if row.node != SURFACE else surfaces()
+    ports = definition.getActiveInputs()
     own = FRAME & {port.getName() for port in ports}
     assert own - set(row.by_name) == (
         {"retroreflective"} if name.endswith(("_t", "_rt")) else set()

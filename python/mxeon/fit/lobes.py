@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mxeon.models import eon_brdf, fresnel_schlick_avg, generalized_schlick_brdf
+from mxeon.models import eon_brdf
 from mxeon.models.coat import dielectric_over_eon_brdf
-from mxeon.models.coat.curves import coat_of, unpack_cosine
-from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.coat.openpbr import openpbr_base_brdf
+from mxeon.models.core.arrays import Array
 
-dielectric_over_eon = dielectric_over_eon_brdf
+# Other spellings of both functions of `mxeon.models`.
+dielectric_over_eon, openpbr_base = dielectric_over_eon_brdf, openpbr_base_brdf
 LEAST_ALPHA = 0.02  # below, a lobe is narrower than what is measured
 
 
@@ -35,46 +36,15 @@ class FitModel:
     starts: Mapping[str, tuple[float, ...]]
 
 
-def openpbr_base(
-    wo: Array,
-    wi: Array,
-    rho: ArrayLike,
-    roughness: float,
-    specular_roughness: float,
-    specular_ior: float,
-    metalness: float,
-) -> Array:
-    """BRDF of OpenPBR's base: a metal and a dielectric over EON, mixed, in 1/sr.
-
-    Parameters
-    ----------
-    wo, wi, rho
-        As those of `dielectric_over_eon`; `rho` is `base_color`, of the metal too.
-    roughness, specular_roughness, specular_ior, metalness : float
-        `base_diffuse_roughness`, `specular_roughness`, `specular_ior` and `base_metalness`; the weights
-        and `specular_color` are 1, and nothing is anisotropic or transmits.
-
-    Returns
-    -------
-    ndarray, shape (N, C)
-    """
-    alpha = specular_roughness**2
-    missing = coat_of(alpha, specular_ior).at(unpack_cosine(wo))[0][:, np.newaxis]
-    metal = generalized_schlick_brdf(wo, wi, rho, 1.0, 1.0, alpha, 5.0, compensate=False)
-    metal = metal * (1.0 + fresnel_schlick_avg(rho, 1.0, 1.0, 5.0) * missing)
-    glossy = dielectric_over_eon(wo, wi, rho, roughness, alpha, specular_ior)
-    return (1.0 - metalness) * glossy + metalness * metal
-
-
 FIT_MODELS = {
     "eon": FitModel(eon_brdf, {"roughness": (0.0, 1.0)}, {"roughness": (0.2, 0.8)}),
     "dielectric_over_eon": FitModel(
-        dielectric_over_eon,
+        dielectric_over_eon_brdf,
         {"roughness": (0.0, 1.0), "alpha": (LEAST_ALPHA, 1.0), "ior": (1.0, 4.0)},
         {"roughness": (0.5,), "alpha": (0.1, 0.4), "ior": (1.5,)},
     ),
     "openpbr_base": FitModel(
-        openpbr_base,
+        openpbr_base_brdf,
         {
             "roughness": (0.0, 1.0),
             "specular_roughness": (np.sqrt(LEAST_ALPHA), 1.0),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenPBR's base as a BSDF of Mitsuba: a metal and a dielectric over EON; see `mxeon.fit.openpbr_base`."""
+"""OpenPBR's base as a BSDF of Mitsuba: a metal and a dielectric over EON; see `mxeon.models.openpbr_base_brdf`."""
 
 from __future__ import annotations
 

@@ -34,6 +34,13 @@ from mxeon.models.microfacet.ggx import ggx_ndf, smith_g1, smith_g2, smith_g2_an
 if TYPE_CHECKING:
     from mxeon.models.catalog import model as model
     from mxeon.models.catalog import model_names as model_names
+    from mxeon.models.coat import dielectric_over_eon_albedo_avg as dielectric_over_eon_albedo_avg
+    from mxeon.models.coat import dielectric_over_eon_albedo_dir as dielectric_over_eon_albedo_dir
+    from mxeon.models.coat import dielectric_over_eon_brdf as dielectric_over_eon_brdf
+    from mxeon.models.coat.openpbr import openpbr_base_albedo_dir as openpbr_base_albedo_dir
+    from mxeon.models.coat.openpbr import openpbr_base_brdf as openpbr_base_brdf
+    from mxeon.models.coat.sampling import dielectric_over_eon_pdf as dielectric_over_eon_pdf
+    from mxeon.models.coat.sampling import dielectric_over_eon_sample as dielectric_over_eon_sample
     from mxeon.models.media_model import EmissionModel as EmissionModel
     from mxeon.models.media_model import MediumModel as MediumModel
     from mxeon.models.shading_model import ShadingModel as ShadingModel
@@ -44,6 +51,7 @@ _LATER = {
     "coat": (
         "dielectric_over_eon_albedo_avg dielectric_over_eon_albedo_dir dielectric_over_eon_brdf"
     ),
+    "coat.openpbr": "openpbr_base_albedo_dir openpbr_base_brdf",
     "coat.sampling": "dielectric_over_eon_pdf dielectric_over_eon_sample",
     "core.layering": "Bsdf add layer mix multiply throughput",
     "core.quadrature": "albedo_dir_quadrature",

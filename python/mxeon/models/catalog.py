@@ -12,6 +12,7 @@ from typing import Literal, TypeAlias, cast, overload
 import numpy as np
 
 from mxeon.models import coat, sampling, table
+from mxeon.models.coat import openpbr
 from mxeon.models.coat import sampling as coat_sampling
 from mxeon.models.core.arguments import checked_choice
 from mxeon.models.core.arrays import Array
@@ -226,13 +227,43 @@ def _of_coat() -> ShadingModel:
     )
 
 
+def _of_openpbr() -> ShadingModel:
+    """The model of OpenPBR's base, by OpenPBR's names and defaults."""
+    inputs = (
+        Parameter("base_color", (0.8, 0.8, 0.8), "rho"),
+        Parameter("base_diffuse_roughness", 0.0, "roughness"),
+        Parameter("base_metalness", 0.0, "metalness"),
+        Parameter("specular_roughness", 0.3, "specular_roughness"),
+        Parameter("specular_ior", 1.5, "specular_ior"),
+    )
+    names = [each.quantity for each in inputs]
+
+    # Name what has another order there.
+    def called(function: Callable[..., Array], inputs: Inputs, **vectors: Array) -> Array:
+        def own(*values: Array) -> Array:
+            return function(**dict(zip((*vectors, *names), values, strict=True)))
+
+        return _per_coat(own, inputs, *vectors.values())[0]
+
+    return ShadingModel(
+        "openpbr_base",
+        "OpenPBR's base",
+        "open_pbr_surface",
+        inputs,
+        lambda wo, wi, i: called(openpbr.openpbr_base_brdf, i, wo=wo, wi=wi),
+        lambda wo, i: called(openpbr.openpbr_base_albedo_dir, i, mu=cosine(wo[:, 2])),
+    )
+
+
 def _per_coat(
     function: Callable[..., Array | tuple[Array, Array]], inputs: Inputs, *vectors: Array
 ) -> tuple[Array, Array]:
-    """Results of a function of one coat, for rows with a coat each: one result, or two."""
+    """Results of a function of one coat, for rows with a coat each: one result, or two.
+
+    The numbers of the coat are the last two inputs.
+    """
     # Call it once where there is one coat, and where it refuses more.
-    others = [*vectors, *(inputs[name] for name in ("color", "roughness"))]
-    alpha, ior = inputs["alpha"], inputs["ior"]
+    *others, alpha, ior = (*vectors, *inputs.values())
     numbers = [each[0] if len(each) == 1 else each for each in (alpha, ior)]
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return _pair(function(*others, *numbers))
@@ -261,6 +292,7 @@ MODELS: dict[str, NodeModel] = {
         *map(_of_table, (*table.MODELS, *table.KNOWN_DEFECTS, *table.OTHERS)),
         *map(_of_table, table.PARAMETRIZATIONS),
         _of_coat(),
+        _of_openpbr(),
         *map(_of_node, (*NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
         *map(_of_transmission, TRANSMISSION_NODES),
         *map(_of_emission, EMISSIONS),

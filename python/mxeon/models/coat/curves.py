@@ -15,7 +15,7 @@ from typing import ParamSpec, TypeVar, cast
 import numpy as np
 
 from mxeon.models.core.arguments import checked, checked_directions
-from mxeon.models.core.arrays import Array, ArrayLike
+from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.chebyshev import chebyshev_coefficients, chebyshev_nodes, chebyshev_sum
 from mxeon.models.core.edges import at_least_0, at_most, cosine, cube_root, root
 from mxeon.models.core.namespaces import any_array, array_namespace, library, like
@@ -37,25 +37,33 @@ class Coat:
     ----------
     alpha, average : float or array
         GGX roughness, that of the scale of the cosine, and F_ss.
-    missing, reflected : list of float, or array (NODES,)
-        Coefficients of (1 - E_ss) / E_ss and of E_r.
+    missing, reflected, edge : list of float, or array (NODES,)
+        Coefficients of (1 - E_ss) / E_ss, of E_r, and of the facets' mean of (1 - c)^5, which is E of a metal
+        with Schlick's curve that is black along the normal.
     """
 
     alpha: float | Array
     average: float | Array
     missing: list[float] | Array
     reflected: list[float] | Array
+    edge: list[float] | Array
 
     def at(self, mu: Array) -> tuple[Array, Array]:
         """(1 - E_ss) / E_ss, and E_r, both not below 0."""
+        missing, reflected = self._sums(mu, self.missing, self.reflected)
+        return missing, at_most(reflected, 1.0)
+
+    def edge_at(self, mu: Array) -> Array:
+        """The facets' mean of (1 - c)^5."""
+        [edge] = self._sums(mu, self.edge)
+        return edge
+
+    def _sums(self, mu: Array, *curves: list[float] | Array) -> list[Array]:
+        """Curves at these cosines, not below 0."""
         if library(self.alpha) and not library(mu):
             mu = like(mu, cast(Array, self.alpha))
         x = place(mu, self.alpha)
-        missing, reflected = (
-            at_least_0(chebyshev_sum(cast(Array, each), x))
-            for each in (self.missing, self.reflected)
-        )
-        return missing, at_most(reflected, 1.0)
+        return [at_least_0(chebyshev_sum(cast(Array, each), x)) for each in curves]
 
 
 def place(mu: Array, alpha: float | Array) -> Array:
@@ -65,7 +73,7 @@ def place(mu: Array, alpha: float | Array) -> Array:
 
 
 def curves(alpha: Array, ior: Array) -> Array:
-    """Coefficients of both curves of a `Coat`, shape (NODES, 2).
+    """Coefficients of the curves of a `Coat`, shape (NODES, 3).
 
     Notes
     -----
@@ -81,33 +89,38 @@ def curves(alpha: Array, ior: Array) -> Array:
     c, weight = slope_nodes(wo, xp.stack([zero + alpha, zero + alpha]), isotropic=True)
     missing = 1.0 / xp.sum(weight, axis=(0, 1)) - 1.0
     single = xp.sum(dielectric(c, zero + ior) * weight, axis=(0, 1))
-    both = xp.stack([missing, single * (1.0 + dielectric_avg(ior) * missing)], axis=-1)
+    edge = xp.sum((1.0 - c) ** 5 * weight, axis=(0, 1))
+    values = xp.stack([missing, single * (1.0 + dielectric_avg(ior) * missing), edge], axis=-1)
     # Find the coefficients, which are linear in the values.
     matrix = like(chebyshev_coefficients(np.eye(NODES)), mu)
-    return xp.tensordot(matrix, both, axes=1)
+    return xp.tensordot(matrix, values, axes=1)
 
 
 @lru_cache(maxsize=KEPT)
 def constant_coat(alpha: float, ior: float) -> Coat:
     """Curves of a dielectric that does not change."""
     index = np.asarray(ior)
-    missing, reflected = curves(np.asarray(alpha), index).T.tolist()
-    return Coat(alpha, float(dielectric_avg(index)), missing, reflected)
+    return Coat(alpha, float(dielectric_avg(index)), *curves(np.asarray(alpha), index).T.tolist())
 
 
 @any_array
 def coat_of(alpha: float, ior: float) -> Coat:
     """Curves of a dielectric, checked; for arrays of other libraries with gradients, and anew each time."""
-    numbers = checked("alpha", alpha, "coat_alpha"), checked("ior", ior, "coat_ior")
-    for name, number in zip(("alpha", "ior"), numbers, strict=True):
-        if number.ndim:
-            raise ValueError(
-                f"{name} must be one number, for all pairs; got shape {tuple(number.shape)}"
-            )
+    numbers = checked_scalar("alpha", alpha, "coat_alpha"), checked_scalar("ior", ior, "coat_ior")
     if not library(numbers[0]):
         return constant_coat(*map(float, numbers))
-    both = curves(*numbers)
-    return Coat(numbers[0], dielectric_avg(numbers[1]), both[:, 0], both[:, 1])
+    rows = curves(*numbers)
+    return Coat(numbers[0], dielectric_avg(numbers[1]), rows[:, 0], rows[:, 1], rows[:, 2])
+
+
+def checked_scalar(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
+    """Argument that is one number for all pairs, checked."""
+    number = checked(name, value, quantity)
+    if number.ndim:
+        raise ValueError(
+            f"{name} must be one number, for all pairs; got shape {tuple(number.shape)}"
+        )
+    return number
 
 
 @any_array
@@ -117,13 +130,14 @@ def _brought(*arguments: ArrayLike) -> tuple[ArrayLike, ...]:
 
 
 def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
-    """Function of arrays of any library, which are brought to one, but for a plain `alpha` and `ior`."""
+    """Function of arrays of any library, which are brought to one, but for plain numbers of the coat."""
     parameters = signature(function)
+    own = [each.name for each in parameters.parameters.values() if each.annotation == "float"]
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         call = parameters.bind(*args, **kwargs).arguments
-        plain = {name: call.pop(name) for name in ("alpha", "ior") if not library(call[name])}
+        plain = {name: call.pop(name) for name in own if not library(call[name])}
         brought = dict(zip(call, _brought(*call.values()), strict=True))
         return cast(Callable[..., R], function)(**brought, **plain)
 
