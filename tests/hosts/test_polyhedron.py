@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from mxeon.conformance.accuracy.diffuse import COARSE_FACETS, FACET_PAIRS, FACETS
-from mxeon.conformance.checks.application import judge_subject
+from mxeon.conformance.checks.application import judge_check, judge_subject
+from mxeon.conformance.checks.table import CHECKS
 from mxeon.conformance.nodes.renderer_nodes import renderer_nodes
 from mxeon.conformance.probes.families import HOST_PROBES
-from mxeon.conformance.probes.polyhedron import facet_pairs
+from mxeon.conformance.probes.polyhedron import FacetPairProbe, facet_pairs
 from mxeon.conformance.results import FAILED, NOT_RUN, PASSED
 from mxeon.conformance.results.known_issues import with_pages
 from mxeon.conformance.results.known_issues.issue import RENDERER_NODES
@@ -67,6 +68,16 @@ def test_mitsuba_has_the_models_that_it_documents(of_mitsuba):
     }
     assert {each.verdict for each in of_mitsuba.values()} == {PASSED}
     assert all(each.control.caught for each in of_mitsuba.values())
+
+
+def test_a_base_with_another_metalness_fails(monkeypatch):
+    [subject] = [each for each in renderer_nodes("mitsuba") if each.node.startswith("openpbr")]
+    wrong = mitsuba.Host.nodes[subject.node] | {"base_metalness": 0.49}
+    monkeypatch.setitem(mitsuba.Host.nodes, subject.node, wrong)
+    [value] = [each for each in CHECKS if each.key == "value"]
+    with available("mitsuba"), mitsuba.Host() as host:
+        result = judge_check(value, FacetPairProbe(host, subject, RENDERER_NODES))
+    assert result.verdict == FAILED and result.control.caught
 
 
 def test_luxcore_has_qon_with_sigma_in_radian(of_luxcore):
@@ -183,4 +194,5 @@ def test_checks_of_a_missing_renderer_are_not_run(monkeypatch):
 def test_the_models_that_are_claimed_are_known():
     subjects = renderer_nodes("mitsuba") + renderer_nodes("luxcore")
     claims = {table.model(each.model).name for each in subjects}
-    assert claims == {"lambert", "qon", "burley", "eon", "eon_coated", "fon"}
+    coats = {"eon_coated", "openpbr_half_metal"}
+    assert claims == {"lambert", "qon", "burley", "eon", "fon"} | coats

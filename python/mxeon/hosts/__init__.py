@@ -191,6 +191,7 @@ HOSTS = (
             OwnNode("principled", "burley"),
             *(OwnNode(f"{each} of mxeon.mitsuba", each) for each in ("eon", "fon", "qon")),
             OwnNode("dielectric_over_eon of mxeon.mitsuba", "eon_coated"),
+            OwnNode("openpbr_base of mxeon.mitsuba", "openpbr_half_metal"),
         ),
     ),
     # Its manual has the roughness of both nodes for Cycles only.

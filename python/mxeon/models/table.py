@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from mxeon.models import coat
+from mxeon.models.coat import openpbr
 from mxeon.models.core.arguments import checked, checked_choice, checked_colors
 from mxeon.models.core.arrays import Array, ArrayLike, Numbers
 from mxeon.models.core.namespaces import any_array
@@ -184,9 +185,11 @@ KNOWN_DEFECTS = (
 
 # The dielectric of the coat that is judged in a renderer.
 COATED = {"alpha": 0.5, "ior": 1.5}
+# OpenPBR's base that is judged there, whose facets have alpha 0.5625.
+HALF_METAL = {"specular_roughness": 0.75, "specular_ior": 1.5, "metalness": 0.5}
 
 # What renderers' own nodes have beside those: EON with the quartic also in surroundings, a defect of
-# it, Burley's model, and EON under a coat. Shaders that are generated have none of them.
+# it, Burley's model, EON under a coat, and OpenPBR's base. Shaders that are generated have none of them.
 OTHERS = (
     Model(
         "eon_fitted",
@@ -228,6 +231,13 @@ OTHERS = (
         "roughness",
         partial(coat.dielectric_over_eon_albedo_dir, **COATED),
         partial(coat.dielectric_over_eon_albedo_avg, **COATED),
+    ),
+    Model(
+        "openpbr_half_metal",
+        "OpenPBR's base, half of it metal, of specular roughness 0.75 and index 1.5",
+        partial(openpbr.openpbr_base_brdf, **HALF_METAL),
+        "roughness",
+        partial(openpbr.openpbr_base_albedo_dir, **HALF_METAL),
     ),
     Model(
         "qon_degrees",

@@ -228,7 +228,8 @@ FACET_PAIRS = Tolerance(
     "pi f cos",
     absolute,
     "16 roundings of float32, 2^-24 each, of numbers up to 25/4, the product of Burley's two factors; "
-    "a coat of alpha 0.5 and index 1.5 has no more than 3.9; rounded up",
+    "a coat of alpha 0.5 and index 1.5 has no more than 4, facets of alpha 0.5625 of which half are metal "
+    "have no more than 3; rounded up",
 )
 
 CHI_SQUARE = Tolerance(

@@ -58,7 +58,7 @@ LOOKED_UP = (*(row.name for row in LOBE_NODES), HAIR_NODE.name, SUBSURFACE_NODE.
 RECIPROCAL = tuple(row.name for row in NODES if row.reciprocal)
 SMOOTH = ("lambert",)
 ROUGH = (*ANY, "fon")
-COATED = ("eon_coated",)  # which a renderer has
+COATED = ("eon_coated", "openpbr_half_metal")  # which a renderer has
 
 
 def diagnose_sphere(probe: Probe) -> Diagnosis:

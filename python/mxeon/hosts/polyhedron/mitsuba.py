@@ -49,6 +49,15 @@ class Host(PolyhedronHost):
             "alpha": 0.5,
             "ior": 1.5,
         },
+        # The numbers of the model "openpbr_half_metal".
+        "openpbr_base of mxeon.mitsuba": {
+            "type": "openpbr_base",
+            "base_color": "{color}",
+            "base_diffuse_roughness": "{roughness}",
+            "base_metalness": 0.5,
+            "specular_roughness": 0.75,
+            "specular_ior": 1.5,
+        },
     }
 
     def pairs(

@@ -22,7 +22,7 @@ import numpy as np  # noqa: E402
 Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types are those of another variant
 Values: TypeAlias = dict[str, Any]  # by name, of a request in JSON
 
-PLUGINS = ("eon", "fon", "qon", "dielectric_over_eon")  # of `mxeon.mitsuba`
+PLUGINS = ("eon", "fon", "qon", "dielectric_over_eon", "openpbr_base")  # of `mxeon.mitsuba`
 
 # Variants of Mitsuba's own BSDFs, and of those of `mxeon.mitsuba`, which Python is too slow for one by one.
 OWN, COMPILED = "scalar_rgb", "llvm_ad_rgb"
