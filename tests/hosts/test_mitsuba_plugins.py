@@ -153,11 +153,21 @@ def test_mitsuba_is_named_where_it_is_missing(monkeypatch):
         plugins.register()
 
 
-def test_the_example_of_the_page_runs(mi, tmp_path, monkeypatch):
+def brightest(picture):
+    """Largest mean of 8 x 8 pixels."""
+    pixels = np.array(picture)
+    return pixels.reshape(16, 8, 16, 8, 3).mean(axis=(1, 3, 4)).max()
+
+
+def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     monkeypatch.chdir(tmp_path)
-    names = {}
+    names, seen = {}, []
     for block in blocks:
         exec(block.replace("spp=16", "spp=1"), names)
+        if "varnished.png" in block or "ball.png" in block:
+            seen.append(brightest(names["picture"]))
     assert 0.1 < np.array(names["picture"]).mean() < 1.0
-    assert (tmp_path / "clay.png").stat().st_size > 1000
+    assert seen[1] > 1.25 * seen[0]  # 1.5 measured, and 1 without a lamp
+    for name in ("clay", "ball", "varnished"):
+        assert (tmp_path / f"{name}.png").stat().st_size > 1000
