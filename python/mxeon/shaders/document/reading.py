@@ -281,8 +281,14 @@ def _check_validity(document: mx.Document) -> None:
 
 
 def _renderables(document: mx.Document) -> tuple[mx.TypedElement, ...]:
-    """Renderable elements of a document; none is a DocumentError."""
-    elements = tuple(mx_gen.findRenderableElements(document))
+    """Renderable elements of a document; none is a DocumentError.
+
+    MaterialX looks for materials among the thousands of elements of the data library as well.
+    """
+    nodes = (each for each in document.getChildren() if each.isA(mx.Node))
+    materials = [each for each in nodes if each.getType() == "material"]
+    elements = tuple(filter(mx.getShaderNodes, materials))
+    elements = elements or tuple(mx_gen.findRenderableElements(document))
     if not elements:
         raise DocumentError(
             f"{label(document)}: must contain a renderable element (a surfacematerial, a surface "
