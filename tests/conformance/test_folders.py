@@ -82,7 +82,7 @@ def test_a_bad_document_of_a_folder_is_one_line_and_the_run_goes_on(tmp_path, ca
     for number in range(MANY):
         (tmp_path / f"bad{number}.mtlx").write_text("<materialx")
     shutil.copy(CLAY, tmp_path)
-    options = ["--workers", "0", "--node", "sheen_bsdf", "--host", "slang"]
+    options = ["--workers", "0", "--node", "conical_edf"]
     assert main(["check", str(tmp_path), *options]) == MISUSE
     output, error = capsys.readouterr()
     assert len(error.splitlines()) == MANY
