@@ -3,21 +3,15 @@
 
 import os
 import signal
-from functools import partial
 
 import pytest
 from coverage import Coverage
 
 from mxeon.conformance import reference as reference_host
-from mxeon.conformance.run import check
 from mxeon.hosts import open_engine
 from mxeon.hosts.process import Worker
 from mxeon.jobs.signals import ENDING
-from mxeon.shaders.library import examples_folder
 from tests.support.availability import available, required
-from tests.support.sharing import shared
-
-EXAMPLE = examples_folder() / "plaster.mtlx"
 
 
 def pytest_configure():
@@ -107,10 +101,3 @@ def gl(hosts):
 def reference(hosts):
     """The reference host."""
     return hosts("reference")
-
-
-@pytest.fixture(scope="session")
-def stock(tmp_path_factory):
-    """What MaterialX does on gl by itself, with one document."""
-    make = partial(check, [EXAMPLE], ["gl"], ["stock"], nodes=["common"])
-    return shared(tmp_path_factory, "stock", make)

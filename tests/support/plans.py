@@ -6,11 +6,17 @@ from dataclasses import replace
 from mxeon.conformance import run
 from mxeon.conformance.probes.families import PBR_SUBJECTS
 
+OTHERS = {subject.title for subject in PBR_SUBJECTS}
+
 
 def keep_checks(patch, *keys):
     """Let every run that this process plans consist of these checks of diffuse nodes alone."""
-    others = {subject.title for subject in PBR_SUBJECTS}
-    _keep(patch, lambda task: task.check in keys and task.subject not in others)
+    _keep(patch, lambda task: task.check in keys and task.subject not in OTHERS)
+
+
+def keep_diffuse(patch):
+    """Let every run that this process plans leave out the other nodes of pbrlib."""
+    _keep(patch, lambda task: task.subject not in OTHERS)
 
 
 def keep_host(patch, host):
