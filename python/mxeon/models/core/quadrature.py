@@ -88,11 +88,11 @@ def hemisphere_nodes(mu: float, nodes: int) -> tuple[Array, Array, Array]:
     phi = np.pi / 2.0 * np.concatenate([x, 1.0 + x])
     d_phi = np.pi / 2.0 * np.concatenate([weight, weight])
     # Form the directions, and their weights with both halves.
-    theta, phi = (grid.ravel() for grid in np.meshgrid(theta, phi, indexing="ij"))
-    x, y, z = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
+    sine, cosine = np.sin(theta)[:, np.newaxis], np.cos(theta)[:, np.newaxis]
+    parts = np.broadcast_arrays(sine * np.cos(phi), sine * np.sin(phi), cosine)
     wo = np.array([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu])
-    weights = 2.0 * np.outer(d_theta, d_phi).ravel() * np.sin(theta) * z
-    return wo, np.stack([x, y, z], axis=-1), weights
+    weights = 2.0 * np.outer(d_theta, d_phi) * sine * cosine
+    return wo, np.stack(parts, axis=-1).reshape(-1, 3), weights.ravel()
 
 
 @lru_cache(maxsize=8)  # the rule takes longer than what it is used for
