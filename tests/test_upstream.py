@@ -32,15 +32,13 @@ of_each_defect = pytest.mark.parametrize("defect", DEFECTS, ids=lambda each: eac
 
 
 @pytest.fixture(scope="module")
-def judged(request, tmp_path_factory):
+def judged(tmp_path_factory):
     """A function of a host: results and place of its defects, judged by one process for all."""
 
     @cache
     def results(host):
         with available(host):
-            known = request.getfixturevalue("stock").results if host == "gl" else ()
-            make = partial(ledger.judged, host, known)
-            return shared(tmp_path_factory, f"defects on {host}", make)
+            return shared(tmp_path_factory, f"defects on {host}", partial(ledger.judged, host))
 
     return results
 

@@ -56,14 +56,8 @@ CHECKED = tuple(each for each in ISSUES if each.rows)
 OF_DRIVERS = ("genglsl_albedo_acos",)
 
 
-def judged(host, known=()):
+def judged(host):
     """Results of the checks that show defects on a host or on "source".
-
-    Parameters
-    ----------
-    host : str
-    known : iterable of Result
-        Of a run of stock MaterialX, which are not judged again.
 
     Returns
     -------
@@ -78,8 +72,6 @@ def judged(host, known=()):
     """
     rows = {row for issue in CHECKED if issue.host == host for row in issue.rows}
     tasks = make_plan((), () if host == SOURCE else (host,), (STOCK,), nodes=(ALL,)).tasks
-    known = [each for each in known if each.host == host and (each.check, each.subject) in rows]
-    rows -= {(each.check, each.subject) for each in known}
     chosen = [
         each
         for each in tasks
@@ -90,7 +82,7 @@ def judged(host, known=()):
     devices = [f"{each.device}, {each.version}" for each in findings[0].hosts]
     own = host in RENDERERS and host != "cycles"  # its nodes need no MaterialX
     place = ", ".join([*devices, *([] if own else [f"MaterialX {mx.__version__}"])])
-    return [*known, *(result for each in findings for result in each.results)], place
+    return [result for each in findings for result in each.results], place
 
 
 def shown(defect, results):
