@@ -20,10 +20,8 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 
 LONGEST = 4  # components of an array of Dr.Jit
-OCTAVES, PARTS = (
-    126,
-    16,
-)  # of numbers in (0, 1], down to the smallest normal one, and the cells of each
+OCTAVES = 126  # of numbers in (0, 1], down to the smallest normal one
+PARTS = 16  # cells of each octave
 CELL_DIGITS = 19  # of a float32 below those that tell the cell
 MIDDLE = 1.5  # of an octave that starts at 1
 
