@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A dielectric over EON as a BSDF of Mitsuba; see `mxeon.models.coat`.
 
-What the dielectric reflects depends on the viewer's cosine alone: a cubic in each of some cells, whose
+What the dielectric reflects depends on the viewer's cosine alone: a cubic in each part of an octave, whose
 coefficients are computed in float64 whenever `alpha` or `ior` changes, with their derivatives where these
 are asked for.
 """
@@ -14,9 +14,9 @@ import numpy as np
 
 from mxeon.mitsuba.diffuse import EonPlugin
 from mxeon.mitsuba.plugin import Mitsuba
-from mxeon.models.coat.curves import constant_coat, place
+from mxeon.models.coat.curves import constant_coat
 from mxeon.models.core.arrays import Array
-from mxeon.models.core.chebyshev import cell_cubics
+from mxeon.models.core.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.core.ranges import RANGES
 from mxeon.models.diffuse.albedo import eon_albedo
 from mxeon.models.diffuse.formulas import fon_loss
@@ -24,7 +24,6 @@ from mxeon.models.microfacet import ggx_formulas as ggx
 from mxeon.models.microfacet.fresnel_formulas import dielectric, dielectric_avg
 from mxeon.models.sampling.visible_normals import visible_density, visible_normal
 
-CELLS = 256  # of the viewer's cosine; the cubics are within 4e-9 of the curves
 ALPHAS, IORS = (RANGES[name][:2] for name in ("coat_alpha", "coat_ior"))
 STEP = 1e-4  # of the differences that stand for the derivatives of the coefficients
 
@@ -181,13 +180,9 @@ class CoatPlugin(EonPlugin):
         if not self._compiled:
             return self.coat.at(mu)
         # Find the cell, and evaluate both cubics.
-        x = place(mu, self._dielectric()[0]) * CELLS
-        cell = self.mi.UInt32(self.dr.clip(x, 0, CELLS - 1))
-        t, values = x - cell, []
-        for row in (2 * cell, 2 * cell + 1):
-            a = self.dr.gather(self.mi.Vector4f, self.table, row)
-            values.append(self.dr.fma(self.dr.fma(self.dr.fma(a.w, t, a.z), t, a.y), t, a.x))
-        return self.dr.maximum(values[0], 0.0), self.dr.clip(values[1], 0.0, 1.0)
+        cell, x = octave_cells(mu)
+        missing, reflected = (gather_cubic(self.table, 2 * cell + k, x) for k in range(2))
+        return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
 
     def _roughness(self) -> Mitsuba:
         """alpha along tangent and bitangent."""
@@ -214,8 +209,7 @@ class CoatPlugin(EonPlugin):
 def _table(alpha: float, ior: float) -> Array:
     """Cubics of both curves, cell by cell."""
     coat = constant_coat(alpha, ior)
-    curves = np.asarray(coat.missing), np.asarray(coat.reflected)
-    return np.stack([cell_cubics(each, CELLS) for each in curves]).transpose(2, 0, 1).ravel()
+    return np.stack([octave_cubics(lambda mu, k=k: coat.at(mu)[k]) for k in range(2)], 1).ravel()
 
 
 def _slopes(values: list[float], k: int) -> Array:

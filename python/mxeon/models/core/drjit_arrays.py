@@ -20,10 +20,6 @@ import numpy as np
 from mxeon.models.core.arrays import Array
 
 LONGEST = 4  # components of an array of Dr.Jit
-OCTAVES = 126  # of numbers in (0, 1], down to the smallest normal one
-PARTS = 16  # cells of each octave
-CELL_DIGITS = 19  # of a float32 below those that tell the cell
-MIDDLE = 1.5  # of an octave that starts at 1
 
 Number: TypeAlias = Array  # one of Dr.Jit, whose type is that of the variant
 
@@ -88,26 +84,6 @@ def constant(value: object) -> float | None:
     if drjit.grad_enabled(number) or number.state != drjit.VarState.Literal:
         return None
     return float(number[0])
-
-
-def octave_cells(x: Number) -> tuple[Number, Number]:
-    """Cell of a number in (0, 1], and its distance from the middle of its octave, over the octave's start."""
-    drjit = import_module("drjit")
-    integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
-    # Read octave and cell from the digits of a float32.
-    x = drjit.maximum(x, 2.0**-OCTAVES)
-    inside = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
-    digits = drjit.reinterpret_array(integer, single(inside))
-    # Divide by the start of the octave, whose exponent is known.
-    scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (digits & 0x7F800000)))
-    return (digits >> CELL_DIGITS) - PARTS, drjit.fma(x, scale, -MIDDLE)
-
-
-def gather_cubic(table: Array, cell: Number, x: Number) -> Number:
-    """Sum of a row of coefficients, lowest first, of each cell: shape (cells, 4)."""
-    drjit, kind = import_module("drjit"), type(x)
-    c = drjit.gather(type(vector([x] * 4)), kind(table.ravel()), cell)
-    return cast(Number, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))
 
 
 def number_type(values: Sequence[object]) -> Callable[[float], Number]:

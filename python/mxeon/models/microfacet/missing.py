@@ -20,19 +20,11 @@ from mxeon.models.core.chebyshev import (
     chebyshev_polynomials,
     chebyshev_sum,
 )
-from mxeon.models.core.drjit_arrays import (
-    MIDDLE,
-    OCTAVES,
-    PARTS,
-    Number,
-    constant,
-    gather_cubic,
-    is_drjit,
-    octave_cells,
-)
+from mxeon.models.core.drjit_arrays import Number, constant, is_drjit
 from mxeon.models.core.edges import at_least_0, at_most, cube_root, root
 from mxeon.models.core.evaluation import evaluate_material
 from mxeon.models.core.namespaces import NUMPY, array_namespace, like
+from mxeon.models.core.octaves import gather_cubic, octave_cells, octave_cubics
 from mxeon.models.microfacet.ggx_albedo import quadrature
 
 # Nodes in the cube root of s and in the square root of alpha, panels for one of the quadrature that
@@ -107,18 +99,13 @@ def _of_one_number(mu: Number, alpha: float) -> Number:
     """`missing_light` of numbers of Dr.Jit at one alpha, by a cubic in each part of an octave."""
     if alpha <= 0.0:
         return 0.0 * mu  # a mirror misses nothing
-    value = gather_cubic(_octave_cubics(alpha), *octave_cells(mu))
-    return at_least_0(value)
+    return at_least_0(gather_cubic(type(mu)(_octave_cubics(alpha)), *octave_cells(mu)))
 
 
 @lru_cache(maxsize=KEPT)
 def _octave_cubics(alpha: float) -> Array:
-    """Coefficients of the cubics through four points of each cell of a cosine's octaves, shape (cells, 4)."""
-    places = 1.0 + (np.arange(PARTS)[:, np.newaxis] + np.sort(chebyshev_nodes(4))) / PARTS
-    octaves = 2.0 ** np.arange(-OCTAVES, 0)[:, np.newaxis, np.newaxis]
-    values = _interpolated(octaves * places, np.asarray(alpha))
-    powers = np.linalg.inv(np.vander((places - MIDDLE).ravel(), 4, True).reshape(-1, 4, 4))
-    return np.asarray(np.einsum("pij,opj->opi", powers, values).reshape(-1, 4))
+    """Coefficients of those cubics, cell by cell."""
+    return octave_cubics(lambda mu: _interpolated(mu, np.asarray(alpha))).ravel()
 
 
 @lru_cache(maxsize=KEPT)

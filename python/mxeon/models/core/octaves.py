@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Curves over a number in (0, 1] as cubics in the parts of octaves, for Dr.Jit.
+
+The digits of a float32 tell the part without a logarithm. Octaves follow a curve that changes on any scale,
+such as what facets reflect, which changes with cosine / alpha.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import cast
+
+import numpy as np
+
+from mxeon.models.core.arrays import Array
+from mxeon.models.core.chebyshev import chebyshev_nodes
+from mxeon.models.core.drjit_arrays import Number, vector
+
+OCTAVES, PARTS = 126, 16  # down to the smallest normal float32; parts of each
+PART_DIGITS = 19  # of a float32 below those that tell the part
+MIDDLE = 1.5  # of an octave that starts at 1
+
+
+def octave_cells(x: Number) -> tuple[Number, Number]:
+    """Part of a number, counted from the smallest, and its distance from the octave's middle, over the octave."""
+    drjit = import_module("drjit")
+    integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
+    # Read octave and part from the digits of a float32.
+    x = drjit.maximum(x, 2.0**-OCTAVES)
+    inside = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
+    digits = drjit.reinterpret_array(integer, single(inside))
+    # Divide by the start of the octave, whose exponent is known.
+    scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (digits & 0x7F800000)))
+    return (digits >> PART_DIGITS) - PARTS, drjit.fma(x, scale, -MIDDLE)
+
+
+def octave_cubics(curve: Callable[[Array], Array]) -> Array:
+    """Coefficients of cubics through four points of a curve in each part, lowest first, shape (parts, 4)."""
+    places = 1.0 + (np.arange(PARTS)[:, np.newaxis] + np.sort(chebyshev_nodes(4))) / PARTS
+    octaves = 2.0 ** np.arange(-OCTAVES, 0)[:, np.newaxis, np.newaxis]
+    powers = np.linalg.inv(np.vander((places - MIDDLE).ravel(), 4, True).reshape(-1, 4, 4))
+    return np.asarray(np.einsum("pij,opj->opi", powers, curve(octaves * places)).reshape(-1, 4))
+
+
+def gather_cubic(table: Number, cell: Number, x: Number) -> Number:
+    """Sum of the cubic of a cell, whose four coefficients are rows of a table."""
+    drjit = import_module("drjit")
+    c = drjit.gather(type(vector([x] * 4)), table, cell)
+    return cast(Number, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))
