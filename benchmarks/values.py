@@ -49,7 +49,7 @@ NODES = {
 }  # fmt: skip
 RIVALED = ("EON", "Schlick", "sheen")
 GOALS = dict.fromkeys([(name, "one material") for name in RIVALED], 1.0)
-GOALS |= dict.fromkeys([(name, DRJIT) for name in ("EON", BARE, "sheen")], 1.0)
+GOALS |= dict.fromkeys([(name, DRJIT) for name in (*RIVALED, BARE)], 1.0)
 RIVALS = {BARE: "Schlick"}  # of what has none of its own
 
 
