@@ -9,7 +9,7 @@ its BSDF. There, local variables of the same names hide the shader's uniforms.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TypeAlias
@@ -38,6 +38,10 @@ LAYER = (
 )
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}  # 3 of every other type
 WIDTH = 1024  # most pixels in a row of an evaluation
+PART = 1 << 15  # elements of one frame of it
+# Columns and rows of a texture of arguments beside the even ones of its frame: Mesa compiles a program
+# once for textures whose sides are powers of two, and once for others.
+ODD = 1
 
 Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers, by name
 
@@ -179,14 +183,34 @@ def frame(arguments: Mapping[str, Array]) -> tuple[int, tuple[int, int]]:
     return count, (2 * -(-count // (2 * height)), height)
 
 
-def texels(values: Array, size: tuple[int, int]) -> NDArray[np.float32]:
-    """Values, a row per element or one for all, or layers of them, laid out over a frame of `size`."""
+def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
+    """Arguments of PART elements at a time, whose textures and frames take less memory than those of all."""
+    count, _ = frame(arguments)
+    for start in range(0, count, PART):
+        yield {
+            name: rows if rows.shape[-2] == 1 else rows[..., start : start + PART, :]
+            for name, rows in arguments.items()
+        }
+
+
+def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.float32]:
+    """Values, a row per element or one for all, or layers of them, laid out over a frame of `size`.
+
+    With a margin a layer has so many columns and rows more.
+    """
     width, height = size
     layers = values[np.newaxis] if values.ndim == 2 else values  # one above the other
     number, count, components = layers.shape
-    rows = np.zeros((number, width * height, components), dtype=np.float32)
-    rows[:, : count if count > 1 else None] = layers
-    return rows.reshape(number * height, width, components)
+    shape = (number, height + margin, width + margin, components)
+    frames = np.zeros(shape, dtype=np.float32)
+    if count == 1:
+        frames[:, :height, :width] = layers[:, :, np.newaxis]
+    else:
+        full, rest = divmod(count, width)
+        rows = layers[:, : full * width].reshape(number, full, width, components)
+        frames[:, :full, :width] = rows
+        frames[:, full : full + 1, :rest] = layers[:, np.newaxis, full * width :]
+    return frames.reshape(-1, width + margin, components)
 
 
 def columns(arguments: Mapping[str, tuple[str, ArrayLike]]) -> Columns:

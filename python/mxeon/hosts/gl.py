@@ -18,7 +18,7 @@ from mxeon.hosts.fragment_host import FragmentHost
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import Scene
 
-PROGRAMS = 16  # that are kept: a document's scenes and a node's checks share theirs
+PROGRAMS = 6  # that are kept, of 10 MB each: a document's scenes and a node's checks share theirs
 CONSTANTS = 64  # textures of one value that are kept: most inputs are the same for all pixels
 POINTS = 4  # textures of points that are kept: most materials have the same vertex stage
 
@@ -158,16 +158,26 @@ class Host(FragmentHost):
         irradiance: Array | None = None,
     ) -> Array:
         """Values, one pixel per element, as many as the longest argument has."""
-        count, size = fragment.frame(arguments)
         program = self._program(vertex, pixel)
         _set(program, raster.EVALUATION)
+        environment = self._textures(program, raster.environment(irradiance))
+        parts = fragment.parts(arguments)
+        return np.concatenate([self._part(program, each, environment) for each in parts])
+
+    def _part(
+        self,
+        program: moderngl.Program,
+        arguments: Mapping[str, Array],
+        environment: Mapping[str, moderngl.Texture | moderngl.TextureArray],
+    ) -> Array:
+        """Values of one frame of elements."""
+        count, size = fragment.frame(arguments)
         values = {
             name: self._argument(rows, size)
             for name, rows in arguments.items()
             if program.get(name, None)
         }
-        textures = values | self._textures(program, raster.environment(irradiance))
-        return self._draw(program, textures, size).reshape(-1, 3)[:count]
+        return self._draw(program, values | environment, size).reshape(-1, 3)[:count]
 
     def _draw(
         self,
@@ -201,12 +211,12 @@ class Host(FragmentHost):
         """Texture of an argument's values."""
         if rows.ndim == 2 and len(rows) == 1:
             return self._constant(rows.tobytes(), size)
-        return self._texture(fragment.texels(rows, size), mipmaps=False)
+        return self._texture(fragment.texels(rows, size, fragment.ODD), mipmaps=False)
 
     def _filled(self, value: bytes, size: tuple[int, int]) -> moderngl.Texture:
         """Texture of one value, as float32."""
         row = np.frombuffer(value, np.float32)[np.newaxis]
-        return self._texture(fragment.texels(row, size), mipmaps=False)
+        return self._texture(fragment.texels(row, size, fragment.ODD), mipmaps=False)
 
     def _texture(self, texels: Array, mipmaps: bool) -> moderngl.Texture:
         height, width, components = texels.shape

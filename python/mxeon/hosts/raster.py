@@ -18,7 +18,8 @@ from mxeon.shaders.scene import Scene
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
-WHITE = np.ones((1, 1, 3), dtype=np.float32)
+# Not of one texel, which has no smaller versions: Mesa would compile a program once more for an uneven one.
+WHITE = np.ones((2, 2, 3), dtype=np.float32)
 
 # Directions over which a shader of microfacets sums its environment: see docs/host_notes.md for the error
 # of each number, and its cost. The environment has no smaller versions of itself.

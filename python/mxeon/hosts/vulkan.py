@@ -122,7 +122,7 @@ class Host(FragmentHost):
         """
         environment = {} if irradiance is None else raster.environment(irradiance)
         count, size = fragment.frame(arguments)
-        texels = [fragment.texels(rows, size) for rows in arguments.values()]
+        texels = [fragment.texels(rows, size, fragment.ODD) for rows in arguments.values()]
         sets: tuple[Bindings, ...] = (
             self._generated(pixel, environment),
             {0: (SAMPLER, self._device.create_sampler())},
