@@ -1,22 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is done once: counts of what takes time, not times."""
 
+import gc
+import weakref
 from types import SimpleNamespace
 
 import MaterialX as mx
 import numpy as np
 import pytest
 
+from mxeon.conformance.diagnosis import comparisons
+from mxeon.conformance.diagnosis.candidates import Diagnosis
 from mxeon.conformance.probes.memory import KEPT, LARGEST, Remembered
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.run import journal
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.tasks import Findings
 from mxeon.conformance.samples.batch import Batch
+from mxeon.conformance.samples.uneven_environment import sky_map
+from mxeon.hosts import fragment
+from mxeon.hosts.gl import Host
 from mxeon.models.microfacet import conductor_brdf
 from mxeon.models.thin_film import curve
 from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
 from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import OREN_NAYAR, material_text
 
 METAL = {
@@ -109,6 +117,75 @@ def test_a_check_and_its_control_share_the_reference():
         probe.expected(one)
         probe.expected_albedo(one)
     assert len(calls) == 2
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Textures of the frames that gl draws, one mapping each."""
+    frames, draw = [], Host._draw
+    monkeypatch.setattr(
+        Host, "_draw", lambda self, *rest: (frames.append(rest[1]), draw(self, *rest))[1]
+    )
+    return frames
+
+
+def evaluated(host, branch="direct", count=8, **options):
+    """Values of a conductor of another roughness in each row."""
+    [shader] = generate(material_text("conductor_bsdf", {}), "glsl")
+    wo, wi = (np.tile(each, (count, 1)) for each in PAIR)
+    rough = np.linspace(0.1, 0.9, 2 * count).reshape(count, 2)
+    return host.evaluate(shader, wo, wi, {"roughness": rough}, branch, **options)
+
+
+def test_an_evaluation_is_drawn_once(gl, drawn):
+    first = evaluated(gl, count=13)
+    assert evaluated(gl, count=13) is first and len(drawn) <= 1
+    drawn.clear()
+    others = [{"count": 17}, {"branch": "environment"}, {"output": "throughput"}]
+    others.append({"branch": "environment", "irradiance": sky_map()})
+    for options in others:
+        evaluated(gl, **{"count": 13} | options)
+    assert len(drawn) == len(others)
+    with pytest.raises(ValueError, match="read-only"):
+        first += 1.0
+
+
+def test_the_driver_compiles_a_program_for_textures_of_one_kind(gl, drawn):
+    for count in (1024, 1300, 8):
+        evaluated(gl, count=count)
+        for irradiance in (None, sky_map()):
+            evaluated(gl, "environment", count, irradiance=irradiance)
+    sides = {
+        (name, side) for textures in drawn for name, each in textures.items() for side in each.size
+    }
+    assert {name for name, side in sides if not side & (side - 1)} == {"u_envRadiance"}
+    assert all(each["u_envRadiance"].width > 1 for each in drawn if "u_envRadiance" in each)
+
+
+def test_a_long_evaluation_is_that_of_its_parts(gl, drawn):
+    count = fragment.PART + 7
+    values = evaluated(gl, count=count)
+    assert len(drawn) == 2 and len(values) == count
+    [shader] = generate(material_text("conductor_bsdf", {}), "glsl")
+    rough = np.linspace(0.1, 0.9, 2 * count).reshape(count, 2)[-7:]
+    wo, wi = (np.tile(each, (7, 1)) for each in PAIR)
+    last = gl.evaluate(shader, wo, wi, {"roughness": rough}, "direct")
+    np.testing.assert_array_equal(values[-7:], last)
+
+
+def test_failures_of_one_reason_are_explained_once_and_keep_no_probe(monkeypatch):
+    calls = []
+    monkeypatch.setattr(
+        comparisons, "explain", lambda probe, *_: (calls.append(1), Diagnosis("because"))[1]
+    )
+    row = comparisons.Comparison("value", lambda probe: [], lambda probe: [])
+    monkeypatch.setattr(comparisons.Comparison, "tolerance", lambda self, probe: None)
+    probe = LobeProbe(None, None, "eonlib")
+    assert row.diagnose(probe) is row.diagnose(probe) and len(calls) == 1
+    gone = weakref.ref(probe)
+    del probe
+    gc.collect()
+    assert gone() is None
 
 
 def test_a_lobe_without_a_film_computes_none(monkeypatch):

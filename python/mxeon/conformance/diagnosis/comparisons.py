@@ -3,7 +3,8 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -51,8 +52,13 @@ class Comparison:
         return self.cases(probe)
 
     def diagnose(self, probe: Probe) -> Diagnosis:
-        """The explanation of a probe's values."""
-        return _diagnosis(self, probe)
+        """The explanation of a probe's values, for which several checks of a subject may fail."""
+        known = DIAGNOSES.setdefault(probe, {})
+        if self not in known:
+            cases = list(self.cases(probe))
+            candidates, tolerance = self.candidates(probe), self.tolerance(probe)
+            known[self] = explain(probe, cases, candidates, self.faults, tolerance)
+        return known[self]
 
     def tolerance(self, probe: Probe) -> Tolerance:
         """The tolerance of a probe, a value's with the errors of the engine; a value's where there is no other."""
@@ -64,10 +70,8 @@ class Comparison:
         return tolerance
 
 
-@lru_cache(maxsize=8)  # several checks of a subject fail for one reason
-def _diagnosis(row: Comparison, probe: Probe) -> Diagnosis:
-    cases = list(row.cases(probe))
-    return explain(probe, cases, row.candidates(probe), row.faults, row.tolerance(probe))
+# As long as the probe exists, whose samples take some memory.
+DIAGNOSES: WeakKeyDictionary[Probe, dict[Comparison, Diagnosis]] = WeakKeyDictionary()
 
 
 def _values(probe: Probe) -> Sequence[Candidate]:
