@@ -115,10 +115,7 @@ class ShownElement:
         """Picture of the square [-1, 1]^2, seen along -z, (size, size, 3), row 0 at the top."""
         # Take the quads in a file.
         if mesh != self._mesh:
-            geometry = mx_render.GeometryHandler.create()
-            geometry.addLoader(mx_render.TinyObjLoader.create())
-            geometry.loadGeometry(mx.FilePath(obj_file(mesh)), False)
-            self._renderer.setGeometryHandler(geometry)
+            self._renderer.setGeometryHandler(geometry(mesh))
             self._mesh = mesh
         # Light them from a direction, or from everywhere.
         self._lights.setDirectLighting(light is not None)
@@ -180,6 +177,15 @@ def camera() -> mx_render.Camera:
     matrix = mx_render.Camera.createOrthographicMatrix(-1, 1, -1, 1, FAR - 4, FAR + 4)
     view.setProjectionMatrix(matrix)
     return view
+
+
+@lru_cache(maxsize=2)
+def geometry(path: str) -> mx_render.GeometryHandler:
+    """The quads in a file of NumPy, which all documents are drawn on: to read them takes longer than to draw."""
+    handler = mx_render.GeometryHandler.create()
+    handler.addLoader(mx_render.TinyObjLoader.create())
+    handler.loadGeometry(mx.FilePath(obj_file(path)), False)
+    return handler
 
 
 def obj_file(path: str) -> str:
