@@ -43,6 +43,8 @@ FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "ggx_albedo_dir_anisotropic")
 SEED = 11
 GRADIENT = 1e-7  # of the larger of 1 and the gradient: the truncation of differences in float64
+WIDTH = 1e-4  # of a step of differences
+OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)  # up to three steps, of one width and of two
 RELIABLE = 2e-8  # two steps of differences that agree so far are taken for the derivative
 COMPARED = 0.6  # least share of partial derivatives that differences can judge
 CUT = {"film_albedo_dir": 0.3}  # of a curve that is cut between thousands of nodes
@@ -208,37 +210,47 @@ def scalar(value):
     return value
 
 
-def differences(function, arrays, switches, name, component):
-    """Derivative of each row by differences, and where they can be relied on."""
-    low, high, _ = (
-        RANGES[name] if name in RANGES else RANGES["mu" if component == 2 else "cos_theta"]
-    )
-    flat = arrays[name].reshape(len(arrays[name]), -1)
-    x = flat[:, component]
+def moved(function, arrays, switches, name):
+    """Scalars of each row with each component of an array moved by each of OFFSETS: one call for all."""
+    array = arrays[name]
+    rows, size = len(array), array[0].size
+    several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))
+    for k in range(size):
+        several[k, ..., k] += WIDTH * np.array(OFFSETS)[:, np.newaxis]
+    values = {
+        each: np.tile(value, (size * len(OFFSETS), *np.ones(value.ndim - 1, int)))
+        for each, value in arrays.items()
+    }
+    values[name] = several.reshape(values[name].shape)
+    with unchecked(), np.errstate(all="ignore"):
+        found = scalar(function(**values, **switches))
+    return [dict(zip(OFFSETS, each, strict=True)) for each in found.reshape(size, -1, rows)]
 
-    def at(step):
-        moved = flat.copy()
-        moved[:, component] = x + step
-        with unchecked(), np.errstate(all="ignore"):
-            values = arrays | {name: moved.reshape(arrays[name].shape)}
-            return scalar(function(**values, **switches))
 
-    def slope(h):
-        """From above and from below, of third order in h."""
-        f = {k: at(k * h) for k in (-3, -2, -1, 0, 1, 2, 3)}
-        with np.errstate(invalid="ignore"):
-            return [
-                s * (18 * f[s] - 9 * f[2 * s] + 2 * f[3 * s] - 11 * f[0]) / (6 * h) for s in (1, -1)
-            ]
+def slopes(f, step):
+    """Slope from above and from below, of third order in a step of so many widths."""
+    with np.errstate(invalid="ignore"):
+        return [
+            s
+            * (18 * f[s * step] - 9 * f[2 * s * step] + 2 * f[3 * s * step] - 11 * f[0])
+            / (6 * step * WIDTH)
+            for s in (1, -1)
+        ]
 
-    coarse, fine = slope(2e-4), slope(1e-4)
-    usable = [x + 6e-4 <= high, x - 6e-4 >= low]
-    best = np.where(usable[0], fine[0], fine[1])
-    spread = np.zeros(len(x))
-    with np.errstate(invalid="ignore"):  # beyond an end of a range
-        for side, each in ((0, coarse[0]), (0, fine[0]), (1, coarse[1]), (1, fine[1])):
-            spread = np.maximum(spread, np.where(usable[side], np.abs(each - best), 0.0))
-    return best, spread <= RELIABLE * np.maximum(1.0, np.abs(best))
+
+def differences(function, arrays, switches, name):
+    """Derivatives of each row by each component, by differences, and where they can be relied on."""
+    for k, f in enumerate(moved(function, arrays, switches, name)):
+        low, high, _ = RANGES[name] if name in RANGES else RANGES["mu" if k == 2 else "cos_theta"]
+        x = arrays[name].reshape(len(arrays[name]), -1)[:, k]
+        coarse, fine, reach = slopes(f, 2), slopes(f, 1), WIDTH * max(OFFSETS)
+        usable = [x + reach <= high, x - reach >= low]
+        best = np.where(usable[0], fine[0], fine[1])
+        spread = np.zeros(len(x))
+        with np.errstate(invalid="ignore"):  # beyond an end of a range
+            for side, each in ((0, coarse[0]), (0, fine[0]), (1, coarse[1]), (1, fine[1])):
+                spread = np.maximum(spread, np.where(usable[side], np.abs(each - best), 0.0))
+        yield best, spread <= RELIABLE * np.maximum(1.0, np.abs(best))
 
 
 @pytest.mark.parametrize(
@@ -267,10 +279,7 @@ def reference(name, compensate):
     function = PORTABLE[name]
     arrays, switches = sampled(function)
     switches |= {"compensate": True} if compensate else {}
-    slopes = {
-        each: [differences(function, arrays, switches, each, k) for k in range(array[0].size)]
-        for each, array in arrays.items()
-    }
+    slopes = {each: list(differences(function, arrays, switches, each)) for each in arrays}
     return arrays, switches, whole(function(**arrays, **switches)), slopes
 
 
