@@ -120,13 +120,20 @@ def test_measurements_refute_these_claims_and_no_others(output):
     assert set(row.findall(output.page)) == REFUTED
 
 
-def test_a_model_without_a_shader_function_is_compared_by_its_title(monkeypatch, tmp_path):
+@pytest.fixture
+def tables(monkeypatch, tmp_path):
+    """A sheet that keeps tables alone: what plots look like does not matter."""
+    monkeypatch.setattr(figures.Sheet, "plot", lambda *_: None)
+    return figures.Sheet(tmp_path, host=None, **SMALL)
+
+
+def test_a_model_without_a_shader_function_is_compared_by_its_title(monkeypatch, tables):
     models = (*table.MODELS, table.Model("flat", "A flat model", lambert_brdf, None))
     monkeypatch.setattr(table, "MODELS", models)
     monkeypatch.setattr(curves, "MODELS", models)
     with figures.styled():
-        curves.comparison(figures.Sheet(tmp_path, host=None, **SMALL))
-    header = (tmp_path / "figure_03.csv").read_text().partition("\n")[0]
+        curves.comparison(tables)
+    header = (tables.folder / "figure_03.csv").read_text().partition("\n")[0]
     assert "flat theta_i=15 phi=0" in header
     assert curves.label("flat") == "A flat model"
 
@@ -135,10 +142,10 @@ def test_figure_4_names_models_that_the_tracer_has():
     assert set().union(*renders.GALLERY.values()) <= set(tracer.MODELS)
 
 
-def test_same_run_writes_the_same_tables(output, tmp_path):
+def test_same_run_writes_the_same_tables(output, tables):
     with figures.styled():
-        figures.weights.over_roughness(figures.Sheet(tmp_path, host=None, **SMALL))
-    again = (tmp_path / "figure_13.csv").read_text()
+        figures.weights.over_roughness(tables)
+    again = (tables.folder / "figure_13.csv").read_text()
     assert again == (output.folder / "figure_13.csv").read_text()
 
 
