@@ -24,7 +24,7 @@ def original():
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder, contextlib.chdir(folder):
         document = str(examples_folder() / "plaster.mtlx")
         with contextlib.redirect_stdout(io.StringIO()):
-            main(["check", document, "--host", "msl", "--workers", "1", "--report", "run"])
+            main(["check", document, "--host", "msl", "--workers", "0", "--report", "run"])
         return Path(NAME).read_text(encoding="utf-8")
 
 
