@@ -55,9 +55,16 @@ def test_the_mesh_is_closed_and_turned_outwards():
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
 
 
-def test_the_obj_holds_the_mesh(tmp_path):
-    export_kit(tmp_path, SIZE)
-    lines = (tmp_path / "sphere.obj").read_text().splitlines()
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    """A kit that no test changes."""
+    folder = tmp_path_factory.mktemp("exported")
+    export_kit(folder, SIZE)
+    return folder
+
+
+def test_the_obj_holds_the_mesh(exported):
+    lines = (exported / "sphere.obj").read_text().splitlines()
     rows = np.array([line.split()[1:] for line in lines if line.startswith("v ")], float)
     assert np.abs(np.linalg.norm(rows, axis=1) - 1.0).max() < KIT_PRINTED
     assert sum(line.startswith("f ") for line in lines) == len(unit_sphere().triangles)
@@ -65,18 +72,16 @@ def test_the_obj_holds_the_mesh(tmp_path):
 
 @pytest.mark.parametrize("material", MATERIALS, ids=lambda each: each.name)
 @pytest.mark.parametrize("target", ["glsl", "osl", "mdl"])
-def test_each_material_is_a_document_that_generates(tmp_path, material, target):
-    export_kit(tmp_path, SIZE)
-    document = tmp_path / "materials" / f"{material.name}.mtlx"
+def test_each_material_is_a_document_that_generates(exported, material, target):
+    document = exported / "materials" / f"{material.name}.mtlx"
     assert len(generate(document, target, library="stock")) == 1
 
 
-def test_the_description_says_what_the_scenes_say(tmp_path):
-    export_kit(tmp_path, SIZE)
-    kit = json.loads((tmp_path / "kit.json").read_text())
+def test_the_description_says_what_the_scenes_say(exported):
+    kit = json.loads((exported / "kit.json").read_text())
     assert {Path(each["file"]).stem for each in kit["pictures"]} == set(VIEWS)
     for each in kit["pictures"]:
-        usd = (tmp_path / "scenes" / f"{Path(each['file']).stem}.usda").read_text()
+        usd = (exported / "scenes" / f"{Path(each['file']).stem}.usda").read_text()
         material = kit["materials"][each["material"]]
         assert f"inputs:color = ({', '.join(map(str, material['color']))})" in usd
         distant = kit["scenes"][each["scene"]].get("distant")
