@@ -21,6 +21,7 @@ from mxeon.models import (
     dielectric_over_eon_sample,
     fresnel_dielectric_avg,
     generalized_schlick_albedo_dir,
+    generalized_schlick_brdf,
     openpbr_base_albedo_dir,
     openpbr_base_brdf,
     unchecked,
@@ -154,7 +155,7 @@ def test_the_model_by_name_has_a_coat_for_each_row():
         assert np.array_equal(wi[k], one) and pdf[k] == density
 
 
-def test_the_albedo_of_openpbrs_base_is_that_of_its_parts():
+def test_the_albedo_and_value_of_openpbrs_base_are_those_of_its_parts():
     mu, rho, rough = np.array([[0.1], [0.5], [1.0]]), np.array([0.2, 0.9, 1.0]), 0.5
     base = openpbr_base_albedo_dir(mu[:, 0], rho, 0.6, rough, 1.5, [0.0, 0.4, 1.0])
     wo = np.stack([view(each) for each in mu[:, 0]])
@@ -163,6 +164,15 @@ def test_the_albedo_of_openpbrs_base_is_that_of_its_parts():
     share = np.array([[0.0], [0.4], [1.0]])
     assert np.abs(base - (1.0 - share) * glossy - share * metal).max() < COAT
     assert np.abs(base[:, 2] - 1.0).max() < COAT
+    # Mix the values in the same way.
+    pair = view(0.5), view(0.7)
+    glossy, metal, mixed = (
+        openpbr_base_brdf(*pair, rho, 0.6, rough, 1.5, m) for m in (0.0, 1.0, 0.25)
+    )
+    assert np.array_equal(glossy, dielectric_over_eon_brdf(*pair, rho, 0.6, rough**2, 1.5))
+    assert np.allclose(mixed, 0.75 * glossy + 0.25 * metal, 1e-12)
+    expected = generalized_schlick_brdf(*pair, rho, 1.0, 1.0, [rough**2] * 2, 5.0)
+    assert np.allclose(metal, expected, 0.0, COAT)
 
 
 def test_openpbrs_base_by_name_has_the_names_of_openpbr_and_of_a_fit():

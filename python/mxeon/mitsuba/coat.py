@@ -209,7 +209,9 @@ class CoatPlugin(EonPlugin):
 def _table(alpha: float, ior: float) -> Array:
     """Cubics of both curves, cell by cell."""
     coat = constant_coat(alpha, ior)
-    return np.stack([octave_cubics(lambda mu, k=k: coat.at(mu)[k]) for k in range(2)], 1).ravel()
+    missing = octave_cubics(lambda mu: coat.at(mu)[0])
+    reflected = octave_cubics(lambda mu: coat.at(mu)[1])
+    return np.stack([missing, reflected], axis=1).ravel()
 
 
 def _slopes(values: list[float], k: int) -> Array:

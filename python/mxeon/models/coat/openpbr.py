@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from mxeon.models.coat import dielectric_over_eon_albedo_dir, dielectric_over_eon_brdf
@@ -143,11 +145,10 @@ def openpbr_base_albedo_dir(
 
 
 @any_array
-def _alpha(specular_roughness: ArrayLike, specular_ior: ArrayLike) -> Array:
+def _alpha(specular_roughness: ArrayLike, specular_ior: ArrayLike) -> float:
     """alpha of the facets; raise ValueError unless both numbers are in their ranges."""
     checked_scalar("specular_ior", specular_ior)
-    alpha: Array = checked_scalar("specular_roughness", specular_roughness) ** 2
-    return alpha
+    return cast(float, checked_scalar("specular_roughness", specular_roughness) ** 2)
 
 
 @any_array

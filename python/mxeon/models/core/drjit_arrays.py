@@ -80,10 +80,10 @@ def constant(value: object) -> float | None:
     """Number that is written into a kernel and has no gradient; None for every other array."""
     if isinstance(value, float | int):
         return float(value)
-    drjit, number = import_module("drjit"), cast(Number, value)
-    if drjit.grad_enabled(number) or number.state != drjit.VarState.Literal:
+    drjit, state = import_module("drjit"), cast(SimpleNamespace, value).state
+    if drjit.grad_enabled(value) or state != drjit.VarState.Literal:
         return None
-    return float(number[0])
+    return float(cast(Number, value)[0])
 
 
 def number_type(values: Sequence[object]) -> Callable[[float], Number]:
