@@ -11,12 +11,14 @@ import pytest
 
 from mxeon.conformance.diagnosis import comparisons
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.memory import KEPT, LARGEST, Remembered
+from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.run import journal
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.tasks import Findings
-from mxeon.conformance.samples.batch import Batch
+from mxeon.conformance.samples.batch import Batch, Counts
 from mxeon.conformance.samples.uneven_environment import sky_map
 from mxeon.hosts import fragment
 from mxeon.hosts.gl import Host
@@ -137,15 +139,26 @@ def evaluated(host, branch="direct", count=8, **options):
     return host.evaluate(shader, wo, wi, {"roughness": rough}, branch, **options)
 
 
-def test_an_evaluation_is_drawn_once(gl, drawn):
-    first = evaluated(gl, count=13)
-    assert evaluated(gl, count=13) is first and len(drawn) <= 1
-    drawn.clear()
-    others = [{"count": 17}, {"branch": "environment"}, {"output": "throughput"}]
-    others.append({"branch": "environment", "irradiance": sky_map()})
-    for options in others:
-        evaluated(gl, **{"count": 13} | options)
-    assert len(drawn) == len(others)
+def test_a_host_evaluates_once_what_checks_ask_for_again():
+    asked = []
+
+    def evaluate(shader, wo, wi, inputs, branch, **options):
+        asked.append((len(wo), branch, *options.values()))
+        return np.zeros((len(wo), 3), np.float32)
+
+    host = SimpleNamespace(compile=lambda *_, **__: [None], evaluate=evaluate)
+    probe = PairProbe(host, SUBJECTS[0], "eonlib", Counts(pairs=64, few=8))
+    few = probe.few[0]
+    first = probe.albedo(few)
+    assert probe.albedo(few.where(slice(None))) is first and len(asked) == 1
+    others = [few.altered(weight=0.5), few.altered(weight=0.25), few.first(4), probe.turned]
+    for each in [*others, *others]:
+        probe.albedo(each)
+    for _ in range(2):
+        probe.throughput(few, "environment")
+        probe.direct(few)
+        probe.albedo(few, sky_map())
+    assert len(asked) == 1 + len(others) + 3
     with pytest.raises(ValueError, match="read-only"):
         first += 1.0
 

@@ -177,7 +177,7 @@ class Host(FragmentHost):
             for name, rows in arguments.items()
             if program.get(name, None)
         }
-        return self._draw(program, values | environment, size).reshape(-1, 3)[:count]
+        return self._draw(program, {**values, **environment}, size).reshape(-1, 3)[:count]
 
     def _draw(
         self,

@@ -95,9 +95,9 @@ def diagnose_sum(probe: Probe) -> Diagnosis:
 
 def diagnose_reach(probe: Probe) -> Diagnosis:
     """The inputs."""
-    known = subject_of(probe, SurfaceShader).table.without_effect
+    known, wrong = subject_of(probe, SurfaceShader).table.without_effect, misplaced(probe)
     groups = {
-        verb: [name for name in misplaced(probe) if (name in known) == effective]
+        verb: [name for name in wrong if (name in known) == effective]
         for verb, effective in (("changes nothing", False), ("changes something", True))
     }
     texts = (f"{', '.join(names)} {verb}" for verb, names in groups.items() if names)

@@ -3,6 +3,7 @@
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
+from hashlib import blake2b
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +13,7 @@ from mxeon.conformance.samples.batch import Array, Batch
 LARGEST = 1 << 14  # pairs of a batch that is kept
 KEPT = 32  # batches, of half a megabyte each
 NUMBERS = 16  # of an input that is compared by its values and not as an array
+EVALUATIONS = 16  # of a host, of up to 3.5 megabytes each
 
 
 class Remembered:
@@ -56,3 +58,50 @@ def _identity(values: ArrayLike) -> Hashable:
     """The numbers of a value of few, and the identity of an array of many."""
     array = np.asarray(values)
     return (array.shape, array.tobytes()) if array.size <= NUMBERS else id(values)
+
+
+class Evaluations:
+    """Values that a host has for batches; the last of them are kept, and cannot be written.
+
+    Batches are the same whose numbers are: to read them takes less time than the host would.
+    """
+
+    def __init__(self) -> None:
+        self._known: OrderedDict[bytes, Array] = OrderedDict()
+
+    def values(
+        self, batch: Batch, rest: tuple[object, ...], evaluate: Callable[[], Array]
+    ) -> Array:
+        """Values of a batch, which are computed unless they are known.
+
+        Parameters
+        ----------
+        batch : Batch
+        rest : tuple
+            What else they depend on; arrays, and what has a `repr` that tells it from others.
+        evaluate : callable () -> ndarray, shape (N, 3)
+        """
+        key = _digest(batch.wo, batch.wi, batch.frame, *batch.inputs.items(), *rest)
+        if key not in self._known:
+            self._known[key] = evaluate()
+            self._known[key].setflags(write=False)
+        # Forget what was not asked for longest.
+        self._known.move_to_end(key)
+        if len(self._known) > EVALUATIONS:
+            self._known.popitem(last=False)
+        return self._known[key]
+
+
+def _digest(*parts: object) -> bytes:
+    """What tells parts from others: arrays, pairs of a name and an array, and other things."""
+    digest = blake2b()
+    for part in parts:
+        name, value = part if isinstance(part, tuple) else ("", part)
+        digest.update(repr(name).encode())
+        if value is None or isinstance(value, (str, bool)):
+            digest.update(repr(value).encode())
+        else:
+            array = np.ascontiguousarray(value)
+            digest.update(f"{array.dtype} {array.shape}".encode())
+            digest.update(array.data)
+    return digest.digest()

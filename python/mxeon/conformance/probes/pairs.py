@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import DrawnSubject
+from mxeon.conformance.probes.memory import Evaluations
 from mxeon.conformance.probes.probe import LobeProbe
 from mxeon.conformance.samples.batch import SEED, Array, Batch, directions, rounded
 from mxeon.conformance.samples.edge_cases import (
@@ -116,9 +117,17 @@ class PairProbe(LobeProbe):
         output: str = "response",
         irradiance: NDArray[np.float32] | None = None,
     ) -> Array:
-        inputs = self.subject.with_flag(batch.inputs)
-        wo, wi = batch.world(batch.wo), batch.world(batch.wi)
-        values = self.host.evaluate(
-            self._shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
-        )
-        return values.astype(np.float64)
+        def evaluate() -> Array:
+            inputs = self.subject.with_flag(batch.inputs)
+            wo, wi = batch.world(batch.wo), batch.world(batch.wi)
+            values = self.host.evaluate(
+                self._shader, wo, wi, inputs, branch, output=output, irradiance=irradiance
+            )
+            return values.astype(np.float64)
+
+        return self._evaluations.values(batch, (branch, output, irradiance), evaluate)
+
+    @cached_property
+    def _evaluations(self) -> Evaluations:
+        """The host's values: a check, its control and its diagnosis ask for many again."""
+        return Evaluations()

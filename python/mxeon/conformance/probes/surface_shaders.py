@@ -10,6 +10,7 @@ import numpy as np
 
 from mxeon.conformance.nodes.surface_shaders import SurfaceShader
 from mxeon.conformance.probes.bsdf import LEAST_VIEW, reflected
+from mxeon.conformance.probes.memory import Remembered
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples.batch import SEED, Array, Batch, Counts, directions, float32
@@ -108,9 +109,10 @@ class SurfaceShaderProbe(PairProbe):
     def response(self, batch: Batch, branch: str) -> Array:
         return self._evaluate(batch, branch)
 
-    def expected(self, batch: Batch) -> Array:
+    @cached_property
+    def _expected(self) -> Remembered:
         """Values by the layer equation, (N, 3)."""
-        return np.pi * self._reference(batch, "direct")
+        return Remembered(lambda batch: np.pi * self._reference(batch, "direct"))
 
     def _views(self, rng: np.random.Generator, count: int) -> Array:
         """Random directions, none so grazing that a sheen's own equations gain energy."""
