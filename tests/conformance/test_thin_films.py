@@ -2,6 +2,7 @@
 """Thin films: verdicts on stock MaterialX and eonlib, and on shaders with one wrong line."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -153,8 +154,7 @@ def test_the_films_of_eonlib_pass(gl, node):
 def test_a_wrong_line_of_a_film_fails_a_check(gl, tmp_path, name):
     node, text, other, key = WRONG[name]
     library = wrong_copy(tmp_path, text, other, *FILMS_IN)
-    probe = FilmProbe(gl, SUBJECTS[node], library, FEWER)
-    result = judge_check(undiagnosed(ROWS[key]), probe)
+    result = judge_check(undiagnosed(ROWS[key]), probe_of(gl, node, library))
     assert result.verdict == FAILED and result.control.caught
 
 
@@ -221,8 +221,22 @@ def test_sets_of_films_are_as_near_as_its_tolerances_say(name):
     assert 0.3 * SETS[name] < found <= SETS[name]
 
 
+@cache
+def samples(node):
+    """A probe whose samples the others of its node have, and what the models give for them."""
+    return FilmProbe(None, SUBJECTS[node], "", FEWER)
+
+
+def probe_of(host, node, library):
+    """The probe of a node, of few pairs."""
+    probe = FilmProbe(host, SUBJECTS[node], library, FEWER)
+    for name in ("batches", "few", "films", "edges", "albedos", "_expected", "_albedo"):
+        setattr(probe, name, getattr(samples(node), name))
+    return probe
+
+
 def judged(host, node, library):
     """Results of the checks of a film."""
-    probe = FilmProbe(host, SUBJECTS[node], library, FEWER)
+    probe = probe_of(host, node, library)
     rows = [row for row in CHECKS if applies(row, probe.subject, probe.kind, host.name)]
     return [judge_check(row, probe) for row in rows]
