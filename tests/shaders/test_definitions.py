@@ -64,11 +64,12 @@ def test_a_document_with_nodes_of_a_studio_has_eonlibs_lobes(studio):
 
 def test_definitions_need_no_permission_of_the_document(studio, tmp_path, capsys):
     folder, document = studio
+    render = ["render", str(document), "--workers", "0"]
     options = ["--definitions", str(folder), "--output", str(tmp_path / "coat.png")]
-    assert main(["render", str(document), *options, "--size", "32", "--workers", "0"]) == 0
+    assert main([*render, *options, "--size", "32"]) == 0
     image = oiio.ImageBuf(str(tmp_path / "coat.png"))
     assert image.spec().get_string_attribute("mxeon:definitions") == str(folder)
-    assert main(["render", str(document), "--output", str(tmp_path / "no.png")]) == 2
+    assert main([*render, "--output", str(tmp_path / "no.png")]) == 2
     assert "load further definitions by --definitions FOLDER" in one_line(capsys.readouterr().err)
 
 
@@ -77,7 +78,7 @@ def test_code_in_a_document_still_needs_its_permission(studio, tmp_path, capsys)
     code = '<implementation name="mine" nodedef="ND_studio_fade" sourcecode="1" target="genglsl"/>'
     document.write_text(COAT.replace("</materialx>", f"{code}</materialx>"))
     options = ["--definitions", str(folder), "--output", str(tmp_path / "coat.png")]
-    assert main(["render", str(document), *options]) == 2
+    assert main(["render", str(document), *options, "--workers", "0"]) == 2
     assert "pass --allowCode" in one_line(capsys.readouterr().err)
 
 

@@ -229,7 +229,7 @@ def test_a_document_that_includes_itself_is_refused_at_once(tmp_path):
 
 
 def test_an_option_moves_a_limit(tmp_path, capsys):
-    arguments = ["generate", str(written(tmp_path, SMALL)), "--target", "osl"]
+    arguments = ["generate", str(written(tmp_path, SMALL)), "--target", "osl", "--workers", "0"]
     arguments += ["--outputPath", str(tmp_path / "out"), "--maxElements"]
     assert cli.main([*arguments, "5"]) == MISUSE
     assert "raise it with --maxElements" in capsys.readouterr().err
@@ -295,10 +295,11 @@ def test_the_name_of_a_file_steers_no_terminal(tmp_path, capsys):
     path = tmp_path / "a\x1b[31m\nb\u202e.mtlx"
     path.write_text(SMALL)
     out = tmp_path / "out"
-    assert cli.main(["generate", str(path), "--target", "osl", "--outputPath", str(out)]) == 0
+    options = ["--target", "osl", "--outputPath", str(out), "--workers", "0"]
+    assert cli.main(["generate", str(path), *options]) == 0
     assert [each.name.isprintable() for each in out.iterdir()] == [True]
     path.write_text("")
-    cli.main(["generate", str(path), "--target", "osl", "--outputPath", str(out)])
+    cli.main(["generate", str(path), *options])
     assert capsys.readouterr().err.rstrip("\n").isprintable()
 
 
