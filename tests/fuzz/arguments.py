@@ -188,6 +188,7 @@ def base(function):
     raise LookupError(f"{function.__name__} takes none of the valid arguments: {reasons}")
 
 
+@cache
 def _parameters(function):
     """Parameters by name, with types in place of their names."""
     return inspect.signature(function, eval_str=True).parameters
