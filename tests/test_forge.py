@@ -112,7 +112,7 @@ def ended(library, folder):
         "GITHUB_STEP_SUMMARY": str(folder / "summary.md"),
         "LIBRARY": str(library),
         "REPORT": str(folder / "report"),
-        "OPTIONS": "--node oren_nayar_diffuse_bsdf --host gl",
+        "OPTIONS": "--node oren_nayar_diffuse_bsdf --host gl --workers 0",
     }
     command = ["bash", "--noprofile", "--norc", "-e", "-o", "pipefail", folder / "script.sh"]
     return subprocess.run(command, env=os.environ | variables, capture_output=True, text=True)
