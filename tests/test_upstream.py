@@ -12,6 +12,7 @@ from docs.upstream import ledger as rows
 from docs.upstream import marks
 from docs.upstream import update as ledger
 from mxeon.conformance.results.known_issues.issue import Issue, read_issues
+from mxeon.errors import NotRun
 from tests.support.availability import available
 from tests.support.sharing import shared
 from tests.support.tolerances import PRINTED
@@ -36,9 +37,20 @@ def judged(tmp_path_factory):
     """A function of a host: results and place of its defects, judged by one process for all."""
 
     @cache
+    def outcome(host):
+        """Results and place, or the reason why there are none."""
+        try:
+            make = partial(ledger.judged, host)
+            return shared(tmp_path_factory, f"defects on {host}", make), None
+        except NotRun as reason:
+            return None, reason
+
     def results(host):
+        found, reason = outcome(host)
         with available(host):
-            return shared(tmp_path_factory, f"defects on {host}", partial(ledger.judged, host))
+            if reason:
+                raise reason
+        return found
 
     return results
 
