@@ -3,6 +3,7 @@
 
 import re
 import subprocess
+from functools import cache
 
 import pytest
 
@@ -17,6 +18,7 @@ FILES = sorted({change.file for change in MATERIALX.changes})
 of_each_project = pytest.mark.parametrize("project", patches.PROJECTS, ids=lambda each: each.name)
 
 
+@cache
 def made(project):
     """The patches of a project as its pages and changes have them now."""
     hosts = {"materialx": "gl", "openpbr": "gl", "three.js": "three", "blender": "cycles"}

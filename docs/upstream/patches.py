@@ -76,7 +76,7 @@ PROJECTS = (
     Project(  # whose graph of a surface is MaterialX's
         "openpbr",
         installed,
-        [each for each in REPAIRS if each.page.startswith("openpbr")],
+        tuple(each for each in REPAIRS if each.page.startswith("openpbr")),
         lambda file: f"reference/{Path(file).name}",
     ),
     Project("three.js", _modules(THREE), THREE_REPAIRS),
