@@ -37,17 +37,17 @@ WIDTH = 0.07
 PAIR = ((0.294, 0.785), (0.275, 0.725), 0.165)
 STEEP = 0.2
 FACETS = (
-    (3.4363, -1.7079, -3.0799, 1.3454, 0.0062777, 2.3748, -2.8494, -7.9176, 8.404, 0.056171),
-    (-0.0072539, 4.8186, -6.3381, 1.4473, 3.6913, -7.7746, 3.6991, -2.4648, 3.3692, -0.38795),
-    (0.42872, -0.9025, 0.79165, -0.59517, 0.78648, -0.40842, -0.75623, -1.8372, 2.2153, -0.0055537),
+    (3.4281, -1.6905, -3.115, 1.3756, 0.048437, 2.3538, -2.8753, -7.9655, 8.4484, 0.061066),
+    (-0.0022195, 4.7071, -6.0989, 1.3232, 3.7656, -7.8449, 3.6632, -2.5213, 3.4451, -0.39131),
+    (0.45102, -0.94507, 0.79284, -0.55674, 0.66902, -0.18339, -0.85444, -1.7352, 2.0997, -0.02071),
 )  # fmt: skip
-SHARE = 1.1
+SHARE = 0.97
 ALIKE = 0.09  # reach below which two nodes serve
 WHITE = {"color82": 1.0, "color90": 1.0}
 # Orders are summed while the square of one exceeds a limit, of a value this times the square of both
-# polarizations' mean reflectances in all channels, of a node of a rule this; each counts as smaller than the
-# one before it by a factor at least.
-VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 6e-8, 0.6
+# polarizations' mean reflectances in all channels, of a node of a rule this times the square of its width if
+# that is more; each counts as smaller than the one before it by a factor at least.
+VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 5e-6, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
 LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
 
@@ -112,7 +112,7 @@ def shader_curve(category, material, mu, width=0.0):
     sizes = [np.sqrt(R * S) for R, S in pairs]
     # As many orders as count of both polarizations and all channels.
     bright = 3.0 * (sum(means) ** 2).mean(axis=0)
-    least = np.where(spread > 0.0, MEAN_ORDER, VALUE_ORDER * bright)
+    least = np.maximum(VALUE_ORDER * bright, MEAN_ORDER * np.square(width))
     count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
     xyz = sum(
         mean - 2.0 * weight * counted_orders(r * np.exp(1j * each.phase), opd, spread, count)
@@ -264,12 +264,12 @@ def visible_average(category, material, alpha, mu):
     return (film / mirror).T
 
 
-def visible_mean(category, material, alpha, mu, coefficients=FACETS, count=4):
+def visible_mean(category, material, alpha, mu, coefficients=FACETS, count=4, share=SHARE):
     """The same in the shader's cosines, or by other coefficients, or in another number of cosines."""
     many, few = (
         sum(
             weight * shader_curve(category, material, cosine, width)
-            for cosine, weight, width in _nodes(mu, alpha, coefficients, number)
+            for cosine, weight, width in _nodes(mu, alpha, coefficients, number, share)
         )
         for number in (count, min(count, 2))
     )
@@ -283,7 +283,7 @@ MIRRORS = {
 }
 
 
-def _nodes(mu, alpha, coefficients, count):
+def _nodes(mu, alpha, coefficients, count, share):
     """Cosines that stand for the visible facets, their weights and widths.
 
     These are Gauss's nodes for a semicircle, which has fewer facets at its ends than in its middle.
@@ -292,7 +292,7 @@ def _nodes(mu, alpha, coefficients, count):
     for angle in np.pi * np.arange(1, count + 1) / (count + 1):
         node, weight = np.cos(angle), 2.0 * np.sin(angle) ** 2 / (count + 1)
         offset = reach * (node + bend * (4.0 * node * node - 1.0))
-        yield np.clip(mean + offset, 0.0, 1.0), weight, SHARE / count * reach
+        yield np.clip(mean + offset, 0.0, 1.0), weight, share / count * reach
 
 
 def facets(mu, alpha, coefficients):

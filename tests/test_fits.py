@@ -193,10 +193,12 @@ def test_the_script_chooses_the_nodes_of_a_film():
     assert thin_film_nodes.pair() == (low, high, weight, pair_width)
 
 
-def test_the_script_gives_the_coefficients_of_the_facets():
+def test_the_script_gives_the_width_and_the_coefficients_of_the_facets():
+    share, coefficients = thin_film_nodes.facets(thin_film.SHARE, thin_film_nodes.STEPS[-1:])
+    assert share == thin_film.SHARE
     mu, alpha = thin_film_nodes.grid()
     shipped, fitted = (
-        thin_film.facets(mu, alpha, each) for each in (thin_film.FACETS, thin_film_nodes.facets())
+        thin_film.facets(mu, alpha, each) for each in (thin_film.FACETS, coefficients)
     )
     np.testing.assert_allclose(fitted, shipped, atol=1e-3)
 

@@ -17,20 +17,20 @@
 #define MICROFACET_OUTER 0.80901699
 
 // Mean, reach and bend of four nodes for visible facets, fitted to the averages of random films. Source:
-// fits/thin_film_nodes.py. Domain: mu and alpha in [0, 1]. Largest error of a reflectance: 3.1e-2.
-#define MICROFACET_FACETS_00 vec3(3.4363, -0.0072539, 0.42872)
-#define MICROFACET_FACETS_01 vec3(-1.7079, 4.8186, -0.9025)
-#define MICROFACET_FACETS_02 vec3(-3.0799, -6.3381, 0.79165)
-#define MICROFACET_FACETS_03 vec3(1.3454, 1.4473, -0.59517)
-#define MICROFACET_FACETS_10 vec3(0.0062777, 3.6913, 0.78648)
-#define MICROFACET_FACETS_11 vec3(2.3748, -7.7746, -0.40842)
-#define MICROFACET_FACETS_12 vec3(-2.8494, 3.6991, -0.75623)
-#define MICROFACET_FACETS_20 vec3(-7.9176, -2.4648, -1.8372)
-#define MICROFACET_FACETS_21 vec3(8.404, 3.3692, 2.2153)
-#define MICROFACET_FACETS_30 vec3(0.056171, -0.38795, -0.0055537)
+// fits/thin_film_nodes.py. Domain: mu and alpha in [0, 1]. Largest error of a reflectance: 3.2e-2.
+#define MICROFACET_FACETS_00 vec3(3.4281, -0.0022195, 0.45102)
+#define MICROFACET_FACETS_01 vec3(-1.6905, 4.7071, -0.94507)
+#define MICROFACET_FACETS_02 vec3(-3.115, -6.0989, 0.79284)
+#define MICROFACET_FACETS_03 vec3(1.3756, 1.3232, -0.55674)
+#define MICROFACET_FACETS_10 vec3(0.048437, 3.7656, 0.66902)
+#define MICROFACET_FACETS_11 vec3(2.3538, -7.8449, -0.18339)
+#define MICROFACET_FACETS_12 vec3(-2.8753, 3.6632, -0.85444)
+#define MICROFACET_FACETS_20 vec3(-7.9655, -2.5213, -1.7352)
+#define MICROFACET_FACETS_21 vec3(8.4484, 3.4451, 2.0997)
+#define MICROFACET_FACETS_30 vec3(0.061066, -0.39131, -0.02071)
 
 // Width of all nodes together, relative to their reach; reach below which two serve.
-#define MICROFACET_SHARE 1.1
+#define MICROFACET_SHARE 0.97
 #define MICROFACET_ALIKE 0.09
 
 // Compensation below which two cosines serve for F_ss.

@@ -33,9 +33,10 @@
 #define THIN_FILM_LEAST 1e-12
 
 // Orders are summed while the square of one exceeds a limit, of a value this times the square of both mean
-// reflectances, of a node of a rule this; each counts as smaller than the one before it by a factor at least.
+// reflectances, of a node of a rule this times the square of its width, since a node that stands for few
+// cosines is to be as exact as a value; each counts as smaller than the one before it by a factor at least.
 #define THIN_FILM_ORDER_VALUE 2e-14
-#define THIN_FILM_ORDER_MEAN 6e-8
+#define THIN_FILM_ORDER_MEAN 5e-6
 #define THIN_FILM_ORDER_RATIO 0.6
 
 // What all cosines share: the film's index, at least that of vacuum, the inverse of its square, twice the
@@ -75,29 +76,33 @@ void thin_film_multiply(inout vec3 re, inout vec3 im, vec3 x, vec3 y)
 }
 
 // Sum over orders m of the colors of Re A z^m S_m, z of each polarization and channel, A its weight, S_m =
-// k^(m^2) exp(2 pi i mu m opd) of each sensitivity, k = exp(-(2 pi sigma opd)^2). A color of S_m serves all
-// z. Where all z are real, compilers drop half of a step.
+// k^(m^2) exp(i m x) of each sensitivity, x = 2 pi mu opd, k = exp(-(2 pi sigma opd)^2). A color of S_m serves
+// all z. Where all z are real, cosines suffice, C_m = Re S_m: C_(m + 1) = 2 k^(2 m) C_1 C_m - k^(4 m) C_(m - 1),
+// and compilers drop the sines and half of a step.
 vec3 thin_film_orders(vec3 A_s, vec3 A_p, vec3 re_s, vec3 im_s, vec3 re_p, vec3 im_p, float opd,
                       float width, float limit, bool is_real)
 {
-    // The first order, and its ratio to the second. Wide fringes are seen by the nodes of a rule,
-    // narrow ones vanish from its mean: exp(-(2 pi mu width)^4 / 4).
+    // The first order, its ratio to the second, and the order before it with its share of a real second.
+    // Wide fringes are seen by the nodes of a rule, narrow ones vanish from its mean: exp(-(2 pi mu width)^4 / 4).
     float phase = 2.0 * M_PI * opd;
     vec4 spread = THIN_FILM_POSITIONS * (2.0 * M_PI * width);
     vec4 spread2 = spread * spread;
     vec4 k = exp(-THIN_FILM_VARIANCES * (phase * phase) - 0.25 * spread2 * spread2);
     vec4 k2 = k * k;
+    vec4 k4 = k2 * k2;
     vec4 wave_re = k * mx_cos(THIN_FILM_POSITIONS * phase);
     vec4 wave_im = k * mx_sin(THIN_FILM_POSITIONS * phase);
     vec4 ratio_re = k2 * wave_re;
     vec4 ratio_im = k2 * wave_im;
+    vec4 before = vec4(1.0);
+    vec4 share = k4;
 
     // Squares of the largest first order, and of its ratio to the second. The first sensitivity is narrowest.
     vec3 R_s = re_s * re_s + im_s * im_s;
     vec3 R_p = re_p * re_p + im_p * im_p;
     vec3 largest = max(R_s, R_p);
     vec3 first = max(A_s * A_s * R_s, A_p * A_p * R_p);
-    float narrow2 = k2.x * k2.x;
+    float narrow2 = k4.x;
     float ratio2 = max(largest.x, max(largest.y, largest.z)) * narrow2 * k2.x;
     float order2 = max(first.x, max(first.y, first.z)) * k2.x;
     ratio2 = min(ratio2, THIN_FILM_ORDER_RATIO);
@@ -115,18 +120,22 @@ vec3 thin_film_orders(vec3 A_s, vec3 A_p, vec3 re_s, vec3 im_s, vec3 re_p, vec3 
         {
             power_re_s *= re_s;
             power_re_p *= re_p;
+            vec4 next = 2.0 * ratio_re * wave_re - share * before;
+            before = wave_re;
+            wave_re = next;
+            share *= k4;
         }
         else
         {
             orders -= (power_im_s + power_im_p) * thin_film_color(wave_im);
             thin_film_multiply(power_re_s, power_im_s, re_s, im_s);
             thin_film_multiply(power_re_p, power_im_p, re_p, im_p);
+            vec4 next = wave_re * ratio_re - wave_im * ratio_im;
+            wave_im = wave_re * ratio_im + wave_im * ratio_re;
+            wave_re = next;
+            ratio_im *= k2;
         }
-        vec4 next_re = wave_re * ratio_re - wave_im * ratio_im;
-        wave_im = wave_re * ratio_im + wave_im * ratio_re;
-        wave_re = next_re;
         ratio_re *= k2;
-        ratio_im *= k2;
         order2 *= ratio2;
         ratio2 *= narrow2;
     } while (order2 > limit);
@@ -163,7 +172,8 @@ void thin_film_amplitude(vec3 x, vec3 y, vec3 u, vec3 v, out vec3 re, out vec3 i
     im = 2.0 * (y * u - x * v) * inverse;
 }
 
-// Amplitudes of the lower interface under a film, at cosines mu_t in the film and a sine above it whose square is sin2, for both polarizations.
+// Amplitudes of the lower interface under a film, at a cosine mu_t in the film and a sine above it whose
+// square is sin2, for both polarizations.
 void thin_film_lower(float mu_t, ThinFilm film, float sin2, FresnelData fd, out vec3 re_s,
                      out vec3 im_s, out vec3 re_p, out vec3 im_p)
 {
@@ -212,7 +222,7 @@ vec3 thin_film_fresnel(float mu, float width, ThinFilm film, FresnelData fd)
     vec3 A_s, A_p;
     vec3 mean = thin_film_polarized(r_s * r_s, re_s * re_s + im_s * im_s, A_s)
                 + thin_film_polarized(r_p * r_p, re_p * re_p + im_p * im_p, A_p);
-    float limit = width > 0.0 ? THIN_FILM_ORDER_MEAN : THIN_FILM_ORDER_VALUE * dot(mean, mean);
+    float limit = max(THIN_FILM_ORDER_VALUE * dot(mean, mean), THIN_FILM_ORDER_MEAN * width * width);
     vec3 orders = thin_film_orders(A_s, A_p, -r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p,
                                    film.twice * nu,
                                    film.twice * width * mu / max(nu, THIN_FILM_LEAST), limit,
