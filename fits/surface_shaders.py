@@ -137,9 +137,11 @@ def errors(shader, seed):
     with patch.object(probes, "SEED", seed):
         probe = probes.SurfaceShaderProbe(None, shader, "eonlib")
         [batch], [views] = probe.batches, probe.cosines
-    exact = probe.expected(batch), probe._reference(views, "environment")
+    asked = ((batch, "direct"), (views, "environment"))  # of which a probe keeps the first answer
+    exact = [probe._reference(*each) for each in asked]
     with fits():
-        fitted = probe.expected(batch), probe._reference(views, "environment")
+        fitted = [probe._reference(*each) for each in asked]
+    exact[0], fitted[0] = np.pi * exact[0], np.pi * fitted[0]
     pairs = {"values": (fitted[0], exact[0]), "albedos": (fitted[1], exact[1])}
     return {
         f"{kind}{suffix}": float(metric(*pair).max())
