@@ -198,11 +198,13 @@ def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.
 
     With a margin a layer has so many columns and rows more.
     """
+    # Make room for layers, one above the other.
     width, height = size
-    layers = values[np.newaxis] if values.ndim == 2 else values  # one above the other
+    layers = values[np.newaxis] if values.ndim == 2 else values
     number, count, components = layers.shape
     shape = (number, height + margin, width + margin, components)
     frames = np.zeros(shape, dtype=np.float32)
+    # Fill them with one value, or row by row.
     if count == 1:
         frames[:, :height, :width] = layers[:, :, np.newaxis]
     else:
