@@ -37,17 +37,17 @@ WIDTH = 0.07
 PAIR = ((0.294, 0.785), (0.275, 0.725), 0.165)
 STEEP = 0.2
 FACETS = (
-    (3.4281, -1.6905, -3.115, 1.3756, 0.048437, 2.3538, -2.8753, -7.9655, 8.4484, 0.061066),
-    (-0.0022195, 4.7071, -6.0989, 1.3232, 3.7656, -7.8449, 3.6632, -2.5213, 3.4451, -0.39131),
-    (0.45102, -0.94507, 0.79284, -0.55674, 0.66902, -0.18339, -0.85444, -1.7352, 2.0997, -0.02071),
+    (3.4303, -1.7007, -3.1011, 1.3698, 0.046978, 2.3613, -2.8816, -7.968, 8.4497, 0.062022),
+    (-0.000094979, 4.6952, -6.0773, 1.3104, 3.7667, -7.8535, 3.6722, -2.5177, 3.4417, -0.39209),
+    (0.44939, -0.93653, 0.78291, -0.55497, 0.66991, -0.19493, -0.84088, -1.7317, 2.096, -0.02136),
 )  # fmt: skip
 SHARE = 0.97
 ALIKE = 0.09  # reach below which two nodes serve
 WHITE = {"color82": 1.0, "color90": 1.0}
 # Orders are summed while the square of one exceeds a limit, of a value this times the square of both
-# polarizations' mean reflectances in all channels, of a node of a rule this times the square of its width if
+# polarizations' mean reflectances in all channels, of a node of a rule this times the cube of its width if
 # that is more; each counts as smaller than the one before it by a factor at least.
-VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 5e-6, 0.6
+VALUE_ORDER, MEAN_ORDER, ORDER_RATIO = 2e-14, 2e-4, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # of the sensitivities
 LEAST_PATH, LEAST_LOST = 1e-21, 1e-12  # of a path difference in m, and of light that is not trapped
 
@@ -112,7 +112,7 @@ def shader_curve(category, material, mu, width=0.0):
     sizes = [np.sqrt(R * S) for R, S in pairs]
     # As many orders as count of both polarizations and all channels.
     bright = 3.0 * (sum(means) ** 2).mean(axis=0)
-    least = np.maximum(VALUE_ORDER * bright, MEAN_ORDER * np.square(width))
+    least = np.maximum(VALUE_ORDER * bright, MEAN_ORDER * np.power(width, 3))
     count = order_count(np.stack(weights), np.stack(sizes), opd, spread, least)
     xyz = sum(
         mean - 2.0 * weight * counted_orders(r * np.exp(1j * each.phase), opd, spread, count)

@@ -18,16 +18,16 @@
 
 // Mean, reach and bend of four nodes for visible facets, fitted to the averages of random films. Source:
 // fits/thin_film_nodes.py. Domain: mu and alpha in [0, 1]. Largest error of a reflectance: 3.2e-2.
-#define MICROFACET_FACETS_00 vec3(3.4281, -0.0022195, 0.45102)
-#define MICROFACET_FACETS_01 vec3(-1.6905, 4.7071, -0.94507)
-#define MICROFACET_FACETS_02 vec3(-3.115, -6.0989, 0.79284)
-#define MICROFACET_FACETS_03 vec3(1.3756, 1.3232, -0.55674)
-#define MICROFACET_FACETS_10 vec3(0.048437, 3.7656, 0.66902)
-#define MICROFACET_FACETS_11 vec3(2.3538, -7.8449, -0.18339)
-#define MICROFACET_FACETS_12 vec3(-2.8753, 3.6632, -0.85444)
-#define MICROFACET_FACETS_20 vec3(-7.9655, -2.5213, -1.7352)
-#define MICROFACET_FACETS_21 vec3(8.4484, 3.4451, 2.0997)
-#define MICROFACET_FACETS_30 vec3(0.061066, -0.39131, -0.02071)
+#define MICROFACET_FACETS_00 vec3(3.4303, -0.000094979, 0.44939)
+#define MICROFACET_FACETS_01 vec3(-1.7007, 4.6952, -0.93653)
+#define MICROFACET_FACETS_02 vec3(-3.1011, -6.0773, 0.78291)
+#define MICROFACET_FACETS_03 vec3(1.3698, 1.3104, -0.55497)
+#define MICROFACET_FACETS_10 vec3(0.046978, 3.7667, 0.66991)
+#define MICROFACET_FACETS_11 vec3(2.3613, -7.8535, -0.19493)
+#define MICROFACET_FACETS_12 vec3(-2.8816, 3.6722, -0.84088)
+#define MICROFACET_FACETS_20 vec3(-7.968, -2.5177, -1.7317)
+#define MICROFACET_FACETS_21 vec3(8.4497, 3.4417, 2.096)
+#define MICROFACET_FACETS_30 vec3(0.062022, -0.39209, -0.02136)
 
 // Width of all nodes together, relative to their reach; reach below which two serve.
 #define MICROFACET_SHARE 0.97

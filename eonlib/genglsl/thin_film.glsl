@@ -33,10 +33,10 @@
 #define THIN_FILM_LEAST 1e-12
 
 // Orders are summed while the square of one exceeds a limit, of a value this times the square of both mean
-// reflectances, of a node of a rule this times the square of its width, since a node that stands for few
+// reflectances, of a node of a rule this times the cube of its width, since a node that stands for few
 // cosines is to be as exact as a value; each counts as smaller than the one before it by a factor at least.
 #define THIN_FILM_ORDER_VALUE 2e-14
-#define THIN_FILM_ORDER_MEAN 5e-6
+#define THIN_FILM_ORDER_MEAN 2e-4
 #define THIN_FILM_ORDER_RATIO 0.6
 
 // What all cosines share: the film's index, at least that of vacuum, the inverse of its square, twice the
@@ -222,7 +222,7 @@ vec3 thin_film_fresnel(float mu, float width, ThinFilm film, FresnelData fd)
     vec3 A_s, A_p;
     vec3 mean = thin_film_polarized(r_s * r_s, re_s * re_s + im_s * im_s, A_s)
                 + thin_film_polarized(r_p * r_p, re_p * re_p + im_p * im_p, A_p);
-    float limit = max(THIN_FILM_ORDER_VALUE * dot(mean, mean), THIN_FILM_ORDER_MEAN * width * width);
+    float limit = max(THIN_FILM_ORDER_VALUE * dot(mean, mean), THIN_FILM_ORDER_MEAN * width * width * width);
     vec3 orders = thin_film_orders(A_s, A_p, -r_s * re_s, -r_s * im_s, -r_p * re_p, -r_p * im_p,
                                    film.twice * nu,
                                    film.twice * width * mu / max(nu, THIN_FILM_LEAST), limit,
