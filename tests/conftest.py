@@ -3,15 +3,16 @@
 
 import os
 import signal
+from contextlib import nullcontext
 
 import pytest
-from coverage import Coverage
 
 from mxeon.conformance import reference as reference_host
 from mxeon.hosts import open_engine
 from mxeon.hosts.process import Worker
 from mxeon.jobs.signals import ENDING
 from tests.support.availability import available, required
+from tests.support.tracing import untraced
 
 
 def pytest_configure():
@@ -40,14 +41,8 @@ def pytest_make_parametrize_id(val):
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
     """Trace lines in the tests of the models alone, which have to reach them all by themselves."""
-    coverage = None if "models" in item.path.parts else Coverage.current()
-    if coverage is None:
+    with nullcontext() if "models" in item.path.parts else untraced():
         return (yield)
-    coverage.stop()
-    try:
-        return (yield)
-    finally:
-        coverage.start()
 
 
 @pytest.fixture(scope="session", autouse=True)

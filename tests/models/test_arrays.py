@@ -8,13 +8,12 @@ same function in NumPy, where these can be relied on.
 import inspect
 import re
 import sys
-from contextlib import contextmanager
+from contextlib import nullcontext
 from functools import lru_cache, partial, wraps
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from coverage import Coverage
 
 import mxeon
 from docs import arrays as table
@@ -25,6 +24,7 @@ from mxeon.models.core.namespaces import NUMPY, array_namespace
 from mxeon.models.core.ranges import RANGES
 from mxeon.sampling import eon_sample
 from tests.fuzz import arguments
+from tests.support.tracing import untraced
 
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption_coefficient")
 COLORS = {"rho", "color", "color0", "color82", "color90", "tint", "ior", "extinction"} | set(TINTS)
@@ -136,19 +136,6 @@ def jax():
         gradients=gradients,
         transforms=(jit, lambda f: jit(library.vmap(f))),
     )
-
-
-@contextmanager
-def untraced(whether):
-    """Trace no lines, which costs JAX's own tracing a third more time: other tests reach the same."""
-    coverage = Coverage.current() if whether else None
-    if coverage:
-        coverage.stop()
-    try:
-        yield
-    finally:
-        if coverage:
-            coverage.start()
 
 
 @pytest.fixture(params=[pytorch, jax])
@@ -278,7 +265,7 @@ def differences(function, arrays, switches, name):
     ],
 )
 def test_gradients_are_finite_and_those_of_differences(make, name):
-    with untraced(make is jax):
+    with untraced() if make is jax else nullcontext():  # other tests reach the same lines
         assert_gradients(make(), name, False)
 
 
