@@ -11,6 +11,7 @@ from mxeon import mitsuba, models
 from mxeon.albedo import fon_albedo_dir
 from mxeon.models import eon_brdf, unchecked
 from mxeon.models.core import drjit_arrays
+from mxeon.models.core.edges import power
 from mxeon.models.diffuse import formulas
 from mxeon.models.microfacet.missing import missing_light
 from tests.fuzz import arguments
@@ -62,6 +63,12 @@ def test_values_are_those_of_numpy(llvm, name):
     assert error.shape == expected.shape and error.max() <= DRJIT_VALUE
 
 
+def test_a_whole_exponent_is_a_product(llvm):
+    x = np.array([0.0, 0.3, 2.0], np.float32)
+    for exponent in (3.0, llvm.Float(3.0)):
+        assert np.allclose(power(llvm.Float(x), exponent), x * x * x, 3e-7, 0.0)
+
+
 @pytest.mark.parametrize("exponent", (0.5, 4.5))
 def test_a_broken_exponent_gives_the_values_of_numpy(llvm, exponent):
     rng, row = np.random.default_rng(SEED), (COLOR, 0.9, 1.0, 0.5, exponent)
@@ -94,6 +101,12 @@ def test_the_light_that_facets_miss_is_that_of_numpy(llvm, kind, alpha):
     ends = [missing_light(exact * (1.0 + h), np.array(alpha)) for h in (1e-4, -1e-4)]
     slope = np.broadcast_to(dr.grad(cosine), mu.shape)[inside] * exact
     assert np.abs(slope - (ends[0] - ends[1]) / 2e-4).max() <= DRJIT_SLOPE
+
+
+def test_the_light_that_facets_miss_takes_an_alpha_each(llvm):
+    mu, alpha = (np.random.default_rng(SEED).random((2, PAIRS)).astype(np.float32)).astype(float)
+    found = np.array(missing_light(llvm.Float(mu), llvm.Float(alpha)))
+    assert np.abs(found - missing_light(mu, alpha)).max() <= DRJIT_VALUE
 
 
 def test_gradients_by_the_parameters_are_those_of_differences(llvm):

@@ -60,8 +60,6 @@ class Coat:
 
     def _sums(self, mu: Array, *curves: list[float] | Array) -> list[Array]:
         """Curves at these cosines, not below 0."""
-        if library(self.alpha) and not library(mu):
-            mu = like(mu, cast(Array, self.alpha))
         x = place(mu, self.alpha)
         return [at_least_0(chebyshev_sum(cast(Array, each), x)) for each in curves]
 

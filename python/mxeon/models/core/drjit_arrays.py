@@ -76,14 +76,14 @@ def lift(number: Callable[[float], Number], value: object) -> object:
     return Columns(parts) if numbers.ndim else parts[0]
 
 
-def constant(value: object) -> float | None:
+def constant(value: float | Number) -> float | None:
     """Number that is written into a kernel and has no gradient; None for every other array."""
-    if isinstance(value, float | int):
-        return float(value)
+    if isinstance(value, float):
+        return value
     drjit, state = import_module("drjit"), cast(SimpleNamespace, value).state
     if drjit.grad_enabled(value) or state != drjit.VarState.Literal:
         return None
-    return float(cast(Number, value)[0])
+    return float(value[0])
 
 
 def number_type(values: Sequence[object]) -> Callable[[float], Number]:
