@@ -6,6 +6,7 @@ import math
 import re
 import subprocess
 import sys
+import threading
 from base64 import b64encode
 from dataclasses import replace
 from hashlib import sha256
@@ -412,8 +413,10 @@ def test_on_a_full_disk_each_file_is_whole_or_missing_and_said_so(run, tmp_path,
     room = max(
         file.stat().st_size for file in (tmp_path / "whole").rglob("*.*") if name in str(file)
     )
+    before = set(threading.enumerate())
     with room_for(room - 1), pytest.raises(OSError) as error:
         write(run, tmp_path / "part")
+    assert set(threading.enumerate()) <= before  # while the error still holds what was under way
     assert not Path(error.value.filename).exists()
     for file in (tmp_path / "part").rglob("*.*"):
         assert file.stat().st_size == sizes[file.name]

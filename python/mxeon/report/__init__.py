@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -93,7 +93,8 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
     # Find the file of each reference picture, and the largest difference from it.
     pictures = _with_references(run.pictures)
     stems = dict(zip(map(_place, pictures), image_names(pictures), strict=True))
-    differences = in_threads(_largest_difference, run.pictures)
+    with in_threads(_largest_difference, run.pictures) as found:
+        differences = list(found)
     for picture, stem, largest in zip(run.pictures, run.image_names, differences, strict=True):
         # Name the files.
         files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}
@@ -147,16 +148,20 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     # Write the pictures.
     pictures = _with_references(run.pictures)
     stems = [folder / "pictures" / stem for stem in image_names(pictures)]
-    for _ in in_threads(_write_picture, zip(pictures, stems, strict=True)):
-        pass
+    with in_threads(_write_picture, zip(pictures, stems, strict=True)) as written:
+        for _ in written:
+            pass
     # Write the pages on the defects beside it, for a site that has no address.
     for issue in {each for one in run.results for each in issues_of(one)}:
         text = page_file(issue).read_text(encoding="utf-8")
         write_text(folder / PAGES / f"{issue.page}.md", text)
     # Write the page, piece by piece.
-    with replacing(folder / "report.html") as beside, open(beside, "w", encoding="utf-8") as page:
-        for text in html(run):
-            page.write(text)
+    with (
+        closing(html(run)) as pieces,
+        replacing(folder / "report.html") as beside,
+        open(beside, "w", encoding="utf-8") as page,
+    ):
+        page.writelines(pieces)
     return folder / "report.html"
 
 
@@ -210,8 +215,8 @@ def needing_extra(name: str) -> Iterator[None]:
         raise
 
 
-def html(run: Run) -> Iterator[str]:
-    """A run as one self-contained HTML page.
+def html(run: Run) -> Generator[str, None, None]:
+    """A run as one self-contained HTML page; threads draw its pictures until it is closed.
 
     Yields
     ------

@@ -2,7 +2,7 @@
 """The report page, one self-contained HTML file. Needs the `report` extra."""
 
 from base64 import b64encode
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.resources import files
@@ -198,7 +198,7 @@ def _plot(
     return {"curve": curves[0], "svg": Markup(svg), "legend": legend}
 
 
-def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
+def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
     """The page of a run.
 
     Parameters
@@ -217,7 +217,6 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
     places, audit = checks_by_place(asked), checks_by_place(own, "audit")
     rows = list(materials(run.pictures).items())
     shown = rows[:SHOWN_MATERIALS]
-    drawn = in_threads(panels, (each for _, scenes in shown for each in scenes.values()))
     script = files("mxeon.report").joinpath("templates/report.js").read_text(encoding="utf-8")
     environment = Environment(
         loader=PackageLoader("mxeon.report"),
@@ -233,24 +232,25 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Iterator[str]:
         "look": LOOKS.__getitem__,
         "nearest": nearest,
     }
-    return environment.get_template("report.html.jinja").generate(
-        run=run,
-        summary=run.summary,
-        script=Markup(script),
-        script_hash=b64encode(sha256(script.encode()).digest()).decode(),
-        places=places,
-        audit=audit,
-        matrix=matrix(places),
-        identities={identity.name: identity for identity in run.hosts},
-        reasons=reasons(run.results),
-        shown=shown,
-        listed=rows[SHOWN_MATERIALS:],
-        next_panels=drawn.__next__,
-        file_of=file_of,
-        gradient=Markup(difference_gradient()),
-        plots=plots(run.curves),
-        verdicts=tuple(LOOKS),
-        FAILED=FAILED,
-        PASSED=PASSED,
-        DIFFERS=DIFFERS,
-    )
+    with in_threads(panels, (each for _, scenes in shown for each in scenes.values())) as drawn:
+        yield from environment.get_template("report.html.jinja").generate(
+            run=run,
+            summary=run.summary,
+            script=Markup(script),
+            script_hash=b64encode(sha256(script.encode()).digest()).decode(),
+            places=places,
+            audit=audit,
+            matrix=matrix(places),
+            identities={identity.name: identity for identity in run.hosts},
+            reasons=reasons(run.results),
+            shown=shown,
+            listed=rows[SHOWN_MATERIALS:],
+            next_panels=drawn.__next__,
+            file_of=file_of,
+            gradient=Markup(difference_gradient()),
+            plots=plots(run.curves),
+            verdicts=tuple(LOOKS),
+            FAILED=FAILED,
+            PASSED=PASSED,
+            DIFFERS=DIFFERS,
+        )

@@ -4,6 +4,7 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from itertools import islice
 from typing import TypeVar
 
@@ -13,18 +14,25 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 
-def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+@contextmanager
+def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
     """Results of `work` on every item, in their order; a few items ahead of the caller are begun.
 
-    The first error ends the work, and is raised.
+    The first error ends the work, and is raised. The threads end with the block. Were they left to the
+    collection of garbage, which any thread may begin at any time, it could wait there for itself.
     """
-    waiting, begun = iter(items), deque[Future[R]]()
+    begun = deque[Future[R]]()
     with ThreadPoolExecutor(THREADS) as pool:
         try:
-            begun.extend(pool.submit(work, item) for item in islice(waiting, 2 * THREADS))
-            while begun:
-                yield begun.popleft().result()
-                begun.extend(pool.submit(work, item) for item in islice(waiting, 1))
+            yield _results((pool.submit(work, item) for item in items), begun)
         finally:
             for future in begun:
                 future.cancel()
+
+
+def _results(futures: Iterator[Future[R]], begun: deque[Future[R]]) -> Iterator[R]:
+    """Results of futures, each of which is begun when it is taken, some ahead of the caller."""
+    begun.extend(islice(futures, 2 * THREADS))
+    while begun:
+        yield begun.popleft().result()
+        begun.extend(islice(futures, 1))
