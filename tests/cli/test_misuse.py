@@ -124,7 +124,8 @@ def test_in_a_batch_the_other_files_are_done(tmp_path, capsys):
 
 def test_a_document_that_ends_its_process_did_not_run(tmp_path, monkeypatch, capsys):
     error = WorkerCrashed("a: worker process crashed (SIGSEGV)")
-    monkeypatch.setattr(generate, "run_batch", lambda *_: iter([BatchResult(None, error=error)]))
+    results = (each for each in [BatchResult(None, error=error)])
+    monkeypatch.setattr(generate, "run_batch", lambda *_: results)
     arguments = ["generate", CLAY, "--target", "osl", "--outputPath", str(tmp_path)]
     assert main(arguments) == NOT_RUN
     assert one_line(capsys.readouterr().err) == f"mxeon: {error}"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The journal of a run: nothing finished is lost or done twice, whatever ended the run."""
 
+import errno
 import os
 import resource
 import signal
@@ -8,13 +9,14 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from multiprocessing import active_children
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mxeon.conformance.run import check, read_run, to_run
-from mxeon.conformance.run.journal import LOCK, PREVIOUS, read_journal
+from mxeon.conformance.run.journal import LOCK, PREVIOUS, Journal, read_journal
 from mxeon.conformance.run.journal_lines import JOURNAL
 from mxeon.shaders.library import examples_folder
 from tests.support.journals import FILES, FINDINGS, PIXELS, PLAN, TASKS, journal
@@ -46,6 +48,16 @@ def test_a_torn_last_line_is_dropped_and_its_task_done_again(tmp_path):
         assert list(kept.findings) == [0]
         kept.add(1, FINDINGS)
     assert path.read_bytes() == whole
+
+
+def test_processes_end_with_a_run_that_cannot_be_kept(tmp_path, monkeypatch):
+    keep_checks(monkeypatch, "value")
+    monkeypatch.setattr(Journal, "add", lambda *_: Path("/dev/full").write_text("."))
+    before = set(active_children())
+    with pytest.raises(OSError) as error:
+        check([EXAMPLE], ["gl"], workers=1, folder=tmp_path, nodes=["common"])
+    assert set(active_children()) <= before  # while the error still holds what was under way
+    assert error.value.errno == errno.ENOSPC
 
 
 def test_a_run_says_what_is_missing(tmp_path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -46,8 +46,8 @@ class BatchResult:
 
 def run_batch(
     work: Callable[[Any], Any], documents: Sequence[Any], workers: int, timeout: float
-) -> Iterator[BatchResult]:
-    """Results of `work` on each document, in their order.
+) -> Generator[BatchResult, None, None]:
+    """Results of `work` on each document, in their order; processes work until it is closed.
 
     Parameters
     ----------

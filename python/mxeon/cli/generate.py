@@ -4,6 +4,7 @@
 import argparse
 import json
 from collections.abc import Mapping
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 
@@ -46,17 +47,17 @@ def run(options: argparse.Namespace) -> int:
         policy=arguments.policy(options),
     )
     # Write the texts as they come, and keep the errors.
-    results = run_batch(work, sources, options.workers, options.timeout)
     written: list[str] = []
     errors: list[Exception] = []
-    for source, result in zip(sources, results, strict=True):
-        for warning in result.warnings:
-            warn(warning)
-        error = result.error or _collision(source, result.value, options.outputPath, written)
-        if error:
-            errors.append(error)
-        else:
-            written += _write(result.value, options.outputPath)
+    with closing(run_batch(work, sources, options.workers, options.timeout)) as results:
+        for source, result in zip(sources, results, strict=True):
+            for warning in result.warnings:
+                warn(warning)
+            error = result.error or _collision(source, result.value, options.outputPath, written)
+            if error:
+                errors.append(error)
+            else:
+                written += _write(result.value, options.outputPath)
     # Print what was written.
     outcome = {"files": written, "errors": list(map(str, errors))}
     for line in [json.dumps(outcome)] if options.json else written:

@@ -97,6 +97,9 @@ def run(
     No process imports anything from the working folder. At most two items per worker are under way,
     so results do not pile up in memory. What a worker prints goes to a file; its last lines are
     quoted when it fails.
+
+    The processes end with the iterator. Close it where an error may leave it: garbage is collected in any
+    thread, and one for which this waits would wait for itself.
     """
     # Check the options.
     if workers < 1:

@@ -2,7 +2,7 @@
 """A conformance run: tasks are planned, worked on in processes, and kept in a journal."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from functools import lru_cache, partial
 from pathlib import Path
@@ -115,9 +115,10 @@ def check(
         waiting = [planned.tasks[number] for number in numbers]
         # A farm's machines may differ from each other.
         identities = {} if scheduler else _identities(journal.findings.values())
-        for position, findings in progress(_outcomes(waiting, executor), len(waiting)):
-            _assert_same_hosts(folder, identities, _identities([findings]))
-            journal.add(numbers[position], findings)
+        with closing(_outcomes(waiting, executor)) as outcomes:
+            for position, findings in progress(outcomes, len(waiting)):
+                _assert_same_hosts(folder, identities, _identities([findings]))
+                journal.add(numbers[position], findings)
         return to_run(planned, journal.findings)
 
 
@@ -231,8 +232,10 @@ def _executor(
         yield partial(_run_inline, policy)
 
 
-def _outcomes(tasks: Sequence[Task], executor: Executor) -> Iterator[tuple[int, Findings]]:
-    """Findings of the tasks as they come, each with its position."""
+def _outcomes(
+    tasks: Sequence[Task], executor: Executor
+) -> Generator[tuple[int, Findings], None, None]:
+    """Findings of the tasks as they come, each with its position; processes work until it is closed."""
     for position, outcome in executor(tasks):
         findings = outcome.value
         assert findings is None or isinstance(findings, Findings)

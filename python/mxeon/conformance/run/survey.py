@@ -2,7 +2,8 @@
 """The documents of a run, read before any other work: their nodes, and those that cannot be read."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cache, partial
 from pathlib import Path
@@ -55,16 +56,16 @@ def survey_documents(
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, None]] = {file: {} for file in files}
     refused: dict[Source, str] = {}
-    answers = _answers(sources, policy, workers, timeout)
     # Collect nodes, and errors; those of an example are the library's fault.
-    for (file, library), answer in zip(sources, answers, strict=True):
-        if isinstance(answer, DocumentError):
-            if not Path(file).resolve().is_relative_to(examples_folder()):
-                refused[file, library] = str(answer)
-        elif isinstance(answer, MxeonError):
-            raise answer
-        else:
-            titles[file] |= dict.fromkeys(_titles(answer or ()))
+    with closing(_answers(sources, policy, workers, timeout)) as answers:
+        for (file, library), answer in zip(sources, answers, strict=True):
+            if isinstance(answer, DocumentError):
+                if not Path(file).resolve().is_relative_to(examples_folder()):
+                    refused[file, library] = str(answer)
+            elif isinstance(answer, MxeonError):
+                raise answer
+            else:
+                titles[file] |= dict.fromkeys(_titles(answer or ()))
     return Survey(
         {file: tuple(each) for file, each in titles.items()},
         frozenset(refused),
@@ -81,8 +82,11 @@ def _sentence(source: Source, refused: dict[Source, str], libraries: Sequence[st
 
 def _answers(
     sources: Sequence[Source], policy: Policy, workers: int, timeout: float
-) -> Iterator[tuple[ShownNode, ...] | MxeonError | None]:
-    """The nodes of each document, or its error; None where reading it ended the process."""
+) -> Generator[tuple[ShownNode, ...] | MxeonError | None, None, None]:
+    """The nodes of each document, or its error; None where reading it ended the process.
+
+    Processes read until it is closed.
+    """
     work = partial(document_nodes, policy)
     if not workers:
         yield from map(work, sources)
