@@ -41,6 +41,11 @@ def leaf(tree):
     return leaf(tree.parts[0]) if tree.parts else tree
 
 
+def leaves(tree):
+    """All closures of a tree."""
+    return [each for part in tree.parts for each in leaves(part)] if tree.parts else [tree]
+
+
 @pytest.fixture
 def host(hosts):
     return hosts("osl")
@@ -67,6 +72,21 @@ def test_the_arguments_of_a_closure_are_those_of_the_document_to_the_last_bit(ho
     assert np.array_equal(weighed.arguments["factor"], np.full(5, np.float32(1.0 / 3.0)))
     assert np.array_equal(weighed.parts[0].arguments["color"], COLORS)
     assert np.array_equal(weighed.parts[0].arguments["roughness"], np.full(5, np.float32(0.1)))
+
+
+def test_a_function_of_the_shader_reads_the_frame_of_each_point(host):
+    # UsdPreviewSurface maps its normal, whose name is that of the surface's, in a function.
+    [made] = generate(
+        document_text(node_text("UsdPreviewSurface", "surfaceshader", "shading")), "osl"
+    )
+    normals = np.array([[0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], [0.0, 0.0, 1.0]])
+    tangents = np.array([[0.8, 0.0, -0.6], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
+    bitangents = np.cross(normals, tangents)
+    inputs = {"normal": normals, "tangent": tangents, "bitangent": bitangents}
+    [points] = host.trees(made, WO[:3], inputs)
+    found = [each.arguments["normal"] for each in leaves(points.tree) if "normal" in each.arguments]
+    mapped = np.stack([tangents, bitangents, normals], axis=2) @ normals[:, :, np.newaxis]
+    assert len(found) > 1 and np.allclose(found, mapped[:, :, 0], atol=1e-6)
 
 
 def test_points_whose_closures_differ_have_trees_of_their_own(host):

@@ -217,7 +217,8 @@ def test_the_real_renderer_shows_that_stock_materialx_drops_the_flag():
 
 @real
 def test_surface_shaders_are_judged_on_the_real_renderer():
-    assert verdicts("eonlib", "open_pbr_surface", ["lobe"])["lobe"] == (PASSED, "")
+    for title in ("open_pbr_surface", "UsdPreviewSurface"):
+        assert verdicts("eonlib", title, ["lobe"])["lobe"] == (PASSED, "")
     verdict, diagnosis = verdicts("stock", "open_pbr_surface", ["lobe"])["lobe"]
     assert verdict == FAILED and "qualitative Oren-Nayar (QON)" in diagnosis
     assert "docs/upstream/genosl_dropped_flag.md" in diagnosis

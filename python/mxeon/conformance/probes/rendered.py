@@ -164,7 +164,10 @@ class RenderedLobeProbe(RenderedSamples, PairProbe):
     def direct(self, batch: Batch) -> Array:
         others = self._lit(batch.altered(color=BLACK))
         lambert = self._lit(batch.altered(color=WHITE, roughness=0.0)) - others
-        values: Array = (self._lit(batch) - others) / lambert * batch.wi[:, 2:]
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # a shader that stays black has no value
+            values: Array = (self._lit(batch) - others) / lambert * batch.wi[:, 2:]
         return values
 
     def _lit(self, batch: Batch) -> Array:  # type: ignore[override]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from mxeon.hosts.base import Array, Inputs
 from mxeon.hosts.cycles import tracing
-from mxeon.hosts.osl.points import IMAGE, Column, side, statements
+from mxeon.hosts.osl.points import IMAGE, side, statements
 from mxeon.hosts.osl.texts import columns_of, with_variables
 from mxeon.hosts.pairs import LAMP, SKY
 from mxeon.hosts.tilted_triangles import DISTANCE, HEIGHT, tilted_triangles
@@ -36,7 +37,7 @@ def request(
     count, size = len(wo), side(len(wo))
     scene = tilted_triangles(wo, wi, size)
     columns = {
-        name: Column(each.kind, scene.turned(each.rows) if each.directed else each.values)
+        name: replace(each, values=scene.turned(each.rows)) if each.directed else each
         for name, each in columns_of(shader, inputs).items()
     }
     # Write the inputs that the shader reads, and the triangles.

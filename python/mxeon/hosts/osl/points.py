@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +28,7 @@ ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floo
 READ = (
     'texture("{image}", {place}, 0.0, 0.0, 0.0, 0.0, "interp", "closest", "firstchannel", {first})'
 )
+NO_WARNING = "#pragma osl nowarn"  # of the next line: oslc warns where a surface shader sets what it has of its point
 IMAGE = (
     "points.tif"  # of the variables of a shader; EXR orders more than ten channels by their names
 )
@@ -43,10 +44,13 @@ class Column:
         OSL's type.
     values : array_like
         One for each point, or one for all.
+    declared : bool
+        Whether the variable is declared; one that OSL has, which all functions read, is assigned.
     """
 
     kind: str
     values: ArrayLike
+    declared: bool = True
 
     @property
     def rows(self) -> NDArray[np.float32]:
@@ -55,7 +59,7 @@ class Column:
 
     def some(self, rows: NDArray[np.intp]) -> Column:
         """The column at some points."""
-        return self if len(self.rows) == 1 else Column(self.kind, self.rows[rows])
+        return self if len(self.rows) == 1 else replace(self, values=self.rows[rows])
 
     @property
     def directed(self) -> bool:
@@ -74,7 +78,7 @@ def row(count: int, place: str) -> str:
 
 
 def statements(columns: Mapping[str, Column], image: Path, count: int, place: str) -> list[str]:
-    """OSL declarations of variables that have a value for each point, in an image that is written.
+    """OSL statements that give variables a value for each point, from an image that is written.
 
     Each float of a variable is exact: an image of float32, read without a filter.
 
@@ -105,7 +109,9 @@ def statements(columns: Mapping[str, Column], image: Path, count: int, place: st
         # A normal is read as a vector.
         else:
             kind = "vector" if column.kind == "normal" else column.kind
-            lines += [f"{kind} {name} = {x};"]
+            lines += (
+                [f"{kind} {name} = {x};"] if column.declared else [NO_WARNING, f"{name} = {x};"]
+            )
     if columns:
         _write(image, np.concatenate(values, axis=1))
     return lines

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generated OSL with local variables that hide its inputs and its surface, so that each point has its own."""
+"""Generated OSL with local variables that hide its inputs, and a surface that is set, so that each point has its own."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NAMES = {"N": "normal", "dPdu": "tangent", "dPdv": "bitangent"}
 def columns_of(shader: Shader, inputs: Inputs) -> Mapping[str, Column]:
     """Columns of the surface and of the inputs that a shader has, by the names of its variables."""
     columns = {
-        each: Column(kind, inputs.get(NAMES[each], value))
+        each: Column(kind, inputs.get(NAMES[each], value), declared=False)
         for each, (kind, value) in SURFACE.items()
     }
     for port in shader.inputs:
@@ -42,7 +42,7 @@ def with_variables(shader: Shader, block: Iterable[str], last: Callable[[str], s
     ----------
     shader : Shader
     block : iterable of str
-        Declarations, in a scope of their own, so that they hide the inputs.
+        Statements of `points.statements`, in a scope of their own, so that what they declare hides the inputs.
     last : callable (output) -> str
         What follows, by the name of the shader's output.
     """

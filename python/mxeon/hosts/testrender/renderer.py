@@ -6,6 +6,7 @@ Each pixel of a picture shows a pair of directions of its own; see `scenes`. tes
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -15,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import fragment
 from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.osl.points import IMAGE, Column, side, statements
+from mxeon.hosts.osl.points import IMAGE, side, statements
 from mxeon.hosts.osl.texts import columns_of, header, with_variables
 from mxeon.hosts.pairs import LAMP, SKY, PairHost
 from mxeon.hosts.testrender import calls, scenes
@@ -62,7 +63,7 @@ class Host(PairHost):
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
         scene = scenes.pair_scene(wo, wi, side(len(wo)))
         columns = {
-            name: Column(each.kind, scene.turned(each.rows) if each.directed else each.values)
+            name: replace(each, values=scene.turned(each.rows)) if each.directed else each
             for name, each in columns_of(shader, inputs).items()
         }
         # Compile the shaders, and write the scene.
