@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-import math
 from typing import ClassVar
 
-from mxeon.mitsuba.coat import ALPHAS, IORS, CoatPlugin
+from mxeon.mitsuba.coat import CoatPlugin
 from mxeon.mitsuba.plugin import Mitsuba
+from mxeon.models.coat import openpbr
+from mxeon.models.core.ranges import RANGES
 from mxeon.models.microfacet.fresnel_formulas import schlick, schlick_avg
 
-EDGE: Mitsuba = (1.0, 1.0, 5.0)  # color82, color90 and exponent of the metal's curve
+EDGE: Mitsuba = openpbr.EDGE
 
 
 class OpenPbrBasePlugin(CoatPlugin):
@@ -19,8 +20,8 @@ class OpenPbrBasePlugin(CoatPlugin):
     color = "base_color"
     parameter = "base_diffuse_roughness"
     numbers: ClassVar[dict[str, tuple[float, ...]]] = {
-        "specular_roughness": (0.3, *map(math.sqrt, ALPHAS)),
-        "specular_ior": (1.5, *IORS),
+        "specular_roughness": (0.3, *RANGES["specular_roughness"][:2]),
+        "specular_ior": (1.5, *RANGES["specular_ior"][:2]),
     }
 
     def configure(self, properties: Mitsuba) -> None:

@@ -229,16 +229,16 @@ def _of_coat() -> ShadingModel:
 
 def _of_openpbr() -> ShadingModel:
     """The model of OpenPBR's base, by OpenPBR's names and defaults."""
-    inputs = (
+    parameters = (
         Parameter("base_color", (0.8, 0.8, 0.8), "rho"),
         Parameter("base_diffuse_roughness", 0.0, "roughness"),
         Parameter("base_metalness", 0.0, "metalness"),
         Parameter("specular_roughness", 0.3, "specular_roughness"),
         Parameter("specular_ior", 1.5, "specular_ior"),
     )
-    names = [each.quantity for each in inputs]
+    names = [each.quantity for each in parameters]
 
-    # Name what has another order there.
+    # Pass the inputs by name, since the functions have them in another order.
     def called(function: Callable[..., Array], inputs: Inputs, **vectors: Array) -> Array:
         def own(*values: Array) -> Array:
             return function(**dict(zip((*vectors, *names), values, strict=True)))
@@ -249,7 +249,7 @@ def _of_openpbr() -> ShadingModel:
         "openpbr_base",
         "OpenPBR's base",
         "open_pbr_surface",
-        inputs,
+        parameters,
         lambda wo, wi, i: called(openpbr.openpbr_base_brdf, i, wo=wo, wi=wi),
         lambda wo, i: called(openpbr.openpbr_base_albedo_dir, i, mu=cosine(wo[:, 2])),
     )

@@ -36,7 +36,7 @@ class Coat:
     Attributes
     ----------
     alpha, average : float or array
-        GGX roughness, that of the scale of the cosine, and F_ss.
+        GGX roughness, which sets the scale of the cosine, and F_ss.
     missing, reflected, edge : list of float, or array (NODES,)
         Coefficients of (1 - E_ss) / E_ss, of E_r, and of the facets' mean of (1 - c)^5, which is E of a metal
         with Schlick's curve that is black along the normal.
@@ -128,9 +128,13 @@ def _brought(*arguments: ArrayLike) -> tuple[ArrayLike, ...]:
 
 
 def of_one_coat(function: Callable[P, R]) -> Callable[P, R]:
-    """Function of arrays of any library, which are brought to one, but for plain numbers of the coat."""
+    """Function of arrays of any library, which are brought to one.
+
+    Parameters annotated as `float` are the numbers of the coat, which stay as they are where they are plain.
+    """
     parameters = signature(function)
-    own = [each.name for each in parameters.parameters.values() if each.annotation == "float"]
+    types = {each.name: each.annotation for each in parameters.parameters.values()}
+    own = [name for name, kind in types.items() if kind in (float, "float")]
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:

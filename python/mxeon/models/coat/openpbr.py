@@ -133,7 +133,7 @@ def openpbr_base_albedo_dir(
            [0.68378, 1.     ]])
     """
     # Check the arguments.
-    cosine, color, share = _beside(mu, rho, roughness, metalness)
+    cosine, color, share = _albedo_inputs(mu, rho, roughness, metalness)
     alpha = _alpha(specular_roughness, specular_ior)
     # Integrate both parts, and mix them.
     glossy = dielectric_over_eon_albedo_dir(mu, rho, roughness, alpha, specular_ior)
@@ -166,10 +166,10 @@ def _share(
 
 
 @any_array
-def _beside(
+def _albedo_inputs(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, metalness: ArrayLike
 ) -> tuple[Array, Array, Array]:
-    """The viewer's cosine, the color, and the share of the metal, with an axis for channels."""
+    """The viewer's cosine, the color, and the share of the metal, checked, with an axis for channels."""
     numbers = {"mu": mu, "roughness": roughness, "metalness": metalness}
     (color,), (cosine, _, share) = checked_colors({"rho": rho}, **numbers)
     return clipped(cosine), color, share
