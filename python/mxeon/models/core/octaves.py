@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Curves over a number in (0, 1] as cubics in the parts of octaves, for Dr.Jit.
 
-The digits of a float32 tell the part without a logarithm. Octaves follow a curve that changes on any scale,
+The bits of a float32 tell the part without a logarithm. Octaves follow a curve that changes on any scale,
 such as what facets reflect, which changes with cosine / alpha.
 """
 
@@ -18,7 +18,7 @@ from mxeon.models.core.chebyshev import chebyshev_nodes
 from mxeon.models.core.drjit_arrays import Number, vector
 
 OCTAVES, PARTS = 126, 16  # down to the smallest normal float32; parts of each
-PART_DIGITS = 19  # of a float32 below those that tell the part
+LOWER_BITS = 19  # of a float32, below those that tell octave and part
 MIDDLE = 1.5  # of an octave that starts at 1
 
 
@@ -26,13 +26,13 @@ def octave_cells(x: Number) -> tuple[Number, Number]:
     """Part of a number, counted from the smallest, and its distance from the octave's middle, over the octave."""
     drjit = import_module("drjit")
     integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
-    # Read octave and part from the digits of a float32.
+    # Read octave and part from the bits of a float32.
     x = drjit.maximum(x, 2.0**-OCTAVES)
     inside = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
-    digits = drjit.reinterpret_array(integer, single(inside))
+    bits = drjit.reinterpret_array(integer, single(inside))
     # Divide by the start of the octave, whose exponent is known.
-    scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (digits & 0x7F800000)))
-    return (digits >> PART_DIGITS) - PARTS, drjit.fma(x, scale, -MIDDLE)
+    scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (bits & 0x7F800000)))
+    return (bits >> LOWER_BITS) - PARTS, drjit.fma(x, scale, -MIDDLE)
 
 
 def octave_cubics(curve: Callable[[Array], Array]) -> Array:
