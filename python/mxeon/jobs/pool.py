@@ -98,8 +98,8 @@ def run(
     so results do not pile up in memory. What a worker prints goes to a file; its last lines are
     quoted when it fails.
 
-    The processes end with the iterator. Close it where an error may leave it: garbage is collected in any
-    thread, and one for which this waits would wait for itself.
+    The processes end with the iterator. Close it where an error may leave it: garbage collection may run in
+    any thread, and in one that this has to join it would be a deadlock.
     """
     # Check the options.
     if workers < 1:

@@ -52,7 +52,7 @@ class Comparison:
         return self.cases(probe)
 
     def diagnose(self, probe: Probe) -> Diagnosis:
-        """The explanation of a probe's values, for which several checks of a subject may fail."""
+        """The explanation of a probe's values, made once: several checks of a subject fail for one reason."""
         known = DIAGNOSES.setdefault(probe, {})
         if self not in known:
             cases = list(self.cases(probe))
@@ -70,7 +70,7 @@ class Comparison:
         return tolerance
 
 
-# As long as the probe exists, whose samples take some memory.
+# By probes, which are not kept alive by it: their samples take some memory.
 DIAGNOSES: WeakKeyDictionary[Probe, dict[Comparison, Diagnosis]] = WeakKeyDictionary()
 
 

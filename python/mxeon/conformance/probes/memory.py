@@ -13,7 +13,7 @@ from mxeon.conformance.samples.batch import Array, Batch
 LARGEST = 1 << 14  # pairs of a batch that is kept
 KEPT = 32  # batches, of half a megabyte each
 NUMBERS = 16  # of an input that is compared by its values and not as an array
-EVALUATIONS = 16  # of a host, of up to 3.5 megabytes each
+EVALUATIONS = 16  # batches of a probe whose values are kept, of up to 3.5 megabytes each
 
 
 class Remembered:
@@ -61,9 +61,9 @@ def _identity(values: ArrayLike) -> Hashable:
 
 
 class Evaluations:
-    """Values that a host has for batches; the last of them are kept, and cannot be written.
+    """Cache of the values that a host has for batches; read-only; the least recently used are dropped.
 
-    Batches are the same whose numbers are: to read them takes less time than the host would.
+    Batches with the same numbers are the same: to hash these takes less time than the host takes.
     """
 
     def __init__(self) -> None:
@@ -78,7 +78,7 @@ class Evaluations:
         ----------
         batch : Batch
         rest : tuple
-            What else they depend on; arrays, and what has a `repr` that tells it from others.
+            What else the values depend on: arrays, numbers, strings, or None.
         evaluate : callable () -> ndarray, shape (N, 3)
         """
         key = _digest(batch.wo, batch.wi, batch.frame, *batch.inputs.items(), *rest)
@@ -93,7 +93,7 @@ class Evaluations:
 
 
 def _digest(*parts: object) -> bytes:
-    """What tells parts from others: arrays, pairs of a name and an array, and other things."""
+    """Digest of arrays, numbers, strings and None; a tuple is the name of a value, and the value."""
     digest = blake2b()
     for part in parts:
         name, value = part if isinstance(part, tuple) else ("", part)
