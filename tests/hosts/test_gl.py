@@ -14,12 +14,13 @@ from mxeon.conformance.probes.pictures import picture_pairs
 from mxeon.conformance.reference import Host as Reference
 from mxeon.conformance.samples.batch import directions
 from mxeon.errors import NotRun, ShaderError
-from mxeon.hosts import open_host
+from mxeon.hosts import open_host, raster
+from mxeon.hosts.points import visible
 from mxeon.hosts.textures import irradiance, read_latlong
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import Shader, generate
 from mxeon.shaders.nodes import EON, OREN_NAYAR, document_text
-from mxeon.shaders.scene import FRONT, FURNACE, SCENES, Scene, sphere
+from mxeon.shaders.scene import FRONT, FURNACE, SCENES, SHAPES, Scene, sphere
 from mxeon.shaders.shader_ball import shader_ball
 from tests.support.documents import material
 from tests.support.tolerances import PICTURE
@@ -234,6 +235,25 @@ def test_a_picture_of_odd_size_is_the_models(gl, reference):
     image, expected = (host.picture(shader(LOBES["eon"]), odd) for host in (gl, reference))
     error = np.abs(image - expected).max(axis=2) * sphere(odd.size).normal[..., 2]
     assert expected.any() and error.max() <= PICTURE
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("size", [1, 7, SIZE + 1, 256])
+def test_each_pixel_of_a_shape_is_in_one_band(shape, size):
+    drawn = np.zeros((size, size), int)
+    for left, low, width, height in raster.bands(size, shape):
+        assert drawn[low : low + height, left : left + width].shape == (height, width)
+        drawn[low : low + height, left : left + width] += 1
+    mask = visible(size, shape).mask[::-1]
+    assert (drawn[mask] == 1).all() and drawn.max() == 1
+    assert drawn.sum() <= mask.sum() + 4 * raster.BAND * size
+
+
+def test_a_picture_is_the_same_where_the_frame_is_drawn_beside_the_shape_too(gl, monkeypatch):
+    scene = replace(SCENES[1], shape="ball")
+    image = picture(gl, LOBES["eon"], scene)
+    monkeypatch.setattr(raster, "bands", lambda size, shape: ((0, 0, size, size),))
+    np.testing.assert_array_equal(picture(gl, LOBES["eon"], scene), image)
 
 
 def test_points_of_a_picture_are_captured_once_for_all_its_lights(gl):

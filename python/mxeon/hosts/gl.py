@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache, partial, wraps
 from typing import Concatenate, ParamSpec, TypeVar, cast
 
@@ -91,7 +91,8 @@ class Host(FragmentHost):
             textures[points.SAMPLER] = self._points(
                 shader.stages["vertex"], captured, scene.size, scene.shape
             )
-        return raster.picture(self._draw(program, textures, frame), scene)
+        parts = raster.bands(scene.size, scene.shape)
+        return raster.picture(self._draw(program, textures, frame, parts), scene)
 
     @_current
     def accumulate(
@@ -184,8 +185,9 @@ class Host(FragmentHost):
         program: moderngl.Program,
         textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
         size: tuple[int, int],
+        parts: Sequence[raster.Rectangle] = (),
     ) -> Array:
-        """One frame as float32 (height, width, 3), row 0 at the bottom."""
+        """One frame as float32 (height, width, 3), row 0 at the bottom; all of it, or only some parts."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
@@ -193,7 +195,10 @@ class Host(FragmentHost):
         for unit, (name, texture) in enumerate(textures.items()):
             texture.use(location=unit)
             _set(program, {name: unit})
-        context.vertex_array(program, _buffers(context, program, raster.TRIANGLE)).render()
+        triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
+        for part in parts or [(0, 0, *size)]:
+            frame.scissor = part
+            triangle.render()
         image = np.frombuffer(frame.read(components=3, dtype="f4"), dtype=np.float32)
         return image.reshape(size[1], size[0], 3)
 

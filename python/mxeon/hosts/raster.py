@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -17,6 +18,9 @@ from mxeon.shaders.scene import Scene
 
 Uniforms: TypeAlias = dict[str, Plain]  # values by name
 
+Rectangle: TypeAlias = tuple[int, int, int, int]  # left, lowest row, width, height
+
+BAND = 4  # rows of a picture that are drawn as far as the shape reaches
 VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axis, in float32
 # Not of one texel, which has no mipmaps: Mesa would compile a program once more for an uneven environment.
 WHITE = np.ones((2, 2, 3), dtype=np.float32)
@@ -98,6 +102,22 @@ def light(scene: Scene) -> Uniforms:
             "u_lightData[0].intensity": np.pi,
         }
     return values
+
+
+@lru_cache(maxsize=8)
+def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
+    """Rectangles that hold a shape in a frame whose row 0 is at the bottom: nothing shows beside it.
+
+    Their edges are multiples of BAND, so that each pixel's neighbors are drawn with it.
+    """
+    mask = visible(size, shape).mask[::-1]
+    parts = []
+    for low in range(0, size, BAND):
+        columns = np.flatnonzero(mask[low : low + BAND].any(axis=0)) // BAND * BAND
+        if columns.size:
+            left, right = int(columns[0]), min(int(columns[-1]) + BAND, size)
+            parts.append((left, low, right - left, min(BAND, size - low)))
+    return tuple(parts)
 
 
 def picture(image: Array, scene: Scene) -> Array:
