@@ -3,28 +3,37 @@
 
 import gc
 import weakref
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import groupby
 from types import SimpleNamespace
 
 import MaterialX as mx
 import numpy as np
 import pytest
 
+from mxeon.conformance import run
 from mxeon.conformance.diagnosis import comparisons
 from mxeon.conformance.diagnosis.candidates import Diagnosis
+from mxeon.conformance.nodes.bsdf import BSDFS
 from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.memory import KEPT, LARGEST, Remembered
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import LobeProbe
+from mxeon.conformance.reference.lobes import KEPT as LOBES_KEPT
+from mxeon.conformance.reference.lobes import kept
 from mxeon.conformance.run import journal
 from mxeon.conformance.run.plan import make_plan
 from mxeon.conformance.run.tasks import Findings
-from mxeon.conformance.samples.batch import Batch, Counts
+from mxeon.conformance.samples.batch import Array, Batch, Counts
 from mxeon.conformance.samples.uneven_environment import sky_map
 from mxeon.hosts import fragment
 from mxeon.hosts.gl import Host
+from mxeon.models.core.layering import Bsdf
 from mxeon.models.microfacet import conductor_brdf
 from mxeon.models.thin_film import curve
 from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
+from mxeon.shaders.document.policy import DEFAULT
 from mxeon.shaders.document.reading import read_document
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import OREN_NAYAR, material_text
@@ -73,7 +82,7 @@ def test_values_of_a_batch_are_computed_once():
     calls, one = [], batch()
     function = Remembered(counted(calls))
     first = function(one)
-    assert function(one.altered()) is first and len(calls) == 1
+    assert function(one.altered()) is function(batch()) is first and len(calls) == 1
     assert function(one.altered(roughness=0.5)) is function(one.altered(roughness=0.5))
     assert len(calls) == 2
     with pytest.raises(ValueError, match="read-only"):
@@ -83,9 +92,10 @@ def test_values_of_a_batch_are_computed_once():
 @pytest.mark.parametrize(
     "change",
     [
-        {"wo": batch().wo},
-        {"wi": batch().wi},
-        {"inputs": {"roughness": np.linspace(0.0, 1.0, 32)}},
+        {"wo": -batch().wo},
+        {"wi": -batch().wi},
+        {"inputs": {"roughness": np.linspace(0.0, 0.5, 32)}},
+        {"inputs": {"roughness": np.linspace(0.0, 1.0, 64)}},
         {"inputs": {}},
         {"frame": np.zeros((8, 3, 3))},
     ],
@@ -104,21 +114,67 @@ def test_large_batches_and_old_ones_are_not_kept():
     function, large, small = (
         Remembered(counted(calls)),
         batch(LARGEST + 1),
-        [batch() for _ in range(KEPT + 1)],
+        [batch(count) for count in range(1, KEPT + 2)],
     )
     for each in (large, large, *small, small[-1], small[0]):
         function(each)
     assert len(calls) == 2 + len(small) + 1
 
 
-def test_a_check_and_its_control_share_the_reference():
-    calls, one = [], batch()
+@dataclass(frozen=True)
+class CountedSubject:
+    """A subject that counts what it is asked."""
+
+    expected: Callable[[Batch], Array]
+    albedo: Callable[[Batch], Array]
+
+
+def test_a_check_its_control_and_both_libraries_share_the_reference():
+    calls = []
     values = counted(calls)
-    probe = LobeProbe(None, SimpleNamespace(expected=values, albedo=values), "eonlib")
-    for _ in range(2):
-        probe.expected(one)
-        probe.expected_albedo(one)
+    subject = CountedSubject(values, values)
+    for library in ("eonlib", "eonlib", "stock"):
+        probe = LobeProbe(None, subject, library)
+        probe.expected(batch())
+        probe.expected_albedo(batch())
     assert len(calls) == 2
+
+
+def test_tasks_of_a_subject_are_done_one_after_the_other_with_both_libraries(monkeypatch):
+    done = []
+    judge = SimpleNamespace(work=lambda task: done.append(task) or Findings(), close=lambda: None)
+    monkeypatch.setattr(run, "Judge", lambda policy: judge)
+    libraries = ("eonlib", "stock")
+    plan = make_plan((), ("gl", "osl"), libraries, nodes=("sheen_bsdf", "translucent_bsdf"))
+    positions = [position for position, _ in run._run_inline(DEFAULT, plan.tasks)]
+    assert sorted(positions) == list(range(len(plan.tasks)))
+    assert [plan.tasks[position] for position in positions] == done
+    runs = [key for key, _ in groupby((task.host, task.subject) for task in done)]
+    evaluated = [key for key in runs if key[0] == "gl"]
+    assert len(evaluated) == len(set(evaluated)) > 1
+    # A host that reads libraries by itself has one after the other.
+    assert [key for key, _ in groupby(task.library for task in done if task.host == "osl")] == [
+        *libraries
+    ]
+
+
+def test_a_lobe_keeps_its_values_of_the_last_inputs():
+    calls = []
+    lobe = kept(lambda node, inputs, layered: calls.append(layered) or Bsdf(None, None))
+    inputs = {"color": np.array([[0.2, 0.5, 0.8]]), "roughness": np.array([0.5])}
+    first = lobe(BSDFS[0].row, inputs, False)
+    assert lobe(BSDFS[0].row, {name: each.copy() for name, each in inputs.items()}, False) is first
+    others = [{"roughness": np.array([number])} for number in np.linspace(0.0, 1.0, LOBES_KEPT)]
+    for node, values, layered in (
+        (BSDFS[1].row, inputs, False),
+        (BSDFS[0].row, inputs, True),
+        (BSDFS[0].row, {"color": inputs["color"][0], "roughness": inputs["roughness"]}, False),
+    ):
+        lobe(node, values, layered)
+    assert len(calls) == 4
+    for each in others:
+        lobe(BSDFS[0].row, each, False)
+    assert lobe(BSDFS[0].row, inputs, False) is not first
 
 
 @pytest.fixture

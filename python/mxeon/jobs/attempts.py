@@ -22,6 +22,20 @@ class Attempt:
         return replace(self, log=os.path.join(folder, f"{self.index}-{self.number}.txt"))
 
 
+def by_group(groups: Sequence[Hashable]) -> list[int]:
+    """Positions of items by their groups, those of one group after each other, in the order of the first.
+
+    Examples
+    --------
+    >>> by_group(["a", "b", "a"])
+    [0, 2, 1]
+    """
+    first: dict[Hashable, int] = {}
+    for position, group in enumerate(groups):
+        first.setdefault(group, position)
+    return sorted(range(len(groups)), key=lambda position: first[groups[position]])
+
+
 class Queue:
     """Attempts that wait, by group.
 

@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions of batches that keep what they computed: a check, its control and other checks ask for the same."""
+"""Functions of batches that keep what they computed: a check, its control, other checks and libraries ask again.
+
+Batches are the same whose numbers are: to read them takes less time than to compute their values.
+"""
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from hashlib import blake2b
+from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from mxeon.conformance.samples.batch import Array, Batch
+from mxeon.conformance.nodes.subject import LobeSubject, ValuedSubject
+from mxeon.conformance.samples.batch import Array, Batch, Candidate
 
-LARGEST = 1 << 14  # pairs of a batch that is kept
-KEPT = 32  # batches, of half a megabyte each
-NUMBERS = 16  # of an input that is compared by its values and not as an array
+LARGEST = 1 << 14  # pairs of a batch whose values are kept
+KEPT = 32  # batches whose values are kept, of up to 400 kB each
 EVALUATIONS = 16  # batches of a probe whose values are kept, of up to 3.5 megabytes each
+SUBJECTS = 2  # whose expected values are kept: that of a probe, and another that it asks
 
 
 class Remembered:
     """A function of batches whose values of a few of them are kept, and cannot be written.
-
-    Batches are the same whose arrays are: `Batch.altered` keeps those that it does not change.
 
     Parameters
     ----------
@@ -28,46 +29,20 @@ class Remembered:
 
     def __init__(self, function: Callable[[Batch], Array]) -> None:
         self._function = function
-        # With the batches, whose arrays keep their identities as long as they exist.
-        self._known: OrderedDict[Hashable, tuple[Batch, Array]] = OrderedDict()
+        self._known = Known(KEPT)
 
     def __call__(self, batch: Batch) -> Array:
         """Its values of a batch."""
         if len(batch.wo) > LARGEST:
             return self._function(batch)
-        # Compute what is not known.
-        key = _key(batch)
-        if key not in self._known:
-            values = self._function(batch)
-            values.setflags(write=False)
-            self._known[key] = batch, values
-        # Forget what was not asked for longest.
-        self._known.move_to_end(key)
-        if len(self._known) > KEPT:
-            self._known.popitem(last=False)
-        return self._known[key][1]
-
-
-def _key(batch: Batch) -> Hashable:
-    """What two batches have in common that are the same."""
-    inputs = tuple((name, _identity(values)) for name, values in batch.inputs.items())
-    return id(batch.wo), id(batch.wi), id(batch.frame), batch.scene, inputs
-
-
-def _identity(values: ArrayLike) -> Hashable:
-    """The numbers of a value of few, and the identity of an array of many."""
-    array = np.asarray(values)
-    return (array.shape, array.tobytes()) if array.size <= NUMBERS else id(values)
+        return self._known.values((batch.scene, *_parts(batch)), lambda: self._function(batch))
 
 
 class Evaluations:
-    """Cache of the values that a host has for batches; read-only; the least recently used are dropped.
-
-    Batches with the same numbers are the same: to hash these takes less time than the host takes.
-    """
+    """Cache of the values that a host has for batches; read-only; the least recently used are dropped."""
 
     def __init__(self) -> None:
-        self._known: OrderedDict[bytes, Array] = OrderedDict()
+        self._known = Known(EVALUATIONS)
 
     def values(
         self, batch: Batch, rest: tuple[object, ...], evaluate: Callable[[], Array]
@@ -81,27 +56,54 @@ class Evaluations:
             What else the values depend on: arrays, numbers, strings, or None.
         evaluate : callable () -> ndarray, shape (N, 3)
         """
-        key = _digest(batch.wo, batch.wi, batch.frame, *batch.inputs.items(), *rest)
-        if key not in self._known:
-            self._known[key] = evaluate()
-            self._known[key].setflags(write=False)
+        return self._known.values((*_parts(batch), *map(_contents, rest)), evaluate)
+
+
+class Known:
+    """Values by what they depend on; so many of them, those that were asked for last."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._values: OrderedDict[Hashable, Array] = OrderedDict()
+
+    def values(self, key: Hashable, compute: Callable[[], Array]) -> Array:
+        """The values of a key, read-only, which are computed unless they are known."""
+        if key not in self._values:
+            self._values[key] = compute()
+            self._values[key].setflags(write=False)
         # Forget what was not asked for longest.
-        self._known.move_to_end(key)
-        if len(self._known) > EVALUATIONS:
-            self._known.popitem(last=False)
-        return self._known[key]
+        self._values.move_to_end(key)
+        if len(self._values) > self._most:
+            self._values.popitem(last=False)
+        return self._values[key]
 
 
-def _digest(*parts: object) -> bytes:
-    """Digest of arrays, numbers, strings and None; a tuple is the name of a value, and the value."""
-    digest = blake2b()
-    for part in parts:
-        name, value = part if isinstance(part, tuple) else ("", part)
-        digest.update(repr(name).encode())
-        if value is None or isinstance(value, (str, bool)):
-            digest.update(repr(value).encode())
-        else:
-            array = np.ascontiguousarray(value)
-            digest.update(f"{array.dtype} {array.shape}".encode())
-            digest.update(array.data)
-    return digest.digest()
+@lru_cache(maxsize=SUBJECTS)
+def expected_of(subject: ValuedSubject) -> Remembered:
+    """Values expected of a subject, which are the same whatever the library."""
+    return Remembered(subject.expected)
+
+
+@lru_cache(maxsize=SUBJECTS)
+def albedo_of(subject: LobeSubject) -> Remembered:
+    """Albedos expected of a subject, likewise."""
+    return Remembered(subject.albedo)
+
+
+def remembered(candidate: Candidate) -> Candidate:
+    """A candidate that several comparisons may ask for the same values."""
+    return Candidate(candidate.title, Remembered(candidate.values), candidate.permitted)
+
+
+def _parts(batch: Batch) -> tuple[Hashable, ...]:
+    """What tells a batch from others, but for its scene."""
+    inputs = tuple((name, _contents(values)) for name, values in batch.inputs.items())
+    return _contents(batch.wo), _contents(batch.wi), _contents(batch.frame), inputs
+
+
+def _contents(value: object) -> Hashable:
+    """What tells an array, a word or None from others: of an array type, shape and a hash of 64 bits."""
+    if value is None or isinstance(value, (str, bool)):
+        return value
+    array = np.asarray(value)
+    return array.dtype.str, array.shape, hash(array.tobytes())

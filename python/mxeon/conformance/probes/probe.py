@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.conformance.nodes.subject import LobeSubject, Subject, ValuedSubject
-from mxeon.conformance.probes.memory import Remembered
+from mxeon.conformance.probes.memory import albedo_of, expected_of, remembered
 from mxeon.conformance.results import Claims
 from mxeon.conformance.samples.batch import (
     Array,
@@ -263,12 +263,8 @@ class ValueProbe(Probe):
 
     subject: ValuedSubject
 
-    @cached_property
-    def _expected(self) -> Remembered:
-        return Remembered(self.subject.expected)
-
     def expected(self, batch: Batch) -> Array:
-        return self._expected(batch)
+        return expected_of(self.subject)(batch)
 
     @property
     def changes(self) -> Mapping[str, Changes]:
@@ -284,12 +280,8 @@ class LobeProbe(ValueProbe):
 
     subject: LobeSubject
 
-    @cached_property
-    def _albedo(self) -> Remembered:
-        return Remembered(self.subject.albedo)
-
     def expected_albedo(self, batch: Batch) -> Array:
-        return self._albedo(batch)
+        return albedo_of(self.subject)(batch)
 
     def expected_sky(self, batch: Batch) -> Array:
         return self.subject.sky(batch)
@@ -298,9 +290,9 @@ class LobeProbe(ValueProbe):
     def black(self) -> Values:
         return self.subject.black
 
-    @property
+    @cached_property
     def albedo_candidates(self) -> tuple[Candidate, ...]:
-        return self.subject.albedo_candidates
+        return tuple(map(remembered, self.subject.albedo_candidates))
 
 
 S = TypeVar("S", bound=Subject)

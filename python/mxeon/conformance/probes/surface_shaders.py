@@ -109,9 +109,12 @@ class SurfaceShaderProbe(PairProbe):
     def response(self, batch: Batch, branch: str) -> Array:
         return self._evaluate(batch, branch)
 
+    def expected(self, batch: Batch) -> Array:
+        return self._layered(batch)
+
     @cached_property
-    def _expected(self) -> Remembered:
-        """Values by the layer equation, (N, 3)."""
+    def _layered(self) -> Remembered:
+        """Values by the layer equation, of the document as this library has it."""
         return Remembered(lambda batch: np.pi * self._reference(batch, "direct"))
 
     def _views(self, rng: np.random.Generator, count: int) -> Array:

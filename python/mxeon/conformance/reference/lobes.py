@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values and throughputs of one lobe at all the points of a picture, under each kind of light."""
 
-from collections.abc import Callable, Mapping
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Mapping
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -32,6 +33,7 @@ TAIL = 2e-7
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((32, 16), (48, 32))
 ROWS = 1 << 12  # arguments of a series at once
+KEPT = 8  # lobes of the pictures of a scene, of up to 2.5 megabytes each
 FEW = 1000  # directions, whose albedos are as soon computed one by one
 
 
@@ -95,6 +97,27 @@ def furnace(wo: Values, radiance: float, most: float = np.inf, behind: bool = Fa
         return Bsdf(radiance * value, left)
 
     return lobe
+
+
+def kept(lobe: Lobe) -> Lobe:
+    """The same lobe, which keeps its values of the last nodes and inputs."""
+    known: OrderedDict[Hashable, Bsdf] = OrderedDict()
+
+    def values(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
+        key = node, layered, *((name, *_contents(each)) for name, each in inputs.items())
+        if key not in known:
+            known[key] = lobe(node, inputs, layered)
+        known.move_to_end(key)
+        if len(known) > KEPT:
+            known.popitem(last=False)
+        return known[key]
+
+    return values
+
+
+def _contents(values: Values) -> tuple[tuple[int, ...], int]:
+    """What tells the values of an input from others: their shape, and a hash of 64 bits."""
+    return values.shape, hash(values.tobytes())
 
 
 def weighted(lobe: Bsdf, weight: Values, layerable: bool) -> Bsdf:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mxeon.conformance.reference.lobes import Lobe, Values, furnace, lit
+from mxeon.conformance.reference.lobes import Lobe, Values, furnace, kept, lit
 from mxeon.errors import NotRun, OutsideModel
 
 UNIT = 1e-3  # by how much the length of a normal may differ from 1
@@ -83,8 +83,8 @@ class ShadingPoints:
 
     @cached_property
     def _own(self) -> Lobe:
-        """Lobe in the frame of the surface."""
-        return self._turned(self.normal, self.tangent)
+        """Lobe in the frame of the surface; the last ones are kept, which another library's document has too."""
+        return kept(self._turned(self.normal, self.tangent))
 
     def _turned(self, normal: Values, tangent: Values) -> Lobe:
         wo, wi = self.directions(normal, tangent)
