@@ -12,15 +12,20 @@ import OpenImageIO as oiio
 import pytest
 
 from mxeon.io.files import replacing, write_text
-from mxeon.io.images import write_image
+from mxeon.io.images import without_threads, write_image
 from mxeon.shaders.library import examples_folder
 from tests.support.faults import room_for
 
 PLASTER = str(examples_folder() / "plaster.mtlx")
 NOISE = np.random.default_rng(1).random((33, 33, 3))
 IMAGES = {".exr": np.float32(NOISE), ".png": np.uint8(255.0 * NOISE)}
-# Room for nothing, for less than a header, for all but the last bytes.
-ROOM = {"nothing": lambda size: 0, "little": lambda size: 100, "nearly all": lambda size: size - 1}
+# Room for nothing, for less than a header, for some rows, for all but the last bytes.
+ROOM = {
+    "nothing": lambda size: 0,
+    "little": lambda size: 100,
+    "half": lambda size: size // 2,
+    "nearly all": lambda size: size - 1,
+}
 
 with_room = pytest.mark.parametrize("room", ROOM.values(), ids=ROOM)
 
@@ -66,6 +71,17 @@ def test_an_image_is_kept_as_it_is(tmp_path, ending):
     image = oiio.ImageInput.open(str(tmp_path / f"a{ending}"))
     assert image.read_image(oiio.UNKNOWN).tobytes() == pixels.tobytes()
     assert image.spec().get_string_attribute("mxeon:host") == "gl"
+
+
+@pytest.mark.parametrize("ending", IMAGES)
+def test_an_image_is_the_same_without_threads_which_are_there_again(tmp_path, ending):
+    before = [oiio.get_int_attribute(name) for name in ("threads", "exr_threads")]
+    with without_threads():
+        write_image(tmp_path / f"one{ending}", IMAGES[ending], {})
+        assert oiio.get_int_attribute("threads") == 1
+    assert before == [oiio.get_int_attribute(name) for name in ("threads", "exr_threads")]
+    pixels = oiio.ImageInput.open(str(tmp_path / f"one{ending}")).read_image(oiio.UNKNOWN)
+    assert pixels.tobytes() == IMAGES[ending].tobytes()
 
 
 @pytest.mark.parametrize("ending", IMAGES)

@@ -56,11 +56,12 @@ def srgb_encoded(image: ArrayLike) -> Codes:
     """
     image = np.asarray(image, dtype=np.float32)
     finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
-    linear = np.clip(np.where(finite[..., np.newaxis], image, np.float32(0.0)), 0.0, 1.0)
-    # Take the least code of each step, or the next one above its threshold.
+    linear = np.clip(image, np.float32(0.0), np.float32(1.0))
+    linear[~finite] = 0.0
+    # Take the least code of each step, or the next one above its threshold; no index is out of range.
     thresholds, least = _codes()
-    codes = least[(linear * np.float32(STEPS)).astype(np.intp)]
-    codes += linear >= thresholds[codes]
+    codes: Codes = least.take((linear * np.float32(STEPS)).astype(np.intp), mode="clip")
+    codes += linear >= thresholds.take(codes, mode="clip")
     codes[~finite] = NOT_FINITE
     return codes
 

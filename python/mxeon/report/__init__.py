@@ -18,7 +18,7 @@ from mxeon.conformance.results.known_issues import issues_of, page_file
 from mxeon.conformance.results.records import make_converter
 from mxeon.errors import PackageError, install
 from mxeon.io.files import replacing, write_text
-from mxeon.io.images import difference, write_exr, write_png
+from mxeon.io.images import difference, without_threads, write_exr, write_png
 from mxeon.report.junit import to_junit
 from mxeon.report.threads import in_threads
 
@@ -148,7 +148,10 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     # Write the pictures.
     pictures = _with_references(run.pictures)
     stems = [folder / "pictures" / stem for stem in image_names(pictures)]
-    with in_threads(_write_picture, zip(pictures, stems, strict=True)) as written:
+    with (
+        without_threads(),
+        in_threads(_write_picture, zip(pictures, stems, strict=True)) as written,
+    ):
         for _ in written:
             pass
     # Write the pages on the defects beside it, for a site that has no address.

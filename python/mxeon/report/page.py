@@ -149,19 +149,21 @@ def materials(
 
 def panels(pictures: Iterable[Picture]) -> list[dict[str, Any]]:
     """Panels of one scene: the reference if there is one, then pictures and differences."""
-    pictures = tuple(pictures)
-    # Begin with the reference.
-    references = [one.reference for one in pictures if one.reference is not None]
-    row = []
-    if references:
-        row.append(_panel("reference", "reference", "NumPy, float64", srgb_encoded(references[0])))
+    row: list[dict[str, Any]] = []
     for one in pictures:
+        # Read it once: pixels of a run that is kept are in a file.
+        image = np.asarray(one.image)
+        reference = None if one.reference is None else np.asarray(one.reference)
+        # Begin with the reference.
+        if reference is not None and not any(each["kind"] == "reference" for each in row):
+            pixels = srgb_encoded(reference)
+            row.insert(0, _panel("reference", "reference", "NumPy, float64", pixels))
         # Add each picture.
         place = {"host": one.host, "library": one.library}
-        row.append(_panel("image", one.host, one.library, srgb_encoded(one.image), **place))
-        if one.reference is not None:
+        row.append(_panel("image", one.host, one.library, srgb_encoded(image), **place))
+        if reference is not None:
             # Add its difference from the reference.
-            apart = difference(one.image, one.reference)
+            apart = difference(image, reference)
             scale = difference_scale(apart)
             note = f"{one.host}, max {number(apart.max(), 2)}"
             pixels = difference_pixels(apart, scale)
