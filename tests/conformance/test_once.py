@@ -20,6 +20,7 @@ from mxeon.conformance.nodes.diffuse import SUBJECTS
 from mxeon.conformance.probes.memory import KEPT, LARGEST, Remembered
 from mxeon.conformance.probes.pairs import PairProbe
 from mxeon.conformance.probes.probe import LobeProbe
+from mxeon.conformance.reference import closures
 from mxeon.conformance.reference.lobes import KEPT as LOBES_KEPT
 from mxeon.conformance.reference.lobes import kept
 from mxeon.conformance.run import journal
@@ -31,6 +32,7 @@ from mxeon.hosts import fragment
 from mxeon.hosts.gl import Host
 from mxeon.models.core.layering import Bsdf
 from mxeon.models.microfacet import conductor_brdf
+from mxeon.models.nodes import node
 from mxeon.models.thin_film import curve
 from mxeon.models.thin_film.lobe import film_albedo_dir, film_brdf
 from mxeon.shaders.document.policy import DEFAULT
@@ -165,16 +167,32 @@ def test_a_lobe_keeps_its_values_of_the_last_inputs():
     first = lobe(BSDFS[0].row, inputs, False)
     assert lobe(BSDFS[0].row, {name: each.copy() for name, each in inputs.items()}, False) is first
     others = [{"roughness": np.array([number])} for number in np.linspace(0.0, 1.0, LOBES_KEPT)]
-    for node, values, layered in (
+    for row, values, layered in (
         (BSDFS[1].row, inputs, False),
         (BSDFS[0].row, inputs, True),
         (BSDFS[0].row, {"color": inputs["color"][0], "roughness": inputs["roughness"]}, False),
     ):
-        lobe(node, values, layered)
+        lobe(row, values, layered)
     assert len(calls) == 4
     for each in others:
         lobe(BSDFS[0].row, each, False)
     assert lobe(BSDFS[0].row, inputs, False) is not first
+
+
+def test_an_albedo_that_takes_long_is_computed_once_for_points_that_are_the_same():
+    counts = []
+
+    def albedo(wo, inputs):
+        counts.append(len(wo))
+        return wo[:, 2:] * np.reshape(inputs["roughness"], (-1, 1)) * inputs["tint"]
+
+    wo = np.array(PAIR)[[0, 1, 0, 0, 1]]
+    inputs = {"roughness": np.array([0.1, 0.2, 0.1, 0.3, 0.2]), "tint": np.array([[0.2, 0.5, 0.8]])}
+    expected = albedo(wo, inputs)
+    for name, count in (("schlick", 3), ("burley", 5)):
+        found = closures._albedo(node(name), albedo, wo, inputs)
+        np.testing.assert_array_equal(found, expected)
+        assert counts[-1] == count
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mxeon.conformance.reference.lobes import Values, diffuse
+from mxeon.conformance.reference.lobes import Albedo, Values, diffuse
 from mxeon.conformance.reference.nodes import NOTHING
 from mxeon.conformance.reference.points import ShadingPoints
 from mxeon.errors import OutsideModel
@@ -132,7 +132,9 @@ class Views:
         tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
             value = self._value(closure, row, wo, wi, inputs)
-            left = 1.0 - tint * row.albedo(_ended(wo), inputs) if layered else NOTHING.throughput
+            left = NOTHING.throughput
+            if layered:
+                left = 1.0 - tint * _albedo(row, row.albedo, _ended(wo), inputs)
         except ValueError as error:
             raise OutsideModel(f"osl: {closure.name}: {error}") from None
         return Bsdf(value if self.branch == THROUGH else tint * value, left)
@@ -145,7 +147,7 @@ class Views:
         if self.branch == THROUGH:
             return _transmitted(closure, wo, inputs)
         if self.branch != "direct":
-            return np.asarray((row.integral or row.albedo)(_ended(wo), inputs))
+            return _albedo(row, row.integral or row.albedo, _ended(wo), inputs)
         # A distant light, on the side from which the lobe scatters it.
         if row is HAIR_NODE:  # which light meets from all sides
             return self.occlusion * row.value(wo, wi, inputs)
@@ -207,6 +209,21 @@ def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Values)
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
+
+
+def _albedo(row: PbrNode, albedo: Albedo, wo: Values, inputs: Arguments) -> Values:
+    """An albedo of a lobe, once for the points that have the same view and inputs if it is no closed form."""
+    if not row.fitted and row.integral is None:
+        return np.asarray(albedo(wo, inputs))
+    columns = [
+        np.broadcast_to(np.reshape(each, (len(each), -1)), (len(wo), np.size(each[0])))
+        for each in (wo, *inputs.values())
+    ]
+    _, first, places = np.unique(
+        np.concatenate(columns, axis=1), axis=0, return_index=True, return_inverse=True
+    )
+    some = {name: value[first] if len(value) > 1 else value for name, value in inputs.items()}
+    return np.asarray(albedo(wo[first], some)[places.ravel()])
 
 
 def _transmitted(closure: ClosureTree, wo: Values, inputs: Arguments) -> Values:
