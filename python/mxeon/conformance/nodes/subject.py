@@ -45,6 +45,10 @@ class Subject(Protocol):
         """MaterialX text of a material that shows this node alone, with these inputs."""
         ...
 
+    def __hash__(self) -> int:
+        """Hash of what it consists of, by which its expected values are kept."""
+        ...
+
 
 @runtime_checkable
 class ValuedSubject(Subject, Protocol):
