@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hosts for the tests, each opened once in a session, when a test first asks for it."""
 
+import atexit
+import gc
 import os
 import signal
 from contextlib import nullcontext
+from importlib import import_module
+from pkgutil import walk_packages
 
 import pytest
 
+from mxeon import models
 from mxeon.conformance import reference as reference_host
 from mxeon.hosts import open_engine
 from mxeon.hosts.process import Worker
@@ -31,6 +36,23 @@ def pytest_configure():
         required()
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Import the models, whose lines are traced, then collect without tracing.
+
+    No garbage is looked for meanwhile, nor until the process ends in what then exists: all of it stays.
+    """
+    for module in walk_packages(models.__path__, f"{models.__name__}."):
+        import_module(module.name)
+    gc.disable()
+    with untraced():
+        collected = yield
+    gc.freeze()
+    atexit.register(gc.unfreeze)
+    gc.enable()
+    return collected
 
 
 def pytest_make_parametrize_id(val):
