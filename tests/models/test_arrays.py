@@ -117,9 +117,11 @@ def pytorch():
 def jax():
     library = pytest.importorskip("jax")
     library.config.update("jax_enable_x64", True)
-    # What is compiled for one call is not worth optimizing, and emitting fused loops takes twice the rest.
+    # What is compiled for one call is not worth optimizing, and emitting fused loops takes twice the
+    # rest; in one module, what all modules need is compiled once.
     library.config.update("jax_disable_most_optimizations", True)
-    jit = partial(library.jit, compiler_options={"xla_cpu_use_fusion_emitters": False})
+    options = {"xla_cpu_use_fusion_emitters": False, "xla_cpu_parallel_codegen_split_count": 1}
+    jit = partial(library.jit, compiler_options=options)
 
     def gradients(function, values):
         def loss(arrays):
