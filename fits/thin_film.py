@@ -134,11 +134,12 @@ def counted_orders(z, opd, spread, count):
     total = np.zeros((3, *np.broadcast_shapes(z.shape, opd.shape)))
     for k, v, mu, var in film.GAUSSIANS:
         height = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
-        wave, damping = z * np.exp(2j * np.pi * mu * opd), decay(mu, var, opd, spread)
-        total[k] += height * sum(
-            np.where(m <= count, (wave**m).real * np.exp(-damping * m * m), 0.0)
-            for m in range(1, int(count.max()) + 1)
-        )
+        wave, fade = z * np.exp(2j * np.pi * mu * opd), np.exp(-decay(mu, var, opd, spread))
+        # The order m is wave^m fade^(m^2).
+        order, step = height * wave * fade, wave * fade**3
+        for m in range(1, int(count.max()) + 1):
+            total[k] += np.where(m <= count, order.real, 0.0)
+            order, step = order * step, step * fade * fade
     return total
 
 
