@@ -188,6 +188,7 @@ class Host(FragmentHost):
         parts: Sequence[raster.Rectangle] = (),
     ) -> Array:
         """One frame as float32 (height, width, 3), row 0 at the bottom; all of it, or only some parts."""
+        # Prepare an empty frame and the textures.
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()
@@ -195,6 +196,7 @@ class Host(FragmentHost):
         for unit, (name, texture) in enumerate(textures.items()):
             texture.use(location=unit)
             _set(program, {name: unit})
+        # Draw the parts.
         triangle = context.vertex_array(program, _buffers(context, program, raster.TRIANGLE))
         for part in parts or [(0, 0, *size)]:
             frame.scissor = part

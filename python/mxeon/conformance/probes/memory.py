@@ -16,7 +16,7 @@ from mxeon.conformance.samples.batch import Array, Batch, Candidate
 LARGEST = 1 << 14  # pairs of a batch whose values are kept
 KEPT = 32  # batches whose values are kept, of up to 400 kB each
 EVALUATIONS = 16  # batches of a probe whose values are kept, of up to 3.5 megabytes each
-SUBJECTS = 2  # whose expected values are kept: that of a probe, and another that it asks
+KEPT_SUBJECTS = 2  # whose expected values are kept: that of a probe, and another that it asks
 
 
 class Remembered:
@@ -78,13 +78,13 @@ class Known:
         return self._values[key]
 
 
-@lru_cache(maxsize=SUBJECTS)
+@lru_cache(maxsize=KEPT_SUBJECTS)
 def expected_of(subject: ValuedSubject) -> Remembered:
     """Values expected of a subject, which are the same whatever the library."""
     return Remembered(subject.expected)
 
 
-@lru_cache(maxsize=SUBJECTS)
+@lru_cache(maxsize=KEPT_SUBJECTS)
 def albedo_of(subject: LobeSubject) -> Remembered:
     """Albedos expected of a subject, likewise."""
     return Remembered(subject.albedo)

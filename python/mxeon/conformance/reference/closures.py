@@ -132,9 +132,8 @@ class Views:
         tint = np.asarray(closure.arguments["reflection_tint"], np.float64) if tinted else ONE
         try:
             value = self._value(closure, row, wo, wi, inputs)
-            left = NOTHING.throughput
-            if layered:
-                left = 1.0 - tint * _albedo(row, row.albedo, _ended(wo), inputs)
+            seen = _albedo(row, row.albedo, _ended(wo), inputs) if layered else None
+            left = NOTHING.throughput if seen is None else 1.0 - tint * seen
         except ValueError as error:
             raise OutsideModel(f"osl: {closure.name}: {error}") from None
         return Bsdf(value if self.branch == THROUGH else tint * value, left)
