@@ -93,8 +93,8 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
     # Find the file of each reference picture, and the largest difference from it.
     pictures = _with_references(run.pictures)
     stems = dict(zip(map(_place, pictures), image_names(pictures), strict=True))
-    with in_threads(_largest_difference, run.pictures) as found:
-        differences = list(found)
+    with in_threads(_largest_difference, run.pictures) as each:
+        differences = list(each)
     for picture, stem, largest in zip(run.pictures, run.image_names, differences, strict=True):
         # Name the files.
         files = {"exr": f"pictures/{stem}.exr", "png": f"pictures/{stem}.png"}

@@ -18,8 +18,8 @@ R = TypeVar("R")
 def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
     """Results of `work` on every item, in their order; a few items ahead of the caller are begun.
 
-    The first error ends the work, and is raised. The threads end with the block. Were they left to the
-    collection of garbage, which any thread may begin at any time, it could wait there for itself.
+    The first error ends the work, and is raised. The threads end with the block: garbage collection, which
+    may begin in any thread, could end them in one that they wait for, a deadlock.
     """
     begun = deque[Future[R]]()
     with ThreadPoolExecutor(THREADS) as pool:
