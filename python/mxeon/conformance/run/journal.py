@@ -21,6 +21,7 @@ from typing import Self, cast
 
 import numpy as np
 from filelock import FileLock, Timeout
+from numpy.lib.format import header_data_from_array_1_0, write_array_header_1_0
 from numpy.typing import ArrayLike, NDArray
 
 from mxeon.conformance.results.records import StoredImage, make_converter
@@ -150,12 +151,15 @@ class Journal:
 
     def _store(self, image: ArrayLike) -> NDArray[np.float32]:
         """An image in a file of the folder."""
-        pixels = BytesIO()
-        np.save(pixels, np.asarray(image, np.float32))
-        name = hashlib.sha256(pixels.getbuffer()).hexdigest()
-        path = self._path.with_name(f"{name}.npy")
-        with replacing(path) as beside:
-            beside.write_bytes(pixels.getbuffer())
+        # Hash and write the parts of a NumPy file, whose pixels need no copy.
+        pixels, header = np.ascontiguousarray(image, np.float32), BytesIO()
+        write_array_header_1_0(header, header_data_from_array_1_0(pixels))
+        parts = header.getvalue(), pixels.data
+        digest = hashlib.sha256(parts[0])
+        digest.update(parts[1])
+        path = self._path.with_name(f"{digest.hexdigest()}.npy")
+        with replacing(path) as beside, open(beside, "wb") as file:
+            file.writelines(parts)
         return cast(NDArray[np.float32], StoredImage(path))  # read anew by each use
 
 
