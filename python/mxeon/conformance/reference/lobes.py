@@ -33,7 +33,7 @@ TAIL = 2e-7
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((32, 16), (48, 32))
 ROWS = 1 << 12  # arguments of a series at once
-KEPT = 8  # lobes of the pictures of a scene, of up to 2.5 megabytes each
+KEPT = 4  # lobes of the pictures of a scene, of up to 2.5 megabytes each
 FEW = 1000  # directions, whose albedos are as soon computed one by one
 
 
