@@ -203,23 +203,34 @@ def wait_for_lines(path, count, process):
 KEPT = ("value", "reciprocity", "curve", "picture")
 SHORT = f"""import builtins, sys
 from mxeon.__main__ import main
-from tests.support.journals import FINDINGS, FILES, OPTIONS, PIXELS, PLAN, TASKS, journal
 from tests.support.plans import keep_checks
 keep_checks(builtins, *{KEPT})
+"""
+RUN = f"{SHORT}sys.exit(main())"
+# The same, which waits to be killed when the findings of three tasks are kept.
+WAITING = f"""{SHORT}import time
+from mxeon.conformance.run.journal import Journal
+add = Journal.add
+def add_three(journal, number, findings):
+    add(journal, number, findings)
+    if len(journal.findings) == 3:
+        time.sleep(300.0)
+Journal.add = add_three
 sys.exit(main())"""
 
 
 def test_a_killed_run_is_resumed_to_the_same_end(tmp_path, monkeypatch):
     keep_checks(monkeypatch, *KEPT)
     monkeypatch.chdir(Path(__file__).parents[2])
-    command = [sys.executable, "-c", SHORT, "check", str(EXAMPLE), "--report", str(tmp_path)]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    options = ["check", str(EXAMPLE), "--report", str(tmp_path)]
+    process = subprocess.Popen([sys.executable, "-c", WAITING, *options], stdout=subprocess.DEVNULL)
     wait_for_lines(tmp_path / JOURNAL, 4, process)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     done = read_journal(tmp_path)[1].keys()
     assert read_run(tmp_path).missing
-    finished = subprocess.run([*command, "--resume"], capture_output=True, text=True)
+    command = [sys.executable, "-c", RUN, *options, "--resume"]
+    finished = subprocess.run(command, capture_output=True, text=True)
     assert finished.returncode == 0, finished.stderr
     lines = (tmp_path / JOURNAL).read_text().splitlines()[1:]
     assert len(lines) == len(set(lines)) and len(done) > 0

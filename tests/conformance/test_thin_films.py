@@ -223,14 +223,14 @@ def test_sets_of_films_are_as_near_as_its_tolerances_say(name):
 
 @cache
 def samples(node):
-    """A probe whose samples the others of its node have, and what the models give for them."""
+    """A probe whose samples the others of its node have."""
     return FilmProbe(None, SUBJECTS[node], "", FEWER)
 
 
 def probe_of(host, node, library):
     """The probe of a node, of few pairs."""
     probe = FilmProbe(host, SUBJECTS[node], library, FEWER)
-    for name in ("batches", "few", "films", "edges", "albedos", "_expected", "_albedo"):
+    for name in ("batches", "few", "films", "edges", "albedos"):
         setattr(probe, name, getattr(samples(node), name))
     return probe
 
