@@ -25,6 +25,7 @@ def failing(monkeypatch, error):
     [
         (InputError(), MISUSE, "InputError"),
         (OSError(), MISUSE, "file: must be accessible; OSError"),
+        (FileExistsError(17, "File exists", "out"), MISUSE, "out: must be a folder; File exists"),
         (NotRun("gl: none"), NOT_RUN, "gl: none"),
         (ShaderError("gl: no shader"), FAILED, "gl: no shader"),
         (MemoryError(), NOT_RUN, "memory must suffice for the work; there is no more"),

@@ -48,7 +48,8 @@ def status_of(error: Exception) -> tuple[int, str]:
     """Exit status and message of an error that has words for the user."""
     if isinstance(error, OSError) and not hasattr(error, "status"):
         reason = error.strerror or str(error) or type(error).__name__
-        return MISUSE, f"{error.filename or 'file'}: must be accessible; {reason}"
+        rule = "must be a folder" if isinstance(error, FileExistsError) else "must be accessible"
+        return MISUSE, f"{error.filename or 'file'}: {rule}; {reason}"
     return getattr(error, "status", MISUSE), str(error) or type(error).__name__
 
 
