@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values and throughputs of one lobe at all the points of a picture, under each kind of light."""
 
-from collections import OrderedDict
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -11,6 +10,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from mxeon.conformance.reference.inner import AROUND, LET_THROUGH
+from mxeon.conformance.reference.recent import Recent, contents
 from mxeon.errors import NotRun
 from mxeon.models import table
 from mxeon.models.core.layering import Bsdf, throughput
@@ -101,23 +101,13 @@ def furnace(wo: Values, radiance: float, most: float = np.inf, behind: bool = Fa
 
 def kept(lobe: Lobe) -> Lobe:
     """The same lobe, which keeps its values of the last nodes and inputs."""
-    known: OrderedDict[Hashable, Bsdf] = OrderedDict()
+    known = Recent[Bsdf](KEPT)
 
     def values(node: PbrNode, inputs: Inputs, layered: bool) -> Bsdf:
-        key = node, layered, *((name, *_contents(each)) for name, each in inputs.items())
-        if key not in known:
-            known[key] = lobe(node, inputs, layered)
-        known.move_to_end(key)
-        if len(known) > KEPT:
-            known.popitem(last=False)
-        return known[key]
+        key = node, layered, *((name, contents(each)) for name, each in inputs.items())
+        return known.value(key, lambda: lobe(node, inputs, layered))
 
     return values
-
-
-def _contents(values: Values) -> tuple[tuple[int, ...], int]:
-    """What tells the values of an input from others: their shape, and a hash of 64 bits."""
-    return values.shape, hash(values.tobytes())
 
 
 def weighted(lobe: Bsdf, weight: Values, layerable: bool) -> Bsdf:

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values that are kept by what they depend on, as long as they are among the last that were asked for."""
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from typing import Generic, TypeVar
+
+import numpy as np
+
+T = TypeVar("T")
+
+
+class Recent(Generic[T]):
+    """Values by their keys; so many of them, those that were asked for last."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._values: OrderedDict[Hashable, T] = OrderedDict()
+
+    def value(self, key: Hashable, compute: Callable[[], T]) -> T:
+        """The value of a key, which is computed unless it is known."""
+        if key not in self._values:
+            self._values[key] = compute()
+        # Forget what was not asked for longest.
+        self._values.move_to_end(key)
+        if len(self._values) > self._most:
+            self._values.popitem(last=False)
+        return self._values[key]
+
+
+def contents(value: object) -> Hashable:
+    """What tells an array, a number, a string or None from others: of an array type, shape and a hash of 64 bits."""
+    if value is None or isinstance(value, (str, bool)):
+        return value
+    array = np.asarray(value)
+    return array.dtype.str, array.shape, hash(array.tobytes())
