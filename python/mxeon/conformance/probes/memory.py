@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable
 from functools import lru_cache
 
 from mxeon.conformance.nodes.subject import LobeSubject, ValuedSubject
-from mxeon.conformance.reference.recent import Recent, contents
+from mxeon.conformance.recent import Recent, contents
 from mxeon.conformance.samples.batch import Array, Batch, Candidate
 
 LARGEST = 1 << 14  # pairs of a batch whose values are kept

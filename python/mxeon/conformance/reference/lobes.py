@@ -9,8 +9,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from mxeon.conformance.recent import Recent, contents
 from mxeon.conformance.reference.inner import AROUND, LET_THROUGH
-from mxeon.conformance.reference.recent import Recent, contents
 from mxeon.errors import NotRun
 from mxeon.models import table
 from mxeon.models.core.layering import Bsdf, throughput
