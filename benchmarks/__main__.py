@@ -27,7 +27,7 @@ GROUPS = (
 QUICK = {
     "shaders": {"rounds": 5},
     "noise": {"rounds": 3, "invocations": 2**12, "size": 64, "pictures": 8, "spokes": 6},
-    "materials": {"rounds": 3, "size": 256},
+    "materials": {"processes": 3, "size": 256},
     "texts": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},

@@ -98,6 +98,11 @@ def memory(name, jobs, goal=None):
     return figure(f"{name}, largest process", "MiB", [max(each.memory for each in jobs)], goal)
 
 
+def share(name, jobs, usual, goal):
+    """Figure of the time of some runs, relative to a usual one."""
+    return figure(name, "x", [each.seconds / usual for each in jobs], goal)
+
+
 def main_job(rounds, files, cache):
     """Figures and checks of the examples on gl, without and with workers in turn; and its seconds."""
     options = {NONE: (*files, "--workers", "0"), TWO: (*files, "--workers", "2")}
@@ -130,35 +135,40 @@ def wrong_library():
         yield library
 
 
-def reporting(files, cache, usual):
+def reporting(rounds, files, cache, usual):
     """Figures of a report, and of the same run again, which finds it finished."""
-    with TemporaryDirectory() as folder:
-        options = (*files, "--workers", "2", "--report", folder)
-        first, again = (job(*options, *more, cache=cache) for more in ((), ("--resume",)))
+    found = {"first": [], "again": []}
+    for _ in range(rounds):
+        with TemporaryDirectory() as folder:
+            options = (*files, "--workers", "2", "--report", folder)
+            found["first"].append(job(*options, cache=cache))
+            found["again"].append(job(*options, "--resume", cache=cache))
+    beyond = [each.seconds - usual for each in found["first"]]
     figures = [
-        figure("gl, beyond that with --report", "s", [first.seconds - usual], goal=2.0),
-        figure("gl, again with --resume", "s", [again.seconds], goal=5.0),
-        memory("gl, --report", [first], MEMORY),
+        figure("gl, beyond that with --report", "s", beyond, goal=2.0),
+        figure("gl, again with --resume", "s", [each.seconds for each in found["again"]], goal=5.0),
+        memory("gl, --report", found["first"], MEMORY),
     ]
     return figures, []
 
 
-def libraries(files, cache, usual):
+def libraries(rounds, files, cache, usual):
     """Figures and checks of two libraries, and of a wrong one with its diagnosis."""
 
     def warm(*options):
-        """The second of two runs: the first fills the cache."""
-        return [job(*files, "--workers", "2", *options, cache=cache) for _ in range(2)][1]
+        """Runs after one that fills the cache."""
+        jobs = [job(*files, "--workers", "2", *options, cache=cache) for _ in range(rounds + 1)]
+        return jobs[1:]
 
     two = warm(*BOTH)
     with wrong_library() as library:
         wrong = warm("--library", str(library))
     figures = [
-        figure("gl, two libraries / one", "x", [two.seconds / usual], goal=1.6),
-        figure("gl, a wrong coefficient / none", "x", [wrong.seconds / usual], goal=1.5),
-        memory("gl, two libraries", [two], MEMORY),
+        share("gl, two libraries / one", two, usual, 1.6),
+        share("gl, a wrong coefficient / none", wrong, usual, 1.5),
+        memory("gl, two libraries", two, MEMORY),
     ]
-    missed = 0.0 if wrong.wrong > 0.0 else np.inf
+    missed = 0.0 if all(each.wrong > 0.0 for each in wrong) else np.inf
     return figures, [Check("a wrong coefficient is found", missed, 0.0)]
 
 
@@ -200,8 +210,8 @@ def measure(rounds=3, files=(), whole=True, keep: Callable[[Group], None] | None
     with TemporaryDirectory() as cache:
         figures, checks, usual = main_job(rounds, files, cache)
         parts = (
-            partial(reporting, files, cache, usual),
-            partial(libraries, files, cache, usual),
+            partial(reporting, rounds, files, cache, usual),
+            partial(libraries, rounds, files, cache, usual),
             partial(all_nodes, files),
             partial(field, cache),
         )

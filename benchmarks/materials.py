@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generated materials with eonlib and with stock MaterialX: source, compilation, frame time."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+import statistics
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
 from functools import partial
-from itertools import count
+from multiprocessing import get_context
 
 import numpy as np
 
@@ -22,7 +24,9 @@ from mxeon.shaders.nodes import (
 from mxeon.shaders.scene import SIDE, sphere
 
 SIZE = 512
-FRAMES = 2
+FIRST = 8  # pixels along a side of a first frame
+FRAMES = 3  # of each library in a process, after one that is dropped
+PROCESSES = 7  # in one of six, llvmpipe's code of one text takes a sixth to two fifths longer
 MESH = 128  # squares along a side of the mesh, few enough to cost nothing beside the pixels
 LIBRARIES = ("eonlib", "stock")
 
@@ -95,7 +99,7 @@ class Frame:
 
     def __init__(self, host, generated, size):
         context = self._context = host._context
-        self._target = context.framebuffer([context.renderbuffer((size, size), 4, dtype="f4")])
+        self.resize(size)
         program = gl._program(context, generated.stages["vertex"], generated.stages["pixel"])
         gl._set(program, raster.light(SIDE))
         for unit, name in enumerate(("u_envRadiance", "u_envIrradiance")):
@@ -110,12 +114,16 @@ class Frame:
         ]
         self._mesh = context.vertex_array(program, buffers, context.buffer(indices))
 
-    def draw(self, frames=FRAMES):
-        """Draw so many frames, to the end."""
+    def resize(self, size):
+        """Draw into a picture of so many pixels along a side from now on."""
+        picture = self._context.renderbuffer((size, size), 4, dtype="f4")
+        self._target = self._context.framebuffer([picture])
+
+    def draw(self):
+        """Draw to the end."""
         self._target.use()
-        for _ in range(frames):
-            self._target.clear()
-            self._mesh.render()
+        self._target.clear()
+        self._mesh.render()
         self._context.finish()
 
     def image(self):
@@ -133,31 +141,68 @@ def mesh(size):
     return points.vertices(size, "sphere"), square.astype("u4")
 
 
-def first_frame(host, generated, numbers):
-    """Compile a material and draw it small, as if for the first time: drivers know texts again."""
-    pixel = f"{generated.stages['pixel']}// {next(numbers)}\n"
-    frame = Frame(host, replace(generated, stages={**generated.stages, "pixel": pixel}), 8)
-    frame.draw(1)
+@dataclass(frozen=True)
+class Run:
+    """One material in one process: the device, and by library characters, seconds of compilation and of a frame."""
+
+    device: str
+    lengths: Mapping[str, int]
+    compilation: Mapping[str, float]
+    frame: Mapping[str, float]
+    checks: tuple[Check, ...]
 
 
-def measure(rounds=3, size=SIZE, nodes=tuple(NODES), keep: Callable[[Group], None] | None = None):
-    """The `Group` of materials; `keep` is handed it after each material, as far as it is."""
+def _start_compiler(host):
+    """Draw another material first, or the first compilation is that of a driver that starts."""
+    Frame(host, shader(host, "oren_nayar", "stock"), FIRST).draw()
+
+
+def run(node, size, libraries):
+    """The `Run` of a material, the libraries in this order."""
     host = gl.Host()
     device = host.identity().device
-    group = Group("materials", f"Materials on {device}, {size} x {size}")
+    clock = clock_of(device)
+    shaders = {library: shader(host, node, library) for library in libraries}
     with host._context:  # which each verb of a host makes current, and frames do without
+        _start_compiler(host)
+        frames, compilation = {}, {}
+        for library, generated in shaders.items():
+            start = clock()
+            frames[library] = Frame(host, generated, FIRST)
+            frames[library].draw()
+            compilation[library] = clock() - start
+            frames[library].resize(size)
+        rivals = {library: frame.draw for library, frame in frames.items()}
+        drawing = interleave(rivals, FRAMES, clock)
+        checks = tuple(_checks(node, frames, size))
+    host.close()
+    lengths = {library: len(each.stages["pixel"]) for library, each in shaders.items()}
+    seconds = {library: statistics.median(each) for library, each in drawing.items()}
+    return Run(device, lengths, compilation, seconds, checks)
+
+
+def measure(
+    processes=PROCESSES, size=SIZE, nodes=tuple(NODES), keep: Callable[[Group], None] | None = None
+):
+    """The `Group` of materials, each in so many processes; `keep` is handed it after each, as far as it is."""
+    group = Group("materials", "Materials")
+    with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
         for node in nodes:
-            figures, checks = _timed(host, node, rounds, size, clock_of(device))
-            group = replace(group, figures=group.figures + figures, checks=group.checks + checks)
+            turns = [LIBRARIES[:: -1 if turn % 2 else 1] for turn in range(processes)]
+            runs = list(pool.map(partial(run, node, size), turns))
+            group = replace(
+                group,
+                title=f"Materials on {runs[0].device}, {size} x {size}",
+                figures=group.figures + _figures(node, runs),
+                checks=group.checks + tuple(_largest(runs)),
+            )
             if keep:
                 keep(group)
-    host.close()
     means = tuple(_mean(group, kind, nodes) for kind in ("frame", COMPILATION))
     return replace(group, figures=group.figures + tuple(each for each in means if each))
 
 
 COMPILATION = "compilation and first frame"
-NUMBERS = count()  # of compilations, so that no two texts are alike
 
 
 def _mean(group: Group, kind: str, nodes: Iterable[str]):
@@ -168,29 +213,33 @@ def _mean(group: Group, kind: str, nodes: Iterable[str]):
     return figure(name, "x", [float(np.mean(ratios))], 1.0) if ratios else None
 
 
-def _timed(host, node, rounds, size, clock):
-    """Figures and checks of one material."""
-    shaders = {library: shader(host, node, library) for library in LIBRARIES}
-    first = {name: partial(first_frame, host, each, NUMBERS) for name, each in shaders.items()}
-    compiling = interleave(first, rounds, clock)
-    frames = {name: Frame(host, each, size) for name, each in shaders.items()}
-    drawing = interleave({name: each.draw for name, each in frames.items()}, rounds, clock)
-    lengths = [[len(each.stages["pixel"])] for each in shaders.values()]
-    figures = (
-        scaled(f"frame, {node}, eonlib", "ms", drawing["eonlib"], 1e3 / FRAMES),
-        ratio(f"frame, {node}, eonlib / stock", *drawing.values(), TIMES[node]),
-        scaled(f"{COMPILATION}, {node}, eonlib", "ms", compiling["eonlib"], 1e3),
-        ratio(f"{COMPILATION}, {node}, eonlib / stock", *compiling.values(), TIMES[node]),
-        figure(f"source, {node}, eonlib", "characters", lengths[0]),
-        ratio(f"source, {node}, eonlib / stock", *lengths, TEXTS.get(node)),
+def _figures(node, runs):
+    """Figures of one material, a value for each process."""
+    frame, compilation, length = (
+        {library: [getattr(each, kind)[library] for each in runs] for library in LIBRARIES}
+        for kind in ("frame", "compilation", "lengths")
     )
-    return figures, tuple(_checks(node, frames, size))
+    return (
+        scaled(f"frame, {node}, eonlib", "ms", frame["eonlib"], 1e3),
+        ratio(f"frame, {node}, eonlib / stock", *frame.values(), TIMES[node]),
+        scaled(f"{COMPILATION}, {node}, eonlib", "ms", compilation["eonlib"], 1e3),
+        ratio(f"{COMPILATION}, {node}, eonlib / stock", *compilation.values(), TIMES[node]),
+        figure(f"source, {node}, eonlib", "characters", length["eonlib"]),
+        ratio(f"source, {node}, eonlib / stock", *length.values(), TEXTS.get(node)),
+    )
+
+
+def _largest(runs):
+    """The checks of one material, with the largest error of all processes."""
+    for checks in zip(*(each.checks for each in runs), strict=True):
+        yield replace(checks[0], error=float(np.max([each.error for each in checks])))
 
 
 def _checks(node, frames, size):
     """That a material's pixels are finite and, where both libraries have its model, the same."""
-    images = [each.image()[sphere(size).normal[..., 2] > FACING] for each in frames.values()]
-    yield Check(f"{node}, pixels that are not finite", float((~np.isfinite(images[0])).sum()), 0.0)
+    facing = sphere(size).normal[..., 2] > FACING
+    ours, stock = (frames[library].image()[facing] for library in LIBRARIES)
+    yield Check(f"{node}, pixels that are not finite", float((~np.isfinite(ours)).sum()), 0.0)
     if node in SAME:
-        difference = float(np.abs(images[0] - images[1]).max())
+        difference = float(np.abs(ours - stock).max())
         yield Check(f"{node}, eonlib - stock", difference, SAME[node])

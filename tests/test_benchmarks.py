@@ -14,7 +14,6 @@ from benchmarks import (
     cycles,
     lights,
     machine_code,
-    materials,
     models,
     noise,
     page,
@@ -63,7 +62,7 @@ SMALLEST = {
     "noise": {
         "rounds": 1, "invocations": 256, "calls": 4, "size": 16, "pictures": 2, "spokes": 2,
     },
-    "materials": {"rounds": 1, "size": 32, "nodes": ("oren_nayar", "dielectric_bsdf")},
+    "materials": {"processes": 1, "size": 32, "nodes": ("oren_nayar", "dielectric_bsdf")},
     "texts": {"nodes": ("oren_nayar", "dielectric_bsdf")},
     "instructions": {"nodes": ("oren_nayar",)},
     "registers": {"nodes": ("oren_nayar",)},
@@ -97,8 +96,7 @@ def test_each_group_is_measured_and_written_to_its_page(gl, tmp_path, monkeypatc
 
 
 def test_materials_that_were_measured_stay_when_the_next_one_fails(gl, tmp_path, monkeypatch):
-    monkeypatch.setattr(materials, "NODES", {"oren_nayar": materials.NODES["oren_nayar"]})
-    sizes = {"rounds": 1, "size": 16, "nodes": ("oren_nayar", "no_such_node")}
+    sizes = {"processes": 1, "size": 16, "nodes": ("oren_nayar", "no_such_node")}
     monkeypatch.setattr(command, "QUICK", {"materials": sizes})
     with pytest.raises(KeyError):
         command.main(["materials", "--quick", "--output", str(tmp_path)])
