@@ -7,7 +7,6 @@ OSL files, `worker.py` renders them there, and this half reads the float32 pictu
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -21,11 +20,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from mxeon.errors import ImageError, InputError, NotRun, ShaderError
 from mxeon.hosts.base import Array, Identity, Inputs
-from mxeon.hosts.cycles import closures, graphs, pairs, tracing
+from mxeon.hosts.cycles import calls, closures, graphs, pairs, tracing
 from mxeon.hosts.cycles.process import interpreter
 from mxeon.hosts.pairs import PairHost
 from mxeon.hosts.process import Worker
-from mxeon.io.images import read_image, write_image
+from mxeon.io.images import read_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import inner_lobes
@@ -37,29 +36,12 @@ Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 # Pictures that are kept: the checks of a node ask for some of them again.
 PICTURES = 64
 
-EMITTER = Scene("emitter")  # without light, for what shines by itself
-
 # Cycles has no surface coordinates on a point cloud: a block that opens like this gives the globals
 # `u` and `v`, which a generated shader reads, the values of `mxeon.shaders.scene.sphere`.
 TEXCOORD = """{
     float u = 0.5 + atan2(N[0], N[2]) / M_2PI;
     float v = 0.5 + atan2(N[1], hypot(N[0], N[2])) / M_PI;
 """
-
-# The values of a function as the light that a sphere emits: pixel by pixel its arguments are read
-# from images, by position and without filtering, so that every bit of a float32 survives.
-CALL = """#include "{source}"
-
-shader call(output closure color out = 0)
-{{
-    float s = 0.5 + 0.5 * P[0];
-    float t = 0.5 - 0.5 * P[1];
-{reads}
-    color value = {function}({names});
-    out = value * emission();
-}}
-"""
-READ = '    {type} {name} = texture("{image}", s, t, 0.0, 0.0, 0.0, 0.0, "interp", "closest");'
 
 
 class Host(PairHost):
@@ -206,33 +188,10 @@ class Host(PairHost):
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
         """Values of an OSL function; see `mxeon.hosts.base.Host`."""
-        # Bring the arguments into columns of one length.
-        types = [kind for kind, _ in functions.parameters(source, function)]
-        if len(types) != len(arguments):
-            raise InputError(f"{function} takes {len(types)} arguments; got {len(arguments)}")
-        columns = [_columns(*pair) for pair in zip(types, arguments, strict=True)]
-        count = max(map(len, columns))
-        size = max(4, math.isqrt(count - 1) + 1)  # Blender renders no smaller picture.
-        # Write each column as an image that the shader reads.
-        names = [f"argument{index}" for index in range(len(types))]
-        with self._folder() as folder:
-            path = Path(folder, "functions.osl")
-            path.write_text(source, encoding="utf-8")
-            reads = []
-            for kind, name, column in zip(types, names, columns, strict=True):
-                image = Path(folder, f"{name}.exr")
-                _write(image, np.broadcast_to(column, (count, column.shape[1])), size)
-                reads.append(READ.format(type=kind, name=name, image=image.as_posix()))
-            # Write the shader that calls the function for its pixel.
-            text = CALL.format(
-                source=path.as_posix(),
-                reads="\n".join(reads),
-                function=function,
-                names=", ".join(names),
-            )
-            # Render it as the emission of a plane.
-            frame = tracing.request(EMITTER, ()) | {"size": size, "radius": 2.0}
-            pixels = self._render(Path(folder), text, **frame)
+        with self._folder() as name:
+            folder = Path(name)
+            text, frame, count = calls.request(folder, source, function, *arguments)
+            pixels = self._render(folder, text, **frame)
         return pixels.reshape(-1, 3)[:count]
 
     def closures(self) -> dict[str, str]:
@@ -324,16 +283,3 @@ def _on_sphere(text: str) -> str:
     """A generated shader with the path of its include and the sphere's texture coordinates."""
     head, brace, body = _with_header(text).rpartition("\n)\n{\n")
     return head + brace + TEXCOORD + body + "}"
-
-
-def _columns(kind: str, values: ArrayLike) -> NDArray[np.float32]:
-    """Values of an OSL type as rows of float32, one row for what is the same everywhere."""
-    return np.asarray(values, np.float32).reshape(-1, 1 if kind == "float" else 3)
-
-
-def _write(path: Path, rows: NDArray[np.float32], size: int) -> None:
-    """Write rows as the first pixels of a float32 image of `size` x `size`."""
-    channels = rows.shape[1]
-    pixels = np.zeros((size * size, channels), np.float32)
-    pixels[: len(rows)] = rows
-    write_image(path, pixels.reshape(size, size, channels), {})
